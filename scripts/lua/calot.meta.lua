@@ -1,0 +1,343 @@
+---@meta calot
+-- Generated from the API's table (src/lua/api_*.cpp); the tests hold it to that. Do not edit.
+
+---A place or a vector {x, y, z} in m, in the patient's frame: x to the patient's left, y towards the head,
+---z out of the abdomen, from the navel.
+---@alias calot.point number[]
+---@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_obj
+
+---An exercise: what a scenario returns.
+---@class calot.exercise
+---@field api number version of this interface: 1
+---@field id string short name: small letters, digits and hyphens
+---@field title string one line for people
+---@field time_limit? number the session ends then at the latest; default 120 * s; 1 to 3600 s
+---@field params? table<string, calot.param> what can be chosen when it is started; scene gets the values
+---@field scene fun(p: table<string, any>): calot.scene returns the operating field
+---@field steps fun(t: calot.Steps) the operation's steps, a coroutine
+---@field demo? fun(t: calot.Demo) an expert's instrument path, a coroutine
+---@field score calot.weighted what counts: calot.score.weighted { ... }
+---@field golden? calot.golden when pictures are compared
+
+---Something that can be chosen when the exercise is started (--param name=value).
+---@class calot.param
+---@field type "choice"|"number"|"boolean" what kind of value
+---@field default any the value when nothing is chosen
+---@field choices? string[] what can be chosen, for a choice
+---@field min? number smallest number
+---@field max? number largest number
+---@field title? string one line for people
+
+---Parts of the score; their weights sum to 1, the total is 0 to 100.
+---@class calot.weighted
+---@field critical? string[] events that cap the total and fail the exercise
+---@field cap? number the total's largest value after a critical event; default 40; 0 to 100 points
+---@field pass? number the total from which on the exercise is passed; default 80; 0 to 100 points
+---@field [integer] calot.part
+
+---A part of the score: { calot.score.benchmark { ... }, weight = 0.5 }.
+---@class calot.part
+---@field weight number its share of the total; 0 to 1
+---@field name? string its name in the report; default the metric or the event
+---@field [integer] calot.benchmark|calot.penalty
+
+---A metric between a novice's value (no points) and an expert's (all points).
+---@class calot.benchmark
+---@field metric string the metric's name, such as "left.path_length_mm"
+---@field novice number earns nothing, in the metric's unit
+---@field expert number earns all, in the metric's unit
+
+---Full marks, less a share for each event of a kind.
+---@class calot.penalty
+---@field event "contact"|"grasp"|"release"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
+---@field each? number share lost with each; default 0.25; 0 to 1
+
+---When pictures are compared with golden ones.
+---@class calot.golden
+---@field at number[] times in s, within the time limit
+
+---Options of t:step.
+---@class calot.step_options
+---@field limit? number after it the step ends as timed out; 0.1 to 3600 s
+
+---Options of motions.
+---@class calot.move_options
+---@field speed? number largest speed of the tip; default 30 * mm / s; 0.1 to 500 mm / s
+
+---Options of a rotation.
+---@class calot.rotate_options
+---@field speed? number largest angular speed, rad/s; default 90 * deg; 1 to 1000 deg
+
+---Options of an approach.
+---@class calot.approach_options
+---@field speed? number largest speed of the tip; default 30 * mm / s; 0.1 to 500 mm / s
+---@field depth? number how far into the tissue's rest the tip presses; negative stops before it; default 4 * mm; -20 to 20 mm
+---@field offset? calot.point added to the landmark, patient's frame; default { 0, 0, 0 }
+---@field clearance? number the last stretch is straight and this long; default 25 * mm; 0 to 100 mm
+---@field jaw? number how far the jaws are open; default 60 * deg; 0 to 60 deg
+
+---What scene = function(p) returns: the operating field at rest.
+---@class calot.scene
+---@field anatomy calot.anatomy organs and table: calot.anatomy(...) or a table
+---@field ports? table<string, calot.point> trocars by name, added to the usual ones or moved: { name = { x, y, z } }
+---@field instruments? table<string, calot.instrument> instruments by name: { left = { ... } }; they are t.left, ...
+---@field laparoscope? calot.laparoscope the camera
+---@field solver? calot.solver steps and tolerance
+
+---The organs and how the table is tilted.
+---@class calot.anatomy
+---@field base? "standard"|"hydrops" named anatomy to start from; calot.anatomy(name) sets it
+---@field organs? calot.organ[] the organs; with a base, the first overrides the base's first, and so on
+---@field support? calot.support a plane that carries the organs
+---@field table_head_up? number reverse Trendelenburg tilt; default 15 * deg; -60 to 60 deg
+---@field table_left_down? number tilt to the patient's left; default 10 * deg; -60 to 60 deg
+
+---A plane; what is below it is solid.
+---@class calot.support
+---@field point? calot.point a point on it; default { 0, 0, 0 }
+---@field normal? calot.point its unit normal, pointing out of the solid; default { 0, 0, 1 }
+
+---A grasper through a port.
+---@class calot.instrument
+---@field type? "atraumatic_grasper" which instrument; default "atraumatic_grasper"
+---@field port string the port it goes through
+---@field force_limit? number tip force above which the event overforce is raised; default 8 * N; 0.05 to 100 N
+
+---The camera and its light.
+---@class calot.laparoscope
+---@field port? string the port it goes through; default "umbilical"
+---@field angle? number of its optic: 0 or 30 deg are usual; default 30 * deg; 0 to 70 deg
+---@field look_at? string landmark in the middle of the picture; default "gallbladder.fundus"
+---@field distance? number from its tip to what it looks at; default 90 * mm; 10 to 400 mm
+---@field field_of_view? number across the round picture; default 75 * deg; 20 to 120 deg
+
+---How the simulation steps.
+---@class calot.solver
+---@field rate? number steps a second; default 50; 1 to 2000 steps a second
+---@field tolerance? number dimensionless residual of equilibrium; default 1e-06; 1e-12 to 0.01
+---@field extensions? calot.extensions structural extensions at contacts
+
+---A hollow organ. In calot.anatomy's overrides, only what differs.
+---@class calot.organ
+---@field name? string its name, unique; landmarks are written "gallbladder.fundus"; default "gallbladder"
+---@field shape? calot.shape its shape at rest: type "pear", "sphere" or "obj" with their keys
+---@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 4000
+---@field neck? calot.point where the shape's lower pole lies; default { -50 * mm, 130 * mm, -110 * mm }
+---@field fundus? calot.point where its upper pole points to; default { -80 * mm, 100 * mm, -60 * mm }
+---@field liver_side? calot.point direction from the organ's axis to its bed on the liver; default { 0, 0.8, 0.6 }
+---@field wall? calot.wall its wall
+---@field bile? calot.bile what fills it
+---@field held? calot.held[] elastic attachments; a list given here replaces the anatomy's own
+
+---The organ's wall.
+---@class calot.wall
+---@field thickness? number 2 to 3 mm is usual; default 2 * mm; 0.1 to 10 mm
+---@field shear_modulus? number shear modulus mu of the neo-Hookean wall; default 100 * kPa; 1 to 100000 kPa
+---@field overstretch? number principal stretch above which the event overstretch is raised; default 2.2; 1.01 to 10
+
+---The filling. Give the volume or the pressure, the other follows; neither: the unstressed volume.
+---@class calot.bile
+---@field density? number kg/m^3; 1010 to 1040 is usual; default 1020; 500 to 2000 kg/m^3
+---@field fill_volume? number volume of the filling; 0.5 to 1000 mL
+---@field fill_pressure? number gauge pressure at the highest point; 10 to 15 mmHg is usual; 0 to 40 kPa
+
+---An elastic foundation under the skin near a landmark: the cystic plate, the duct's root.
+---@class calot.held
+---@field name? string its name, unique within the organ; default "bed"
+---@field landmark "neck"|"fundus"|"body"|"bed" the landmark it surrounds
+---@field radius? number how far it reaches; default 10 * mm; 0.5 to 250 mm
+---@field stiffness? number N/m per m^2 of skin; default 300000; 1 to 1e+10 N/m^3
+
+---A gallbladder: round fundus, tapering body, slim neck.
+---@class calot.shape_pear
+---@field type? "pear"|"sphere"|"obj" which shape: this one is "pear"; default "pear"
+---@field length? number neck to fundus; 70 to 100 mm is usual; default 80 * mm; 30 to 250 mm
+---@field width? number largest diameter; 30 to 40 mm is usual; default 35 * mm; 10 to 120 mm
+---@field refine? number control nodes are closer by this factor near the fundus; default 1; 1 to 8
+---@field refine_radius? number how far from the fundus they are; default 20 * mm; 1 to 250 mm
+
+---A ball, as in the paper's experiments.
+---@class calot.shape_sphere
+---@field type? "pear"|"sphere"|"obj" which shape: this one is "sphere"; default "pear"
+---@field radius? number radius at rest; default 20 * mm; 5 to 100 mm
+
+---A closed control mesh from a Wavefront OBJ file.
+---@class calot.shape_obj
+---@field type? "pear"|"sphere"|"obj" which shape: this one is "obj"; default "pear"
+---@field path string file below the scenario's folder or the project's assets folder
+---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
+
+---Structural extensions at contacts. Not available yet: levels must be 0.
+---@class calot.extensions
+---@field levels? number subdivision levels added at a contact; default 0
+
+---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
+---@class calot.Session
+local Session = {}
+
+---Waits.
+---@param duration number how long; 0 to 3600 s
+function Session:wait(duration) end
+
+---Waits until the predicate holds, or the step's limit has passed. Returns whether it held.
+---@param predicate fun(): boolean asked after every simulated step
+---@return boolean
+function Session:wait_until(predicate) end
+
+---Time since the start, s.
+---@return number
+function Session:time() end
+
+---Pressure of the organ's filling at its highest point, gauge, Pa.
+---@param organ string an organ's name
+---@return number
+function Session:pressure(organ) end
+
+---Volume the organ encloses, m^3.
+---@param organ string an organ's name
+---@return number
+function Session:volume(organ) end
+
+---The t of steps = function(t): the operation's steps, what to wait for, what to measure.
+---@class calot.Steps: calot.Session
+---@field [string] calot.Instrument
+local Steps = {}
+
+---Ends the running step as done and starts the next.
+---@param name string short name, for metrics: letters, digits and _
+---@param title string one line for people
+---@param options? calot.step_options a limit in time
+function Steps:step(name, title, options) end
+
+---Waits until the predicate has held for a duration in all; metric <step>.<name>.time_in_s. Returns whether it did before the step's limit.
+---@param name string short name, for the metric: letters, digits and _
+---@param predicate fun(): boolean asked after every simulated step
+---@param duration number time in all; 0.001 to 3600 s
+---@return boolean
+function Steps:hold(name, predicate, duration) end
+
+---The t of demo = function(t): moves the instruments.
+---@class calot.Demo: calot.Session
+---@field [string] calot.DemoInstrument
+local Demo = {}
+
+---Runs functions side by side, one for each instrument say, until all have ended.
+---@param first fun() runs side by side with the others
+---@param second fun() runs side by side with the others
+function Demo:together(first, second) end
+
+---An instrument as steps see it: what it touches, holds and feels.
+---@class calot.Instrument
+local Instrument = {}
+
+---Whether it holds the organ, or anything when none is named.
+---@param organ? string an organ's name
+---@return boolean
+function Instrument:holds(organ) end
+
+---Force of the tissue on its tip, N.
+---@return number
+function Instrument:force() end
+
+---Force felt at its handle, N.
+---@return number
+function Instrument:handle_force() end
+
+---Whether it touches tissue.
+---@return boolean
+function Instrument:touching() end
+
+---Its tip's place, {x, y, z} in m.
+---@return calot.point
+function Instrument:tip() end
+
+---An instrument as the demo moves it. Motions return when they have ended.
+---@class calot.DemoInstrument: calot.Instrument
+local DemoInstrument = {}
+
+---Opens the jaws and goes to a landmark from outside, ending pressed onto the tissue, ready to close.
+---@param landmark string a landmark such as "gallbladder.fundus"
+---@param options? calot.approach_options how
+function DemoInstrument:approach(landmark, options) end
+
+---Opens the jaws.
+---@param angle? number angle between the jaws; default 60 * deg; 0 to 60 deg
+function DemoInstrument:open(angle) end
+
+---Closes the jaws on what is between them.
+function DemoInstrument:close() end
+
+---Moves the tip straight to a place.
+---@param target calot.point|string a point, m, or a landmark such as "gallbladder.fundus"
+---@param options? calot.move_options how fast
+function DemoInstrument:move_to(target, options) end
+
+---Moves the tip straight by a vector, patient's frame.
+---@param vector calot.point how far, {x, y, z} in m
+---@param options? calot.move_options how fast
+function DemoInstrument:move_by(vector, options) end
+
+---Turns about the shaft.
+---@param angle number right-handed about the direction of the tip; -360 to 360 deg
+---@param options? calot.rotate_options how fast
+function DemoInstrument:rotate(angle, options) end
+
+---Waits.
+---@param duration number how long; 0 to 3600 s
+function DemoInstrument:wait(duration) end
+
+---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.
+---@class calot.units
+---@field mm number millimetre
+---@field cm number centimetre
+---@field m number metre
+---@field mL number millilitre
+---@field L number litre
+---@field N number newton
+---@field mN number millinewton
+---@field Pa number pascal
+---@field kPa number kilopascal
+---@field MPa number megapascal
+---@field mmHg number millimetre of mercury
+---@field s number second
+---@field ms number millisecond
+---@field deg number degree
+---@field rad number radian
+---@field kg number kilogram
+---@field g number gram
+
+---@class calot.score
+local score = {}
+
+---The parts of the score.
+---@param definition calot.weighted the parts
+---@return calot.weighted
+function score.weighted(definition) end
+
+---Scores a metric between a novice's and an expert's value.
+---@param definition calot.benchmark the metric and its two values
+---@return calot.benchmark
+function score.benchmark(definition) end
+
+---Takes off a share for each event.
+---@param definition calot.penalty the event
+---@return calot.penalty
+function score.penalty(definition) end
+
+---@class calot
+---@field units calot.units
+---@field score calot.score
+local calot = {}
+
+---Declares the exercise; the scenario returns its result.
+---@param definition calot.exercise the exercise
+---@return calot.exercise
+function calot.exercise(definition) end
+
+---A named anatomy, with what differs in a table.
+---@param name string the anatomy's name: standard, hydrops
+---@param overrides? calot.anatomy what differs
+---@return calot.anatomy
+function calot.anatomy(name, overrides) end
+
+return calot

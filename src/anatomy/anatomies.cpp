@@ -1,0 +1,69 @@
+// The ports and the anatomies an author names.
+
+#include "anatomy/definitions.h"
+#include "base/suggest.h"
+#include "base/units.h"
+
+namespace calot {
+namespace {
+
+using units::mL;
+using units::mm;
+using units::mmHg;
+
+/// A pear held along the liver and at its neck. The stiffnesses are design values: pulled up by its fundus with 3 N
+/// it follows the jaws by about 20 mm, as a gallbladder retracted over the liver does.
+OrganDefinition gallbladder(double length, double width) {
+  OrganDefinition organ;
+  PearShape pear;
+  pear.length = length;
+  pear.width = width;
+  pear.refine = 2.0;  // a fold between 5 mm jaws needs nodes about 4 mm apart
+  organ.shape = pear;
+  organ.held = {{"bed", "bed", 25 * mm, 3e5}, {"cystic_duct", "neck", 8 * mm, 2e6}};
+  return organ;
+}
+
+AnatomyDefinition standard() {
+  AnatomyDefinition anatomy;
+  anatomy.organs = {gallbladder(80 * mm, 35 * mm)};
+  anatomy.organs[0].bile.fill_pressure = 12 * mmHg;  // 10 to 15 mmHg (c)
+  return anatomy;
+}
+
+AnatomyDefinition hydrops() {
+  AnatomyDefinition anatomy;
+  anatomy.organs = {gallbladder(95 * mm, 40 * mm)};
+  anatomy.organs[0].bile.fill_volume = 70 * mL;
+  return anatomy;
+}
+
+}  // namespace
+
+std::vector<PortDefinition> default_ports() {
+  return {{"umbilical", {0, 0, 0}},
+          {"epigastric", {-10 * mm, 120 * mm, -5 * mm}},
+          {"right_subcostal", {-80 * mm, 70 * mm, -5 * mm}},
+          {"right_lateral", {-140 * mm, 10 * mm, -25 * mm}},
+          {"left_upper", {80 * mm, 80 * mm, -5 * mm}},
+          {"right_flank", {-110 * mm, 20 * mm, -15 * mm}},
+          {"subcostal", {-80 * mm, 80 * mm, -5 * mm}}};
+}
+
+const std::vector<std::string>& organ_landmarks() {
+  static const std::vector<std::string> names = {"neck", "fundus", "body", "bed"};
+  return names;
+}
+
+const std::vector<std::string>& anatomy_names() {
+  static const std::vector<std::string> names = {"standard", "hydrops"};
+  return names;
+}
+
+Result<AnatomyDefinition> named_anatomy(const std::string& name) {
+  if (name == "standard") return standard();
+  if (name == "hydrops") return hydrops();
+  return fail(FailureKind::scenario, "unknown anatomy \"" + name + "\"", suggestion(name, anatomy_names()));
+}
+
+}  // namespace calot

@@ -1,0 +1,135 @@
+#pragma once
+// What a scenario declares, as plain structs with defaults, in SI units and the patient's frame: origin at
+// the umbilicus, +x patient left, +y cephalad, +z out of the abdomen. Defaults carry their source: (c)
+// clinical literature, (d) a design value of ours, uncalibrated.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/status.h"
+#include "geometry/types.h"
+
+namespace calot {
+
+struct SphereShape {
+  double radius = 20e-3;  ///< m
+};
+
+struct PearShape {
+  double length = 80e-3;  ///< m; 70 to 100 mm (c)
+  double width = 35e-3;   ///< m; 30 to 40 mm (c)
+  /// Vertices are closer by `refine` (>= 1) within `refine_radius` (m) of the fundus, where the grasper
+  /// works.
+  double refine = 1.0, refine_radius = 20e-3;
+};
+
+struct MeshFile {
+  std::string path;
+  double scale = 1.0;  ///< coordinates of the file times this are metres
+};
+
+using OrganShape = std::variant<PearShape, SphereShape, MeshFile>;
+
+struct WallDefinition {
+  double thickness = 2e-3;       ///< m; 2 to 3 mm (c)
+  double shear_modulus = 100e3;  ///< Pa; a third of E = 300 kPa, incompressible (c, spread tenfold)
+  double overstretch = 2.2;      ///< principal stretch above which `overstretch` is raised (d)
+};
+
+/// Give one of the two; with neither the organ is filled to its unstressed volume.
+struct BileDefinition {
+  double density = 1020;                ///< kg/m^3; 1010 to 1040 (c)
+  std::optional<double> fill_volume;    ///< m^3
+  std::optional<double> fill_pressure;  ///< Pa, gauge, at the highest point
+};
+
+/// An elastic foundation under the skin within `radius` of a place: the cystic plate, the duct's root.
+struct HeldRegion {
+  std::string name = "bed";
+  std::string landmark;    ///< a landmark of the organ: "neck", "fundus", "body", "bed"
+  double radius = 10e-3;   ///< m, geodesically coarse: straight distance at rest
+  double stiffness = 3e5;  ///< N/m per m^2 of skin (d)
+};
+
+struct OrganDefinition {
+  std::string name = "gallbladder";
+  OrganShape shape = PearShape{};
+  int nodes = 180;                      ///< control nodes; ignored for a mesh file
+  Vec3 neck{-50e-3, 130e-3, -110e-3};   ///< m; lower pole of the shape (d)
+  Vec3 fundus{-80e-3, 100e-3, -60e-3};  ///< m; the upper pole points this way (d)
+  Vec3 liver_side{0.0, 0.8, 0.6};       ///< direction from the organ's axis to its bed; made orthogonal to it
+  WallDefinition wall;
+  BileDefinition bile;
+  std::vector<HeldRegion> held;
+};
+
+struct SupportDefinition {
+  Vec3 point = Vec3::Zero();    ///< m
+  Vec3 normal = Vec3::UnitZ();  ///< unit
+};
+
+struct AnatomyDefinition {
+  std::vector<OrganDefinition> organs;
+  std::optional<SupportDefinition> support;
+  double table_head_up = 0.2617993877991494;     ///< rad; reverse Trendelenburg 15 deg (c)
+  double table_left_down = 0.17453292519943295;  ///< rad; left side down 10 deg (d)
+};
+
+/// Names and places of the ports (d), American and French: see default_ports().
+struct PortDefinition {
+  std::string name;
+  Vec3 position = Vec3::Zero();  ///< m
+};
+
+enum class InstrumentType { atraumatic_grasper };
+
+struct InstrumentDefinition {
+  std::string name;  ///< "left", "right", ...
+  InstrumentType type = InstrumentType::atraumatic_grasper;
+  std::string port;
+  double force_limit = 8.0;  ///< N at the tip; above it `overforce` is raised (d)
+};
+
+struct LaparoscopeDefinition {
+  std::string port = "umbilical";
+  double angle = 0.5235987755982988;           ///< rad; 0 or 30 deg (c)
+  double field_of_view = 1.3089969389957472;   ///< rad, across the picture's round field; 70 to 80 deg (c)
+  std::string look_at = "gallbladder.fundus";  ///< organ.landmark
+  double distance = 90e-3;                     ///< m from the scope's tip to what it looks at
+};
+
+struct SolverDefinition {
+  double rate = 50;         ///< steps a second
+  double tolerance = 1e-6;  ///< dimensionless, see sim/equilibrium.h
+};
+
+struct SceneDefinition {
+  AnatomyDefinition anatomy;
+  std::vector<PortDefinition> ports;  ///< empty: default_ports()
+  std::vector<InstrumentDefinition> instruments;
+  LaparoscopeDefinition laparoscope;
+  SolverDefinition solver;
+};
+
+/// umbilical, epigastric, right_subcostal, right_lateral, left_upper, right_flank, subcostal (d).
+std::vector<PortDefinition> default_ports();
+
+/// "neck", "fundus", "body" (middle of the axis on the free side), "bed" (middle of the axis on the liver
+/// side).
+const std::vector<std::string>& organ_landmarks();
+
+/// The anatomies an author names: "standard" (a pear filled to 12 mmHg on its bed), "hydrops" (tense, 70 mL).
+Result<AnatomyDefinition> named_anatomy(const std::string& name);
+const std::vector<std::string>& anatomy_names();
+
+/// All that is wrong with a scene at once, each with the path of its field (place.path, rooted at "scene"),
+/// its value in SI with the unit, and a hint. Paths read as an author writes the scene: lists count from 1
+/// ("scene.anatomy.organs[1].wall.thickness", "scene.anatomy.organs[1].held[2].landmark"), a shape's fields
+/// are under ".shape", instruments and ports go by their names ("scene.instruments.left.port",
+/// "scene.ports.umbilical") unless the name is itself the problem ("scene.instruments[2].name"). Empty when
+/// the scene is sound.
+std::vector<Problem> validate(const SceneDefinition& scene);
+
+}  // namespace calot

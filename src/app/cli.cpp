@@ -1,0 +1,160 @@
+#include "app/cli.h"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
+
+#include "app/commands.h"
+#include "app/terminal.h"
+#include "base/suggest.h"
+#include "session/build_info.h"
+
+namespace calot {
+namespace {
+
+/// Commands as CLI11 fills them in, and the one that was chosen.
+struct Program {
+  CLI::App app{"Calot, a scriptable simulator of laparoscopic cholecystectomy"};
+  RunCommand run;
+  ReplayCommand replay;
+  CheckCommand check;
+  NewCommand fresh;
+  GoldenCommand golden;
+  std::function<ExitCode()> chosen;
+};
+
+void add_session_options(CLI::App& command, SessionCommand& options) {
+  command.add_flag("--json", options.json, "print the report as JSON, and nothing else, to stdout");
+  command.add_flag("--no-render", options.no_render, "draw no frames");
+  command.add_option("--size", options.size, "size of the frames, px")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command.add_option("--fail-below", options.fail_below, "exit with 1 when the score is below this")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 100.0));
+}
+
+void add_run(Program& program) {
+  CLI::App& command = *program.app.add_subcommand("run", "play a scenario, score it and draw its frames");
+  command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
+  command.add_option("-o,--output", program.run.output, "output folder (default: out/<scenario id>)")
+      ->type_name("DIR");
+  command.add_option("--seed", program.run.seed, "seed of the scenario's random numbers")->type_name("N");
+  command.add_option("--param", program.run.params, "set a parameter of the scenario; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  add_session_options(command, program.run);
+  command.callback([&program] { program.chosen = [&program] { return run_command(program.run); }; });
+}
+
+void add_replay(Program& program) {
+  CLI::App& command = *program.app.add_subcommand("replay", "play a recording again and compare every state");
+  command.add_option("recording", program.replay.recording, "a recording.jsonl written by run")->required();
+  command.add_option("--scenario", program.replay.scenario, "the scenario's file (default: as recorded)")
+      ->type_name("FILE");
+  command
+      .add_option("-o,--output", program.replay.output,
+                  "write report, frames and table there (default: nowhere)")
+      ->type_name("DIR");
+  add_session_options(command, program.replay);
+  command.callback([&program] { program.chosen = [&program] { return replay_command(program.replay); }; });
+}
+
+void add_check(Program& program) {
+  CLI::App& command =
+      *program.app.add_subcommand("check", "find what is wrong with scenarios without playing them");
+  command.add_option("scenarios", program.check.scenarios, "files, or folders of scenarios")->required();
+  command.add_flag("--json", program.check.json, "print the findings as JSON, and nothing else, to stdout");
+  command.callback([&program] { program.chosen = [&program] { return check_command(program.check); }; });
+}
+
+void add_new(Program& program) {
+  CLI::App& command = *program.app.add_subcommand("new", "write a commented exercise to start from");
+  command.add_option("name", program.fresh.name, "its name, such as hold_tight")->required();
+  command.callback([&program] { program.chosen = [&program] { return new_command(program.fresh); }; });
+}
+
+void add_golden(Program& program) {
+  CLI::App& golden = *program.app.add_subcommand("golden", "compare frames with the stored golden images");
+  golden.require_subcommand(1);
+  const auto add = [&](const char* name, const char* about,
+                       ExitCode (*action)(const GoldenCommand&)) -> CLI::App& {
+    CLI::App& command = *golden.add_subcommand(name, about);
+    command.add_option("names", program.golden.names, "scenarios, or single frames as scenario/frame");
+    command.add_option("--folder", program.golden.folder, "folder of the goldens (default: golden/)")
+        ->type_name("DIR");
+    command.callback(
+        [&program, action] { program.chosen = [&program, action] { return action(program.golden); }; });
+    return command;
+  };
+  CLI::App& test = add("test", "play the scenarios and compare every golden frame", golden_test_command);
+  test.add_option("-o,--output", program.golden.output,
+                  "folder for the frames that differ (default: out/golden)")
+      ->type_name("DIR");
+  test.add_flag("--json", program.golden.json, "print the findings as JSON, and nothing else, to stdout");
+  add("accept", "store the named scenarios' or frames' pictures as golden", golden_accept_command);
+  add("report", "write one HTML page with expected, actual and difference", golden_report_command)
+      .add_option("-o,--output", program.golden.output, "the page (default: out/golden_report.html)")
+      ->type_name("FILE");
+}
+
+void add_doctor(Program& program) {
+  CLI::App& command = *program.app.add_subcommand("doctor", "check what this program needs on this machine");
+  command.callback([&program] { program.chosen = [] { return doctor_command(); }; });
+}
+
+/// CLI11's message, the nearest command to a mistyped one, and where help is.
+ExitCode explain(const Program& program, const CLI::ParseError& error, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : program.app.get_subcommands({})) commands.push_back(command->get_name());
+  std::string next = "calot --help", hint;
+  if (argc > 1) {
+    const std::string word = argv[1];
+    if (std::find(commands.begin(), commands.end(), word) != commands.end())
+      next = "calot " + word + " --help";
+    else if (!closest_name(word, commands).empty())
+      hint = suggestion(word, commands);
+  }
+  return print_failure(fail(FailureKind::usage, error.what(), hint), next);
+}
+
+int parse_and_run(int argc, char** argv) {
+  Program program;
+  program.app.set_version_flag("--version", "calot " + version());
+  program.app.require_subcommand(0, 1);
+  add_run(program);
+  add_replay(program);
+  add_check(program);
+  add_new(program);
+  add_golden(program);
+  add_doctor(program);
+  program.app.footer(
+      "Exit codes: 0 ok, 1 mismatch or score below --fail-below, 2 interrupted, 3 internal, 4 usage,\n"
+      "5 nothing selected, 6 scenario error, 7 resource limit, 8 the simulation could not follow.");
+  try {
+    program.app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.app.exit(error);  // --help, --version
+    return static_cast<int>(explain(program, error, argc, argv));
+  }
+  if (!program.chosen) {
+    print(program.app.help());
+    return static_cast<int>(ExitCode::ok);
+  }
+  return static_cast<int>(program.chosen());
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return static_cast<int>(print_failure(fail(FailureKind::resource, "out of memory"), "calot doctor"));
+  } catch (const std::exception& error) {
+    return static_cast<int>(print_failure(fail(FailureKind::internal, error.what()), "calot doctor"));
+  }
+}
+
+}  // namespace calot

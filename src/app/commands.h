@@ -1,0 +1,56 @@
+#pragma once
+// The commands behind `calot`, each with what its command line fills in. None of them parses arguments.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/exit_code.h"
+
+namespace calot {
+
+/// Shared by run and replay.
+struct SessionCommand {
+  std::string output;  ///< folder
+  bool json = false, no_render = false;
+  std::string size = "960x540";      ///< "WxH", px
+  std::optional<double> fail_below;  ///< points of 100
+};
+
+struct RunCommand : SessionCommand {
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> params;  ///< "key=value"
+};
+ExitCode run_command(const RunCommand& command);
+
+struct ReplayCommand : SessionCommand {
+  std::string recording;
+  std::string scenario;  ///< empty: the one named in the recording
+};
+ExitCode replay_command(const ReplayCommand& command);
+
+struct CheckCommand {
+  std::vector<std::string> scenarios;  ///< files or folders
+  bool json = false;
+};
+ExitCode check_command(const CheckCommand& command);
+
+struct NewCommand {
+  std::string name;
+};
+ExitCode new_command(const NewCommand& command);
+
+struct GoldenCommand {
+  std::vector<std::string> names;  ///< "scenario" or "scenario/frame"
+  std::string folder;              ///< of the goldens; empty: the project's golden/
+  std::string output;              ///< report: the HTML file; test: the folder for what differs
+  bool json = false;
+};
+ExitCode golden_test_command(const GoldenCommand& command);
+ExitCode golden_accept_command(const GoldenCommand& command);
+ExitCode golden_report_command(const GoldenCommand& command);
+
+ExitCode doctor_command();
+
+}  // namespace calot

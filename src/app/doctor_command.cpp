@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/play.h"
+#include "app/project.h"
+#include "app/terminal.h"
+#include "render/offscreen.h"
+#include "session/build_info.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Finding {
+  bool ok;
+  std::string what, detail, remedy;
+};
+
+Finding processor() {
+  // The binary is already running, so what it was compiled for is there; a build for older machines says so.
+  return {true, "processor", fmt::format("runs this build ({}, {})", instruction_set(), toolchain()), ""};
+}
+
+Finding folder(const std::string& name, const std::string& use) {
+  std::error_code ignored;
+  const fs::path path = project_part(name);
+  const bool found = fs::is_directory(path, ignored);
+  return {found, use, path.string() + (found ? "" : " is missing"), "run from inside a copy of the project"};
+}
+
+Finding renderer() {
+  Result<OffscreenRenderer> created = OffscreenRenderer::create();
+  if (!created)
+    return {false, "pictures", to_text(created.failure()), "install libosmesa6, or use --no-render"};
+  SceneMesh mesh;
+  mesh.positions = {{-0.01, 0.1, 0}, {0.01, 0.1, 0}, {0, 0.1, 0.01}};
+  mesh.normals = {3, -Vec3::UnitY()};
+  mesh.rest_positions = mesh.positions;
+  mesh.triangles = {{0, 1, 2}};
+  Scene scene;
+  scene.meshes.push_back(mesh);
+  const Result<Image> image = created->render(scene);
+  if (!image) return {false, "pictures", to_text(image.failure()), "install libosmesa6, or use --no-render"};
+  return {true, "pictures", created->description(), ""};
+}
+
+Finding output() {
+  const Result<fs::path> made = make_folder("out");
+  if (!made)
+    return {false, "output folder", to_text(made.failure()),
+            "run in a folder you may write to, or give -o DIR"};
+  return {true, "output folder", fs::absolute(made.value()).string(), ""};
+}
+
+/// Every scenario of the project loads and comes to rest.
+Finding scenarios() {
+  const std::vector<fs::path> files = project_scenarios();
+  for (const fs::path& file : files) {
+    const Result<ExerciseDefinition> exercise = load_definition(file);
+    if (!exercise)
+      return {false, "scenarios", to_text(exercise.failure()), "calot check " + shell_word(file.string())};
+  }
+  return {!files.empty(), "scenarios", fmt::format("{} load without errors", files.size()),
+          "calot new my_exercise"};
+}
+
+}  // namespace
+
+ExitCode doctor_command() {
+  bool ok = true;
+  for (const Finding& finding :
+       {processor(), folder("scripts/lua", "Lua modules"), folder("assets", "assets"),
+        folder("golden", "goldens"), scenarios(), renderer(), output()}) {
+    print(fmt::format("{}  {}: {}", finding.ok ? green("ok    ") : red("FAILED"), finding.what,
+                      finding.detail));
+    if (finding.ok) continue;
+    ok = false;
+    std::fflush(stdout);
+    std::fprintf(stderr, "Next: %s\n", finding.remedy.c_str());
+  }
+  return ok ? ExitCode::ok : ExitCode::mismatch;
+}
+
+}  // namespace calot

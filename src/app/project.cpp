@@ -1,0 +1,85 @@
+#include "app/project.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "base/suggest.h"
+
+namespace calot {
+namespace fs = std::filesystem;
+
+fs::path project_folder() {
+  std::error_code ignored;
+  for (fs::path folder = fs::current_path(ignored); !folder.empty(); folder = folder.parent_path()) {
+    if (fs::is_directory(folder / "scenarios", ignored) &&
+        fs::is_directory(folder / "scripts" / "lua", ignored)) {
+      return folder;
+    }
+    if (folder == folder.root_path()) break;
+  }
+  return CALOT_SOURCE_DIR;
+}
+
+fs::path project_part(const std::string& name) {
+  std::error_code ignored;
+  const fs::path own = project_folder() / name;
+  return fs::exists(own, ignored) ? own : fs::path(CALOT_SOURCE_DIR) / name;
+}
+
+std::vector<fs::path> project_scenarios() {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(project_folder() / "scenarios", error)) {
+    if (entry.path().extension() == ".lua") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::optional<Failure> check_scenario_path(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) return std::nullopt;
+  if (fs::is_directory(path, ignored)) {
+    return fail(FailureKind::usage, fmt::format("{} is a folder, not a scenario", path),
+                "name a .lua file in it");
+  }
+  std::vector<std::string> known;
+  for (const fs::path& file : project_scenarios()) known.push_back(fs::proximate(file, ignored).string());
+  std::vector<std::string> names;
+  for (const std::string& file : known) names.push_back(fs::path(file).filename().string());
+  const std::string near = closest_name(fs::path(path).filename().string(), names);
+  std::string hint = fmt::format("scenarios here: {}", fmt::join(known, ", "));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == near) hint = fmt::format("did you mean {}?", known[i]);
+  }
+  return fail(FailureKind::usage, fmt::format("there is no file {}", path), known.empty() ? "" : hint);
+}
+
+Result<std::string> read_text(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return fail(FailureKind::usage, fmt::format("cannot read {}", path.string()));
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+Result<std::string> write_text(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out << text << std::flush;
+  if (!out) return fail(FailureKind::usage, fmt::format("cannot write {}", path.string()));
+  return path.string();
+}
+
+Result<fs::path> make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error && !fs::is_directory(path)) error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && access(path.c_str(), W_OK) != 0) error = std::make_error_code(std::errc::permission_denied);
+  if (!error) return path;
+  return fail(FailureKind::usage, fmt::format("cannot write into {}: {}", path.string(), error.message()),
+              "choose another folder with -o DIR");
+}
+
+}  // namespace calot

@@ -1,0 +1,34 @@
+#pragma once
+// Where the project's files are: scenarios, Lua modules, assets, goldens.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+
+namespace calot {
+
+/// The nearest of the current folder and its parents that holds scenarios/ and scripts/lua/; without one, the
+/// folder that this program was built from.
+std::filesystem::path project_folder();
+
+/// A file or folder that every project has, such as "assets": the project's own, or the one that came with this
+/// program.
+std::filesystem::path project_part(const std::string& name);
+
+/// Every scenario of the project (scenarios/*.lua), sorted.
+std::vector<std::filesystem::path> project_scenarios();
+
+/// What is wrong with a path that should be a scenario's file, with the nearest one that exists.
+std::optional<Failure> check_scenario_path(const std::string& path);
+
+/// The whole text of a file. Fails (usage) where it cannot be read.
+Result<std::string> read_text(const std::filesystem::path& path);
+/// Fails (usage) where it cannot be written. The value is the path.
+Result<std::string> write_text(const std::filesystem::path& path, const std::string& text);
+/// Makes a folder and its parents. Fails (usage) where it cannot be made or written to.
+Result<std::filesystem::path> make_folder(const std::filesystem::path& path);
+
+}  // namespace calot

@@ -1,0 +1,93 @@
+#include "app/summary.h"
+
+#include <fmt/format.h>
+
+#include "app/terminal.h"
+#include "base/hash.h"
+
+namespace calot {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// The first times, and how many there are.
+std::string times_text(const std::vector<double>& times) {
+  std::string text;
+  for (std::size_t i = 0; i < times.size() && i < 4; ++i)
+    text += fmt::format("{}{:.2f}", i > 0 ? ", " : "", times[i]);
+  if (times.size() > 4) text += fmt::format(", ... ({} in all)", times.size());
+  return text.empty() ? "" : "at " + text + " s";
+}
+
+std::string steps_text(const Progress& progress) {
+  Rows rows;
+  for (const StepRecord& step : progress.steps()) {
+    rows.push_back({step.outcome, step.name, step.title, fmt::format("{:.2f} s", step.ended - step.started),
+                    step.limit > 0 ? fmt::format("of {:.0f} s", step.limit) : ""});
+  }
+  return table(rows, "lllrr");
+}
+
+/// Kinds in the order of their first event, with their times.
+std::string events_text(const Progress& progress) {
+  std::vector<std::pair<std::string, std::vector<double>>> kinds;
+  for (const SessionEvent& event : progress.events()) {
+    if (!event.step.empty() && event.kind.starts_with("step_")) continue;  // the steps' table says it
+    const std::string who = event.instrument.empty() ? event.organ : event.instrument;
+    const std::string name = fmt::format("{}{}{}", event.kind, who.empty() ? "" : " ", who);
+    auto found =
+        std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return kind.first == name; });
+    if (found == kinds.end()) found = kinds.insert(kinds.end(), {name, {}});
+    found->second.push_back(event.time);
+  }
+  Rows rows;
+  for (const auto& [name, times] : kinds) rows.push_back({name, times_text(times)});
+  return table(rows, "ll");
+}
+
+std::string metrics_text(const std::map<std::string, double>& metrics) {
+  Rows rows;
+  for (const auto& [name, value] : metrics) rows.push_back({name, fmt::format("{:.5g}", value)});
+  return table(rows, "lr");
+}
+
+std::string score_text(const Score& score) {
+  Rows rows;
+  for (const ScoredPart& part : score.parts) {
+    rows.push_back({fmt::format("{:.1f}", part.points),
+                    fmt::format("of {:.1f}", 100 * part.definition.weight), part.definition.name,
+                    part.explanation, times_text(part.times)});
+  }
+  return table(rows, "rrlll");
+}
+
+std::string verdict(const Score& score) {
+  if (score.passed) return green("passed");
+  if (!score.critical.empty()) return red("failed: critical event " + score.critical.front().event);
+  return red(score.completed ? "not passed" : "not passed: not every step was done");
+}
+
+}  // namespace
+
+std::string summary(const Played& played) {
+  const SessionResult& session = played.session;
+  const Score& score = played.report.score;
+  std::string text = fmt::format("{} ({})\n", bold(played.exercise.title), played.exercise.id);
+  text += fmt::format("\n{}\n{}", bold("Steps"), steps_text(session.progress));
+  text += fmt::format("\n{}\n{}", bold("Events"), events_text(session.progress));
+  text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(played.report.metrics));
+  text += fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
+                      verdict(score), played.exercise.score.pass);
+  for (const CriticalEvent& event : score.critical) {
+    text += fmt::format("  critical: {} {}; the total is capped at {:.0f}\n", event.event,
+                        times_text(event.times), played.exercise.score.cap);
+  }
+  text += score_text(score);
+  text += "  Benchmarks are design values, uncalibrated.\n";
+  text += fmt::format("\nState hash {}, {:.2f} x real time\n",
+                      hex(session.state_hashes.empty() ? 0 : session.state_hashes.back()),
+                      real_time_factor(session));
+  return text;
+}
+
+}  // namespace calot

@@ -1,0 +1,42 @@
+#include "collision/barrier.h"
+
+#include <cmath>
+#include <limits>
+
+namespace calot {
+
+BarrierSample Barrier::sample(double distance) const {
+  if (distance >= range) return {};
+  if (distance <= 0) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return {infinity, -infinity, infinity};
+  }
+  const double scale = -stiffness / range;
+  const double gap = distance - range, log_ratio = std::log(distance / range), share = gap / distance;
+  return {scale * gap * gap * log_ratio, scale * gap * (2 * log_ratio + share),
+          scale * (2 * log_ratio + 4 * share - share * share)};
+}
+
+// The shapes are convex, so the distance to the shape as it stands never falls below its tangent; the shape's
+// own motion takes away at most its speed bound. Each step goes as far as that lower bound stays above the
+// target; on a shape at rest these are Newton steps from the safe side.
+double safe_share(const Vec3& x, const Vec3& motion, const std::function<Shape(double share)>& shape_at,
+                  double shape_speed_bound, double keep) {
+  constexpr int max_steps = 256;
+  constexpr double negligible = 1e-9;  // of the whole motion
+  double share = 0, target = 0;
+  for (int step = 0; step < max_steps; ++step) {
+    const DistanceSample now = sample_distance(shape_at(share), x + share * motion);
+    if (step == 0) target = keep * now.distance;
+    const double room = now.distance - target;
+    if (!(room > 0)) return share;
+    const double approach = shape_speed_bound - now.gradient.dot(motion);
+    if (approach * (1.0 - share) <= room) return 1.0;
+    const double advance = room / approach;
+    if (!(advance > negligible)) return share;
+    share += advance;
+  }
+  return share;
+}
+
+}  // namespace calot

@@ -1,0 +1,53 @@
+#pragma once
+// Rigid shapes with signed distance, gradient and Hessian side by side. "Distance" is never squared.
+
+#include <variant>
+
+#include "geometry/types.h"
+
+namespace calot {
+
+/// Half space: solid where normal . (x - point) < 0.
+struct Plane {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  ///< unit
+};
+
+/// Ball swept along a segment.
+struct Capsule {
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< m
+  double radius = 0;                        ///< m
+};
+
+/// Box grown by a radius: an instrument's jaw. `half` are the half extents of the inner box.
+struct RoundedBox {
+  Pose pose = Pose::Identity();  ///< box frame to world
+  Vec3 half = Vec3::Zero();      ///< m
+  double radius = 0;             ///< m, > 0
+};
+
+using Shape = std::variant<Plane, Capsule, RoundedBox>;
+
+struct DistanceSample {
+  double distance = 0;           ///< m, negative inside
+  Vec3 gradient = Vec3::Zero();  ///< by the point, unit length
+  Mat3 hessian = Mat3::Zero();   ///< by the point, 1/m
+};
+
+double signed_distance(const Shape& shape, const Vec3& x);
+/// Exact inside and out. The Hessian is zero (to rounding) on flat faces and jumps where a flat, an edge and
+/// a corner meet. Where the direction outward is not unique (a capsule's axis, a box's inner box at equal
+/// depths) one of the candidates is returned, with a zero Hessian: values stay finite. All three shapes are
+/// convex, and so is their signed distance.
+DistanceSample sample_distance(const Shape& shape, const Vec3& x);
+
+/// The shape moved rigidly by `motion` (world to world).
+Shape moved(const Shape& shape, const Pose& motion);
+
+/// Smallest axis-aligned box around the shape: lower and upper corner. A plane has infinite bounds.
+struct Bounds {
+  Vec3 lower, upper;
+};
+Bounds bounds(const Shape& shape);
+
+}  // namespace calot

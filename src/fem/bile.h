@@ -1,0 +1,64 @@
+#pragma once
+// The bile inside a closed surface: enclosed volume and the weight of the liquid, both over one closed
+// triangulation of the limit surface, so that net load and torque are exact (the paper, section 4: the
+// highest point and the specific weight; cost linear in triangles).
+
+#include "base/status.h"
+#include "fem/element_layout.h"
+
+namespace calot {
+
+/// Inscribed triangulations lose volume with the square of their edges, so 4/3 of the one with four triangles
+/// a face less 1/3 of the one with the faces' corners is a fourth-order rule (Richardson's extrapolation),
+/// and as a sum of closed surfaces still exactly balanced: 0.05% of the volume is lost where four triangles a
+/// face lose 2%.
+class Bile {
+ public:
+  /// `surface` is closed and outward with 4 consecutive triangles a face (tessellate(1)). `specific_weight`
+  /// in N/m^3; `up` is unit; heights count from `datum` (m, a point; near the organ keeps rounding small).
+  static Result<Bile> create(const Tessellation& surface, int faces, double specific_weight, const Vec3& up,
+                             const Vec3& datum);
+
+  /// Enclosed volume, m^3.
+  double volume(const VecX& x) const;
+  /// Volume, and its gradient (m^2) added to `gradient`.
+  double add_volume_gradient(const VecX& x, VecX& gradient) const;
+  /// Potential energy of the liquid's weight, J, relative to the datum's height.
+  double value(const VecX& x) const;
+  /// Adds the gradient of weight - multiplier * volume (N): the load of pressure multiplier - weight *
+  /// height.
+  void add_load(const VecX& x, double multiplier, VecX& gradient) const;
+  /// Adds the exact Hessian of weight - multiplier * volume (N/m).
+  void add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const;
+
+  /// Gauge pressure (Pa) at `position` when the multiplier is given: multiplier - specific weight * height.
+  double pressure_at(const Vec3& position, double multiplier) const;
+  /// Gauge pressure at the surface's highest point.
+  double pressure_at_top(const VecX& x, double multiplier) const;
+
+  /// The triangles that are summed, indices into the surface's points, and the weight of each in the sum.
+  struct Part {
+    Triangle corners;
+    int local[3];  ///< the corners among their face's points
+    double weight;
+  };
+  const std::vector<Part>& parts() const { return parts_; }
+
+  double specific_weight() const { return specific_weight_; }
+  std::vector<std::vector<int>> cliques() const;
+
+ private:
+  std::vector<Vec3> positions(const VecX& x) const;
+  /// Adds the parts of a face; returns its points.
+  std::vector<int> add_parts(int face);
+
+  Tessellation surface_;
+  double specific_weight_ = 0;
+  Vec3 up_ = Vec3::UnitZ(), datum_ = Vec3::Zero();
+  std::vector<FaceNodes> faces_;
+  std::vector<Part> parts_;        ///< parts_per_face a face
+  std::vector<double> weights_;    ///< points_per_face rows of padded weights a face
+  std::vector<int> weight_start_;  ///< of each face
+};
+
+}  // namespace calot

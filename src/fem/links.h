@@ -1,0 +1,24 @@
+#pragma once
+// Linear springs between surface points and places: an organ's bed, a grip. Any surface point may be held,
+// through its weights, never a control node.
+
+#include "geometry/stencil.h"
+#include "numerics/block_matrix.h"
+
+namespace calot {
+
+/// 1/2 stiffness |surface point - target|^2 a link.
+struct Links {
+  std::vector<int> row;           ///< of the stencil table
+  std::vector<Vec3> target;       ///< m
+  std::vector<double> stiffness;  ///< N/m
+
+  double value(const StencilTable& table, const VecX& x) const;
+  void add_gradient(const StencilTable& table, const VecX& x, VecX& gradient) const;
+  void add_hessian(const StencilTable& table, BlockMatrix& matrix) const;
+};
+
+/// Adds weight_a weight_b h to every node pair of row r.
+void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMatrix& matrix);
+
+}  // namespace calot

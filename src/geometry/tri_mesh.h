@@ -1,0 +1,33 @@
+#pragma once
+// A triangle mesh and the checks at its door.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "geometry/types.h"
+
+namespace calot {
+
+struct TriMesh {
+  std::vector<Vec3> points;         ///< m
+  std::vector<Triangle> triangles;  ///< indices into points, counter-clockwise seen from outside
+};
+
+struct MeshRequirements {
+  bool closed = true;  ///< each edge in two triangles, outward orientation; false allows a boundary
+};
+
+/// Every reason why the mesh cannot be a control mesh, each with the triangles or points concerned: not
+/// finite, index out of range, unused point, degenerate triangle, non-manifold edge or vertex, inconsistent
+/// winding, open boundary, inside out, self-touching. Empty when the mesh is good.
+std::vector<Problem> check(const TriMesh& mesh, const MeshRequirements& requirements = {});
+
+/// Signed volume of a closed mesh, m^3; positive when triangles face outward.
+double enclosed_volume(const TriMesh& mesh);
+
+/// One split of every triangle into four with new points at edge midpoints (points stay first, in order).
+TriMesh split_edges(const TriMesh& mesh);
+
+}  // namespace calot

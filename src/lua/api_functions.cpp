@@ -1,0 +1,155 @@
+// Every function a script can call.
+
+#include <numbers>
+
+#include "base/units.h"
+#include "lua/api_parts.h"
+#include "sim/instrument.h"
+
+namespace calot {
+namespace {
+
+using units::mm;
+using units::ms;
+using units::s;
+
+ApiKey seconds(std::string name, double low, std::string doc) {
+  return required(number(std::move(name), quantity::time, low, 3600 * s, "", std::move(doc)));
+}
+
+ApiKey predicate(std::string doc) {
+  return required(function("predicate", "fun(): boolean", std::move(doc)));
+}
+
+ApiKey organ(bool needed) {
+  ApiKey key = text("organ", "", "an organ's name");
+  key.required = needed;
+  return key;
+}
+
+std::vector<ApiFunction> module_functions() {
+  return {
+      {"calot",
+       "exercise",
+       "Declares the exercise; the scenario returns its result.",
+       {required(table("definition", "exercise", "the exercise"))},
+       "calot.exercise"},
+      {"calot",
+       "anatomy",
+       "A named anatomy, with what differs in a table.",
+       {required(text("name", "", "the anatomy's name: standard, hydrops")),
+        table("overrides", "anatomy", "what differs")},
+       "calot.anatomy"},
+      {"score",
+       "weighted",
+       "The parts of the score.",
+       {required(table("definition", "weighted", "the parts"))},
+       "calot.weighted"},
+      {"score",
+       "benchmark",
+       "Scores a metric between a novice's and an expert's value.",
+       {required(table("definition", "benchmark", "the metric and its two values"))},
+       "calot.benchmark"},
+      {"score",
+       "penalty",
+       "Takes off a share for each event.",
+       {required(table("definition", "penalty", "the event"))},
+       "calot.penalty"},
+  };
+}
+
+std::vector<ApiFunction> session_functions() {
+  return {
+      {"Session", "wait", "Waits.", {seconds("duration", 0, "how long")}, ""},
+      {"Session",
+       "wait_until",
+       "Waits until the predicate holds, or the step's limit has passed. Returns whether it held.",
+       {predicate("asked after every simulated step")},
+       "boolean"},
+      {"Session", "time", "Time since the start, s.", {}, "number"},
+      {"Session",
+       "pressure",
+       "Pressure of the organ's filling at its highest point, gauge, Pa.",
+       {organ(true)},
+       "number"},
+      {"Session", "volume", "Volume the organ encloses, m^3.", {organ(true)}, "number"},
+      {"Steps",
+       "step",
+       "Ends the running step as done and starts the next.",
+       {required(text("name", "", "short name, for metrics: letters, digits and _")),
+        required(text("title", "", "one line for people")),
+        table("options", "step_options", "a limit in time")},
+       ""},
+      {"Steps",
+       "hold",
+       "Waits until the predicate has held for a duration in all; metric <step>.<name>.time_in_s. Returns "
+       "whether it "
+       "did before the step's limit.",
+       {required(text("name", "", "short name, for the metric: letters, digits and _")),
+        predicate("asked after every simulated step"), seconds("duration", 1 * ms, "time in all")},
+       "boolean"},
+      {"Demo",
+       "together",
+       "Runs functions side by side, one for each instrument say, until all have ended.",
+       {required(function("first", "fun()", "runs side by side with the others")),
+        required(function("second", "fun()", "runs side by side with the others"))},
+       ""},
+  };
+}
+
+std::vector<ApiFunction> instrument_functions() {
+  const ApiKey options = table("options", "move_options", "how fast");
+  const double open = GrasperGeometry{}.jaw_opening;
+  ApiKey target{"target", ApiKind::place, "a point, m, or a landmark such as \"gallbladder.fundus\"", true};
+  target.quantity = &quantity::length;
+  target.low = -500 * mm;
+  target.high = 500 * mm;
+  const ApiKey landmark = required(text("landmark", "", "a landmark such as \"gallbladder.fundus\""));
+  return {
+      {"Instrument",
+       "holds",
+       "Whether it holds the organ, or anything when none is named.",
+       {organ(false)},
+       "boolean"},
+      {"Instrument", "force", "Force of the tissue on its tip, N.", {}, "number"},
+      {"Instrument", "handle_force", "Force felt at its handle, N.", {}, "number"},
+      {"Instrument", "touching", "Whether it touches tissue.", {}, "boolean"},
+      {"Instrument", "tip", "Its tip's place, {x, y, z} in m.", {}, "calot.point"},
+      {"DemoInstrument",
+       "approach",
+       "Opens the jaws and goes to a landmark from outside, ending pressed onto the tissue, ready to close.",
+       {landmark, table("options", "approach_options", "how")},
+       ""},
+      {"DemoInstrument",
+       "open",
+       "Opens the jaws.",
+       {number("angle", quantity::angle, 0, open, "60 * deg", "angle between the jaws")},
+       ""},
+      {"DemoInstrument", "close", "Closes the jaws on what is between them.", {}, ""},
+      {"DemoInstrument", "move_to", "Moves the tip straight to a place.", {target, options}, ""},
+      {"DemoInstrument",
+       "move_by",
+       "Moves the tip straight by a vector, patient's frame.",
+       {required(point("vector", quantity::length, 300 * mm, "", "how far, {x, y, z} in m")), options},
+       ""},
+      {"DemoInstrument",
+       "rotate",
+       "Turns about the shaft.",
+       {required(number("angle", quantity::angle, -2 * std::numbers::pi, 2 * std::numbers::pi, "",
+                        "right-handed about the direction of the tip")),
+        table("options", "rotate_options", "how fast")},
+       ""},
+      {"DemoInstrument", "wait", "Waits.", {seconds("duration", 0, "how long")}, ""},
+  };
+}
+
+}  // namespace
+
+std::vector<ApiFunction> all_functions() {
+  std::vector<ApiFunction> all = module_functions();
+  for (auto* more : {&session_functions, &instrument_functions})
+    for (ApiFunction& function : (*more)()) all.push_back(std::move(function));
+  return all;
+}
+
+}  // namespace calot

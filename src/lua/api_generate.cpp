@@ -1,0 +1,165 @@
+#include "lua/api_generate.h"
+
+#include <fmt/format.h>
+
+#include "lua/api_text.h"
+#include "lua/sandbox_library.h"
+
+namespace calot {
+namespace {
+
+constexpr const char* origin =
+    "Generated from the API's table (src/lua/api_*.cpp); the tests hold it to that. Do not edit.";
+
+std::string shape_types() {
+  std::string types;
+  for (const ApiTable& table : api_tables()) {
+    if (table.name.starts_with("shape_"))
+      types += fmt::format("{}calot.{}", types.empty() ? "" : "|", table.name);
+  }
+  return types;
+}
+
+std::string annotate_table(const ApiTable& table) {
+  std::string text = fmt::format("\n---{}\n---@class calot.{}\n", table.doc, table.name);
+  for (const ApiKey& key : table.keys) {
+    text += fmt::format("---@field {}{} {} {}\n", key.name, key.required ? "" : "?", type_text(key),
+                        doc_text(key));
+  }
+  if (!table.items.empty()) text += fmt::format("---@field [integer] {}\n", items_text(table));
+  return text;
+}
+
+std::string annotate_function(const ApiFunction& function, const std::string& prefix) {
+  std::string text = fmt::format("\n---{}\n", function.doc), names;
+  for (const ApiKey& parameter : function.parameters) {
+    text += fmt::format("---@param {}{} {} {}\n", parameter.name, parameter.required ? "" : "?",
+                        type_text(parameter), doc_text(parameter));
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", parameter.name);
+  }
+  if (!function.returns.empty()) text += fmt::format("---@return {}\n", function.returns);
+  return text + fmt::format("function {}{}({}) end\n", prefix, function.name, names);
+}
+
+std::string annotate_functions(const std::string& owner, const std::string& prefix) {
+  std::string text;
+  for (const ApiFunction& function : api_functions())
+    if (function.owner == owner) text += annotate_function(function, prefix);
+  return text;
+}
+
+std::string annotate_class(const ApiClass& handle) {
+  const std::string parent = handle.parent.empty() ? "" : fmt::format(": calot.{}", handle.parent);
+  std::string text = fmt::format("\n---{}\n---@class calot.{}{}\n", handle.doc, handle.name, parent);
+  if (handle.name == "Steps") text += "---@field [string] calot.Instrument\n";
+  if (handle.name == "Demo") text += "---@field [string] calot.DemoInstrument\n";
+  return text + fmt::format("local {} = {{}}\n", handle.name) +
+         annotate_functions(handle.name, fmt::format("{}:", handle.name));
+}
+
+/// "string" of "string.rep"; empty for a plain name.
+std::string library_of(const std::string& name) {
+  const std::size_t dot = name.find('.');
+  return dot == std::string::npos ? std::string() : name.substr(0, dot);
+}
+
+std::string signature(const ApiFunction& function) {
+  std::string names;
+  for (const ApiKey& parameter : function.parameters) {
+    names += fmt::format("{}{}{}{}", parameter.required ? "" : "[", names.empty() ? "" : ", ", parameter.name,
+                         parameter.required ? "" : "]");
+  }
+  return fmt::format("{}({})", function.full_name(), names);
+}
+
+std::string describe_table(const ApiTable& table) {
+  std::string text =
+      fmt::format("\n### {}\n\n{}\n\n| key | type | |\n|---|---|---|\n", table.name, table.doc);
+  for (const ApiKey& key : table.keys) {
+    std::string type = type_text(key);
+    for (std::size_t bar = 0; (bar = type.find('|', bar)) != std::string::npos; bar += 2)
+      type.insert(bar, 1, '\\');
+    text += fmt::format("| `{}`{} | `{}` | {} |\n", key.name, key.required ? " (needed)" : "", type,
+                        doc_text(key));
+  }
+  return text;
+}
+
+std::string describe_function(const ApiFunction& function) {
+  std::string text =
+      fmt::format("\n**`{}`**{} {}\n", signature(function),
+                  function.returns.empty() ? "" : fmt::format(" → `{}`", function.returns), function.doc);
+  for (const ApiKey& parameter : function.parameters)
+    text += fmt::format("- `{}`: {}\n", parameter.name, doc_text(parameter));
+  return text;
+}
+
+}  // namespace
+
+std::string generate_annotations() {
+  std::string text = fmt::format("---@meta calot\n-- {}\n", origin);
+  text +=
+      "\n---A place or a vector {x, y, z} in m, in the patient's frame: x to the patient's left, y towards "
+      "the head,\n";
+  text += "---z out of the abdomen, from the navel.\n---@alias calot.point number[]\n";
+  text += fmt::format("---@alias calot.shape {}\n", shape_types());
+  for (const ApiTable& table : api_tables()) text += annotate_table(table);
+  for (const ApiClass& handle : api_classes()) text += annotate_class(handle);
+  text +=
+      "\n---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.\n---@class "
+      "calot.units\n";
+  for (const ApiUnit& unit : api_units())
+    text += fmt::format("---@field {} number {}\n", unit.name, unit.doc);
+  text += "\n---@class calot.score\nlocal score = {}\n" + annotate_functions("score", "score.");
+  text += "\n---@class calot\n---@field units calot.units\n---@field score calot.score\nlocal calot = {}\n";
+  return text + annotate_functions("calot", "calot.") + "\nreturn calot\n";
+}
+
+std::string generate_luacheckrc() {
+  std::string text = fmt::format("-- {}\nstd = \"calot\"\nmax_line_length = 120\n", origin);
+  text += "exclude_files = { \"scripts/lua/calot.meta.lua\" }\nstds.calot = {\n  read_globals = {\n";
+  const std::vector<std::string>& names = library_names();
+  for (const std::string& name : names) {
+    if (!library_of(name).empty()) continue;
+    std::string fields;
+    for (const std::string& member : names) {
+      if (library_of(member) == name) {
+        fields +=
+            fmt::format("{}[\"{}\"] = {{}}", fields.empty() ? "" : ", ", member.substr(name.size() + 1));
+      }
+    }
+    text += fields.empty() ? fmt::format("    \"{}\",\n", name)
+                           : fmt::format("    {} = {{ fields = {{ {} }} }},\n", name, fields);
+  }
+  return text + "  },\n}\n";
+}
+
+std::string generate_reference() {
+  std::string text = fmt::format("<!-- {} -->\n# What a scenario can say\n\n", origin);
+  text +=
+      "A scenario is a Lua file that returns `calot.exercise { ... }`; `scenarios/` has examples, and\n"
+      "`calot check` says what is wrong with one. Figures carry their unit (`70 * mm`); everything is in "
+      "SI.\n"
+      "Places are `{ x, y, z }` in the patient's frame: x to the patient's left, y towards the head, z out "
+      "of\n"
+      "the abdomen, from the navel. `require` finds modules beside the scenario and in this folder.\n";
+  text += "\n## Functions\n";
+  for (const char* owner : {"calot", "score"}) {
+    for (const ApiFunction& function : api_functions())
+      if (function.owner == owner) text += describe_function(function);
+  }
+  for (const ApiClass& handle : api_classes()) {
+    text += fmt::format("\n## {}\n\n{}\n", handle.name, handle.doc);
+    if (!handle.parent.empty()) text += fmt::format("It has the functions of {} too.\n", handle.parent);
+    for (const ApiFunction& function : api_functions())
+      if (function.owner == handle.name) text += describe_function(function);
+  }
+  text += "\n## Tables\n";
+  for (const ApiTable& table : api_tables()) text += describe_table(table);
+  text += "\n## Units\n\n";
+  for (const ApiUnit& unit : api_units())
+    text += fmt::format("- `calot.units.{}`: {}\n", unit.name, unit.doc);
+  return text;
+}
+
+}  // namespace calot

@@ -1,0 +1,104 @@
+#include "lua/api_table.h"
+
+#include <cstdlib>
+
+#include "base/units.h"
+#include "lua/api_parts.h"
+
+namespace calot {
+
+namespace quantity {
+const Quantity time{"s", {{"s", units::s}, {"ms", units::ms}}};
+const Quantity speed{"m/s", {{"mm / s", units::mm}, {"cm / s", units::cm}}};
+const Quantity points{"points", {}};
+}  // namespace quantity
+
+const ApiKey* ApiTable::find(const std::string& key) const {
+  for (const ApiKey& candidate : keys)
+    if (candidate.name == key) return &candidate;
+  return nullptr;
+}
+
+std::vector<std::string> ApiTable::key_names() const {
+  std::vector<std::string> names;
+  for (const ApiKey& key : keys) names.push_back(key.name);
+  return names;
+}
+
+std::string ApiFunction::full_name() const {
+  if (owner == "calot") return "calot." + name;
+  if (owner == "score") return "calot.score." + name;
+  return (owner == "Instrument" || owner == "DemoInstrument" ? "t.<instrument>:" : "t:") + name;
+}
+
+const std::vector<ApiTable>& api_tables() {
+  static const std::vector<ApiTable> tables = [] {
+    std::vector<ApiTable> all = exercise_tables();
+    for (ApiTable& table : scene_tables()) all.push_back(std::move(table));
+    return all;
+  }();
+  return tables;
+}
+
+const ApiTable& api_table(const std::string& name) {
+  for (const ApiTable& table : api_tables())
+    if (table.name == name) return table;
+  std::abort();  // a name in our own code
+}
+
+const std::vector<ApiFunction>& api_functions() {
+  static const std::vector<ApiFunction> functions = all_functions();
+  return functions;
+}
+
+const ApiFunction& api_function(const std::string& owner, const std::string& name) {
+  for (const ApiFunction& function : api_functions())
+    if (function.owner == owner && function.name == name) return function;
+  std::abort();  // a name in our own code
+}
+
+const std::vector<ApiClass>& api_classes() {
+  static const std::vector<ApiClass> classes = {
+      {"Session", "", "What steps and demo have in common. Instruments are its fields: t.left, t.right, ..."},
+      {"Steps", "Session",
+       "The t of steps = function(t): the operation's steps, what to wait for, what to measure."},
+      {"Demo", "Session", "The t of demo = function(t): moves the instruments."},
+      {"Instrument", "", "An instrument as steps see it: what it touches, holds and feels."},
+      {"DemoInstrument", "Instrument",
+       "An instrument as the demo moves it. Motions return when they have ended."}};
+  return classes;
+}
+
+std::vector<std::string> method_names(const std::string& class_name) {
+  std::vector<std::string> names;
+  for (const ApiFunction& function : api_functions())
+    if (function.owner == class_name) names.push_back(function.name);
+  for (const ApiClass& candidate : api_classes()) {
+    if (candidate.name != class_name || candidate.parent.empty()) continue;
+    for (std::string& name : method_names(candidate.parent)) names.push_back(std::move(name));
+  }
+  return names;
+}
+
+const std::vector<ApiUnit>& api_units() {
+  static const std::vector<ApiUnit> table = {{"mm", units::mm, "millimetre"},
+                                             {"cm", units::cm, "centimetre"},
+                                             {"m", units::m, "metre"},
+                                             {"mL", units::mL, "millilitre"},
+                                             {"L", units::L, "litre"},
+                                             {"N", units::N, "newton"},
+                                             {"mN", units::mN, "millinewton"},
+                                             {"Pa", units::Pa, "pascal"},
+                                             {"kPa", units::kPa, "kilopascal"},
+                                             {"MPa", units::MPa, "megapascal"},
+                                             {"mmHg", units::mmHg, "millimetre of mercury"},
+                                             {"s", units::s, "second"},
+                                             {"ms", units::ms, "millisecond"},
+                                             {"deg", units::deg, "degree"},
+                                             {"rad", units::rad, "radian"},
+                                             {"kg", units::kg, "kilogram"},
+                                             {"g", units::g, "gram"}};
+  return table;
+}
+
+}  // namespace calot

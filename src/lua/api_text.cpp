@@ -1,0 +1,81 @@
+#include "lua/api_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace calot {
+namespace {
+
+std::string named(const std::string& of) {
+  if (of == "number") return "number";
+  if (of == "text") return "string";
+  return fmt::format("calot.{}", of);
+}
+
+std::string quoted(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += fmt::format("{}\"{}\"", all.empty() ? "" : "|", text);
+  return all;
+}
+
+std::string limits(const ApiKey& key) {
+  const bool has_limits =
+      key.kind == ApiKind::number && std::isfinite(key.low) && std::isfinite(key.high) && key.low < key.high;
+  if (!has_limits) return {};
+  const Quantity& quantity = *key.quantity;
+  const UnitName unit =
+      quantity.multipliers.empty() ? UnitName{quantity.unit, 1} : quantity.multipliers.front();
+  return fmt::format("{:g} to {:g}{}{}", key.low / unit.factor, key.high / unit.factor,
+                     unit.name.empty() ? "" : " ", unit.name);
+}
+
+}  // namespace
+
+std::string type_text(const ApiKey& key) {
+  switch (key.kind) {
+    case ApiKind::number:
+      return "number";
+    case ApiKind::boolean:
+      return "boolean";
+    case ApiKind::text:
+      return "string";
+    case ApiKind::choice:
+      return quoted(key.choices);
+    case ApiKind::point:
+      return "calot.point";
+    case ApiKind::place:
+      return "calot.point|string";
+    case ApiKind::function:
+      return key.signature;
+    case ApiKind::table:
+      return named(key.of);
+    case ApiKind::list:
+      return named(key.of) + "[]";
+    case ApiKind::map:
+      return fmt::format("table<string, {}>", named(key.of));
+    case ApiKind::any:
+      break;
+  }
+  return "any";
+}
+
+std::string doc_text(const ApiKey& key) {
+  std::string text = key.doc;
+  if (!key.fallback.empty()) text += fmt::format("; default {}", key.fallback);
+  const std::string range = limits(key);
+  if (!range.empty()) text += fmt::format("; {}", range);
+  return text;
+}
+
+std::string items_text(const ApiTable& table) {
+  std::string all;
+  for (std::size_t start = 0; start < table.items.size();) {
+    const std::size_t end = std::min(table.items.find('|', start), table.items.size());
+    all += fmt::format("{}calot.{}", all.empty() ? "" : "|", table.items.substr(start, end - start));
+    start = end + 1;
+  }
+  return all;
+}
+
+}  // namespace calot

@@ -1,0 +1,285 @@
+#include "lua/demo_script.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "base/units.h"
+#include "lua/handles.h"
+#include "lua/lua_headers.h"
+
+namespace calot {
+namespace {
+
+constexpr double slack = 1e-9;               // s: what a sum of steps may be off
+constexpr double jaw_duration = 0.5;         // s to open or close
+constexpr double least_insertion = 25e-3;    // m: the jaws and a little more, out of the port
+constexpr double dry_motion_duration = 0.1;  // s: what a motion counts for in a dry run
+
+}  // namespace
+
+DemoScript::DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
+                       std::vector<Problem>* problems)
+    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", problems), function_(function) {}
+
+double DemoScript::time() const {
+  if (checking()) return dry_time();
+  return running_ >= 0 ? tasks_[static_cast<std::size_t>(running_)].clock : step_start_;
+}
+
+// ---- running
+
+std::optional<Failure> DemoScript::start() {
+  Result<lua_State*> thread =
+      sandbox().start_thread(function_, [this](lua_State* L) { push_session_handle(L, *this); });
+  if (!thread) return thread.failure();
+  Task root;
+  root.thread = thread.value();
+  root.arguments = 1;
+  root.clock = step_start_;
+  tasks_.push_back(root);
+  return std::nullopt;
+}
+
+std::optional<Failure> DemoScript::run_dry() {
+  if (function_ == 0) return std::nullopt;
+  std::optional<Failure> failure = start();
+  for (std::size_t i = 0; !failure && i < tasks_.size(); ++i) failure = resume(i);
+  end("it belonged to a dry run");
+  return failure;
+}
+
+Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt) {
+  if (function_ == 0 || (!tasks_.empty() && tasks_.front().state == Task::finished)) return {std::nullopt};
+  const Sandbox::Call call(sandbox());
+  set_world(&world);
+  step_start_ = world.report().time;
+  const double end = step_start_ + dt;
+  std::optional<Failure> failure;
+  if (tasks_.empty()) {
+    for (std::size_t i = 0; i < scene().instruments.size(); ++i) {
+      paths_.emplace_back(world.port_position(scene().instruments[i].port),
+                          world.report().instruments[i].pose, geometry_);
+    }
+    failure = start();
+  }
+  if (!failure) failure = ask_conditions(step_start_);
+  if (!failure) failure = run_until(end);
+  set_world(nullptr);
+  if (failure) return *failure;
+  StepInput input;
+  for (const InstrumentPath& path : paths_) input.instruments.push_back(path.pose(end));
+  return {std::optional<StepInput>(std::move(input))};
+}
+
+/// Tasks that wait for a condition are woken when it holds now.
+std::optional<Failure> DemoScript::ask_conditions(double now) {
+  for (Task& task : tasks_) {
+    if (task.state != Task::condition || task.clock > now + slack) continue;
+    bool answer = false;
+    std::optional<Failure> failure = sandbox().protect([&](lua_State* L) {
+      lua_rawgeti(L, LUA_REGISTRYINDEX, task.predicate);
+      lua_call(L, 0, 1);
+      answer = lua_toboolean(L, -1) != 0;
+    });
+    if (failure) return failure;
+    if (!answer) continue;
+    luaL_unref(sandbox().state(), LUA_REGISTRYINDEX, task.predicate);
+    lua_pushboolean(task.thread, 1);
+    task.arguments = 1;
+    task.clock = now;
+    task.state = Task::ready;
+  }
+  return std::nullopt;
+}
+
+/// Runs what is due before `end`, earliest first.
+std::optional<Failure> DemoScript::run_until(double end) {
+  while (true) {
+    std::size_t first = tasks_.size();
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+      const bool due = tasks_[i].state == Task::ready || tasks_[i].state == Task::until;
+      if (!due || tasks_[i].clock > end + slack) continue;
+      if (first == tasks_.size() || tasks_[i].clock < tasks_[first].clock) first = i;
+    }
+    if (first == tasks_.size()) return std::nullopt;
+    if (std::optional<Failure> failure = resume(first)) return failure;
+    // A condition that begins at this step's very start is asked at once, like any met there.
+    if (std::optional<Failure> failure = ask_conditions(step_start_)) return failure;
+  }
+}
+
+std::optional<Failure> DemoScript::resume(std::size_t index) {
+  running_ = static_cast<int>(index);
+  tasks_[index].state = Task::ready;
+  Result<bool> finished = sandbox().resume(tasks_[index].thread, std::exchange(tasks_[index].arguments, 0));
+  running_ = -1;
+  if (!finished) return finished.failure();
+  if (finished.value()) {
+    finish(index);
+  } else if (tasks_[index].state == Task::ready && !checking()) {
+    return fail(FailureKind::scenario, "the demo called coroutine.yield", "wait with t:wait or t:wait_until",
+                {exercise().file, 0, {}});
+  }
+  return std::nullopt;
+}
+
+void DemoScript::finish(std::size_t index) {
+  tasks_[index].state = Task::finished;
+  const int parent = tasks_[index].parent;
+  if (parent < 0) {
+    if (!checking()) end(fmt::format("the demo had ended at {:g} s", tasks_[index].clock));
+    return;
+  }
+  Task& waiting = tasks_[static_cast<std::size_t>(parent)];
+  waiting.clock = std::max(waiting.clock, tasks_[index].clock);
+  if (--waiting.open_children == 0) waiting.state = Task::ready;
+}
+
+// ---- methods
+
+int DemoScript::task_of(lua_State* L) const {
+  for (std::size_t i = 0; i < tasks_.size(); ++i)
+    if (tasks_[i].thread == L) return static_cast<int>(i);
+  return -1;
+}
+
+DemoScript::Task* DemoScript::current(lua_State* L) {
+  const int task = task_of(L);
+  if (task >= 0 && task == running_) return &tasks_[static_cast<std::size_t>(task)];
+  complain(L, "the demo moves and waits in its own coroutine only",
+           "not inside a predicate or another coroutine");
+  return nullptr;
+}
+
+int DemoScript::dry_wait(lua_State* L, double duration) {
+  if (end_dry_run(duration)) return lua_yield(L, 0);
+  lua_pushboolean(L, 1);
+  return 1;
+}
+
+int DemoScript::sleep_until(lua_State* L, double time) {
+  Task* task = current(L);
+  if (task == nullptr) return 0;
+  task->clock = time;
+  task->state = Task::until;
+  return lua_yield(L, 0);
+}
+
+int DemoScript::wait(lua_State* L, double duration) {
+  if (current(L) == nullptr) return 0;
+  if (checking()) return dry_wait(L, duration);
+  return sleep_until(L, current(L)->clock + duration);
+}
+
+int DemoScript::wait_until(lua_State* L, int predicate) {
+  Task* task = current(L);
+  if (task == nullptr) return 0;
+  if (checking()) return dry_wait(L, 0);
+  task->predicate = predicate;
+  task->state = Task::condition;
+  return lua_yield(L, 0);
+}
+
+int DemoScript::together(lua_State* L) {
+  if (current(L) == nullptr) return 0;
+  const std::size_t parent = static_cast<std::size_t>(running_);
+  const int count = lua_gettop(L) - 1;
+  for (int i = 0; i < count; ++i) {
+    Task child;
+    child.thread = sandbox().adopt_thread(L);
+    child.parent = static_cast<int>(parent);
+    child.clock = tasks_[parent].clock;
+    lua_pushvalue(L, i + 2);
+    lua_xmove(L, child.thread, 1);
+    tasks_.push_back(child);
+  }
+  tasks_[parent].open_children = count;
+  tasks_[parent].state = Task::children;
+  if (checking()) return dry_wait(L, 0);
+  return lua_yield(L, 0);
+}
+
+Vec3 DemoScript::landmark(lua_State* L, const std::string& name) const {
+  return checking() ? Vec3::Zero() : world(L).landmark(name);
+}
+
+InstrumentPath* DemoScript::free_path(lua_State* L, int instrument) {
+  const Task* task = current(L);
+  if (task == nullptr) return nullptr;
+  InstrumentPath& path = paths_[static_cast<std::size_t>(instrument)];
+  if (path.busy_until() <= task->clock + slack) return &path;
+  complain(L, "this instrument is being moved by another function of t:together",
+           "move each instrument in one of them");
+  return nullptr;
+}
+
+bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip) {
+  using units::mm;
+  const double distance = (tip - path.trocar()).norm();
+  if (distance >= least_insertion && distance <= geometry_.max_insertion) return true;
+  complain(L,
+           fmt::format("the tip cannot go to ({:.1f}, {:.1f}, {:.1f}) mm: that is {:.0f} mm from its port",
+                       tip.x() / mm, tip.y() / mm, tip.z() / mm, distance / mm),
+           fmt::format("stay between {:.0f} and {:.0f} mm, or use another port", least_insertion / mm,
+                       geometry_.max_insertion / mm));
+  return false;
+}
+
+int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
+  if (checking()) return dry_wait(L, dry_motion_duration);
+  InstrumentPath* path = free_path(L, instrument);
+  if (path == nullptr) return 0;
+  const Vec3 normal = world(L).landmark_normal(how.landmark);
+  const Vec3 open_tip = world(L).landmark(how.landmark) + how.offset - how.depth * normal;
+  const Vec3 tip = closed_tip(path->trocar(), open_tip, how.jaw, geometry_);
+  // Straight in at the end, halfway between the shaft's way and the skin's normal: both jaws come down
+  // together.
+  const Vec3 shaft = (tip - path->trocar()).normalized();
+  const Vec3 outward = (normal - shaft).norm() > 1e-3 ? (normal - shaft).normalized() : normal;
+  const Vec3 before = tip + how.clearance * outward;
+  if (!can_reach(L, *path, before) || !can_reach(L, *path, tip)) return 0;
+  const double now = current(L)->clock;
+  path->set_jaw(now, how.jaw, jaw_duration);
+  path->move(now, before, how.speed);
+  path->move(now, tip, how.speed);
+  return sleep_until(L, path->busy_until());
+}
+
+int DemoScript::set_jaw(lua_State* L, int instrument, double angle) {
+  if (checking()) return dry_wait(L, dry_motion_duration);
+  InstrumentPath* path = free_path(L, instrument);
+  if (path == nullptr) return 0;
+  path->set_jaw(current(L)->clock, angle, jaw_duration);
+  return sleep_until(L, path->busy_until());
+}
+
+int DemoScript::move_to(lua_State* L, int instrument, const Vec3& tip, double speed) {
+  if (checking()) return dry_wait(L, dry_motion_duration);
+  InstrumentPath* path = free_path(L, instrument);
+  if (path == nullptr) return 0;
+  const Vec3 closed = closed_tip(path->trocar(), tip, path->jaw(), geometry_);
+  if (!can_reach(L, *path, closed)) return 0;
+  path->move(current(L)->clock, closed, speed);
+  return sleep_until(L, path->busy_until());
+}
+
+int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double speed) {
+  if (checking()) return dry_wait(L, dry_motion_duration);
+  InstrumentPath* path = free_path(L, instrument);
+  if (path == nullptr) return 0;
+  const Vec3 tip = path->tip() + vector;
+  if (!can_reach(L, *path, tip)) return 0;
+  path->move(current(L)->clock, tip, speed);
+  return sleep_until(L, path->busy_until());
+}
+
+int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {
+  if (checking()) return dry_wait(L, dry_motion_duration);
+  InstrumentPath* path = free_path(L, instrument);
+  if (path == nullptr) return 0;
+  path->rotate(current(L)->clock, path->roll() + angle, speed);
+  return sleep_until(L, path->busy_until());
+}
+
+}  // namespace calot

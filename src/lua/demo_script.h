@@ -1,0 +1,79 @@
+#pragma once
+// demo = function(t): a coroutine whose motions become the inputs of the session. Its clock is its own:
+// motions begin where the last ended, not at the simulation's steps, so the path is the same at every rate.
+// Only what asks the world (landmarks, conditions) sees it as of the last step.
+
+#include "lua/motion.h"
+#include "lua/script_session.h"
+
+namespace calot {
+
+inline constexpr double default_speed = 30e-3;                       ///< m/s
+inline constexpr double default_turning_speed = 1.5707963267948966;  ///< rad/s: 90 deg/s
+
+struct Approach {
+  std::string landmark;
+  double speed = default_speed;
+  double depth = 4e-3;       ///< m
+  double clearance = 25e-3;  ///< m
+  double jaw = GrasperGeometry{}.jaw_opening;
+  Vec3 offset = Vec3::Zero();
+};
+
+class DemoScript final : public ScriptSession, public InputSource {
+ public:
+  /// `function` is a registry reference; 0: there is no demo, and the source ends at once.
+  DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
+             std::vector<Problem>* problems = nullptr);
+
+  Result<std::optional<StepInput>> next(const World& world, double dt) override;
+
+  /// Runs the function with motions that return at once.
+  std::optional<Failure> run_dry();
+
+  double time() const override;
+  int wait(lua_State* L, double duration) override;
+  int wait_until(lua_State* L, int predicate) override;
+  int together(lua_State* L);
+  int approach(lua_State* L, int instrument, const Approach& how);
+  int set_jaw(lua_State* L, int instrument, double angle);
+  int move_to(lua_State* L, int instrument, const Vec3& tip, double speed);
+  int move_by(lua_State* L, int instrument, const Vec3& vector, double speed);
+  int rotate(lua_State* L, int instrument, double angle, double speed);
+  /// Where a landmark is now; the origin in a dry run.
+  Vec3 landmark(lua_State* L, const std::string& name) const;
+
+ private:
+  /// A coroutine: the demo itself, or a function given to t:together.
+  struct Task {
+    lua_State* thread = nullptr;
+    int parent = -1;
+    int open_children = 0;
+    double clock = 0;  ///< s
+    int arguments = 0;
+    int predicate = 0;  ///< of a condition waited for
+    enum { ready, until, condition, children, finished } state = ready;
+  };
+
+  int task_of(lua_State* L) const;
+  /// The running task, if it may move or wait; complains otherwise.
+  Task* current(lua_State* L);
+  int dry_wait(lua_State* L, double duration);
+  int sleep_until(lua_State* L, double time);
+  InstrumentPath* free_path(lua_State* L, int instrument);
+  bool can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip);
+  std::optional<Failure> start();
+  std::optional<Failure> ask_conditions(double now);
+  std::optional<Failure> run_until(double end);
+  std::optional<Failure> resume(std::size_t task);
+  void finish(std::size_t task);
+
+  int function_;
+  GrasperGeometry geometry_;
+  std::vector<Task> tasks_;
+  std::vector<InstrumentPath> paths_;
+  int running_ = -1;
+  double step_start_ = 0;  ///< s: the world's time in the present call
+};
+
+}  // namespace calot

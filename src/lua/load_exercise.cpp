@@ -1,0 +1,259 @@
+#include "lua/load_exercise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "base/suggest.h"
+#include "lua/calot_module.h"
+#include "lua/demo_script.h"
+#include "lua/handles.h"
+#include "lua/lua_headers.h"
+#include "lua/read_exercise.h"
+#include "lua/read_scene.h"
+#include "lua/source_map.h"
+#include "lua/steps_script.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The exercise's functions in one Lua state, and what it declares.
+struct Script {
+  std::unique_ptr<Sandbox> sandbox;
+  ExerciseTable table;
+  Value scene;
+};
+
+class Loader {
+ public:
+  Loader(const fs::path& path, const LoadOptions& options) : path_(path), options_(options) {}
+
+  /// Twice the same: once to check it, running steps and demo dry; and once, in a fresh state that no dry run
+  /// has touched, to play it.
+  Result<std::unique_ptr<ExerciseScript>> load();
+
+ private:
+  Result<Script> open(bool quiet, FieldCheck& check);
+  std::optional<Failure> call_scene(Script& script);
+  ExerciseDefinition define(Script& script, FieldCheck& check);
+  /// A failure is of resources; the scripts' own become problems.
+  std::optional<Failure> run_dry(Script& script, ExerciseDefinition& definition, FieldCheck& check);
+  void collect(const std::vector<Problem>& problems);
+  void collect_validation(const std::vector<Problem>& problems);
+  void collect(const Failure& failure);
+  Failure all_problems();
+
+  fs::path path_;
+  LoadOptions options_;
+  SourceMap map_;
+  std::vector<Problem> problems_;
+};
+
+class LuaExercise final : public ExerciseScript {
+ public:
+  LuaExercise(Script script, ExerciseDefinition definition)
+      : script_(std::move(script)),
+        definition_(std::move(definition)),
+        steps_(*script_.sandbox, definition_, script_.table.steps),
+        demo_(*script_.sandbox, definition_, script_.table.demo) {}
+
+  const ExerciseDefinition& definition() const override { return definition_; }
+  InputSource& demo() override { return demo_; }
+  Result<bool> advance(const World& world, Progress& progress, double dt) override {
+    return steps_.advance(world, progress, dt);
+  }
+  void set_emergency_flush(const std::function<void()>& flush) override {
+    script_.sandbox->watchdog().set_flush(flush);
+  }
+
+ private:
+  Script script_;
+  ExerciseDefinition definition_;
+  StepsScript steps_;
+  DemoScript demo_;
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void push_parameters(lua_State* L, const std::map<std::string, ParameterValue>& parameters) {
+  lua_newtable(L);
+  for (const auto& [name, value] : parameters) {
+    if (const auto* number = std::get_if<double>(&value)) lua_pushnumber(L, *number);
+    if (const auto* boolean = std::get_if<bool>(&value)) lua_pushboolean(L, *boolean);
+    if (const auto* text = std::get_if<std::string>(&value)) lua_pushlstring(L, text->data(), text->size());
+    lua_setfield(L, -2, name.c_str());
+  }
+}
+
+/// Whether one field contains the other, or is it.
+bool related(const std::string& a, const std::string& b) {
+  const std::string& shorter = a.size() < b.size() ? a : b;
+  const std::string& longer = a.size() < b.size() ? b : a;
+  return longer.starts_with(shorter) &&
+         (longer.size() == shorter.size() || longer[shorter.size()] == '.' || longer[shorter.size()] == '[');
+}
+
+Result<Script> Loader::open(bool quiet, FieldCheck& check) {
+  SandboxOptions options;
+  options.script = path_;
+  options.modules = options_.modules;
+  options.seed = options_.seed;
+  options.limits = options_.limits;
+  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+  if (!sandbox) return sandbox.failure();
+  Script script;
+  script.sandbox = std::move(sandbox).value();
+  script.sandbox->set_quiet(quiet);
+  Value root;
+  std::optional<Failure> failure = script.sandbox->protect([&](lua_State* L) {
+    open_calot_module(L);
+    open_handles(L);
+    script.sandbox->push_chunk(L, path_);
+    lua_call(L, 0, 1);
+    root = read_value(L, -1);
+  });
+  if (failure) return *failure;
+  const Value* kind = root.field("kind");
+  if (kind == nullptr || kind->text != "exercise")
+    return fail(FailureKind::scenario, "the scenario returns no exercise",
+                "end it with: return calot.exercise { ... }", {path_.string(), 0, {}});
+  script.table = read_exercise(check, root, options_.params);
+  if (!script.table.usage.empty()) return Failure{FailureKind::usage, script.table.usage};
+  return script;
+}
+
+std::optional<Failure> Loader::call_scene(Script& script) {
+  return script.sandbox->protect([&](lua_State* L) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, script.table.scene);
+    push_parameters(L, script.table.parameters);
+    lua_call(L, 1, 1);
+    script.scene = read_value(L, -1);
+  });
+}
+
+ExerciseDefinition Loader::define(Script& script, FieldCheck& check) {
+  ExerciseDefinition definition = script.table.definition;
+  definition.file = path_.string();
+  definition.seed = options_.seed;
+  definition.scene = read_scene(check, script.scene, {path_.parent_path(), options_.assets});
+  return definition;
+}
+
+std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& definition, FieldCheck& check) {
+  // Both outlive both runs: a handle that one leaves behind may be met in the other.
+  StepsScript steps(*script.sandbox, definition, script.table.steps, &problems_);
+  DemoScript demo(*script.sandbox, definition, script.table.demo, &problems_);
+  if (script.table.steps != 0) {
+    Result<StepsScript::Declared> declared = steps.run_dry();
+    if (declared) {
+      definition.step_names = declared->steps;
+      definition.hold_names = declared->holds;
+      // Steps that were not reached have metrics nobody knows of: say nothing about them.
+      if (declared->complete) check_metrics(check, definition);
+    } else if (declared.failure().kind == FailureKind::resource) {
+      return declared.failure();
+    } else {
+      collect(declared.failure());
+    }
+  }
+  std::optional<Failure> failure = demo.run_dry();
+  if (failure && failure->kind == FailureKind::resource) return failure;
+  if (failure) collect(*failure);
+  return std::nullopt;
+}
+
+void Loader::collect(const std::vector<Problem>& problems) {
+  for (Problem problem : problems) {
+    problem.place.file = path_.string();
+    problem.place.line = map_.line_of(problem.place.path);
+    problems_.push_back(std::move(problem));
+  }
+}
+
+/// What the reader has reported is not worth reporting again, nor what follows from it.
+void Loader::collect_validation(const std::vector<Problem>& problems) {
+  std::vector<Problem> fresh;
+  for (const Problem& problem : problems) {
+    const auto known = [&](const Problem& other) {
+      return !other.place.path.empty() && related(other.place.path, problem.place.path);
+    };
+    if (std::none_of(problems_.begin(), problems_.end(), known)) fresh.push_back(problem);
+  }
+  collect(fresh);
+}
+
+void Loader::collect(const Failure& failure) {
+  for (const Problem& problem : failure.problems) problems_.push_back(problem);
+}
+
+Failure Loader::all_problems() {
+  std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
+    const auto key = [](const Problem& p) { return p.place.line > 0 ? p.place.line : 1 << 30; };
+    return key(a) < key(b);
+  });
+  return {FailureKind::scenario, std::move(problems_)};
+}
+
+Result<std::unique_ptr<ExerciseScript>> Loader::load() {
+  map_ = SourceMap(text_of(path_));
+  FieldCheck check;
+  Result<Script> checked = open(false, check);
+  if (!checked) return checked.failure();
+  collect(check.take());
+  if (checked->table.scene == 0) return all_problems();
+  if (std::optional<Failure> failure = call_scene(checked.value())) {
+    if (failure->kind != FailureKind::scenario) return *failure;
+    collect(*failure);
+    return all_problems();
+  }
+  ExerciseDefinition definition = define(checked.value(), check);
+  collect(check.take());
+  collect_validation(validate(definition.scene));
+  checked->sandbox->set_quiet(true);  // steps and demo print when they are played
+  if (std::optional<Failure> failure = run_dry(checked.value(), definition, check)) return *failure;
+  collect(check.take());
+  if (!problems_.empty()) return all_problems();
+
+  FieldCheck again;
+  Result<Script> script = open(true, again);
+  if (!script) return script.failure();
+  if (std::optional<Failure> failure = call_scene(script.value())) return *failure;
+  script->sandbox->set_quiet(false);
+  definition.source_hash = script->sandbox->source_hash();
+  for (ScorePart& part : definition.score.parts) {
+    part.place.file = path_.string();
+    part.place.line = map_.line_of(part.place.path);
+  }
+  return std::unique_ptr<ExerciseScript>(
+      std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition)));
+}
+
+/// The scenarios beside a path that does not exist, for a suggestion.
+std::vector<std::string> neighbours(const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".lua")
+      names.push_back((path.parent_path() / entry.path().filename()).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ExerciseScript>> load_exercise(const fs::path& path, const LoadOptions& options) {
+  if (!fs::is_regular_file(path))
+    return fail(FailureKind::usage, fmt::format("there is no scenario {}", path.string()),
+                suggestion(path.string(), neighbours(path)));
+  return Loader(path, options).load();
+}
+
+}  // namespace calot

@@ -1,0 +1,289 @@
+#include "lua/methods.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "lua/binding.h"
+#include "lua/demo_script.h"
+#include "lua/handles.h"
+#include "lua/steps_script.h"
+
+namespace calot {
+namespace {
+
+/// For methods without parameters: Arguments' check alone, cheap enough for predicates.
+void take_nothing(lua_State* L, ScriptSession& session, const char* method) {
+  if (lua_gettop(L) > 1)
+    session.complain(L, fmt::format("{} takes no arguments", method), "leave the brackets empty");
+}
+
+// Functions can be taken from one handle and called with another: each checks whose it is.
+
+HandleTarget instrument_target(lua_State* L, const char* method) {
+  const HandleTarget target = handle_target(L, method);
+  if (target.instrument < 0) luaL_error(L, "%s is a method of instruments: t.left:%s(...)", method, method);
+  return target;
+}
+
+ScriptSession& session_target(lua_State* L, const char* method) {
+  const HandleTarget target = handle_target(L, method);
+  if (target.instrument >= 0) luaL_error(L, "%s is a method of t: t:%s(...)", method, method);
+  return *target.session;
+}
+
+// ---- both sessions
+
+int wait(lua_State* L) {
+  ScriptSession& session = session_target(L, "wait");
+  const Arguments arguments(L, session, "Session", "wait");
+  return session.wait(L, arguments.number("duration"));
+}
+
+int wait_until(lua_State* L) {
+  ScriptSession& session = session_target(L, "wait_until");
+  const Arguments arguments(L, session, "Session", "wait_until");
+  return session.wait_until(L, arguments.function("predicate"));
+}
+
+int time(lua_State* L) {
+  ScriptSession& session = session_target(L, "time");
+  take_nothing(L, session, "time");
+  lua_pushnumber(L, session.time());
+  return 1;
+}
+
+/// The organ's state, or that of one at rest in a dry run or after a complaint.
+OrganState organ_state(lua_State* L, const char* method) {
+  ScriptSession& session = session_target(L, method);
+  const Arguments arguments(L, session, "Session", method);
+  const int organ = arguments.good() ? session.organ(L, arguments.text("organ")) : -1;
+  if (organ < 0 || session.checking()) return {};
+  return session.world(L).report().organs[static_cast<std::size_t>(organ)];
+}
+
+int pressure(lua_State* L) {
+  lua_pushnumber(L, organ_state(L, "pressure").pressure);
+  return 1;
+}
+
+int volume(lua_State* L) {
+  lua_pushnumber(L, organ_state(L, "volume").volume);
+  return 1;
+}
+
+// ---- instruments
+
+const InstrumentState& instrument_state(lua_State* L, const HandleTarget& target) {
+  static const InstrumentState at_rest;
+  if (target.session->checking()) return at_rest;
+  return target.session->world(L).report().instruments[static_cast<std::size_t>(target.instrument)];
+}
+
+/// The same for a method without parameters.
+const InstrumentState& instrument_state(lua_State* L, const char* method) {
+  const HandleTarget target = instrument_target(L, method);
+  take_nothing(L, *target.session, method);
+  return instrument_state(L, target);
+}
+
+int holds(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "holds");
+  const Arguments arguments(L, *target.session, "Instrument", "holds");
+  const std::string organ = arguments.text("organ");
+  const bool known = organ.empty() || target.session->organ(L, organ) >= 0;
+  const std::string& held = instrument_state(L, target).holds;
+  bool answer = known && (organ.empty() ? !held.empty() : held == organ);
+  if (target.session->checking()) answer = target.session->next_guess();
+  lua_pushboolean(L, answer);
+  return 1;
+}
+
+int touching(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "touching");
+  take_nothing(L, *target.session, "touching");
+  const bool guess = target.session->checking() && target.session->next_guess();
+  lua_pushboolean(L, guess || instrument_state(L, target).touching);
+  return 1;
+}
+
+int force(lua_State* L) {
+  lua_pushnumber(L, instrument_state(L, "force").tip_force.norm());
+  return 1;
+}
+
+int handle_force(lua_State* L) {
+  lua_pushnumber(L, instrument_state(L, "handle_force").handle_force.norm());
+  return 1;
+}
+
+int tip(lua_State* L) {
+  const Vec3 place = instrument_state(L, "tip").tip;
+  lua_createtable(L, 3, 0);
+  for (int i = 0; i < 3; ++i) {
+    lua_pushnumber(L, place[i]);
+    lua_rawseti(L, -2, i + 1);
+  }
+  return 1;
+}
+
+// ---- steps
+
+StepsScript& steps_of(lua_State* L, const char* method) {
+  auto* steps = dynamic_cast<StepsScript*>(&session_target(L, method));
+  if (steps == nullptr) luaL_error(L, "t:%s is a method of the t of steps", method);
+  return *steps;
+}
+
+int step(lua_State* L) {
+  StepsScript& steps = steps_of(L, "step");
+  Arguments arguments(L, steps, "Steps", "step");
+  double limit = 0;
+  arguments.options("step_options").take("limit", limit);
+  if (arguments.finish()) steps.step(L, arguments.text("name"), arguments.text("title"), limit);
+  return 0;
+}
+
+int hold(lua_State* L) {
+  StepsScript& steps = steps_of(L, "hold");
+  const Arguments arguments(L, steps, "Steps", "hold");
+  return steps.hold(L, arguments.text("name"), arguments.function("predicate"), arguments.number("duration"));
+}
+
+// ---- demo
+
+struct DemoCall {
+  DemoScript& demo;
+  int instrument;
+};
+
+DemoScript& demo_of(lua_State* L, ScriptSession& session, const char* method) {
+  auto* demo = dynamic_cast<DemoScript*>(&session);
+  if (demo == nullptr) luaL_error(L, "%s is available in demo only", method);
+  return *demo;
+}
+
+DemoCall demo_call(lua_State* L, const char* method) {
+  const HandleTarget target = instrument_target(L, method);
+  return {demo_of(L, *target.session, method), target.instrument};
+}
+
+int together(lua_State* L) {
+  DemoScript& demo = demo_of(L, session_target(L, "together"), "together");
+  for (int i = 2; i <= lua_gettop(L) || i <= 3; ++i)
+    if (!lua_isfunction(L, i)) {
+      demo.complain(L, "t:together needs two functions or more",
+                    "write t:together(function() ... end, function() ... end)");
+      return 0;
+    }
+  return demo.together(L);
+}
+
+int approach(lua_State* L) {
+  const DemoCall call = demo_call(L, "approach");
+  Arguments arguments(L, call.demo, "DemoInstrument", "approach");
+  Approach how;
+  how.landmark = arguments.text("landmark");
+  const TableReader options = arguments.options("approach_options");
+  options.take("speed", how.speed);
+  options.take("depth", how.depth);
+  options.take("offset", how.offset);
+  options.take("clearance", how.clearance);
+  options.take("jaw", how.jaw);
+  if (!arguments.finish() || !call.demo.is_landmark(L, how.landmark)) return 0;
+  return call.demo.approach(L, call.instrument, how);
+}
+
+int open(lua_State* L) {
+  const DemoCall call = demo_call(L, "open");
+  const Arguments arguments(L, call.demo, "DemoInstrument", "open");
+  return call.demo.set_jaw(L, call.instrument, arguments.number("angle", GrasperGeometry{}.jaw_opening));
+}
+
+int close(lua_State* L) {
+  const DemoCall call = demo_call(L, "close");
+  take_nothing(L, call.demo, "close");
+  return call.demo.set_jaw(L, call.instrument, 0);
+}
+
+double speed_option(Arguments& arguments, const char* api, double fallback) {
+  arguments.options(api).take("speed", fallback);
+  return fallback;
+}
+
+int move_to(lua_State* L) {
+  const DemoCall call = demo_call(L, "move_to");
+  Arguments arguments(L, call.demo, "DemoInstrument", "move_to");
+  const double speed = speed_option(arguments, "move_options", default_speed);
+  const Value* target = arguments.read().take("target");
+  if (target != nullptr && target->is(Value::Kind::text)) {
+    if (!arguments.finish() || !call.demo.is_landmark(L, target->text)) return 0;
+    return call.demo.move_to(L, call.instrument, call.demo.landmark(L, target->text), speed);
+  }
+  const std::optional<Vec3> point = target != nullptr ? arguments.point(*target, "target") : std::nullopt;
+  if (!arguments.finish() || !point) return 0;
+  return call.demo.move_to(L, call.instrument, *point, speed);
+}
+
+int move_by(lua_State* L) {
+  const DemoCall call = demo_call(L, "move_by");
+  Arguments arguments(L, call.demo, "DemoInstrument", "move_by");
+  const double speed = speed_option(arguments, "move_options", default_speed);
+  Vec3 vector = Vec3::Zero();
+  arguments.read().take("vector", vector);
+  if (!arguments.finish()) return 0;
+  return call.demo.move_by(L, call.instrument, vector, speed);
+}
+
+int rotate(lua_State* L) {
+  const DemoCall call = demo_call(L, "rotate");
+  Arguments arguments(L, call.demo, "DemoInstrument", "rotate");
+  const double speed = speed_option(arguments, "rotate_options", default_turning_speed);
+  if (!arguments.finish()) return 0;
+  return call.demo.rotate(L, call.instrument, arguments.number("angle"), speed);
+}
+
+int instrument_wait(lua_State* L) {
+  const DemoCall call = demo_call(L, "wait");
+  const Arguments arguments(L, call.demo, "DemoInstrument", "wait");
+  return call.demo.wait(L, arguments.number("duration"));
+}
+
+struct Method {
+  const char* class_name;
+  const char* name;
+  lua_CFunction function;
+};
+
+const Method methods[] = {{"Session", "wait", guarded<wait>},
+                          {"Session", "wait_until", guarded<wait_until>},
+                          {"Session", "time", guarded<time>},
+                          {"Session", "pressure", guarded<pressure>},
+                          {"Session", "volume", guarded<volume>},
+                          {"Steps", "step", guarded<step>},
+                          {"Steps", "hold", guarded<hold>},
+                          {"Demo", "together", guarded<together>},
+                          {"Instrument", "holds", guarded<holds>},
+                          {"Instrument", "force", guarded<force>},
+                          {"Instrument", "handle_force", guarded<handle_force>},
+                          {"Instrument", "touching", guarded<touching>},
+                          {"Instrument", "tip", guarded<tip>},
+                          {"DemoInstrument", "approach", guarded<approach>},
+                          {"DemoInstrument", "open", guarded<open>},
+                          {"DemoInstrument", "close", guarded<close>},
+                          {"DemoInstrument", "move_to", guarded<move_to>},
+                          {"DemoInstrument", "move_by", guarded<move_by>},
+                          {"DemoInstrument", "rotate", guarded<rotate>},
+                          {"DemoInstrument", "wait", guarded<instrument_wait>}};
+
+}  // namespace
+
+lua_CFunction method_function(const std::string& class_name, const std::string& method) {
+  for (const Method& candidate : methods)
+    if (class_name == candidate.class_name && method == candidate.name) return candidate.function;
+  for (const ApiClass& handle : api_classes())
+    if (handle.name == class_name && !handle.parent.empty()) return method_function(handle.parent, method);
+  std::abort();  // declared but not bound
+}
+
+}  // namespace calot

@@ -1,0 +1,34 @@
+#pragma once
+// The table that calot.exercise was given, except for its scene, as definitions.
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "anatomy/field_check.h"
+#include "lua/value.h"
+#include "session/exercise.h"
+
+namespace calot {
+
+using ParameterValue = std::variant<double, bool, std::string>;
+
+/// The exercise's table, read; functions as registry references, 0 when there is none.
+struct ExerciseTable {
+  ExerciseDefinition definition;  ///< without scene and script-declared names; the score's metrics unchecked
+  std::map<std::string, ParameterValue> parameters;
+  int scene = 0, steps = 0, demo = 0;
+  std::vector<Problem> usage;  ///< what is wrong with the parameters that the user chose
+};
+
+/// `chosen` are parameters as the user wrote them. What is unfit becomes problems, with paths from the root.
+ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
+                            const std::map<std::string, std::string>& chosen);
+
+/// Checks the score's metrics against those that the scene and the declared steps and holds have.
+void check_metrics(FieldCheck& check, const ExerciseDefinition& exercise);
+
+std::string to_text(const ParameterValue& value);
+
+}  // namespace calot

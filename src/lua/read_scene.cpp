@@ -1,0 +1,233 @@
+#include "lua/read_scene.h"
+
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "lua/safe_path.h"
+#include "lua/table_reader.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string indexed(const std::string& path, std::size_t index) {
+  return fmt::format("{}[{}]", path, index + 1);
+}
+
+class SceneReader {
+ public:
+  SceneReader(FieldCheck& check, const MeshFolders& folders) : check_(check), folders_(folders) {}
+
+  SceneDefinition read(const Value& value) {
+    SceneDefinition scene;
+    const TableReader reader(check_, &value, "scene", api_table("scene"));
+    if (const Value* anatomy = reader.take("anatomy"))
+      scene.anatomy = read_anatomy(*anatomy, "scene.anatomy");
+    if (const Value* ports = reader.take("ports")) scene.ports = read_ports(*ports);
+    if (const Value* instruments = reader.take("instruments"))
+      scene.instruments = read_instruments(*instruments);
+    scene.laparoscope = read_laparoscope(reader.take("laparoscope"));
+    scene.solver = read_solver(reader.take("solver"));
+    return scene;
+  }
+
+ private:
+  AnatomyDefinition read_anatomy(const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("anatomy"));
+    AnatomyDefinition anatomy;
+    std::string base;
+    reader.take("base", base);
+    // An unknown one has been reported; the usual one keeps what follows from being reported too.
+    if (value.field("base") != nullptr && base.empty()) base = anatomy_names().front();
+    if (!base.empty()) {
+      Result<AnatomyDefinition> named = named_anatomy(base);
+      if (named) anatomy = std::move(named).value();
+    }
+    reader.take("table_head_up", anatomy.table_head_up);
+    reader.take("table_left_down", anatomy.table_left_down);
+    if (const Value* support = reader.take("support"))
+      anatomy.support = read_support(*support, path + ".support");
+    if (const Value* organs = reader.take("organs")) {
+      for (std::size_t i = 0; i < organs->items.size(); ++i) {
+        const bool overrides = i < anatomy.organs.size();
+        if (!overrides) anatomy.organs.emplace_back();
+        read_organ(anatomy.organs[i], organs->items[i], indexed(path + ".organs", i));
+      }
+    }
+    return anatomy;
+  }
+
+  SupportDefinition read_support(const Value& value, const std::string& path) {
+    SupportDefinition support;
+    const TableReader reader(check_, &value, path, api_table("support"));
+    reader.take("point", support.point);
+    reader.take("normal", support.normal);
+    return support;
+  }
+
+  void read_organ(OrganDefinition& organ, const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("organ"));
+    reader.take("name", organ.name);
+    reader.take("nodes", organ.nodes);
+    reader.take("neck", organ.neck);
+    reader.take("fundus", organ.fundus);
+    reader.take("liver_side", organ.liver_side);
+    if (const Value* shape = reader.take("shape")) read_shape(organ.shape, *shape, path + ".shape");
+    read_wall(organ.wall, reader.take("wall"), path + ".wall");
+    read_bile(organ.bile, reader.take("bile"), path + ".bile");
+    if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
+  }
+
+  void read_wall(WallDefinition& wall, const Value* value, const std::string& path) {
+    const TableReader reader(check_, value, path, api_table("wall"));
+    reader.take("thickness", wall.thickness);
+    reader.take("shear_modulus", wall.shear_modulus);
+    reader.take("overstretch", wall.overstretch);
+  }
+
+  /// One of volume and pressure given here replaces whichever the anatomy had.
+  void read_bile(BileDefinition& bile, const Value* value, const std::string& path) {
+    const TableReader reader(check_, value, path, api_table("bile"));
+    reader.take("density", bile.density);
+    if (!reader.has("fill_volume") && !reader.has("fill_pressure")) return;
+    bile.fill_volume.reset();
+    bile.fill_pressure.reset();
+    reader.take("fill_volume", bile.fill_volume);
+    reader.take("fill_pressure", bile.fill_pressure);
+  }
+
+  std::vector<HeldRegion> read_held(const Value& list, const std::string& path) {
+    std::vector<HeldRegion> regions;
+    for (std::size_t i = 0; i < list.items.size(); ++i) {
+      HeldRegion region;
+      const TableReader reader(check_, &list.items[i], indexed(path, i), api_table("held"));
+      reader.take("name", region.name);
+      reader.take("landmark", region.landmark);
+      reader.take("radius", region.radius);
+      reader.take("stiffness", region.stiffness);
+      // Without a fit landmark the reader has said so already; validation would only repeat it.
+      if (region.landmark.empty()) region.landmark = organ_landmarks().front();
+      regions.push_back(region);
+    }
+    return regions;
+  }
+
+  /// Keeps the shape there was where the type is the same or left out: an override gives only what differs.
+  void read_shape(OrganShape& shape, const Value& value, const std::string& path) {
+    const std::string present = std::holds_alternative<PearShape>(shape)     ? "pear"
+                                : std::holds_alternative<SphereShape>(shape) ? "sphere"
+                                                                             : "obj";
+    const Value* type = value.field("type");
+    std::string wanted = type != nullptr && type->is(Value::Kind::text) ? type->text : present;
+    const std::vector<std::string>& types = api_table("shape_pear").find("type")->choices;
+    if (std::find(types.begin(), types.end(), wanted) == types.end()) {
+      check_.known(path + ".type", wanted, types, "shape");
+      return;
+    }
+    const TableReader reader(check_, &value, path, api_table("shape_" + wanted));
+    if (wanted == "pear") {
+      if (wanted != present) shape = PearShape{};
+      PearShape& pear = std::get<PearShape>(shape);
+      reader.take("length", pear.length);
+      reader.take("width", pear.width);
+      reader.take("refine", pear.refine);
+      reader.take("refine_radius", pear.refine_radius);
+    } else if (wanted == "sphere") {
+      if (wanted != present) shape = SphereShape{};
+      reader.take("radius", std::get<SphereShape>(shape).radius);
+    } else {
+      if (wanted != present) shape = MeshFile{};
+      MeshFile& mesh = std::get<MeshFile>(shape);
+      reader.take("scale", mesh.scale);
+      std::string file;
+      reader.take("path", file);
+      if (!file.empty()) mesh.path = find_mesh(file, path + ".path");
+    }
+  }
+
+  std::string find_mesh(const std::string& file, const std::string& path) {
+    const fs::path name(file);
+    for (const fs::path& folder : {folders_.scenario, folders_.assets}) {
+      if (folder.empty() || name.is_absolute() || !fs::is_regular_file(folder / name)) continue;
+      if (is_inside(folder / name, folder)) return (folder / name).string();
+    }
+    check_.problem(
+        path, fmt::format("there is no mesh file \"{}\"", file),
+        fmt::format("give a path below {} or {}", folders_.scenario.string(), folders_.assets.string()));
+    return file;
+  }
+
+  std::vector<PortDefinition> read_ports(const Value& map) {
+    std::vector<PortDefinition> ports = default_ports();
+    for (const auto& [name, value] : map.fields) {
+      const std::optional<Vec3> position = read_point(check_, value, "scene.ports." + name);
+      if (!position) continue;
+      const auto same = [&](const PortDefinition& port) { return port.name == name; };
+      const auto known = std::find_if(ports.begin(), ports.end(), same);
+      if (known == ports.end()) {
+        ports.push_back({name, *position});
+      } else {
+        known->position = *position;
+      }
+    }
+    return ports;
+  }
+
+  /// Sorted by name: the order of a table's keys is none.
+  std::vector<InstrumentDefinition> read_instruments(const Value& map) {
+    std::vector<InstrumentDefinition> instruments;
+    for (const auto& [name, value] : map.fields) {
+      const std::string path = "scene.instruments." + name;
+      InstrumentDefinition instrument;
+      instrument.name = name;
+      const TableReader reader(check_, &value, path, api_table("instrument"));
+      reader.take("port", instrument.port);
+      reader.take("force_limit", instrument.force_limit);
+      check_free(path, name);
+      instruments.push_back(instrument);
+    }
+    return instruments;
+  }
+
+  void check_free(const std::string& path, const std::string& name) {
+    for (const char* class_name : {"Steps", "Demo"}) {
+      const std::vector<std::string> methods = method_names(class_name);
+      if (std::find(methods.begin(), methods.end(), name) == methods.end()) continue;
+      return check_.problem(path, fmt::format("\"{}\" is a method of t and cannot name an instrument", name),
+                            "use another name, such as left or right");
+    }
+  }
+
+  LaparoscopeDefinition read_laparoscope(const Value* value) {
+    LaparoscopeDefinition scope;
+    const TableReader reader(check_, value, "scene.laparoscope", api_table("laparoscope"));
+    reader.take("port", scope.port);
+    reader.take("angle", scope.angle);
+    reader.take("look_at", scope.look_at);
+    reader.take("distance", scope.distance);
+    reader.take("field_of_view", scope.field_of_view);
+    return scope;
+  }
+
+  SolverDefinition read_solver(const Value* value) {
+    SolverDefinition solver;
+    const TableReader reader(check_, value, "scene.solver", api_table("solver"));
+    reader.take("rate", solver.rate);
+    reader.take("tolerance", solver.tolerance);
+    const TableReader extensions(check_, reader.take("extensions"), "scene.solver.extensions",
+                                 api_table("extensions"));
+    return solver;
+  }
+
+  FieldCheck& check_;
+  const MeshFolders& folders_;
+};
+
+}  // namespace
+
+SceneDefinition read_scene(FieldCheck& check, const Value& scene, const MeshFolders& folders) {
+  return SceneReader(check, folders).read(scene);
+}
+
+}  // namespace calot

@@ -1,0 +1,20 @@
+#pragma once
+// The table that scene(p) returns, as definitions.
+
+#include <filesystem>
+
+#include "anatomy/definitions.h"
+#include "anatomy/field_check.h"
+#include "lua/value.h"
+
+namespace calot {
+
+/// Where a scenario's mesh files may lie: its own folder first, then the project's assets.
+struct MeshFolders {
+  std::filesystem::path scenario, assets;
+};
+
+/// What is unfit becomes problems below "scene" and keeps its default. Limits are left to validate().
+SceneDefinition read_scene(FieldCheck& check, const Value& scene, const MeshFolders& folders);
+
+}  // namespace calot

@@ -1,0 +1,322 @@
+#include "lua/sandbox.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "base/log.h"
+#include "lua/lua_headers.h"
+#include "lua/sandbox_library.h"
+
+namespace calot {
+namespace {
+
+constexpr int hook_interval = 1000;            // instructions between two looks at the budget
+constexpr int error_cost = 1000;               // instructions that raising and catching an error counts for
+constexpr int longest_trace = 8;               // frames
+constexpr int most_printed_lines = 1000;       // of a run
+constexpr std::size_t longest_text = 1 << 20;  // bytes of one file
+
+std::string text_at_top(lua_State* L) {
+  const int type = lua_type(L, -1);
+  if (type == LUA_TSTRING || type == LUA_TNUMBER) {
+    std::size_t length = 0;
+    const char* text = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : nullptr;
+    return text != nullptr ? std::string(text, length) : fmt::format("{:g}", lua_tonumber(L, -1));
+  }
+  return fmt::format("an error that is no text was raised (a {} value)", lua_typename(L, type));
+}
+
+}  // namespace
+
+Sandbox::Sandbox(const SandboxOptions& options)
+    : options_(options),
+      watchdog_(options.script.string(), options.limits.call_seconds, options.limits.exit_code) {}
+
+Sandbox::~Sandbox() {
+  if (L_ != nullptr) lua_close(L_);
+}
+
+Result<std::unique_ptr<Sandbox>> Sandbox::create(const SandboxOptions& options) {
+  std::unique_ptr<Sandbox> sandbox(new Sandbox(options));
+  sandbox->L_ = lua_newstate(allocate, sandbox.get());
+  if (sandbox->L_ == nullptr) {
+    return fail(FailureKind::resource, "no memory for a Lua state",
+                fmt::format("a memory limit of {} bytes is too small", options.limits.memory));
+  }
+  Sandbox* self = sandbox.get();
+  *static_cast<Sandbox**>(lua_getextraspace(self->L_)) = self;  // threads made from it get a copy
+  lua_sethook(self->L_, on_count, LUA_MASKCOUNT, hook_interval);
+  std::optional<Failure> failure = self->protect([&](lua_State* L) { open_library(L, options.seed); });
+  if (failure) return *failure;
+  return sandbox;
+}
+
+Sandbox& Sandbox::of(lua_State* L) { return **static_cast<Sandbox**>(lua_getextraspace(L)); }
+
+void* Sandbox::allocate(void* sandbox, void* block, std::size_t old_size, std::size_t new_size) {
+  Sandbox& self = *static_cast<Sandbox*>(sandbox);
+  const std::size_t before = block != nullptr ? old_size : 0;  // without a block Lua passes a type here
+  if (new_size == 0) {
+    std::free(block);
+    self.memory_ -= before;
+    return nullptr;
+  }
+  if (new_size > before && self.memory_ - before + new_size > self.options_.limits.memory) return nullptr;
+  void* const fresh = std::realloc(block, new_size);
+  if (fresh != nullptr) self.memory_ = self.memory_ - before + new_size;
+  return fresh;
+}
+
+// ---- budget
+
+Sandbox::Call::Call(Sandbox& sandbox) : sandbox_(sandbox) {
+  if (sandbox_.calls_++ > 0) return;
+  sandbox_.used_in_call_ = 0;
+  sandbox_.watchdog_.arm();
+}
+
+Sandbox::Call::~Call() {
+  if (--sandbox_.calls_ == 0) sandbox_.watchdog_.disarm();
+}
+
+void Sandbox::spend(std::int64_t instructions) {
+  used_in_call_ += instructions;
+  used_in_run_ += instructions;
+  if (trip_ != Trip::none) return;
+  if (used_in_call_ > options_.limits.instructions_per_call) trip_ = Trip::call;
+  if (used_in_run_ > options_.limits.instructions_per_run) trip_ = Trip::run;
+}
+
+std::string Sandbox::trip_text() const {
+  switch (trip_) {
+    case Trip::none:
+      return {};
+    case Trip::call:
+      return fmt::format(
+          "the script ran for more than {} instructions without waiting: a loop that does not end?",
+          options_.limits.instructions_per_call);
+    case Trip::run:
+      return fmt::format("the script ran for more than {} instructions in all",
+                         options_.limits.instructions_per_run);
+    case Trip::memory:
+      return fmt::format("the script needs more than {:.1f} MiB of memory",
+                         static_cast<double>(options_.limits.memory) / (1 << 20));
+  }
+  return {};
+}
+
+/// Sticky: from now on each instruction of any thread that gets to run raises it again.
+void Sandbox::raise_trip(lua_State* L) {
+  lua_sethook(L, on_count, LUA_MASKCOUNT, 1);
+  luaL_where(L, 0);  // level 1 has no position at top level
+  lua_pushstring(L, trip_text().c_str());
+  lua_concat(L, 2);
+  lua_error(L);
+  std::abort();  // lua_error does not return
+}
+
+void Sandbox::on_count(lua_State* L, lua_Debug*) {
+  Sandbox& self = of(L);
+  self.spend(lua_gethookcount(L));
+  if (self.trip_ != Trip::none) self.raise_trip(L);
+}
+
+void Sandbox::charge(lua_State* L, std::int64_t instructions) {
+  spend(instructions);
+  if (trip_ != Trip::none) raise_trip(L);
+}
+
+void Sandbox::survive_error(lua_State* L, int status) {
+  if (status == LUA_ERRMEM) trip_ = Trip::memory;
+  if (trip_ == Trip::none) return charge(L, error_cost);
+  lua_sethook(L, on_count, LUA_MASKCOUNT, 1);
+  lua_error(L);
+}
+
+// ---- calls
+
+int Sandbox::call_body(lua_State* L) {
+  const auto* body = static_cast<const std::function<void(lua_State*)>*>(lua_touserdata(L, 1));
+  lua_settop(L, 0);
+  try {
+    (*body)(L);
+    return 0;
+  } catch (const std::exception& error) {
+    lua_pushstring(L, error.what());
+  }
+  return lua_error(L);
+}
+
+int Sandbox::collect_trace(lua_State* L) {
+  Sandbox& self = of(L);
+  try {
+    self.trace_ = self.trace_of(L);
+  } catch (const std::exception&) {
+    self.trace_.clear();  // no memory left for it: the error itself still gets through
+  }
+  return 1;
+}
+
+std::optional<Failure> Sandbox::protect(const std::function<void(lua_State*)>& body) {
+  const Call call(*this);
+  trace_.clear();
+  const int top = lua_gettop(L_);
+  lua_pushcfunction(L_, collect_trace);
+  lua_pushcfunction(L_, call_body);
+  lua_pushlightuserdata(L_, const_cast<std::function<void(lua_State*)>*>(&body));
+  const int status = lua_pcall(L_, 1, 0, top + 1);
+  std::optional<Failure> failure;
+  if (status != LUA_OK) failure = failure_of(L_, status);
+  lua_settop(L_, top);
+  return failure;
+}
+
+Result<lua_State*> Sandbox::start_thread(int function,
+                                         const std::function<void(lua_State*)>& push_arguments) {
+  lua_State* thread = nullptr;
+  std::optional<Failure> failure = protect([&](lua_State* L) {
+    thread = adopt_thread(L);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
+    push_arguments(L);
+    lua_xmove(L, thread, lua_gettop(L));
+  });
+  if (failure) return *failure;
+  return thread;
+}
+
+lua_State* Sandbox::adopt_thread(lua_State* L) {
+  lua_State* thread = lua_newthread(L);
+  luaL_ref(L, LUA_REGISTRYINDEX);
+  threads_.push_back(thread);
+  return thread;
+}
+
+Result<bool> Sandbox::resume(lua_State* thread, int arguments) {
+  const Call call(*this);
+  trace_.clear();
+  int results = 0;
+  const int status = lua_resume(thread, L_, arguments, &results);
+  if (status == LUA_OK || status == LUA_YIELD) {
+    lua_pop(thread, results);
+    return status == LUA_OK;
+  }
+  trace_ = trace_of(thread);
+  return failure_of(thread, status);
+}
+
+bool Sandbox::owns(lua_State* thread) const {
+  return std::find(threads_.begin(), threads_.end(), thread) != threads_.end();
+}
+
+// ---- text
+
+void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(longest_text + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad() || (!file.eof() && file.fail())) throw std::runtime_error("cannot read " + path.string());
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > longest_text)
+    throw std::runtime_error(path.string() + " is larger than 1 MiB, too large for a script");
+  if (!text.empty() && text.front() == LUA_SIGNATURE[0]) {
+    throw std::runtime_error(path.string() +
+                             " is compiled Lua (bytecode); scripts are text: give the source");
+  }
+  source_hash_.add(std::uint64_t{text.size()});
+  source_hash_.add(std::string_view(text));
+  const std::string name = fmt::format("@{}", path.string());
+  // Lua shortens long names in its messages; remember what each short name stands for. An empty chunk has it
+  // too.
+  if (luaL_loadbufferx(L, "", 0, name.c_str(), "t") != LUA_OK) lua_error(L);
+  lua_Debug info;
+  lua_getinfo(L, ">S", &info);
+  files_.emplace(info.short_src, path.string());
+  if (luaL_loadbufferx(L, text.data(), text.size(), name.c_str(), "t") != LUA_OK) lua_error(L);
+}
+
+void Sandbox::print(const std::string& line) {
+  if (quiet_ || printed_ > most_printed_lines) return;
+  ++printed_;
+  log_info(printed_ > most_printed_lines
+               ? fmt::format("the script has printed {} lines; the rest is dropped", most_printed_lines)
+               : line);
+}
+
+// ---- errors
+
+std::vector<Place> Sandbox::trace_of(lua_State* L) const {
+  std::vector<Place> trace;
+  lua_Debug info;
+  for (int level = 0; lua_getstack(L, level, &info) != 0; ++level) {
+    lua_getinfo(L, "Sl", &info);
+    const auto file = files_.find(info.short_src);
+    if (file == files_.end()) continue;  // C++ and the library's own Lua
+    if (static_cast<int>(trace.size()) == longest_trace) break;
+    trace.push_back({file->second, info.currentline, {}});
+  }
+  return trace;
+}
+
+Place Sandbox::place_of(lua_State* L, int level) const {
+  lua_Debug info;
+  for (; lua_getstack(L, level, &info) != 0; ++level) {
+    lua_getinfo(L, "Sl", &info);
+    const auto file = files_.find(info.short_src);
+    if (file != files_.end()) return {file->second, info.currentline, {}};
+  }
+  return {options_.script.string(), 0, {}};
+}
+
+/// Cuts "file:line: " off the message, once or more often (nested errors), and keeps the innermost.
+bool Sandbox::split_place(std::string& message, Place& place) const {
+  bool found = false;
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& [name, path] : files_) {
+      if (!message.starts_with(name + ":")) continue;
+      const std::size_t start = name.size() + 1, colon = message.find(':', start);
+      if (colon == std::string::npos || colon == start) continue;
+      if (message.find_first_not_of("0123456789", start) != colon) continue;
+      place = {path, std::atoi(message.c_str() + start), {}};
+      message.erase(0, std::min(message.size(), colon + 2));
+      again = found = true;
+      break;
+    }
+  }
+  return found;
+}
+
+Failure Sandbox::failure_of(lua_State* L, int status) const {
+  std::string message = text_at_top(L);
+  const std::string prelude = fmt::format("{}:", prelude_name);
+  if (message.starts_with(prelude)) message.erase(0, message.find(' ') + 1);
+  Place place;
+  if (!split_place(message, place) && !trace_.empty()) place = trace_.front();
+  if (place.file.empty()) place.file = options_.script.string();
+  FailureKind kind = FailureKind::scenario;
+  std::string hint;
+  if (trip_ != Trip::none) {
+    kind = FailureKind::resource;
+    message = trip_text();
+    hint = trip_ == Trip::memory ? "keep less data" : "let loops end or call t:wait inside them";
+  } else if (status == LUA_ERRMEM) {
+    kind = FailureKind::resource;
+    message = fmt::format("the script needs more than {:.1f} MiB of memory",
+                          static_cast<double>(options_.limits.memory) / (1 << 20));
+    hint = "keep less data";
+  } else if (status == LUA_ERRERR || message.find("stack overflow") != std::string::npos) {
+    kind = FailureKind::resource;
+    message = "calls are nested too deep (stack overflow)";
+    hint = "let the recursion end, or use a loop";
+  }
+  std::size_t next = !trace_.empty() && trace_.front().line == place.line ? 1 : 0;
+  for (; next < trace_.size() && kind == FailureKind::scenario; ++next)
+    message += fmt::format("\n    called from {}:{}", trace_[next].file, trace_[next].line);
+  return fail(kind, std::move(message), std::move(hint), std::move(place));
+}
+
+}  // namespace calot

@@ -1,0 +1,120 @@
+#pragma once
+// A Lua state that a hostile script cannot get out of, hang or exhaust: capped memory, a budget of
+// instructions that no pcall survives, text chunks only, a library without files, clocks and addresses, and a
+// watchdog.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/status.h"
+#include "lua/limits.h"
+#include "lua/watchdog.h"
+
+struct lua_State;
+struct lua_Debug;
+
+namespace calot {
+
+struct SandboxOptions {
+  std::filesystem::path script;   ///< the scenario; its folder is the first that `require` looks into
+  std::filesystem::path modules;  ///< the second; may be empty
+  std::uint64_t seed = 1;         ///< of math.random
+  ScriptLimits limits;
+};
+
+class Sandbox {
+ public:
+  static Result<std::unique_ptr<Sandbox>> create(const SandboxOptions& options);
+  ~Sandbox();
+  Sandbox(const Sandbox&) = delete;
+  Sandbox& operator=(const Sandbox&) = delete;
+
+  /// The sandbox that a running function belongs to.
+  static Sandbox& of(lua_State* L);
+  lua_State* state() const { return L_; }
+  const SandboxOptions& options() const { return options_; }
+
+  /// While one lives, the simulator is inside the script: a fresh budget per call, the watchdog armed. They
+  /// nest.
+  class Call {
+   public:
+    explicit Call(Sandbox& sandbox);
+    ~Call();
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    Sandbox& sandbox_;
+  };
+
+  /// Runs `body` in protected mode inside a Call; the stack is left as it was.
+  std::optional<Failure> protect(const std::function<void(lua_State*)>& body);
+
+  /// A coroutine owned by the simulator: scripts cannot resume it. The function is a registry reference; what
+  /// `push_arguments` pushes are the arguments of its first resume. The thread lives as long as the sandbox.
+  Result<lua_State*> start_thread(int function, const std::function<void(lua_State*)>& push_arguments);
+  /// The same for a thread made while L runs; empty: push its function.
+  lua_State* adopt_thread(lua_State* L);
+  /// Runs it to its next yield (false) or its end (true), with the top `arguments` values of its stack.
+  Result<bool> resume(lua_State* thread, int arguments);
+  bool owns(lua_State* thread) const;
+
+  /// Pushes the compiled text of `path`, a text chunk. Raises a Lua error for what is wrong; call it
+  /// protected.
+  void push_chunk(lua_State* L, const std::filesystem::path& path);
+  /// Hash of all the text loaded so far, in the order of loading.
+  std::uint64_t source_hash() const { return source_hash_.value(); }
+
+  /// Takes instructions off the budget for work done in C++; raises the budget's error when it is used up.
+  void charge(lua_State* L, std::int64_t instructions);
+  /// For pcall and resume, of the error on top of the stack: raises it again when no script may survive it,
+  /// else charges for it, because raising costs far more than an instruction.
+  void survive_error(lua_State* L, int status);
+  /// One line for `print`, up to a number of lines per run.
+  void print(const std::string& line);
+  /// While quiet, print says nothing.
+  void set_quiet(bool quiet) { quiet_ = quiet; }
+  Watchdog& watchdog() { return watchdog_; }
+
+  /// Where Lua code runs: file and line of the nearest frame of the script, starting at `level`.
+  Place place_of(lua_State* L, int level = 1) const;
+
+ private:
+  enum class Trip { none, call, run, memory };
+  explicit Sandbox(const SandboxOptions& options);
+  static void* allocate(void* sandbox, void* block, std::size_t old_size, std::size_t new_size);
+  static void on_count(lua_State* L, lua_Debug*);
+  static int collect_trace(lua_State* L);
+  static int call_body(lua_State* L);
+
+  void spend(std::int64_t instructions);
+  [[noreturn]] void raise_trip(lua_State* L);
+  std::string trip_text() const;
+  std::vector<Place> trace_of(lua_State* L) const;
+  /// From the error on top of L's stack and trace_.
+  Failure failure_of(lua_State* L, int status) const;
+  bool split_place(std::string& message, Place& place) const;
+
+  SandboxOptions options_;
+  lua_State* L_ = nullptr;
+  std::size_t memory_ = 0;
+  std::int64_t used_in_call_ = 0, used_in_run_ = 0;
+  int calls_ = 0;  ///< depth of nested Calls
+  int printed_ = 0;
+  bool quiet_ = false;
+  Trip trip_ = Trip::none;
+  std::vector<Place> trace_;                  ///< of the last error, innermost first
+  std::map<std::string, std::string> files_;  ///< Lua's short names of chunks to paths
+  std::vector<lua_State*> threads_;
+  Hash source_hash_;
+  Watchdog watchdog_;
+};
+
+}  // namespace calot

@@ -1,0 +1,149 @@
+#include "lua/script_session.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "base/suggest.h"
+#include "lua/lua_headers.h"
+
+namespace calot {
+namespace {
+
+constexpr int most_dry_waits = 10'000;
+
+std::string with_hint(const std::string& message, const std::string& hint) {
+  return hint.empty() ? message : fmt::format("{} ({})", message, hint);
+}
+
+}  // namespace
+
+ScriptSession::ScriptSession(Sandbox& sandbox, const ExerciseDefinition& exercise, std::string class_name,
+                             std::string instrument_class, std::vector<Problem>* problems)
+    : sandbox_(sandbox),
+      exercise_(exercise),
+      class_name_(std::move(class_name)),
+      instrument_class_(std::move(instrument_class)),
+      problems_(problems) {}
+
+const World& ScriptSession::world(lua_State* L) const {
+  if (world_ == nullptr) {
+    luaL_error(L, "the t of %s works only inside it", class_name_ == "Steps" ? "steps" : "demo");
+    std::abort();  // luaL_error does not return
+  }
+  return *world_;
+}
+
+void ScriptSession::complain(lua_State* L, const std::string& message, const std::string& hint) {
+  if (problems_ == nullptr) {
+    luaL_where(L, 1);
+    lua_pushstring(L, with_hint(message, hint).c_str());
+    lua_concat(L, 2);
+    lua_error(L);
+    std::abort();  // lua_error does not return
+  }
+  const Place place = sandbox_.place_of(L);
+  for (const Problem& problem : *problems_)
+    if (problem.place.line == place.line && problem.message == message) return;  // in a loop
+  problems_->push_back({place, message, hint});
+}
+
+int ScriptSession::organ(lua_State* L, const std::string& name) {
+  std::vector<std::string> names;
+  for (const OrganDefinition& organ : scene().anatomy.organs) {
+    if (organ.name == name) return static_cast<int>(names.size());
+    names.push_back(organ.name);
+  }
+  complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
+  return -1;
+}
+
+bool ScriptSession::is_landmark(lua_State* L, const std::string& name) {
+  std::vector<std::string> names;
+  for (const OrganDefinition& organ : scene().anatomy.organs) {
+    for (const std::string& landmark : organ_landmarks())
+      names.push_back(fmt::format("{}.{}", organ.name, landmark));
+  }
+  if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+  complain(L, fmt::format("unknown landmark \"{}\"", name), suggestion(name, names));
+  return false;
+}
+
+bool ScriptSession::end_dry_run(double duration) {
+  dry_time_ += duration;
+  return ++dry_waits_ > most_dry_waits || dry_time_ > exercise_.time_limit;
+}
+
+// ---- arguments
+
+Value Arguments::values_of(lua_State* L, const ApiFunction& function) {
+  Value values;
+  values.kind = Value::Kind::table;
+  for (std::size_t i = 0; i < function.parameters.size(); ++i) {
+    const int index = static_cast<int>(i) + 2;  // 1 is the handle
+    if (!lua_isnoneornil(L, index))
+      values.fields.push_back({function.parameters[i].name, read_value(L, index)});
+  }
+  return values;
+}
+
+ApiTable Arguments::table_of(const ApiFunction& function) {
+  return {function.full_name(), function.doc, function.parameters, {}};
+}
+
+Arguments::Arguments(lua_State* L, ScriptSession& session, const std::string& owner,
+                     const std::string& method)
+    : L_(L),
+      session_(session),
+      function_(api_function(owner, method)),
+      values_(values_of(L, function_)),
+      api_(table_of(function_)),
+      reader_(check_, &values_, "", api_) {
+  const int expected = static_cast<int>(function_.parameters.size());
+  if (lua_gettop(L) - 1 > expected) {
+    check_.problem("", fmt::format("{} arguments are too many", lua_gettop(L) - 1),
+                   fmt::format("it takes {}", expected));
+  }
+  finish();
+}
+
+bool Arguments::finish() {
+  for (const Problem& problem : check_.take()) {
+    good_ = false;
+    const std::string& path = problem.place.path;
+    session_.complain(
+        L_, fmt::format("{}{}{}: {}", function_.full_name(), path.empty() ? "" : ": ", path, problem.message),
+        problem.hint);
+  }
+  return good_;
+}
+
+double Arguments::number(const std::string& name, double fallback) const {
+  reader_.take(name, fallback);
+  return fallback;
+}
+
+std::string Arguments::text(const std::string& name) const {
+  std::string text;
+  reader_.take(name, text);
+  return text;
+}
+
+int Arguments::function(const std::string& name) const {
+  const Value* value = reader_.take(name);
+  return value != nullptr ? value->function : 0;
+}
+
+std::optional<Vec3> Arguments::point(const Value& value, const std::string& name) {
+  std::optional<Vec3> point = read_point(check_, value, name);
+  const ApiKey* key = api_.find(name);
+  if (point && key != nullptr && !check_.place_within(name, *point, key->high, "a place in the abdomen"))
+    return std::nullopt;
+  return point;
+}
+
+TableReader Arguments::options(const std::string& api) {
+  return {check_, reader_.take("options"), "options", api_table(api)};
+}
+
+}  // namespace calot

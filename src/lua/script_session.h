@@ -1,0 +1,105 @@
+#pragma once
+// What a script's t and its instruments answer to, in steps, in the demo, and while both are only being
+// checked.
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lua/sandbox.h"
+#include "lua/table_reader.h"
+#include "session/exercise.h"
+
+namespace calot {
+
+/// One run of steps or demo. Handles in Lua point to it, so it lives at least as long as its sandbox's last
+/// call.
+class ScriptSession {
+ public:
+  /// `problems` set: a dry run, in which waits return at once and mistakes are collected instead of raised.
+  ScriptSession(Sandbox& sandbox, const ExerciseDefinition& exercise, std::string class_name,
+                std::string instrument_class, std::vector<Problem>* problems);
+  virtual ~ScriptSession() = default;
+  ScriptSession(const ScriptSession&) = delete;
+  ScriptSession& operator=(const ScriptSession&) = delete;
+
+  Sandbox& sandbox() const { return sandbox_; }
+  const ExerciseDefinition& exercise() const { return exercise_; }
+  const SceneDefinition& scene() const { return exercise_.scene; }
+  const std::string& class_name() const { return class_name_; }
+  const std::string& instrument_class() const { return instrument_class_; }
+  bool checking() const { return problems_ != nullptr; }
+
+  /// Why handles no longer work; empty while they do.
+  const std::string& ended() const { return ended_; }
+  /// The world of the call that is running. Raises an error outside of one.
+  const World& world(lua_State* L) const;
+  /// s; in a dry run the sum of all waits.
+  virtual double time() const = 0;
+  /// t:wait and t:wait_until; what to return to Lua.
+  virtual int wait(lua_State* L, double duration) = 0;
+  virtual int wait_until(lua_State* L, int predicate) = 0;
+
+  /// A mistake at the script's line: raised, or collected in a dry run.
+  void complain(lua_State* L, const std::string& message, const std::string& hint);
+  /// Index of the organ, or -1 after a complaint.
+  int organ(lua_State* L, const std::string& name);
+  /// "organ.landmark" of this scene; complains when it is none.
+  bool is_landmark(lua_State* L, const std::string& name);
+  /// In a dry run: what a yes-or-no question is answered, in turns, so that loops for either end.
+  bool next_guess() { return guess_ = !guess_; }
+
+ protected:
+  void set_world(const World* world) { world_ = world; }
+  void end(const std::string& why) { ended_ = why; }
+  /// In a dry run: counts a wait, and ends the run (by a yield) when it would last too long. True: it does.
+  bool end_dry_run(double duration);
+  double dry_time() const { return dry_time_; }
+  std::vector<Problem>* problems() const { return problems_; }
+
+ private:
+  Sandbox& sandbox_;
+  const ExerciseDefinition& exercise_;
+  std::string class_name_, instrument_class_;
+  std::vector<Problem>* problems_;
+  const World* world_ = nullptr;
+  std::string ended_;
+  double dry_time_ = 0;
+  int dry_waits_ = 0;
+  bool guess_ = false;
+};
+
+/// The arguments of one method call, checked against the API's declaration. In a dry run unfit ones are
+/// reported and read as absent.
+class Arguments {
+ public:
+  Arguments(lua_State* L, ScriptSession& session, const std::string& owner, const std::string& method);
+
+  bool good() const { return good_; }
+  const TableReader& read() const { return reader_; }
+  double number(const std::string& name, double fallback = 0) const;
+  std::string text(const std::string& name) const;
+  /// Registry reference of a function, or 0.
+  int function(const std::string& name) const;
+  /// The point in `value`, or nothing and a problem for finish().
+  std::optional<Vec3> point(const Value& value, const std::string& name);
+  /// Of a table of options; `api` is its declaration.
+  TableReader options(const std::string& api);
+  /// Raises or reports what options() and others found. True when all is well.
+  bool finish();
+
+ private:
+  static Value values_of(lua_State* L, const ApiFunction& function);
+  static ApiTable table_of(const ApiFunction& function);
+
+  lua_State* L_;
+  ScriptSession& session_;
+  const ApiFunction& function_;
+  Value values_;
+  ApiTable api_;
+  FieldCheck check_;
+  TableReader reader_;
+  bool good_ = true;
+};
+
+}  // namespace calot

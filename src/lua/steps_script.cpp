@@ -1,0 +1,216 @@
+#include "lua/steps_script.h"
+
+#include <fmt/format.h>
+
+#include "lua/handles.h"
+#include "lua/lua_headers.h"
+
+namespace calot {
+namespace {
+
+constexpr double slack = 1e-9;  // s: what a sum of steps may be off
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+StepsScript::StepsScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
+                         std::vector<Problem>* problems)
+    : ScriptSession(sandbox, exercise, "Steps", "Instrument", problems), function_(function) {}
+
+std::optional<Failure> StepsScript::start() {
+  Result<lua_State*> thread =
+      sandbox().start_thread(function_, [this](lua_State* L) { push_session_handle(L, *this); });
+  if (!thread) return thread.failure();
+  thread_ = thread.value();
+  Result<bool> finished = sandbox().resume(thread_, 1);
+  if (!finished) return finished.failure();
+  finished_ = finished.value();
+  return std::nullopt;
+}
+
+Result<StepsScript::Declared> StepsScript::run_dry() {
+  if (std::optional<Failure> failure = start()) return *failure;
+  declared_.complete = finished_;
+  end("it belonged to a dry run");
+  return declared_;
+}
+
+Result<bool> StepsScript::advance(const World& world, Progress& progress, double dt) {
+  if (finished_) return true;
+  const Sandbox::Call call(sandbox());
+  set_world(&world);
+  progress_ = &progress;
+  Result<bool> result = false;
+  if (thread_ == nullptr) {
+    for (const std::string& hold : exercise().hold_names) progress.set_metric(hold + ".time_in_s", 0);
+    now_ = world.report().time - dt;
+    if (std::optional<Failure> failure = start()) result = *failure;
+  }
+  now_ = world.report().time;
+  if (result) result = run();
+  set_world(nullptr);
+  progress_ = nullptr;
+  return result;
+}
+
+/// Lets the coroutine run on as long as nothing makes it wait.
+Result<bool> StepsScript::run() {
+  while (!finished_) {
+    // What is reached exactly at the limit is reached.
+    Result<bool> over = is_over();
+    if (!over) return over.failure();
+    const bool answer = over.value();
+    if (!answer && !pass_limit()) return false;
+    if (std::optional<Failure> failure = wake(answer)) return *failure;
+  }
+  progress_->end_step(now_, "done");
+  end(fmt::format("steps had ended at {:g} s", now_));
+  return true;
+}
+
+/// True when the running step's limit has passed just now: its wait ends unanswered.
+bool StepsScript::pass_limit() {
+  const StepRecord* step = progress_->running();
+  if (step == nullptr || step->limit <= 0 || now_ < step->started + step->limit - slack) return false;
+  progress_->end_step(now_, "timeout");
+  timed_out_ = true;
+  return true;
+}
+
+Result<bool> StepsScript::ask(int predicate) {
+  bool answer = false;
+  std::optional<Failure> failure = sandbox().protect([&](lua_State* L) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, predicate);
+    lua_call(L, 0, 1);
+    answer = lua_toboolean(L, -1) != 0;
+  });
+  if (failure) return *failure;
+  return answer;
+}
+
+Result<bool> StepsScript::is_over() {
+  switch (wait_.kind) {
+    case Wait::none:
+      return fail(FailureKind::scenario, "steps called coroutine.yield",
+                  "wait with t:wait, t:wait_until or t:hold", {exercise().file, 0, {}});
+    case Wait::time:
+      return now_ >= wait_.until - slack;
+    case Wait::condition:
+      return timed_out_ ? Result<bool>(true) : ask(wait_.predicate);
+    case Wait::hold:
+      break;
+  }
+  Result<bool> inside = ask(wait_.predicate);
+  if (!inside) return inside;
+  if (inside.value()) {
+    const auto before = progress_->metrics().find(wait_.metric);
+    const double sum = before != progress_->metrics().end() ? before->second : 0;
+    progress_->set_metric(wait_.metric, sum + (now_ - wait_.last));
+    wait_.held += now_ - wait_.last;
+  }
+  wait_.last = now_;
+  return wait_.held >= wait_.duration - slack;
+}
+
+std::optional<Failure> StepsScript::wake(bool answer) {
+  if (wait_.predicate != 0) luaL_unref(sandbox().state(), LUA_REGISTRYINDEX, wait_.predicate);
+  wait_ = {};
+  lua_pushboolean(thread_, answer);
+  Result<bool> finished = sandbox().resume(thread_, 1);
+  if (!finished) return finished.failure();
+  finished_ = finished.value();
+  return std::nullopt;
+}
+
+// ---- methods
+
+bool StepsScript::may_wait(lua_State* L, const char* method) {
+  if (L == thread_ || (checking() && thread_ == nullptr)) return true;
+  complain(L, fmt::format("t:{} was called inside a predicate or another coroutine", method),
+           "call it in steps itself");
+  return false;
+}
+
+bool StepsScript::is_name(lua_State* L, const std::string& what, const std::string& name) {
+  FieldCheck check;
+  if (check.identifier("", name, "a " + what)) return true;
+  for (const Problem& problem : check.take()) complain(L, problem.message, problem.hint);
+  return false;
+}
+
+int StepsScript::suspend(lua_State* L, Wait wait) {
+  wait_ = std::move(wait);
+  return lua_yield(L, 0);
+}
+
+int StepsScript::dry_wait(lua_State* L, double duration) {
+  if (end_dry_run(duration)) return lua_yield(L, 0);
+  lua_pushboolean(L, 1);
+  return 1;
+}
+
+int StepsScript::wait(lua_State* L, double duration) {
+  if (!may_wait(L, "wait")) return 0;
+  if (checking()) return dry_wait(L, duration);
+  Wait wait;
+  wait.kind = Wait::time;
+  wait.until = now_ + duration;
+  return suspend(L, std::move(wait));
+}
+
+int StepsScript::wait_until(lua_State* L, int predicate) {
+  if (!may_wait(L, "wait_until")) return 0;
+  if (checking()) return dry_wait(L, 0);
+  if (timed_out_) {
+    lua_pushboolean(L, 0);
+    return 1;
+  }
+  Wait wait;
+  wait.kind = Wait::condition;
+  wait.predicate = predicate;
+  return suspend(L, std::move(wait));
+}
+
+void StepsScript::step(lua_State* L, const std::string& name, const std::string& title, double limit) {
+  if (!may_wait(L, "step") || !is_name(L, "step", name)) return;
+  std::vector<std::string> taken = {"total"};
+  for (const InstrumentDefinition& instrument : scene().instruments) taken.push_back(instrument.name);
+  for (const OrganDefinition& organ : scene().anatomy.organs) taken.push_back(organ.name);
+  if (contains(taken, name))
+    return complain(L, fmt::format("a step cannot be called \"{}\": metrics of that name exist", name),
+                    "rename the step");
+  if (contains(declared_.steps, name))
+    return complain(L, fmt::format("there is a step \"{}\" already", name), "give each step its own name");
+  declared_.steps.push_back(name);
+  current_ = name;
+  if (checking()) return;
+  timed_out_ = false;
+  progress_->begin_step(now_, name, title, limit);
+}
+
+int StepsScript::hold(lua_State* L, const std::string& name, int predicate, double duration) {
+  if (!may_wait(L, "hold") || !is_name(L, "hold", name)) return 0;
+  if (current_.empty()) {
+    complain(L, "t:hold before the first t:step", "start a step: its name is part of the metric's");
+    return 0;
+  }
+  const std::string full = current_ + "." + name;
+  if (!contains(declared_.holds, full)) declared_.holds.push_back(full);
+  if (checking()) return dry_wait(L, duration);
+  if (timed_out_) {
+    lua_pushboolean(L, 0);
+    return 1;
+  }
+  Wait wait;
+  wait.kind = Wait::hold;
+  wait.predicate = predicate;
+  wait.metric = full + ".time_in_s";
+  wait.duration = duration;
+  wait.last = now_;
+  return suspend(L, std::move(wait));
+}
+
+}  // namespace calot

@@ -1,0 +1,66 @@
+#pragma once
+// steps = function(t): a coroutine that waits for the world and marks steps, holds and their metrics.
+
+#include "lua/script_session.h"
+
+namespace calot {
+
+class StepsScript final : public ScriptSession {
+ public:
+  /// `function` is a registry reference.
+  StepsScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
+              std::vector<Problem>* problems = nullptr);
+
+  /// See ExerciseScript::advance.
+  Result<bool> advance(const World& world, Progress& progress, double dt);
+
+  /// What a dry run found. `complete`: the function ran to its end.
+  struct Declared {
+    std::vector<std::string> steps, holds;  ///< holds are "step.hold"
+    bool complete = false;
+  };
+  /// Runs the function with waits that return at once. A failure is the script's.
+  Result<Declared> run_dry();
+
+  double time() const override { return checking() ? dry_time() : now_; }
+  int wait(lua_State* L, double duration) override;
+  int wait_until(lua_State* L, int predicate) override;
+  void step(lua_State* L, const std::string& name, const std::string& title, double limit);
+  int hold(lua_State* L, const std::string& name, int predicate, double duration);
+
+ private:
+  struct Wait {
+    enum Kind { none, time, condition, hold } kind = none;
+    double until = 0;     ///< time: s
+    int predicate = 0;    ///< condition, hold: registry reference
+    std::string metric;   ///< hold
+    double duration = 0;  ///< hold: wanted, s
+    double held = 0;      ///< hold: so far
+    double last = 0;      ///< hold: when last asked, s
+  };
+
+  bool may_wait(lua_State* L, const char* method);
+  bool is_name(lua_State* L, const std::string& what, const std::string& name);
+  int suspend(lua_State* L, Wait wait);
+  int dry_wait(lua_State* L, double duration);
+  std::optional<Failure> start();
+  Result<bool> ask(int predicate);
+  /// Whether the wait is over. A hold's metric is brought up to date.
+  Result<bool> is_over();
+  std::optional<Failure> wake(bool answer);
+  bool pass_limit();
+  Result<bool> run();
+
+  int function_;
+  lua_State* thread_ = nullptr;
+  Wait wait_;
+  double now_ = 0;
+  bool finished_ = false;
+  bool timed_out_ =
+      false;  ///< the step's limit has passed: conditions are not waited for until the next step
+  Progress* progress_ = nullptr;
+  Declared declared_;
+  std::string current_;  ///< the step declared last
+};
+
+}  // namespace calot

@@ -1,0 +1,50 @@
+#pragma once
+// Reads a definition's table against the API's declaration of it: unknown keys, wrong types, missing keys and
+// values out of range become problems; what is fit can be taken.
+
+#include <optional>
+#include <string>
+
+#include "anatomy/field_check.h"
+#include "geometry/types.h"
+#include "lua/api_table.h"
+#include "lua/value.h"
+
+namespace calot {
+
+/// The point {x, y, z}, or a problem at `path`.
+std::optional<Vec3> read_point(FieldCheck& check, const Value& value, const std::string& path);
+
+class TableReader {
+ public:
+  /// `value` may be null (an absent table): then there is nothing to take and no problem. `complete` false:
+  /// what is required may be missing, for tables that override others.
+  TableReader(FieldCheck& check, const Value* value, std::string path, const ApiTable& api,
+              bool complete = true);
+
+  // Each leaves the target alone unless the key is there and fit.
+  void take(const std::string& key, double& target) const;
+  void take(const std::string& key, std::optional<double>& target) const;
+  void take(const std::string& key, int& target) const;
+  void take(const std::string& key, std::string& target) const;
+  void take(const std::string& key, Vec3& target) const;
+  /// A table's, list's, function's or other value; null unless there and of the right kind.
+  const Value* take(const std::string& key) const;
+  bool has(const std::string& key) const { return take(key) != nullptr; }
+
+  const std::string& path() const { return path_; }
+  std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+ private:
+  void check_keys(const Value& value, bool complete);
+  bool check_value(const ApiKey& key, const Value& value);
+  bool check_number(const ApiKey& key, const Value& value);
+  bool check_choice(const ApiKey& key, const Value& value);
+
+  FieldCheck& check_;
+  std::string path_;
+  const ApiTable& api_;
+  std::vector<std::pair<std::string, const Value*>> fit_;
+};
+
+}  // namespace calot

@@ -1,0 +1,54 @@
+#pragma once
+// The lower triangle of a symmetric matrix of 3x3 blocks, stored as CHOLMOD reads it, with a pattern fixed
+// for good: assembly writes values only.
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "geometry/types.h"
+
+namespace calot {
+
+/// Block column j holds blocks i >= j in increasing i; its three scalar columns follow each other. The
+/// diagonal blocks are stored whole (CHOLMOD ignores their upper entries).
+class BlockMatrix {
+ public:
+  /// `cliques`: groups of nodes coupled with each other (an element's nodes). Every diagonal block exists.
+  BlockMatrix(int nodes, std::span<const std::vector<int>> cliques);
+
+  int nodes() const { return static_cast<int>(block_start_.size()) - 1; }
+  int size() const { return 3 * nodes(); }
+  void set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+  /// Starts from a constant part: `values` as entries() returned them from a matrix of the same pattern.
+  void assign(const std::vector<double>& values) { values_ = values; }
+
+  /// Offset of entry (0, 0) of block (i, j), i >= j; -1 when the pattern does not hold it. Entry (r, c) lies
+  /// at slot + c * stride(j) + r.
+  int slot(int i, int j) const;
+  /// slot(nodes[k], nodes[0]) for each of the increasing `nodes`, which the pattern must hold.
+  void slots(std::span<const int> nodes, int* out) const;
+  int stride(int j) const { return 3 * (block_start_[j + 1] - block_start_[j]); }
+  double* values() { return values_.data(); }
+
+  /// Adds to block (i, j), i >= j, which the pattern must hold.
+  void add(int i, int j, const Mat3& block);
+  void add_to_diagonal(double shift);
+  double diagonal_mean() const;
+  bool all_finite() const;
+  /// y = A x.
+  VecX multiply(const VecX& x) const;
+
+  /// Compressed columns for CHOLMOD: size() + 1 starts, row of each value (increasing in a column).
+  const std::vector<int>& column_starts() const { return column_starts_; }
+  const std::vector<int>& rows() const { return rows_; }
+  const std::vector<double>& entries() const { return values_; }
+
+ private:
+  std::vector<int> block_start_;  ///< nodes + 1, into block_row_
+  std::vector<int> block_row_;
+  std::vector<int> column_starts_, rows_;
+  std::vector<double> values_;
+};
+
+}  // namespace calot

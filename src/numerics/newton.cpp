@@ -1,0 +1,295 @@
+#include "numerics/newton.h"
+
+#include <Eigen/Eigenvalues>
+#include <chrono>
+#include <cmath>
+
+namespace calot {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The six rigid motions of a body at x, orthonormal columns.
+Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x) {
+  const int nodes = static_cast<int>(x.size()) / 3;
+  Vec3 centre = Vec3::Zero();
+  for (int i = 0; i < nodes; ++i) centre += x.segment<3>(3 * i) / nodes;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> motions(x.size(), 6);
+  for (int i = 0; i < nodes; ++i) {
+    const Vec3 arm = x.segment<3>(3 * i) - centre;
+    for (int axis = 0; axis < 3; ++axis) {
+      motions.col(axis).segment<3>(3 * i) = Vec3::Unit(axis);
+      motions.col(3 + axis).segment<3>(3 * i) = Vec3::Unit(axis).cross(arm);
+    }
+  }
+  for (int c = 0; c < 6; ++c) {
+    for (int k = 0; k < c; ++k) motions.col(c) -= motions.col(k).dot(motions.col(c)) * motions.col(k);
+    motions.col(c).normalize();
+  }
+  return motions;
+}
+
+/// A rigid motion that meets no resistance: its stiffness is rounding beside the matrix. Rigid motions keep
+/// the volume, so the border cannot hold them either.
+bool has_mechanism(const BlockMatrix& matrix, const VecX& x) {
+  const auto motions = rigid_motions(x);
+  Eigen::Matrix<double, 6, 6> stiffness;
+  for (int c = 0; c < 6; ++c) stiffness.col(c) = motions.transpose() * matrix.multiply(motions.col(c));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(stiffness, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues().cwiseAbs().minCoeff() < 1e-9 * matrix.diagonal_mean();
+}
+
+struct State {
+  VecX gradient;  ///< of the energy
+  VecX constraint_gradient;
+  VecX residual;  ///< gradient - multiplier * constraint gradient
+  double constraint = 0;
+  double relative_residual = 0, constraint_error = 0;  ///< dimensionless
+};
+
+void evaluate(const ConstrainedEnergy& problem, const VecX& x, double multiplier, State& state) {
+  double largest_internal = 0;
+  problem.gradient(x, state.gradient, largest_internal);
+  state.residual = state.gradient;
+  state.constraint = 0;
+  if (problem.constrained()) {
+    state.constraint = problem.constraint(x, state.constraint_gradient);
+    state.residual -= multiplier * state.constraint_gradient;
+  }
+  state.relative_residual = largest_node(state.residual) / std::max(largest_internal, 1e-12);
+  state.constraint_error =
+      problem.constrained() ? std::abs(state.constraint) / problem.constraint_scale() : 0.0;
+}
+
+/// How far from balance, in units of what is tolerated.
+double imbalance(const State& state, const NewtonSettings& settings) {
+  return std::max(state.relative_residual / settings.tolerance,
+                  state.constraint_error / settings.constraint_tolerance);
+}
+
+/// Factorises, raising a diagonal shift until the matrix is positive definite (an instability is passed by
+/// descent on the energy); a mechanism is reported instead.
+NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, int& shifts) {
+  const int shifts_before = shifts;
+  work.factored = false;
+  FactorStatus status = work.factor.factorise(work.matrix);
+  const bool doubtful = status == FactorStatus::not_positive_definite ||
+                        (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12);
+  if (doubtful && has_mechanism(work.matrix, x)) return NewtonStatus::mechanism;
+  double shift = 1e-4 * work.matrix.diagonal_mean();
+  while (status == FactorStatus::not_positive_definite) {
+    work.matrix.add_to_diagonal(shift);
+    ++shifts;
+    status = work.factor.factorise(work.matrix);
+    shift *= 4;
+    if (!std::isfinite(shift)) return NewtonStatus::not_finite;
+  }
+  if (status == FactorStatus::not_finite) return NewtonStatus::not_finite;
+  if (status == FactorStatus::out_of_memory) return NewtonStatus::out_of_memory;
+  work.factored = true;
+  work.shifted = shifts > shifts_before;
+  if (work.constraint_gradient.size() > 0) work.bordered = work.factor.solve(work.constraint_gradient);
+  return NewtonStatus::converged;
+}
+
+/// Backtracking on phi = energy - m * constraint + penalty / 2 * constraint^2. Returns the share taken; 0
+/// when no decrease was found.
+double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& step, const State& state,
+                   double multiplier, double curvature) {
+  const bool constrained = problem.constrained();
+  const double c = state.constraint;
+  // Large enough that the bordered step descends whatever the curvature along it.
+  double penalty = 0;
+  if (constrained) {
+    penalty = (std::abs(multiplier) + 1.0) / problem.constraint_scale();
+    if (c != 0) penalty = std::max(penalty, 2.0 * std::max(0.0, -curvature) / (c * c));
+  }
+  const double slope = -curvature - penalty * c * c;
+  const double energy = problem.value(x);
+  const auto merit = [&](double e, double constraint) {
+    return e - multiplier * constraint + 0.5 * penalty * constraint * constraint;
+  };
+  const double start = merit(energy, c);
+  // Differences below the rounding of the sum cannot be judged.
+  const double rounding = 1e-13 * (std::abs(energy) + std::abs(multiplier) * problem.constraint_scale());
+  double share = problem.safe_share(x, step);
+  for (int trial = 0; trial < 40 && share > 0; ++trial) {
+    const VecX next = x + share * step;
+    const double e = problem.value(next);
+    if (std::isfinite(e)) {
+      const double now = merit(e, constrained ? problem.constraint_value(next) : 0.0);
+      if (now <= start + 1e-4 * share * slope + rounding) return share;
+    }
+    share *= 0.5;
+  }
+  return 0;
+}
+
+}  // namespace
+
+double largest_node(const VecX& v) {
+  double largest_squared = 0;
+  for (int i = 0; i + 2 < v.size(); i += 3)
+    largest_squared = std::max(largest_squared, v.segment<3>(i).squaredNorm());
+  return std::sqrt(largest_squared);
+}
+
+void NewtonResult::add(const NewtonResult& next) {
+  const NewtonResult before = *this;
+  *this = next;
+  iterations += before.iterations;
+  chords += before.chords;
+  shifts += before.shifts;
+  assembly_s += before.assembly_s;
+  factorisation_s += before.factorisation_s;
+  solve_s += before.solve_s;
+}
+
+std::string to_text(NewtonStatus status) {
+  switch (status) {
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::not_finite:
+      return "a value is not finite";
+    case NewtonStatus::mechanism:
+      return "nothing holds the body against a rigid motion";
+    case NewtonStatus::stalled:
+      return "no step lowers the energy any more";
+    case NewtonStatus::iteration_limit:
+      return "the iteration limit was reached";
+    case NewtonStatus::out_of_memory:
+      return "out of memory";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// Whether the last factor can serve this problem's chord steps and predictions.
+bool serves(const NewtonWorkspace& work, const ConstrainedEnergy& problem) {
+  return work.factored && !work.shifted && problem.constrained() == (work.constraint_gradient.size() > 0);
+}
+
+/// One solve's moving parts, so that its steps can be functions.
+struct Iteration {
+  const ConstrainedEnergy& problem;
+  const NewtonSettings& settings;
+  NewtonWorkspace& work;
+  VecX& x;
+  double& multiplier;
+  NewtonResult result;
+  State state;
+
+  /// Bordered step with the factor at hand, for the residual and constraint at x.
+  VecX bordered_step(double& dmultiplier) {
+    const auto start = Clock::now();
+    VecX step = -work.factor.solve(state.residual);
+    dmultiplier = 0;
+    if (problem.constrained()) {
+      const double complement = work.constraint_gradient.dot(work.bordered);
+      dmultiplier = -(state.constraint + work.constraint_gradient.dot(step)) / complement;
+      step += dmultiplier * work.bordered;
+    }
+    result.solve_s += seconds_since(start);
+    return step;
+  }
+
+  /// A step with the last factor, kept only if it brings the body much nearer to balance.
+  bool chord() {
+    if (!serves(work, problem)) return false;
+    constexpr double worth = 0.25;  // slower than this, a factorisation pays
+    double dmultiplier = 0;
+    const VecX step = bordered_step(dmultiplier);
+    if (!step.allFinite() || problem.safe_share(x, step) < 1.0) return false;
+    const VecX next = x + step;
+    State then;
+    evaluate(problem, next, multiplier + dmultiplier, then);
+    if (!then.residual.allFinite() || imbalance(then, settings) > worth * imbalance(state, settings))
+      return false;
+    x = next;
+    multiplier += dmultiplier;
+    state = std::move(then);
+    result.increment = step.lpNorm<Eigen::Infinity>() / problem.length_scale();
+    ++result.chords;
+    return true;
+  }
+
+  /// A full Newton step with a line search; false when it failed (result.status says why).
+  bool newton() {
+    const auto start = Clock::now();
+    problem.hessian(x, multiplier, work.matrix);
+    work.constraint_gradient = state.constraint_gradient;  // empty when there is no constraint
+    result.assembly_s += seconds_since(start);
+    const auto factor_start = Clock::now();
+    result.status = factorise(work, x, result.shifts);
+    result.factorisation_s += seconds_since(factor_start);
+    if (result.status != NewtonStatus::converged) return false;
+    double dmultiplier = 0;
+    const VecX step = bordered_step(dmultiplier);
+    result.status = NewtonStatus::not_finite;
+    if (!step.allFinite()) return false;
+    // step' K step, from the bordered equations, without another product with the matrix.
+    double curvature = -state.residual.dot(step);
+    if (problem.constrained()) curvature += dmultiplier * work.constraint_gradient.dot(step);
+    const double share = line_search(problem, x, step, state, multiplier + dmultiplier, curvature);
+    result.status = NewtonStatus::stalled;
+    if (share <= 0) return false;
+    x += share * step;
+    multiplier += share * dmultiplier;
+    evaluate(problem, x, multiplier, state);
+    result.increment = share * step.lpNorm<Eigen::Infinity>() / problem.length_scale();
+    result.status = NewtonStatus::converged;
+    return true;
+  }
+
+  bool balanced() const {
+    return imbalance(state, settings) <= 1.0 && result.increment <= settings.tolerance;
+  }
+};
+
+}  // namespace
+
+NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSettings& settings,
+                               NewtonWorkspace& work, VecX& x, double& multiplier) {
+  Iteration it{problem, settings, work, x, multiplier, {}, {}};
+  NewtonResult& result = it.result;
+  evaluate(problem, x, multiplier, it.state);
+  while (true) {
+    result.residual = it.state.relative_residual;
+    result.constraint_error = it.state.constraint_error;
+    if (!it.state.residual.allFinite()) result.status = NewtonStatus::not_finite;
+    if (result.status != NewtonStatus::converged || it.balanced()) return result;
+    if (result.iterations == settings.max_iterations) {
+      result.status = NewtonStatus::iteration_limit;
+      return result;
+    }
+    ++result.iterations;
+    if (!it.chord() && !it.newton()) return result;
+  }
+}
+
+NewtonStatus factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
+                               double multiplier, bool fresh) {
+  if (!fresh && serves(work, problem)) return NewtonStatus::converged;
+  work.constraint_gradient.resize(0);
+  if (problem.constrained()) problem.constraint(x, work.constraint_gradient);
+  problem.hessian(x, multiplier, work.matrix);
+  int shifts = 0;
+  return factorise(work, x, shifts);
+}
+
+VecX linear_response(const NewtonWorkspace& work, const VecX& load, double& dmultiplier) {
+  VecX dx = work.factor.solve(load);
+  dmultiplier = 0;
+  if (work.constraint_gradient.size() > 0) {
+    dmultiplier = -work.constraint_gradient.dot(dx) / work.constraint_gradient.dot(work.bordered);
+    dx += dmultiplier * work.bordered;
+  }
+  return dx;
+}
+
+}  // namespace calot

@@ -1,0 +1,88 @@
+#pragma once
+// Newton's method for a stationary point of an energy under at most one scalar constraint, by bordering, with
+// a line search on the augmented Lagrangian (Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 17 and
+// 18).
+
+#include <string>
+
+#include "numerics/block_matrix.h"
+#include "numerics/cholesky.h"
+
+namespace calot {
+
+/// Length of the largest of the 3-vectors, one a node, that v is made of.
+double largest_node(const VecX& v);
+
+/// L(x, m) = energy(x) - m * constraint(x), to be made stationary in x with constraint(x) = 0.
+class ConstrainedEnergy {
+ public:
+  virtual ~ConstrainedEnergy() = default;
+  virtual bool constrained() const = 0;
+  /// J; infinite where x is not admissible.
+  virtual double value(const VecX& x) const = 0;
+  /// Gradient (N, 3 a node); `largest_internal` receives the largest nodal force of the elastic part (N): the
+  /// scale of a residual.
+  virtual void gradient(const VecX& x, VecX& gradient, double& largest_internal) const = 0;
+  /// Hessian of L into `matrix` (values are overwritten).
+  virtual void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const = 0;
+  /// Constraint and its gradient; not called when unconstrained.
+  virtual double constraint(const VecX& x, VecX& gradient) const = 0;
+  virtual double constraint_value(const VecX& x) const = 0;
+  /// Scale of the constraint (the kept volume), > 0.
+  virtual double constraint_scale() const = 0;
+  /// Size of the body, m: the scale of an increment.
+  virtual double length_scale() const = 0;
+  /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
+  virtual double safe_share(const VecX& x, const VecX& step) const = 0;
+};
+
+struct NewtonSettings {
+  double tolerance = 1e-6;              ///< residual and increment, dimensionless
+  double constraint_tolerance = 1e-10;  ///< relative
+  int max_iterations = 80;
+};
+
+enum class NewtonStatus { converged, not_finite, mechanism, stalled, iteration_limit, out_of_memory };
+
+struct NewtonResult {
+  NewtonStatus status = NewtonStatus::converged;
+  int iterations = 0;
+  int chords = 0;               ///< of the iterations, those that reused a factor
+  int shifts = 0;               ///< factorisations that needed a diagonal shift
+  double residual = 0;          ///< largest nodal residual / largest internal nodal force
+  double increment = 0;         ///< largest coordinate of the last increment / length scale
+  double constraint_error = 0;  ///< relative
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0;  ///< wall time, for benchmarks only
+  bool converged() const { return status == NewtonStatus::converged; }
+  /// Takes over the outcome of a further solve and adds its counts and times.
+  void add(const NewtonResult& next);
+};
+
+/// In words, for an error message.
+std::string to_text(NewtonStatus status);
+
+/// Workspace of a body, kept between solves.
+struct NewtonWorkspace {
+  explicit NewtonWorkspace(BlockMatrix pattern) : matrix(std::move(pattern)), factor(matrix) {}
+  BlockMatrix matrix;
+  Cholesky factor;
+  VecX constraint_gradient;  ///< at the last factorisation
+  VecX bordered;             ///< factor^-1 constraint_gradient
+  bool factored = false;
+  bool shifted = false;  ///< the factor is of a shifted matrix: no use for chord steps
+};
+
+/// Solves from (x, multiplier), which receive the result; on failure they hold the last iterate.
+NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSettings& settings,
+                               NewtonWorkspace& workspace, VecX& x, double& multiplier);
+
+/// First-order response to a change of load with the last factor: K dx = load, constraint kept to first
+/// order. dmultiplier receives the multiplier's change. Needs workspace.factored.
+VecX linear_response(const NewtonWorkspace& workspace, const VecX& load, double& dmultiplier);
+
+/// Factorises the tangent at (x, multiplier) into the workspace, for linear_response; unless `fresh`, a last
+/// factor that can serve is kept.
+NewtonStatus factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& workspace, const VecX& x,
+                               double multiplier, bool fresh);
+
+}  // namespace calot

@@ -1,0 +1,56 @@
+#pragma once
+// What is drawn, as plain data: the renderer never sees the world.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "geometry/types.h"
+
+namespace calot {
+
+/// How a surface looks. Tissue patterns are fixed to the rest positions, so they stretch with the tissue.
+enum class Material {
+  gallbladder,  ///< bluish green, translucent; rest frame: neck at the origin, fundus along +z, liver along
+                ///< +x
+  membrane,     ///< the same wall without the gallbladder's own marks: test spheres
+  liver,        ///< dark red-brown, glossy capsule
+  fat,          ///< omentum: yellow, lobulated
+  peritoneum,   ///< pinkish lining with fine vessels
+  steel,        ///< bright instrument metal
+  insulation,   ///< black coating of a shaft
+};
+
+/// Blood vessels as a volume over rest positions: the share of each voxel that they fill.
+struct VesselMap {
+  Vec3 lower = Vec3::Zero();  ///< m, corner of the first voxel
+  double voxel = 0.45e-3;     ///< m, side
+  std::array<int, 3> size{1, 1, 1};
+  std::vector<unsigned char> share;  ///< 0 to 255; x runs fastest
+};
+
+struct SceneMesh {
+  Material material = Material::gallbladder;
+  std::vector<Vec3> positions;               ///< m, world
+  std::vector<Vec3> normals;                 ///< unit, one a position
+  std::vector<Vec3> rest_positions;          ///< m, one a position, in the frame its material states
+  std::vector<Triangle> triangles;           ///< counter-clockwise seen from outside
+  std::shared_ptr<const VesselMap> vessels;  ///< of gallbladder and membrane; may be null
+};
+
+/// The laparoscope: the view leaves the tip along `direction`; the light sits beside the lens.
+struct SceneCamera {
+  Vec3 position = Vec3::Zero();    ///< m
+  Vec3 direction = Vec3::UnitY();  ///< unit
+  Vec3 up = Vec3::UnitZ();         ///< not parallel to direction
+  double field_of_view = 1.3;      ///< rad, diameter of the round field
+  double light_intensity = 1.0;    ///< 1: well exposed at 90 mm
+  Vec3 light_offset{0, 4e-3, 0};   ///< m, in camera axes (right, up, forward)
+};
+
+struct Scene {
+  SceneCamera camera;
+  std::vector<SceneMesh> meshes;  ///< drawn in this order: near ones first is fastest
+};
+
+}  // namespace calot

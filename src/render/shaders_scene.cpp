@@ -1,0 +1,293 @@
+#include <fmt/format.h>
+
+#include "render/noise_volume.h"
+#include "render/shaders.h"
+
+namespace calot {
+namespace {
+
+// Places are relative to the camera (m); rest positions are in mm.
+// The broadest noise varies slowly enough to be looked up at vertices: a lookup a pixel saved.
+const char* const vertex_shader = R"(
+layout(location = 0) in vec3 at;
+layout(location = 1) in vec3 outward;
+layout(location = 2) in vec3 at_rest;
+uniform mat4 clip_from_place;
+uniform sampler3D noise_volume;
+out vec3 place;
+out vec3 normal;
+out vec3 rest;
+out vec4 broad;
+void main() {
+  place = at;
+  normal = outward;
+  rest = 1000.0 * at_rest;
+  broad = textureLod(noise_volume, rest * (1.0 / (CELLS * BROAD_CELL)), 0.0) * 2.0 - 1.0;
+  gl_Position = clip_from_place * vec4(at, 1.0);
+}
+)";
+
+const char* const prelude = R"(
+in vec3 place;
+in vec3 normal;
+in vec3 rest;
+in vec4 broad;             // noise of the cell BROAD_CELL
+uniform mat4 shadow_from_place;
+uniform vec3 light;        // place of the light
+uniform vec3 view_axis;    // where the laparoscope looks
+uniform float intensity;
+uniform sampler3D noise_volume;
+uniform sampler2DShadow shadow_map;
+out vec4 colour;
+
+// Gradient a cell in rgb (scaled to about [-1, 1]), value in a; features are about `cell` mm large.
+vec4 noise(vec3 mm, float cell) {
+  return texture(noise_volume, mm * (1.0 / (CELLS * cell))) * 2.0 - 1.0;
+}
+// Distance (mm) to the surface where a noise vanishes, to first order.
+float distance_to_zero(vec4 n, float cell) {
+  return abs(n.a) * cell / (GRADIENT_RANGE * length(n.rgb) + 0.15);
+}
+
+struct Surface {
+  vec3 albedo;
+  vec3 scatter;    // how far light wraps into the shadow side, a colour channel
+  vec3 slope;      // of the wet film's height by rest position
+  float relief;    // share of that slope the tissue below follows
+  float gloss;     // exponent of the film's highlight
+  float film;      // strength of the film
+};
+)";
+
+const char* const gallbladder_material = R"(
+uniform sampler3D vessel_map;
+uniform vec3 vessel_lower, vessel_scale;
+// The gallbladder's wall: bile shows bluish green through the serosa, the serosa is a whitish pink veil.
+Surface surface_at(vec3 p) {
+  vec4 middle = noise(p * vec3(1.0, 1.0, 0.75) + 3.0 * broad.rgb, 4.6);
+  vec4 fine = noise(p, 1.5);
+  float vessel = texture(vessel_map, (p + 0.25 * middle.rgb - vessel_lower) * vessel_scale).r;
+
+  // Seen along the wall there is more of it: bile shows in the middle, the wall towards the outline.
+  float facing = abs(dot(normalize(normal), normalize(place)));
+  float thick = smoothstep(-0.55, 0.65, broad.a + 0.45 * middle.a + 0.15 * fine.a);
+  thick = 0.08 + 0.55 * thick + 0.37 * (1.0 - facing) * (1.0 - facing);
+  vec3 albedo = mix(vec3(0.130, 0.172, 0.132), vec3(0.385, 0.305, 0.225), thick);
+  albedo = mix(albedo, vec3(0.44, 0.17, 0.12), 0.45 * smoothstep(-0.05, 0.55, broad.g + 0.5 * middle.r));
+  albedo = mix(albedo, vec3(0.26, 0.036, 0.040), 0.75 * vessel);
+
+  float fat = smoothstep(0.05, 0.40, middle.a + 0.8 * broad.a + 0.3 * fine.a + FAT_BIAS);
+  albedo = mix(albedo, vec3(0.66, 0.44, 0.15), 0.85 * fat);
+
+  vec3 slope = 0.30 * broad.rgb + 0.52 * middle.rgb + (0.42 + 0.2 * fat) * fine.rgb;
+  return Surface(albedo, vec3(0.42, 0.24, 0.18), slope, 0.16, 300.0, 1.5);
+}
+)";
+
+const char* const liver_material = R"(
+Surface surface_at(vec3 p) {
+  vec4 middle = noise(p, 6.0);
+  vec4 lobules = noise(p, 1.3);
+  vec3 albedo = mix(vec3(0.150, 0.038, 0.027), vec3(0.215, 0.064, 0.041), smoothstep(-0.5, 0.5, broad.a));
+  albedo *= 1.0 + 0.16 * middle.a + 0.20 * lobules.a;
+  vec3 slope = 0.40 * broad.rgb + 0.40 * middle.rgb + 0.34 * lobules.rgb;
+  return Surface(albedo, vec3(0.20, 0.06, 0.04), slope, 0.15, 170.0, 2.4);
+}
+)";
+
+const char* const fat_material = R"(
+// Omentum: soft yellow lobules, reddish where thin, with veins in their furrows.
+Surface surface_at(vec3 p) {
+  vec4 lobes = noise(p + 2.0 * broad.rgb, 3.6);
+  vec4 fine = noise(p, 1.2);
+  vec3 albedo = mix(vec3(0.60, 0.29, 0.105), vec3(0.78, 0.51, 0.20), smoothstep(-0.7, 0.5, lobes.a + 0.3 * fine.a));
+  albedo = mix(albedo, vec3(0.46, 0.15, 0.10), 0.75 * smoothstep(-0.05, 0.55, broad.a + 0.25 * lobes.a));
+  float vein = smoothstep(0.8, 0.1, distance_to_zero(broad, BROAD_CELL)) * smoothstep(0.0, 0.6, broad.r);
+  albedo = mix(albedo, vec3(0.24, 0.035, 0.03), 0.6 * vein);
+  vec3 slope = 0.15 * broad.rgb + 0.44 * lobes.rgb + 0.20 * fine.rgb;
+  return Surface(albedo, vec3(0.50, 0.34, 0.18), slope, 0.7, 200.0, 1.2);
+}
+)";
+
+const char* const peritoneum_material = R"(
+Surface surface_at(vec3 p) {
+  vec4 middle = noise(p + 6.0 * broad.rgb, 9.0);
+  vec3 albedo = mix(vec3(0.40, 0.13, 0.095), vec3(0.55, 0.25, 0.18), smoothstep(-0.4, 0.5, broad.a + 0.4 * middle.a));
+  float vessel = smoothstep(0.42, 0.08, distance_to_zero(middle, 9.0)) * smoothstep(0.0, 0.5, broad.r);
+  albedo = mix(albedo, vec3(0.28, 0.03, 0.03), 0.4 * vessel);
+  vec3 slope = 0.12 * broad.rgb + 0.14 * middle.rgb;
+  return Surface(albedo, vec3(0.38, 0.16, 0.12), slope, 0.5, 300.0, 0.9);
+}
+)";
+
+// Noise, light and shadow on wet tissue.
+const char* const tissue_lighting = R"(
+// The normal of a surface raised by a height whose gradient by rest position is `slope` (Mikkelsen 2010, with
+// the height's screen derivatives from the chain rule).
+vec3 raised(vec3 n, vec3 slope) {
+  vec3 px = dFdx(place), py = dFdy(place);
+  float hx = dot(slope, dFdx(rest)) * 1e-3, hy = dot(slope, dFdy(rest)) * 1e-3;
+  vec3 rx = cross(py, n), ry = cross(n, px);
+  float det = dot(px, rx);
+  return normalize(abs(det) * n - sign(det) * (hx * rx + hy * ry));
+}
+
+void main() {
+  Surface s = surface_at(rest);
+  vec3 n = normalize(normal);
+  vec3 v = normalize(-place);
+  vec3 film_n = raised(n, s.slope);
+  vec3 tissue_n = normalize(mix(n, film_n, s.relief));
+  Light l = light_at(n);
+
+  vec3 wrapped = clamp((dot(tissue_n, l.towards) + s.scatter) / (1.0 + s.scatter), 0.0, 1.0);
+  vec3 shaded = mix(s.scatter * vec3(0.35, 0.12, 0.08), vec3(1.0), l.seen);
+  vec3 lit = s.albedo * (wrapped * wrapped * shaded * l.strength + l.around);
+
+  vec3 h = normalize(l.towards + v);
+  float nh = clamp(dot(film_n, h), 0.0, 1.0);
+  float facing = clamp(dot(n, v), 0.0, 1.0);  // smooth: bumps hide each other at grazing angles
+  float away = 1.0 - facing;
+  float fresnel = 0.028 + 0.972 * away * away * away * away * away;
+  // Powers of a cosine near 1 as exponentials: cheaper in software.
+  float spot = 0.028 * (s.gloss + 2.0) / 8.0 * exp2(1.4427 * s.gloss * (nh - 1.0));
+  float sheen = 0.055 * exp2(32.0 * (dot(tissue_n, h) - 1.0));
+  lit += s.film * l.strength * l.seen * (spot + sheen) * vec3(1.0, 0.97, 0.93);
+  lit += s.film * fresnel * 2.2 * l.around;
+  colour = exposed(lit);
+}
+)";
+
+const char* const light_functions = R"(
+struct Light {
+  vec3 towards;    // unit
+  float strength;  // 1 at 90 mm on the axis
+  float seen;      // 0 in shadow
+  vec3 around;     // light that the cavity scatters back
+};
+
+float lit_share(vec3 n, vec3 towards) {
+  vec4 s = shadow_from_place * vec4(place + 0.8e-3 * n, 1.0);
+  vec3 c = s.xyz / s.w * 0.5 + 0.5;
+  c.z -= 2e-4;
+  return texture(shadow_map, c);
+}
+
+Light light_at(vec3 n) {
+  Light l;
+  vec3 to_light = light - place;
+  float squared = dot(to_light, to_light);
+  l.towards = to_light * inversesqrt(squared);
+  float cone = clamp(dot(-l.towards, view_axis), 0.0, 1.0);
+  l.strength = intensity * 0.0081 / squared * cone * cone;
+  l.seen = lit_share(n, l.towards);
+  l.around = intensity * 0.0081 / (squared + 0.006) * vec3(0.115, 0.055, 0.040);
+  return l;
+}
+
+// Light to the sensor's picture: a filmic shoulder, gamma 2; the alpha keeps what the sensor could not.
+vec4 exposed(vec3 lit) {
+  vec3 x = 1.35 * lit;
+  vec3 filmic = clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+  float beyond = clamp(0.35 * (dot(lit, vec3(0.3, 0.5, 0.2)) - 0.9), 0.0, 1.0);
+  return vec4(sqrt(filmic), beyond);
+}
+)";
+
+const char* const metal_lighting = R"(
+// What a polished surface mirrors: the red cavity, yellowish below, dark behind, the scope's light in front.
+vec3 cavity(vec3 r, vec3 around) {
+  float front = dot(r, -view_axis);
+  vec4 blotch = noise(r * 30.0, 24.0);
+  around = mix(around, vec3(dot(around, vec3(0.4))), 0.75);
+  vec3 tissue = mix(vec3(0.8, 0.42, 0.32), vec3(3.2, 2.7, 2.2), smoothstep(-0.25, 0.35, blotch.a));
+  float lamp = max(front, 0.0);
+  return around * (tissue * (0.9 - 0.75 * front) + 4.0 * lamp * lamp * lamp * lamp);
+}
+
+void main() {
+  vec3 n = normalize(normal);
+  vec3 v = normalize(-place);
+  Light l = light_at(n);
+  vec4 brush = noise(rest * vec3(1.0, 1.0, 0.15), 0.5);
+  n = normalize(n + BRUSH * brush.rgb);
+  vec3 h = normalize(l.towards + v);
+  float nh = clamp(dot(n, h), 0.0, 1.0);
+  float nl = clamp(dot(n, l.towards), 0.0, 1.0);
+  float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
+  vec3 mirror = METAL + EDGE * away * away * away * away * away;
+  float spot = SHARP * exp2(11.5 * SHARP * (nh - 1.0)) + BROAD * exp2(20.0 * (nh - 1.0));
+  vec3 lit = BASE * nl * l.strength * l.seen + mirror * (nl * spot * l.strength * l.seen + cavity(reflect(-v, n), l.around));
+  colour = exposed(lit);
+}
+)";
+
+/// Size of the broadest noise's features, mm.
+double broad_cell(Material material) {
+  switch (material) {
+    case Material::gallbladder:
+    case Material::membrane:
+      return 14;
+    case Material::liver:
+      return 23;
+    case Material::fat:
+      return 19;
+    case Material::peritoneum:
+      return 29;
+    case Material::steel:
+    case Material::insulation:
+      return 10;
+  }
+  return 10;
+}
+
+std::string header(Material material) {
+  return fmt::format(
+      "#version 330 core\n#define CELLS {:.1f}\n#define GRADIENT_RANGE {:.3f}\n"
+      "#define BROAD_CELL {:.1f}\n",
+      static_cast<double>(noise_volume_cells), noise_gradient_range, broad_cell(material));
+}
+
+}  // namespace
+
+std::string scene_vertex_shader(Material material) { return header(material) + vertex_shader; }
+
+std::string scene_fragment_shader(Material material) {
+  const std::string common = header(material) + prelude + light_functions;
+  switch (material) {
+    case Material::gallbladder:
+      return common + "#define FAT_BIAS (0.30 - 0.028 * p.z)\n" + gallbladder_material + tissue_lighting;
+    case Material::membrane:
+      return common + "#define FAT_BIAS (-2.0)\n" + gallbladder_material + tissue_lighting;
+    case Material::liver:
+      return common + liver_material + tissue_lighting;
+    case Material::fat:
+      return common + fat_material + tissue_lighting;
+    case Material::peritoneum:
+      return common + peritoneum_material + tissue_lighting;
+    case Material::steel:
+      return common +
+             "#define METAL vec3(0.60, 0.59, 0.57)\n#define EDGE 0.2\n#define BASE vec3(0.03)\n#define BRUSH "
+             "0.07\n"
+             "#define SHARP 8.0\n#define BROAD 0.30\n" +
+             metal_lighting;
+    case Material::insulation:
+      return common +
+             "#define METAL vec3(0.035)\n#define EDGE 0.08\n#define BASE vec3(0.018)\n#define BRUSH 0.02\n"
+             "#define SHARP 20.0\n#define BROAD 0.8\n" +
+             metal_lighting;
+  }
+  return {};
+}
+
+std::string shadow_vertex_shader() {
+  return R"(#version 330 core
+layout(location = 0) in vec3 at;
+uniform mat4 clip_from_place;
+void main() { gl_Position = clip_from_place * vec4(at, 1.0); }
+)";
+}
+
+std::string shadow_fragment_shader() { return "#version 330 core\nvoid main() {}\n"; }
+
+}  // namespace calot

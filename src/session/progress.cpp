@@ -1,0 +1,46 @@
+#include "session/progress.h"
+
+namespace calot {
+
+void Progress::begin_step(double time, const std::string& name, const std::string& title, double limit) {
+  end_step(time, "done");
+  StepRecord step;
+  step.name = name;
+  step.title = title;
+  step.limit = limit;
+  step.started = time;
+  steps_.push_back(std::move(step));
+}
+
+void Progress::end_step(double time, const std::string& outcome) {
+  if (running() == nullptr) return;
+  StepRecord& step = steps_.back();
+  if (outcome == "done" || outcome == "timeout") {
+    WorldEvent event;
+    event.kind = "step_" + outcome;
+    event.time = time;
+    event.value = time - step.started;
+    add_event(event);  // while the step still runs, so that the event carries its name
+  }
+  step.ended = time;
+  step.outcome = outcome;
+}
+
+const StepRecord* Progress::running() const {
+  return steps_.empty() || steps_.back().ended >= 0 ? nullptr : &steps_.back();
+}
+
+void Progress::add_event(const WorldEvent& event) {
+  const StepRecord* step = running();
+  events_.push_back({event, step != nullptr ? step->name : std::string()});
+}
+
+void Progress::set_metric(const std::string& name, double value) { metrics_[name] = value; }
+
+const std::vector<std::string>& event_kinds() {
+  static const std::vector<std::string> kinds{"contact",     "grasp",     "release",     "overforce",
+                                              "overstretch", "step_done", "step_timeout"};
+  return kinds;
+}
+
+}  // namespace calot

@@ -1,0 +1,48 @@
+#pragma once
+// What has happened so far in a session: steps, events and the metrics named by the script.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace calot {
+
+struct StepRecord {
+  std::string name, title;
+  double limit = 0;                 ///< s, 0: none
+  double started = 0, ended = -1;   ///< s; ended < 0 while it runs
+  std::string outcome = "running";  ///< running, done, timeout, aborted
+};
+
+/// A world event, or step_done / step_timeout (value: the step's duration, s), with the step it fell into.
+struct SessionEvent : WorldEvent {
+  std::string step;  ///< empty before the first step
+};
+
+/// Everything the report and the score are made from.
+class Progress {
+ public:
+  /// Ends the running step as done, if any, and starts the next.
+  void begin_step(double time, const std::string& name, const std::string& title, double limit);
+  /// Ends the running step, if any ("done", "timeout" or "aborted"), and raises step_done or step_timeout.
+  void end_step(double time, const std::string& outcome);
+  /// The running step, or null.
+  const StepRecord* running() const;
+  void add_event(const WorldEvent& event);
+  void set_metric(const std::string& name, double value);
+  const std::vector<StepRecord>& steps() const { return steps_; }
+  const std::vector<SessionEvent>& events() const { return events_; }
+  const std::map<std::string, double>& metrics() const { return metrics_; }
+
+ private:
+  std::vector<StepRecord> steps_;
+  std::vector<SessionEvent> events_;
+  std::map<std::string, double> metrics_;
+};
+
+/// The kinds of event a score may name.
+const std::vector<std::string>& event_kinds();
+
+}  // namespace calot

@@ -1,0 +1,125 @@
+#include "session/report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/hash.h"
+#include "session/build_info.h"
+
+namespace calot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json steps_json(const Progress& progress) {
+  Json list = Json::array();
+  for (const StepRecord& step : progress.steps()) {
+    Json json = {
+        {"name", step.name}, {"title", step.title}, {"outcome", step.outcome}, {"started_s", step.started}};
+    json["ended_s"] = step.ended >= 0 ? Json(step.ended) : Json();
+    json["limit_s"] = step.limit > 0 ? Json(step.limit) : Json();
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+/// The key that says what an event's value is; null where the kind has none.
+const char* value_key(const std::string& kind) {
+  if (kind == "overforce") return "force_N";
+  if (kind == "overstretch") return "stretch";
+  if (kind == "step_done" || kind == "step_timeout") return "duration_s";
+  return nullptr;
+}
+
+Json events_json(const Progress& progress) {
+  Json list = Json::array();
+  for (const SessionEvent& event : progress.events()) {
+    Json json = {{"event", event.kind}, {"time_s", event.time}, {"step", event.step}};
+    if (!event.instrument.empty()) json["instrument"] = event.instrument;
+    if (!event.organ.empty()) json["organ"] = event.organ;
+    if (const char* key = value_key(event.kind)) json[key] = event.value;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+/// Benchmarks are design values of the exercise, not yet measured on surgeons, and say so.
+Json benchmark_json(const ScorePart& part) {
+  Json json;
+  if (part.kind == ScorePartKind::benchmark) {
+    json = {{"metric", part.metric}, {"novice", part.novice}, {"expert", part.expert}};
+  } else {
+    json = {{"event", part.event}, {"each", part.each}};
+  }
+  json["calibration"] = "uncalibrated";
+  return json;
+}
+
+Json score_json(const ExerciseDefinition& exercise, const Score& score) {
+  Json json = {{"total", score.total},         {"out_of", 100},
+               {"passed", score.passed},       {"pass_mark", exercise.score.pass},
+               {"completed", score.completed}, {"uncapped_total", score.uncapped}};
+  json["critical"] = Json::array();
+  for (const CriticalEvent& event : score.critical) {
+    json["critical"].push_back(
+        {{"event", event.event}, {"times_s", event.times}, {"cap", exercise.score.cap}});
+  }
+  json["parts"] = Json::array();
+  for (const ScoredPart& part : score.parts) {
+    Json entry = {{"name", part.definition.name}};
+    entry["measured"] = part.measured ? Json(*part.measured) : Json();
+    entry["benchmark"] = benchmark_json(part.definition);
+    entry["points"] = part.points;
+    entry["weight"] = part.definition.weight;
+    entry["event_times_s"] = part.times;
+    entry["explanation"] = part.explanation;
+    json["parts"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json timing_json(const SessionResult& session, double start_to_first_frame) {
+  const SessionTiming& timing = session.timing;
+  Json json = {{"real_time_factor", real_time_factor(session)},
+               {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
+               {"wall_s", timing.wall_s},
+               {"simulation_s", timing.simulation_s},
+               {"frames_s", timing.frames_s},
+               {"assembly_s", timing.assembly_s},
+               {"factorisation_s", timing.factorisation_s},
+               {"solve_s", timing.solve_s},
+               {"contact_s", timing.contact_s},
+               {"steps", session.state_hashes.empty() ? 0 : session.state_hashes.size() - 1},
+               {"substeps", timing.substeps},
+               {"newton_iterations", timing.newton_iterations}};
+  json["start_to_first_frame_s"] = start_to_first_frame >= 0 ? Json(start_to_first_frame) : Json();
+  return json;
+}
+
+}  // namespace
+
+double real_time_factor(const SessionResult& session) {
+  if (session.traces.time.empty() || session.timing.wall_s <= 0) return 0;
+  return session.traces.time.back() / session.timing.wall_s;
+}
+
+std::string report_json(const ExerciseDefinition& exercise, const SessionResult& session,
+                        const SessionReport& report) {
+  Json json = {{"schema", "calot.report/1"}, {"scenario", exercise.id}, {"title", exercise.title},
+               {"file", exercise.file},      {"seed", exercise.seed},   {"params", exercise.params},
+               {"end", to_text(session.end)}};
+  if (session.end == SessionEnd::failed) json["failure"] = to_text(session.failure);
+  json["steps"] = steps_json(session.progress);
+  json["events"] = events_json(session.progress);
+  json["metrics"] = report.metrics;
+  json["motion_processing"] = {{"version", MotionProcessing::version},
+                               {"rate_Hz", MotionProcessing::rate},
+                               {"cut_off_Hz", MotionProcessing::cut_off}};
+  json["score"] = score_json(exercise, report.score);
+  json["state_hash"] = hex(session.state_hashes.empty() ? 0 : session.state_hashes.back());
+  json["build"] = {{"toolchain", toolchain()}, {"instruction_set", instruction_set()}};
+  json["timing"] = timing_json(session, report.start_to_first_frame_s);
+  // Text from a scenario may hold any bytes; replace what is not UTF-8 instead of throwing.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace calot

@@ -1,0 +1,27 @@
+#pragma once
+// The report of a session as versioned JSON. Field names carry their unit; a reader may rely on every key of
+// schema calot.report/1, and ignores keys it does not know.
+
+#include <map>
+#include <string>
+
+#include "session/exercise.h"
+#include "session/runner.h"
+#include "session/scoring.h"
+
+namespace calot {
+
+struct SessionReport {
+  std::map<std::string, double> metrics;
+  Score score;
+  double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn
+};
+
+/// Pretty-printed, keys in a fixed order, with a final line end.
+std::string report_json(const ExerciseDefinition& exercise, const SessionResult& session,
+                        const SessionReport& report);
+
+/// Simulated seconds a wall-clock second, frames included: above 1 is faster than real time.
+double real_time_factor(const SessionResult& session);
+
+}  // namespace calot

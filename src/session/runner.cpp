@@ -1,0 +1,161 @@
+#include "session/runner.h"
+
+#include <chrono>
+
+namespace calot {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// One session's moving parts; the loop below reads as the order of things.
+class Session {
+ public:
+  Session(World& world, ExerciseScript& script, InputSource& source, const SessionOptions& options)
+      : world_(world),
+        script_(script),
+        source_(source),
+        options_(options),
+        dt_(1 / world.scene().solver.rate) {
+    for (const InstrumentState& state : world.report().instruments) input_.instruments.push_back(state.pose);
+  }
+
+  SessionResult run() {
+    const Clock::time_point start = Clock::now();
+    note_report();
+    for (const WorldEvent& event : world_.report().events) result_.progress.add_event(event);
+    while (!ended_) {
+      observe(false);
+      step();
+    }
+    close_steps();
+    observe(true);
+    if (options_.recording != nullptr) options_.recording->finish(to_text(result_.end));
+    result_.timing.wall_s = seconds_since(start);
+    return std::move(result_);
+  }
+
+ private:
+  void end(SessionEnd how) {
+    ended_ = true;
+    result_.end = how;
+  }
+  void end(const Failure& failure) {
+    end(SessionEnd::failed);
+    result_.failure = failure;
+  }
+
+  void step() {
+    if (options_.stop != nullptr && *options_.stop) return end(SessionEnd::interrupted);
+    // Half a step's slack, so that rounding of the summed time costs no step.
+    if (world_.report().time + dt_ / 2 > script_.definition().time_limit) return end(SessionEnd::time_limit);
+    if (!read_input()) return;
+    const Clock::time_point start = Clock::now();
+    Result<StepReport> report = world_.step(input_);
+    result_.timing.simulation_s += seconds_since(start);
+    if (!report) return note_failed_step(report.failure());
+    note_report();
+    for (const WorldEvent& event : report->events) result_.progress.add_event(event);
+    if (ended_) return;  // the report could not be written
+    Result<bool> done = script_.advance(world_, result_.progress, dt_);
+    if (!done) return end(done.failure());
+    if (done.value()) end(SessionEnd::steps_done);
+  }
+
+  /// The input that could not be followed is recorded too: its replay fails at the same place.
+  void note_failed_step(const Failure& failure) {
+    end(failure);
+    result_.state_hashes.push_back(world_.state_hash());
+    if (options_.recording != nullptr) {
+      options_.recording->write({world_.report().time + dt_, input_, world_.state_hash()});
+    }
+  }
+
+  bool read_input() {
+    Result<std::optional<StepInput>> next = source_.next(world_, dt_);
+    if (!next) {
+      end(next.failure());
+      return false;
+    }
+    if (next->has_value()) {
+      input_ = *next.value();
+    } else if (options_.end_with_source) {
+      end(SessionEnd::source_ended);
+      return false;
+    }
+    return true;
+  }
+
+  /// Keeps the world's present report: hash, traces, table and, after a step, the recording.
+  void note_report() {
+    const StepReport& report = world_.report();
+    const bool at_rest = result_.state_hashes.empty();
+    result_.state_hashes.push_back(report.state_hash);
+    append_sample(world_, result_.traces);
+    SessionTiming& timing = result_.timing;
+    timing.substeps += report.statistics.substeps;
+    timing.newton_iterations += report.statistics.newton_iterations;
+    timing.assembly_s += report.statistics.assembly_s;
+    timing.factorisation_s += report.statistics.factorisation_s;
+    timing.solve_s += report.statistics.solve_s;
+    timing.contact_s += report.statistics.contact_s;
+    bool written = options_.table == nullptr || options_.table->write(report);
+    if (options_.recording != nullptr && !at_rest) {
+      written = options_.recording->write({report.time, input_, report.state_hash}) && written;
+    }
+    if (!written)
+      end(fail(FailureKind::usage, "the output folder cannot take more: is the disk full?",
+               "free space or choose another folder with -o DIR"));
+  }
+
+  void close_steps() {
+    const std::string outcome = result_.end == SessionEnd::steps_done   ? "done"
+                                : result_.end == SessionEnd::time_limit ? "timeout"
+                                                                        : "aborted";
+    result_.progress.end_step(world_.report().time, outcome);
+  }
+
+  void observe(bool last) {
+    if (!options_.observer) return;
+    const Clock::time_point start = Clock::now();
+    options_.observer(world_, result_.progress, last);
+    result_.timing.frames_s += seconds_since(start);
+  }
+
+  World& world_;
+  ExerciseScript& script_;
+  InputSource& source_;
+  const SessionOptions& options_;
+  double dt_;
+  StepInput input_;  ///< held where the source has ended
+  bool ended_ = false;
+  SessionResult result_;
+};
+
+}  // namespace
+
+std::string to_text(SessionEnd end) {
+  switch (end) {
+    case SessionEnd::steps_done:
+      return "done";
+    case SessionEnd::time_limit:
+      return "time_limit";
+    case SessionEnd::source_ended:
+      return "source_ended";
+    case SessionEnd::interrupted:
+      return "interrupted";
+    case SessionEnd::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+SessionResult run_session(World& world, ExerciseScript& script, InputSource& source,
+                          const SessionOptions& options) {
+  return Session(world, script, source, options).run();
+}
+
+}  // namespace calot

@@ -1,0 +1,55 @@
+#pragma once
+// Plays a session: input -> world step -> recording -> events -> script, until the steps have ended.
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "session/exercise.h"
+#include "session/progress.h"
+#include "session/recording.h"
+#include "session/step_table.h"
+#include "session/trace.h"
+
+namespace calot {
+
+/// Wall-clock times, which no result depends on.
+struct SessionTiming {
+  double wall_s = 0;        ///< of the loop, frames included
+  double simulation_s = 0;  ///< inside World::step
+  double frames_s = 0;      ///< inside the frame callback
+  int substeps = 0, newton_iterations = 0;
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
+};
+
+/// Called at rest (time 0), after each step. It may look but not touch, so rendering cannot change the state.
+using StepObserver = std::function<void(const World& world, const Progress& progress, bool last)>;
+
+struct SessionOptions {
+  const std::atomic<bool>* stop = nullptr;  ///< set: the session ends as interrupted before its next step
+  bool end_with_source = false;             ///< a replay ends where its recording does
+  RecordingWriter* recording = nullptr;
+  StepTable* table = nullptr;
+  StepObserver observer;
+};
+
+enum class SessionEnd { steps_done, time_limit, source_ended, interrupted, failed };
+
+/// "done", "time_limit", "source_ended", "interrupted", "failed".
+std::string to_text(SessionEnd end);
+
+struct SessionResult {
+  SessionEnd end = SessionEnd::steps_done;
+  Failure failure;  ///< of the world, the script, the source or a file, where end is failed
+  Progress progress;
+  Traces traces;
+  /// State hash after each step; the rest state's first.
+  std::vector<std::uint64_t> state_hashes;
+  SessionTiming timing;
+};
+
+SessionResult run_session(World& world, ExerciseScript& script, InputSource& source,
+                          const SessionOptions& options);
+
+}  // namespace calot

@@ -1,0 +1,85 @@
+#include "session/trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace calot {
+namespace {
+
+constexpr int channels = 8;  // tip, axis, insertion, roll
+using Channels = Eigen::Matrix<double, channels, 1>;
+
+Channels to_channels(const InstrumentSample& sample) {
+  Channels c;
+  c << sample.tip, sample.axis, sample.insertion, sample.roll;
+  return c;
+}
+
+/// Value at `t` of the straight line fitted by weighted least squares to samples [first, last).
+Channels local_line(const std::vector<double>& time, const std::vector<InstrumentSample>& samples,
+                    std::size_t first, std::size_t last, double t, double sigma) {
+  double s0 = 0, s1 = 0, s2 = 0;
+  Channels y0 = Channels::Zero(), y1 = Channels::Zero();
+  for (std::size_t i = first; i < last; ++i) {
+    const double u = (time[i] - t) / sigma;
+    const double w = std::exp(-0.5 * u * u);
+    const Channels c = to_channels(samples[i]);
+    s0 += w;
+    s1 += w * u;
+    s2 += w * u * u;
+    y0 += w * c;
+    y1 += w * u * c;
+  }
+  const double determinant = s0 * s2 - s1 * s1;
+  if (determinant <= 1e-12 * s0 * s0) return y0 / s0;  // one sample in reach
+  return (s2 * y0 - s1 * y1) / determinant;
+}
+
+}  // namespace
+
+void append_sample(const World& world, Traces& traces) {
+  const StepReport& report = world.report();
+  const SceneDefinition& scene = world.scene();
+  traces.instruments.resize(report.instruments.size());
+  traces.organs.resize(report.organs.size());
+  traces.time.push_back(report.time);
+  for (std::size_t i = 0; i < report.instruments.size(); ++i) {
+    const InstrumentState& state = report.instruments[i];
+    InstrumentSample sample;
+    sample.tip = state.tip;
+    sample.axis = (state.tip - world.port_position(scene.instruments[i].port)).normalized();
+    sample.insertion = state.pose.insertion;
+    sample.roll = state.pose.roll;
+    sample.tip_force = state.tip_force.norm();
+    sample.handle_force = state.handle_force.norm();
+    traces.instruments[i].push_back(sample);
+  }
+  for (std::size_t i = 0; i < report.organs.size(); ++i) {
+    traces.organs[i].push_back({report.organs[i].pressure, report.organs[i].max_stretch});
+  }
+}
+
+std::vector<MotionSample> processed_motion(const std::vector<double>& time,
+                                           const std::vector<InstrumentSample>& samples) {
+  std::vector<MotionSample> result;
+  if (samples.empty()) return result;
+  const double start = time.front(), duration = time.back() - start;
+  // A Gaussian of width sigma has the response exp(-2 (pi sigma f)^2), which is -3 dB at f = sqrt(ln 2)/(2 pi
+  // sigma).
+  double sigma = std::sqrt(std::log(2.0)) / (2 * std::numbers::pi * MotionProcessing::cut_off);
+  // A trace slower than the smoother needs a neighbour in reach of every grid point.
+  if (samples.size() > 1) sigma = std::max(sigma, duration / static_cast<double>(samples.size() - 1) / 2);
+  const int count = static_cast<int>(std::floor(duration * MotionProcessing::rate + 1e-9)) + 1;
+  for (int k = 0; k < count; ++k) {
+    const double t = start + k / MotionProcessing::rate;
+    const auto first = std::lower_bound(time.begin(), time.end(), t - 4 * sigma) - time.begin();
+    const auto last = std::upper_bound(time.begin(), time.end(), t + 4 * sigma) - time.begin();
+    const Channels c =
+        local_line(time, samples, static_cast<std::size_t>(first), static_cast<std::size_t>(last), t, sigma);
+    result.push_back({t, c.segment<3>(0), c.segment<3>(3).normalized(), c[6], c[7]});
+  }
+  return result;
+}
+
+}  // namespace calot

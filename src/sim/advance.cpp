@@ -1,0 +1,400 @@
+#include "sim/advance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/grip.h"
+
+namespace calot {
+namespace {
+
+using Poses = std::vector<InstrumentPose>;
+
+/// No predicted node moves further than this share of its shortest edge in one part.
+constexpr double edge_share = 0.5;
+constexpr int max_parts = 100;
+constexpr double smallest_share = 1e-3;
+
+Poses present_poses(const Field& field) {
+  Poses poses;
+  for (const Tool& tool : field.tools) poses.push_back(tool.pose);
+  return poses;
+}
+
+Poses between(const Poses& a, const Poses& b, double share) {
+  Poses out;
+  for (std::size_t i = 0; i < a.size(); ++i) out.push_back(interpolate(a[i], b[i], share));
+  return out;
+}
+
+/// Tools' shapes first, three each, then the support.
+Surroundings surroundings(const Field& field, const Organ& organ, const Poses& poses) {
+  Surroundings out;
+  out.barrier = field.barrier;
+  for (std::size_t i = 0; i < field.tools.size(); ++i)
+    for (Shape& shape : grasper_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
+      out.shapes.push_back(std::move(shape));
+  if (field.support) out.shapes.push_back(*field.support);
+  out.grip = grip_links(organ, field.tools, poses);
+  return out;
+}
+
+/// One part of a motion for one organ: where the tools are, where they go, and what the organ answers.
+struct Prediction {
+  VecX dx;
+  double dmultiplier = 0;
+  double share = 1;
+};
+
+/// Motion of `part` of a tool from one pose to another, at x.
+Vec3 carried(const Pose& motion, const Vec3& x) { return motion * x - x; }
+
+/// The load that the tools' motion to `to` puts on the organ to first order; none for a tool that stays, not
+/// even rounding.
+VecX motion_load(const Field& field, const Organ& organ, const Surroundings& field_now,
+                 const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
+  VecX load = VecX::Zero(organ.state.x.size());
+  loaded = false;
+  const StencilTable& stencils = organ.body.skin().stencils;
+  for (const ContactPair& pair : pairs) {
+    const int tool = pair.shape / shapes_per_tool;
+    if (tool >= static_cast<int>(field.tools.size())) continue;  // the support stays
+    if (from[tool] == to[tool]) continue;
+    const Vec3 at = blend(stencils, stencils.value, pair.row, organ.state.x);
+    const DistanceSample d = sample_distance(field_now.shapes[pair.shape], at);
+    if (d.distance >= field.barrier.range) continue;
+    const BarrierSample b = field.barrier.sample(d.distance);
+    const Mat3 h = organ.body.skin_areas()[pair.row] *
+                   (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
+    const Pose motion = part_motion(field.tools[tool], from[tool], to[tool], pair.shape % shapes_per_tool);
+    spread(stencils, pair.row, h * carried(motion, at), load);
+    loaded = true;
+  }
+  const Links target = grip_links(organ, field.tools, to);
+  for (std::size_t i = 0; i < target.row.size(); ++i) {
+    const int tool = organ.grips[i].instrument;
+    if (from[tool] == to[tool]) continue;
+    spread(stencils, target.row[i], target.stiffness[i] * (target.target[i] - field_now.grip.target[i]),
+           load);
+    loaded = true;
+  }
+  return load;
+}
+
+/// Largest share of the joint motion of skin and tools that keeps them apart.
+double share_kept_apart(const Field& field, const Organ& organ, const Surroundings& now,
+                        const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
+                        const Poses& to) {
+  const StencilTable& stencils = organ.body.skin().stencils;
+  double share = 1.0;
+  for (const ContactPair& pair : pairs) {
+    const Vec3 at = blend(stencils, stencils.value, pair.row, organ.state.x);
+    const Vec3 motion = blend(stencils, stencils.value, pair.row, dx);
+    const int tool = pair.shape / shapes_per_tool;
+    if (tool >= static_cast<int>(field.tools.size())) {
+      const Shape plane = *field.support;
+      share *= safe_share(
+          at, share * motion, [&](double) { return plane; }, 0.0, contact_keep);
+      continue;
+    }
+    const InstrumentPose until = interpolate(from[tool], to[tool], share);
+    share *= joint_share(field.tools[tool], pair.shape % shapes_per_tool, now.shapes[pair.shape], from[tool],
+                         until, at, share * motion, contact_keep);
+  }
+  return share;
+}
+
+/// First-order answer of an organ to tools that move from `from` to `to`, and the share of it that is safe.
+/// With `fresh` the tangent is factorised anew, else the last factor serves if there is one.
+Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh) {
+  Prediction out;
+  const Surroundings now = surroundings(field, organ, from);
+  double travel = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    travel = std::max(travel, travel_bound(field.tools[i], from[i], to[i]));
+  const std::vector<ContactPair> pairs = gather_pairs(organ.body, organ.state.x, now, travel);
+  bool loaded = false;
+  const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
+  out.dx = VecX::Zero(organ.state.x.size());
+  if (loaded) {
+    const BodyProblem problem(organ.body, now, pairs, organ.state);
+    const NewtonStatus status =
+        factorise_tangent(problem, organ.work, organ.state.x, organ.state.multiplier, fresh);
+    if (status != NewtonStatus::converged) {
+      NewtonResult failed;
+      failed.status = status;
+      return solve_failure(failed, organ.definition.name, "under its instruments");
+    }
+    out.dx = linear_response(organ.work, load, out.dmultiplier);
+    for (int i = 0; i < organ.body.nodes(); ++i) {
+      const double move = out.dx.segment<3>(3 * i).norm();
+      if (move * out.share > edge_share * organ.body.edge_lengths()[i])
+        out.share = edge_share * organ.body.edge_lengths()[i] / move;
+    }
+  }
+  const Poses partly = between(from, to, out.share);
+  out.share *= share_kept_apart(field, organ, now, pairs, out.share * out.dx, from, partly);
+  return out;
+}
+
+NewtonSettings newton_settings(const Field& field) {
+  NewtonSettings settings;
+  settings.tolerance = field.tolerance;
+  return settings;
+}
+
+NewtonResult correct(const Field& field, Organ& organ, const Poses& poses) {
+  const Surroundings now = surroundings(field, organ, poses);
+  const BodyProblem problem(organ.body, now, gather_pairs(organ.body, organ.state.x, now, 0.0), organ.state);
+  return solve_equilibrium(problem, newton_settings(field), organ.work, organ.state.x,
+                           organ.state.multiplier);
+}
+
+void count(const NewtonResult& result, SolveStatistics& statistics) {
+  statistics.newton_iterations += result.iterations;
+  statistics.assembly_s += result.assembly_s;
+  statistics.factorisation_s += result.factorisation_s;
+  statistics.solve_s += result.solve_s;
+}
+
+Failure cannot_follow(const Field& field, const std::string& why, double done) {
+  std::string tools;
+  for (const Tool& tool : field.tools) {
+    const Vec3 tip = 1e3 * tip_position(tool.trocar, tool.pose, tool.geometry);
+    tools += fmt::format("{}'{}' with its tip at ({:.1f}, {:.1f}, {:.1f}) mm", tools.empty() ? "" : ", ",
+                         tool.definition.name, tip.x(), tip.y(), tip.z());
+  }
+  return fail(
+      FailureKind::simulation,
+      fmt::format("the motion of {} could not be followed beyond {:.0f}% of a step: {}", tools, 100 * done,
+                  why),
+      "move more slowly or less far, keep the tool out of the tissue it already squeezes, or give the "
+      "organ more nodes where it is handled");
+}
+
+/// Moves all tools from their poses to `to`, organs in equilibrium at the end of each part.
+Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) {
+  double done = 0;
+  NewtonResult last;  // of the solve that failed last, if any did in this part
+  bool fresh =
+      false;  // a stale factor predicts well unless contacts changed: then the part is tried once more
+  for (int part = 0; done < 1.0; ++part) {
+    const Poses from = present_poses(field);
+    double share = 1.0;
+    std::vector<Prediction> predictions;
+    for (Organ& organ : field.organs) {
+      Result<Prediction> p = predict(field, organ, from, to, fresh);
+      if (p && p->share < 1.0 && !fresh) p = predict(field, organ, from, to, true);
+      if (!p) return p.failure();
+      share = std::min(share, p->share);
+      predictions.push_back(std::move(p).value());
+    }
+    const double left = 1.0 - done;
+    bool accepted = false;
+    while (!accepted) {
+      if (part >= max_parts) return cannot_follow(field, "the way is too long for one step", done);
+      if (share < smallest_share)
+        return cannot_follow(field,
+                             last.converged()
+                                 ? "the tissue it touches leaves it no room"
+                                 : fmt::format("{} (residual {:.2g})", to_text(last.status), last.residual),
+                             done);
+      const double next = share >= 1.0 ? 1.0 : done + share * left;
+      const Poses poses = next >= 1.0 ? to : between(from, to, share);
+      accepted = true;
+      std::vector<BodyState> before;
+      for (std::size_t k = 0; k < field.organs.size() && accepted; ++k) {
+        Organ& organ = field.organs[k];
+        before.push_back(organ.state);
+        organ.state.x += share * predictions[k].dx;
+        organ.state.multiplier += share * predictions[k].dmultiplier;
+        last = correct(field, organ, poses);
+        count(last, statistics);
+        accepted = last.converged();
+      }
+      if (accepted) {
+        for (std::size_t i = 0; i < field.tools.size(); ++i) field.tools[i].pose = poses[i];
+        done = next;
+        fresh = false;
+        last = {};
+        ++statistics.substeps;
+      } else {
+        for (std::size_t k = 0; k < before.size(); ++k) field.organs[k].state = before[k];
+        if (!fresh) {
+          fresh = true;
+          break;
+        }
+        share *= 0.5;
+      }
+    }
+  }
+  return true;
+}
+
+/// What a failed release gives back.
+struct Held {
+  BodyState state;
+  std::vector<GripPoint> grips;
+};
+
+/// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish. On
+/// failure the grip holds as before.
+Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
+  constexpr double weaken = 0.2, last_stiffness = 0.05;  // N/m a point, far below the wall's
+  const auto settle_all = [&]() -> Result<bool> {
+    for (Organ& organ : field.organs) {
+      const NewtonResult result = settle(organ.body, surroundings(field, organ, present_poses(field)),
+                                         newton_settings(field), organ.work, organ.state);
+      count(result, statistics);
+      if (!result.converged()) return solve_failure(result, organ.definition.name, "as a grip let it go");
+    }
+    return true;
+  };
+  std::vector<Held> before;
+  for (const Organ& organ : field.organs) before.push_back({organ.state, organ.grips});
+  Result<bool> settled = true;
+  for (double stiffness = grip_stiffness; settled && stiffness > last_stiffness; stiffness *= weaken) {
+    loosen(field, instrument, weaken);
+    settled = settle_all();
+  }
+  if (settled) {
+    let_go(field, instrument);
+    settled = settle_all();
+  }
+  for (std::size_t k = 0; k < before.size() && !settled; ++k) {
+    field.organs[k].state = before[k].state;
+    field.organs[k].grips = before[k].grips;
+  }
+  return settled;
+}
+
+/// Where the tools really go: jaws that rest on a fold close no further.
+Poses reachable(const Field& field, const Poses& targets) {
+  Poses poses = targets;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (field.tools[i].jaw_stopped && poses[i].jaw < field.tools[i].pose.jaw)
+      poses[i].jaw = field.tools[i].pose.jaw;
+  return poses;
+}
+
+/// Where the tools' motion halts: wherever one may take hold, and at its end.
+std::vector<double> all_stops(const std::vector<std::vector<double>>& holding_stops) {
+  std::vector<double> stops = {1.0};
+  for (const std::vector<double>& of_tool : holding_stops)
+    stops.insert(stops.end(), of_tool.begin(), of_tool.end());
+  std::sort(stops.begin(), stops.end());
+  stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+  return stops;
+}
+
+std::string held_organ(const Field& field, int instrument) {
+  for (const Organ& organ : field.organs)
+    if (grip_count(organ, instrument) > 0) return organ.definition.name;
+  return {};
+}
+
+}  // namespace
+
+int grip_count(const Organ& organ, int instrument) {
+  return static_cast<int>(std::count_if(organ.grips.begin(), organ.grips.end(),
+                                        [&](const GripPoint& g) { return g.instrument == instrument; }));
+}
+
+Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
+  std::vector<WorldEvent> events;
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    // Opening lets go; so do jaws that stop closing before a fold fills them, as they press on nothing.
+    const bool closing = targets[i].jaw < tool.pose.jaw;
+    if (closing || (tool.jaw_stopped && targets[i].jaw == tool.pose.jaw)) continue;
+    const int index = static_cast<int>(i);
+    const std::string organ = held_organ(field, index);
+    if (organ.empty()) continue;
+    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
+    if (tool.jaw_stopped) events.push_back({"release", 0, tool.definition.name, organ, 0});
+    tool.jaw_stopped = false;
+  }
+  const Poses to = reachable(field, targets), start = present_poses(field);
+  std::vector<std::vector<double>> holding_stops;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
+  for (double stop : all_stops(holding_stops)) {
+    Poses here = between(start, to, stop);
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (field.tools[i].jaw_stopped) here[i].jaw = field.tools[i].pose.jaw;
+    if (Result<bool> moved = follow(field, here, statistics); !moved) return moved.failure();
+    for (std::size_t i = 0; i < field.tools.size(); ++i) {
+      Tool& tool = field.tools[i];
+      const int index = static_cast<int>(i);
+      const std::vector<double>& own = holding_stops[i];
+      if (tool.jaw_stopped || !std::binary_search(own.begin(), own.end(), stop)) continue;
+      take_hold(field, index);
+      if (!fold_fills_jaws(field, index)) {
+        if (tool.pose.jaw > 0.5 * grip_grid || held_organ(field, index).empty()) continue;
+        // Closed, and only one pad holds: what it dragged along slips back.
+        if (Result<bool> slipped = release(field, index, statistics); !slipped) return slipped.failure();
+        continue;
+      }
+      tool.jaw_stopped = true;
+      events.push_back({"grasp", 0, tool.definition.name, held_organ(field, index), 0});
+    }
+  }
+  return events;
+}
+
+std::vector<ToolLoad> tool_loads(const Field& field) {
+  std::vector<ToolLoad> loads(field.tools.size());
+  const Poses poses = present_poses(field);
+  const auto add = [&](std::size_t tool, const Vec3& at, const Vec3& force, const Organ& organ) {
+    ToolLoad& load = loads[tool];
+    load.force += force;
+    load.moment += (at - field.tools[tool].trocar).cross(force);
+    if (load.touches++ == 0) load.organ = organ.definition.name;
+  };
+  for (const Organ& organ : field.organs) {
+    const Surroundings now = surroundings(field, organ, poses);
+    const StencilTable& stencils = organ.body.skin().stencils;
+    for (const ContactForce& contact :
+         contact_forces(organ.body, organ.state.x, now, gather_pairs(organ.body, organ.state.x, now, 0.0))) {
+      const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
+      if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
+    }
+    for (std::size_t g = 0; g < organ.grips.size(); ++g) {
+      const Vec3 at = blend(stencils, stencils.value, organ.grips[g].row, organ.state.x);
+      add(static_cast<std::size_t>(organ.grips[g].instrument), at,
+          now.grip.stiffness[g] * (at - now.grip.target[g]), organ);
+    }
+  }
+  return loads;
+}
+
+Result<bool> check_clear(const Field& field) {
+  for (const ToolLoad& load : tool_loads(field))
+    if (load.touches > 0 || deepest_penetration(field) > 0)
+      return fail(FailureKind::scenario,
+                  "an instrument that waits in its trocar, 30 mm deep, touches an organ",
+                  "choose another port, or move the organ");
+  return true;
+}
+
+double deepest_penetration(const Field& field) {
+  double deepest = 0;
+  for (const Tool& tool : field.tools) {
+    for (const Shape& shape : grasper_shapes(tool.trocar, tool.pose, tool.geometry)) {
+      for (const Organ& organ : field.organs) {
+        const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+        const auto sample = [&](const Vec3& p) { deepest = std::max(deepest, -signed_distance(shape, p)); };
+        for (const Vec3& p : skin) sample(p);
+        for (const Triangle& t : organ.body.skin().triangles) {
+          for (int k = 0; k < 3; ++k) sample(0.5 * (skin[t[k]] + skin[t[(k + 1) % 3]]));
+          sample((skin[t[0]] + skin[t[1]] + skin[t[2]]) / 3.0);
+        }
+      }
+    }
+  }
+  return deepest;
+}
+
+}  // namespace calot

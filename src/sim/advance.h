@@ -1,0 +1,56 @@
+#pragma once
+// Quasi-static motion of the field: instruments go to their targets, organs stay in equilibrium.
+//
+// Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
+// wall moves along), is cut where a skin point would come too near a shape or a node would move further than
+// a set share of its local edge, and ends in equilibrium. Nothing depends on how the motion was cut into
+// steps but where jaws take hold, and that happens at fixed jaw angles.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/organ.h"
+#include "sim/tool.h"
+#include "sim/world.h"
+
+namespace calot {
+
+struct Field {
+  std::vector<Organ> organs;
+  std::vector<Tool> tools;
+  std::optional<Plane> support;
+  Barrier barrier;
+  double tolerance = 1e-6;
+};
+
+/// Jaw angles (rad) at which closing jaws may take hold.
+inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
+/// Stiffness of a held skin point, N/m: some thousand times the wall's, so that 5 N on a single point move it by
+/// 10 um.
+inline constexpr double grip_stiffness = 5e5;
+
+/// Moves every tool to its target. The field is left at the last converged part on failure (simulation).
+/// Returns grasp and release events (time to be set by the caller).
+Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,
+                                        SolveStatistics& statistics);
+
+/// What the tissue does to a tool.
+struct ToolLoad {
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 moment = Vec3::Zero();  ///< N m, about the trocar
+  int touches = 0;             ///< skin points in contact or held
+  std::string organ;           ///< the first organ that touches it, or empty
+};
+std::vector<ToolLoad> tool_loads(const Field& field);
+
+/// Skin points of the organ that tool `instrument` grips.
+int grip_count(const Organ& organ, int instrument);
+
+/// Fails (scenario) when a tool starts inside an organ.
+Result<bool> check_clear(const Field& field);
+
+/// Deepest point of any skin inside a tool, m, on the skin's triangles split once more.
+double deepest_penetration(const Field& field);
+
+}  // namespace calot

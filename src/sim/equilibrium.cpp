@@ -1,0 +1,152 @@
+#include "sim/equilibrium.h"
+
+#include <cmath>
+#include <limits>
+
+namespace calot {
+namespace {
+
+Vec3 skin_point(const VirtualStructure& body, int row, const VecX& x) {
+  return blend(body.skin().stencils, body.skin().stencils.value, row, x);
+}
+
+}  // namespace
+
+std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+                                      double extra) {
+  const double reach = field.barrier.range + contact_margin + extra;
+  const std::vector<Vec3> points = body.skin_positions(x);
+  std::vector<ContactPair> pairs;
+  for (std::size_t k = 0; k < field.shapes.size(); ++k) {
+    const Bounds box = bounds(field.shapes[k]);
+    const Vec3 lower = box.lower - Vec3::Constant(reach), upper = box.upper + Vec3::Constant(reach);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if ((points[p].array() < lower.array()).any() || (points[p].array() > upper.array()).any()) continue;
+      if (signed_distance(field.shapes[k], points[p]) < reach)
+        pairs.push_back({static_cast<int>(p), static_cast<int>(k)});
+    }
+  }
+  return pairs;
+}
+
+BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field,
+                         std::vector<ContactPair> pairs, const BodyState& start, bool fixed_pressure)
+    : body_(body),
+      field_(field),
+      pairs_(std::move(pairs)),
+      start_(start.x),
+      volume_(start.volume),
+      multiplier_(start.multiplier),
+      fixed_pressure_(fixed_pressure) {}
+
+double BodyProblem::value(const VecX& x) const {
+  double sum = body_.shell().value(x);
+  if (!std::isfinite(sum)) return sum;
+  sum += body_.foundation().value(body_.quadrature(), x);
+  sum += field_.grip.value(body_.skin().stencils, x);
+  if (body_.bile()) {
+    sum += body_.bile()->value(x);
+    if (fixed_pressure_) sum -= multiplier_ * body_.bile()->volume(x);
+  }
+  for (const ContactPair& pair : pairs_) {
+    const double distance = signed_distance(field_.shapes[pair.shape], skin_point(body_, pair.row, x));
+    if (distance < field_.barrier.range)
+      sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
+  }
+  return sum;
+}
+
+void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
+  gradient.setZero(x.size());
+  body_.shell().add_gradient(x, gradient);
+  largest_internal = largest_node(gradient);
+  body_.foundation().add_gradient(body_.quadrature(), x, gradient);
+  field_.grip.add_gradient(body_.skin().stencils, x, gradient);
+  if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
+  for (const ContactPair& pair : pairs_) {
+    const Vec3 at = skin_point(body_, pair.row, x);
+    if (signed_distance(field_.shapes[pair.shape], at) >= field_.barrier.range) continue;
+    const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
+    const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
+    spread(body_.skin().stencils, pair.row, force * d.gradient, gradient);
+  }
+  // A body at rest carries no force yet: then the loads on it are the scale.
+  largest_internal = std::max(largest_internal, 1e-3 * largest_node(gradient));
+}
+
+void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
+  matrix.assign(body_.constant_hessian());
+  body_.shell().add_hessian(x, matrix);
+  field_.grip.add_hessian(body_.skin().stencils, matrix);
+  if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
+  for (const ContactPair& pair : pairs_) {
+    const Vec3 at = skin_point(body_, pair.row, x);
+    if (signed_distance(field_.shapes[pair.shape], at) >= field_.barrier.range) continue;
+    const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
+    const BarrierSample b = field_.barrier.sample(d.distance);
+    const Mat3 h = body_.skin_areas()[pair.row] *
+                   (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
+    add_point_hessian(body_.skin().stencils, pair.row, h, matrix);
+  }
+}
+
+double BodyProblem::constraint(const VecX& x, VecX& gradient) const {
+  gradient.setZero(x.size());
+  return body_.bile()->add_volume_gradient(x, gradient) - volume_;
+}
+
+double BodyProblem::constraint_value(const VecX& x) const { return body_.bile()->volume(x) - volume_; }
+
+double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
+  double share = 1.0;
+  for (int i = 0; i < body_.nodes(); ++i) {
+    const Vec3 move = step.segment<3>(3 * i);
+    const double length = move.norm();
+    if (length * share > body_.edge_lengths()[i]) share = body_.edge_lengths()[i] / length;
+    // Pairs were gathered for nodes that stay within the margin of where the solve began.
+    const Vec3 gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
+    if (!field_.shapes.empty() && (gone + share * move).norm() > contact_margin) {
+      const double left = contact_margin - gone.norm();
+      share = std::min(share, std::max(0.0, left) / length);
+    }
+  }
+  for (const ContactPair& pair : pairs_) {
+    const Shape& shape = field_.shapes[pair.shape];
+    const Vec3 motion = share * blend(body_.skin().stencils, body_.skin().stencils.value, pair.row, step);
+    const Vec3 at = skin_point(body_, pair.row, x);
+    if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
+    share *= calot::safe_share(
+        at, motion, [&shape](double) { return shape; }, 0.0, contact_keep);
+  }
+  return share;
+}
+
+NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
+                    NewtonWorkspace& work, BodyState& state, bool fixed_pressure) {
+  constexpr int max_rounds = 30;
+  NewtonResult total;
+  for (int round = 0; round < max_rounds; ++round) {
+    const VecX before = state.x;
+    const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state, fixed_pressure);
+    const NewtonResult result = solve_equilibrium(problem, settings, work, state.x, state.multiplier);
+    total.add(result);
+    const bool moved = (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;
+    if (result.converged() || result.status == NewtonStatus::mechanism || !moved) break;
+  }
+  return total;
+}
+
+std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
+                                         const Surroundings& field, const std::vector<ContactPair>& pairs) {
+  std::vector<ContactForce> out;
+  for (const ContactPair& pair : pairs) {
+    const Vec3 at = skin_point(body, pair.row, x);
+    const DistanceSample d = sample_distance(field.shapes[pair.shape], at);
+    if (d.distance >= field.barrier.range) continue;
+    const double pressure = field.barrier.sample(d.distance).derivative;
+    out.push_back({pair.shape, at, body.skin_areas()[pair.row] * pressure * d.gradient});
+  }
+  return out;
+}
+
+}  // namespace calot

@@ -1,0 +1,77 @@
+#pragma once
+// Static equilibrium of one organ against its bile, its bed, the shapes that touch it and the grips that hold
+// it.
+//
+// Converged, everywhere: largest nodal residual / largest internal nodal force and last increment / organ's
+// size both at most `tolerance` (a scenario's solver.tolerance), volume kept to 1e-10 of itself.
+
+#include "collision/barrier.h"
+#include "collision/shapes.h"
+#include "sim/virtual_structure.h"
+
+namespace calot {
+
+/// The field that acts on an organ during one solve; shapes do not move within it.
+struct Surroundings {
+  std::vector<Shape> shapes;
+  Barrier barrier;
+  Links grip;  ///< rows of the skin's stencils
+};
+
+/// A skin point near enough to a shape to meet it within a solve.
+struct ContactPair {
+  int row = 0;    ///< skin point
+  int shape = 0;  ///< index into Surroundings::shapes
+};
+
+/// How far outside the contact range pairs are gathered, m; no solve may move a node further than this.
+inline constexpr double contact_margin = 5e-3;
+
+/// No step takes a skin point nearer to a shape than this share of its distance before it.
+inline constexpr double contact_keep = 0.2;
+
+/// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then point.
+std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+                                      double extra);
+
+class BodyProblem : public ConstrainedEnergy {
+ public:
+  /// `fixed_pressure`: the multiplier is prescribed and the volume free.
+  BodyProblem(const VirtualStructure& body, const Surroundings& field, std::vector<ContactPair> pairs,
+              const BodyState& start, bool fixed_pressure = false);
+
+  bool constrained() const override { return body_.bile().has_value() && !fixed_pressure_; }
+  double value(const VecX& x) const override;
+  void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
+  void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override;
+  double constraint(const VecX& x, VecX& gradient) const override;
+  double constraint_value(const VecX& x) const override;
+  double constraint_scale() const override { return volume_; }
+  double length_scale() const override { return body_.size(); }
+  double safe_share(const VecX& x, const VecX& step) const override;
+
+ private:
+  const VirtualStructure& body_;
+  const Surroundings& field_;
+  std::vector<ContactPair> pairs_;
+  VecX start_;
+  double volume_, multiplier_;
+  bool fixed_pressure_;
+};
+
+/// Equilibrium in a field at rest, however far from `state` it is: where a solve ends at the margin, the next
+/// goes on from there with fresh pairs, always downhill. On failure `state` holds the last iterate. Counts of
+/// all rounds.
+NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
+                    NewtonWorkspace& work, BodyState& state, bool fixed_pressure = false);
+
+struct ContactForce {
+  int shape = 0;
+  Vec3 at = Vec3::Zero();        ///< skin point, m
+  Vec3 on_shape = Vec3::Zero();  ///< N, of the skin on the shape
+};
+/// One for each pair in range.
+std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
+                                         const Surroundings& field, const std::vector<ContactPair>& pairs);
+
+}  // namespace calot

@@ -1,0 +1,83 @@
+#include "sim/grip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace calot {
+namespace {
+
+/// Two walls between the pads, squeezed to this share of their thickness.
+constexpr double fold_squeeze = 0.6;
+
+bool faces_pad(const Vec3& local, const GrasperGeometry& g, double range) {
+  const double inset = g.jaw_rounding;
+  return local.x() < 0 && local.x() > -range && std::abs(local.y()) < 0.5 * g.jaw_width &&
+         local.z() > inset && local.z() < g.jaw_length;
+}
+
+}  // namespace
+
+void take_hold(Field& field, int instrument) {
+  const Tool& tool = field.tools[instrument];
+  for (Organ& organ : field.organs) {
+    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    std::vector<char> held(skin.size(), 0);
+    for (const GripPoint& grip : organ.grips) held[grip.row] = 1;
+    const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
+                              jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+    for (std::size_t p = 0; p < skin.size(); ++p) {
+      if (held[p]) continue;
+      const Vec3 local[2] = {to_local[0] * skin[p], to_local[1] * skin[p]};
+      const int jaw = local[0].x() >= local[1].x() ? 0 : 1;  // the nearer pad
+      if (faces_pad(local[jaw], tool.geometry, field.barrier.range))
+        organ.grips.push_back({instrument, jaw, static_cast<int>(p), local[jaw], grip_stiffness});
+    }
+    std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
+      return std::tie(a.instrument, a.jaw, a.row) < std::tie(b.instrument, b.jaw, b.row);
+    });
+  }
+}
+
+void loosen(Field& field, int instrument, double share) {
+  for (Organ& organ : field.organs)
+    for (GripPoint& grip : organ.grips)
+      if (grip.instrument == instrument) grip.stiffness *= share;
+}
+
+void let_go(Field& field, int instrument) {
+  for (Organ& organ : field.organs)
+    std::erase_if(organ.grips, [&](const GripPoint& g) { return g.instrument == instrument; });
+}
+
+bool fold_fills_jaws(const Field& field, int instrument) {
+  const Tool& tool = field.tools[instrument];
+  for (const Organ& organ : field.organs) {
+    int count[2] = {0, 0};
+    double depth = 0;  // along the jaws
+    for (const GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      ++count[grip.jaw];
+      depth += grip.local.z();
+    }
+    if (count[0] == 0 || count[1] == 0) continue;
+    const double gap = 2.0 * depth / (count[0] + count[1]) * std::sin(0.5 * tool.pose.jaw);
+    if (gap <= fold_squeeze * 2.0 * organ.definition.wall.thickness) return true;
+  }
+  return false;
+}
+
+Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
+                 const std::vector<InstrumentPose>& poses) {
+  Links links;
+  for (const GripPoint& grip : organ.grips) {
+    const Tool& tool = tools[grip.instrument];
+    links.row.push_back(grip.row);
+    links.target.push_back(jaw_frame(tool.trocar, poses[grip.instrument], tool.geometry, grip.jaw) *
+                           grip.local);
+    links.stiffness.push_back(grip.stiffness);
+  }
+  return links;
+}
+
+}  // namespace calot

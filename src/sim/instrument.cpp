@@ -1,0 +1,98 @@
+#include "sim/instrument.h"
+
+#include <cmath>
+
+#include "base/units.h"
+
+namespace calot {
+namespace {
+
+Mat3 turn(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
+
+/// Columns: the hinge frame's axes in the world.
+Mat3 hinge_rotation(const InstrumentPose& pose) {
+  const double half_turn = 180 * units::deg;
+  // A positive yaw turns the tip to +x, which is a negative turn about y for a shaft along -z.
+  return turn(pose.pitch, Vec3::UnitX()) * turn(-pose.yaw, Vec3::UnitY()) * turn(half_turn, Vec3::UnitX()) *
+         turn(pose.roll, Vec3::UnitZ());
+}
+
+/// Closed form, so that the tip does not inherit the rounding of four turns.
+Vec3 shaft_direction(const InstrumentPose& pose) {
+  return {std::sin(pose.yaw), std::cos(pose.yaw) * std::sin(pose.pitch),
+          -std::cos(pose.yaw) * std::cos(pose.pitch)};
+}
+
+/// Opening the jaws draws their ends back by this much along the shaft, m.
+double jaw_setback(double jaw, const GrasperGeometry& geometry) {
+  const double s = std::sin(jaw / 4);
+  return geometry.jaw_length * 2 * s * s;  // 1 - cos(jaw / 2)
+}
+
+double tip_depth(const InstrumentPose& pose, const GrasperGeometry& geometry) {
+  return pose.insertion - jaw_setback(pose.jaw, geometry);
+}
+
+RoundedBox jaw_box(const Pose& frame, const GrasperGeometry& geometry) {
+  const Vec3 outer_half(geometry.jaw_thickness / 2, geometry.jaw_width / 2, geometry.jaw_length / 2);
+  const Vec3 centre(geometry.jaw_thickness / 2, 0.0, geometry.jaw_length / 2);
+  return {frame * Pose(Eigen::Translation3d(centre)), outer_half - Vec3::Constant(geometry.jaw_rounding),
+          geometry.jaw_rounding};
+}
+
+}  // namespace
+
+Pose hinge_frame(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry) {
+  Pose frame = Pose::Identity();
+  frame.linear() = hinge_rotation(pose);
+  frame.translation() = trocar + shaft_direction(pose) * (pose.insertion - geometry.jaw_length);
+  return frame;
+}
+
+Pose jaw_frame(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry, int jaw) {
+  const double side = jaw == 0 ? 0.0 : 180 * units::deg;
+  Pose frame = hinge_frame(trocar, pose, geometry);
+  frame.linear() = frame.linear() * turn(side, Vec3::UnitZ()) * turn(pose.jaw / 2, Vec3::UnitY());
+  return frame;
+}
+
+Vec3 handle_position(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry) {
+  return trocar - shaft_direction(pose) * (geometry.working_length - pose.insertion);
+}
+
+std::vector<Shape> grasper_shapes(const Vec3& trocar, const InstrumentPose& pose,
+                                  const GrasperGeometry& geometry) {
+  const Vec3 shaft_end =
+      trocar + shaft_direction(pose) * (pose.insertion - geometry.jaw_length - geometry.shaft_radius);
+  return {Capsule{handle_position(trocar, pose, geometry), shaft_end, geometry.shaft_radius},
+          jaw_box(jaw_frame(trocar, pose, geometry, 0), geometry),
+          jaw_box(jaw_frame(trocar, pose, geometry, 1), geometry)};
+}
+
+Vec3 tip_position(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry) {
+  return trocar + shaft_direction(pose) * tip_depth(pose, geometry);
+}
+
+InstrumentPose pose_reaching(const Vec3& trocar, const Vec3& tip, double roll, double jaw,
+                             const GrasperGeometry& geometry) {
+  const Vec3 reach = tip - trocar;
+  InstrumentPose pose;
+  pose.roll = roll;
+  pose.jaw = jaw;
+  pose.insertion = reach.norm() + jaw_setback(jaw, geometry);
+  if (reach.squaredNorm() > 0) {
+    pose.pitch = std::atan2(reach.y(), -reach.z());
+    pose.yaw = std::atan2(reach.x(), std::hypot(reach.y(), reach.z()));
+  }
+  return pose;
+}
+
+Vec3 handle_force(const Vec3& /*trocar*/, const InstrumentPose& pose, const GrasperGeometry& geometry,
+                  const Vec3& tip_force) {
+  const Vec3 along = shaft_direction(pose);
+  const Vec3 axial = along * along.dot(tip_force);
+  const double lever = tip_depth(pose, geometry) / (geometry.working_length - pose.insertion);
+  return axial - (tip_force - axial) * lever;
+}
+
+}  // namespace calot

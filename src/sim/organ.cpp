@@ -1,0 +1,240 @@
+#include "sim/organ.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "geometry/mesh_io.h"
+#include "geometry/shapes.h"
+#include "sim/instrument.h"
+#include "skin/subdivision.h"
+
+namespace calot {
+namespace {
+
+/// Organ frame to world: z from neck to fundus, x towards the liver.
+Pose organ_frame(const OrganDefinition& definition) {
+  const Vec3 z = (definition.fundus - definition.neck).normalized();
+  const Vec3 x = (definition.liver_side - z * z.dot(definition.liver_side)).normalized();
+  Pose frame = Pose::Identity();
+  frame.linear().col(0) = x;
+  frame.linear().col(1) = z.cross(x);
+  frame.linear().col(2) = z;
+  frame.translation() = definition.neck;
+  return frame;
+}
+
+/// Vertices of the unstressed surface in the organ's frame, lower pole at the origin.
+Result<TriMesh> unstressed_mesh(const OrganDefinition& definition) {
+  if (const auto* file = std::get_if<MeshFile>(&definition.shape)) return read_obj(file->path, file->scale);
+  if (const auto* sphere = std::get_if<SphereShape>(&definition.shape)) {
+    Result<TriMesh> mesh = revolve(sphere_profile(sphere->radius), definition.nodes);
+    // The profile is centred; the organ stands on its lower pole.
+    if (mesh)
+      for (Vec3& p : mesh->points) p.z() += sphere->radius;
+    return mesh;
+  }
+  const auto& pear = std::get<PearShape>(definition.shape);
+  const Vec3 fundus(0, 0, pear.length);
+  // Finer where the pear narrows, and within the radius of the fundus, fading out over another radius.
+  const auto spacing = [&](const Vec3& p) {
+    const double far = ((p - fundus).norm() - pear.refine_radius) / pear.refine_radius;
+    const double blend = std::min(1.0, std::max(0.0, far));
+    const double near = 1.0 / pear.refine;
+    return pear_spacing(p, pear.length) * (near + (1.0 - near) * blend * blend * (3 - 2 * blend));
+  };
+  return revolve(pear_profile(pear.length, pear.width), definition.nodes, spacing);
+}
+
+constexpr double largest_organ = 0.4;  // m
+constexpr std::size_t most_nodes = 4000;
+
+/// What a mesh file may bring: neither a file in millimetres read as metres, nor a scan of a million
+/// triangles.
+std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : mesh.points) box.extend(p);
+  const double size = box.diagonal().norm();
+  if (size > largest_organ)
+    return fail(FailureKind::scenario, fmt::format("the mesh of organ '{}' is {:.3g} m across", organ, size),
+                "give its scale: 0.001 for a file in millimetres");
+  if (mesh.points.size() > most_nodes)
+    return fail(
+        FailureKind::scenario,
+        fmt::format("the mesh of organ '{}' has {} vertices", organ, mesh.points.size()),
+        fmt::format("simplify it to at most {}: they are control points, the skin is smooth", most_nodes));
+  return std::nullopt;
+}
+
+/// Control mesh in the world whose limit surface passes through the unstressed vertices; a mesh file is a
+/// control mesh already.
+Result<TriMesh> control_mesh(const OrganDefinition& definition) {
+  Result<TriMesh> mesh = unstressed_mesh(definition);
+  if (!mesh) return mesh;
+  if (std::optional<Failure> failure = check_size(mesh.value(), definition.name)) return *failure;
+  std::vector<Problem> problems = check(mesh.value());
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  if (!std::holds_alternative<MeshFile>(definition.shape)) {
+    Result<LoopSurface> surface = LoopSurface::create(mesh.value());
+    if (!surface) return surface.failure();
+    Result<std::vector<Vec3>> fitted = fit_to_limit(surface.value(), mesh->points);
+    if (!fitted) return fitted.failure();
+    mesh->points = fitted.value();
+  }
+  const Pose frame = organ_frame(definition);
+  for (Vec3& p : mesh->points) p = frame * p;
+  return mesh;
+}
+
+/// Where the analytic landmarks lie, m, world.
+std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
+                                            const std::vector<Vec3>& skin) {
+  const Pose frame = organ_frame(definition);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : skin) box.extend(frame.inverse() * p);
+  const Vec3 middle = box.center();
+  std::map<std::string, Vec3> places;
+  places["neck"] = frame * Vec3(middle.x(), middle.y(), box.min().z());
+  places["fundus"] = frame * Vec3(middle.x(), middle.y(), box.max().z());
+  places["bed"] = frame * Vec3(box.max().x(), middle.y(), middle.z());
+  places["body"] = frame * Vec3(box.min().x(), middle.y(), middle.z());
+  return places;
+}
+
+int nearest(const std::vector<Vec3>& points, const Vec3& place) {
+  int best = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((points[i] - place).squaredNorm() < (points[best] - place).squaredNorm()) best = static_cast<int>(i);
+  return best;
+}
+
+/// Volume and pressure that the author asked for, by small steps from the unstressed shape.
+Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings& settings) {
+  const BileDefinition& bile = organ.definition.bile;
+  const Bile& liquid = *organ.body.bile();
+  const double unstressed = liquid.volume(organ.state.x);
+  if (bile.fill_pressure) {
+    // The pressure at the highest point depends on where that point settles: a fixed point of few rounds.
+    double aim = 0;
+    bool settled = false;
+    for (int round = 0; round < 40 && !settled; ++round) {
+      const double ramp = std::min(1.0, 0.25 * (round + 1));
+      const double offset = liquid.pressure_at_top(organ.state.x, 0.0);
+      const double next = ramp * *bile.fill_pressure - offset;
+      organ.state.multiplier = next;
+      const NewtonResult result = settle(organ.body, field, settings, organ.work, organ.state, true);
+      if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
+      settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
+      aim = next;
+    }
+    if (!settled)
+      return fail(FailureKind::simulation,
+                  fmt::format("the pressure at the top of organ '{}' does not settle", organ.definition.name),
+                  "give fill_volume instead of fill_pressure, or a thicker or stiffer wall");
+    organ.state.volume = liquid.volume(organ.state.x);
+  } else {
+    const double target = bile.fill_volume.value_or(unstressed);
+    if (target > 8 * unstressed || target < 0.2 * unstressed)
+      return fail(FailureKind::scenario,
+                  fmt::format("organ '{}' holds {:.3g} mL unstressed and cannot take {:.3g} mL",
+                              organ.definition.name, 1e6 * unstressed, 1e6 * target),
+                  "give a fill_volume nearer to the shape's own");
+    const int steps = 1 + static_cast<int>(std::ceil(std::abs(target - unstressed) / (0.05 * unstressed)));
+    for (int k = 1; k <= steps; ++k) {
+      organ.state.volume = unstressed + (target - unstressed) * k / steps;
+      const NewtonResult result = settle(organ.body, field, settings, organ.work, organ.state, false);
+      if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
+    }
+  }
+  return true;
+}
+
+/// Contact is felt at skin points: they must stand closer than half a jaw is wide, or it would slip in
+/// between.
+std::optional<Failure> check_skin_spacing(const VirtualStructure& body) {
+  const double limit = 0.5 * GrasperGeometry{}.jaw_width;
+  double widest = 0;
+  const std::vector<Vec3>& skin = body.skin_rest();
+  for (const Triangle& t : body.skin().triangles)
+    for (int k = 0; k < 3; ++k) widest = std::max(widest, (skin[t[k]] - skin[t[(k + 1) % 3]]).norm());
+  if (widest <= limit) return std::nullopt;
+  return fail(
+      FailureKind::scenario,
+      fmt::format(
+          "the skin of organ '{}' has points {:.1f} mm apart, more than half a jaw is wide ({:.1f} mm)",
+          body.name(), 1e3 * widest, 1e3 * limit),
+      "give the organ more nodes");
+}
+
+}  // namespace
+
+Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {
+  const std::string hint = result.status == NewtonStatus::mechanism
+                               ? "give the organ a held region, or let something support it"
+                               : "move more slowly or less far, raise solver.rate, or give the organ more "
+                                 "nodes where it is handled";
+  return fail(FailureKind::simulation,
+              fmt::format("organ '{}' found no equilibrium {}: {} (residual {:.2g}, {} iterations)", organ,
+                          when, to_text(result.status), result.residual, result.iterations),
+              hint);
+}
+
+Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& field, const Vec3& up,
+                         double tolerance) {
+  Result<TriMesh> control = control_mesh(definition);
+  if (!control) return control.failure();
+  VirtualStructure::Setup setup;
+  setup.name = definition.name;
+  setup.control = control.value();
+  setup.material.membrane = {definition.wall.shear_modulus, definition.wall.thickness};
+  setup.material.bending = {definition.wall.shear_modulus, definition.wall.thickness};
+  setup.bile = definition.bile;
+  setup.up = up;
+  Result<LoopSurface> surface = LoopSurface::create(control.value());
+  if (!surface) return surface.failure();
+  const Tessellation corners = surface->tessellate(0);
+  const std::vector<Vec3> skin =
+      blend_all(corners.stencils, corners.stencils.value, to_coordinates(control->points));
+  const std::map<std::string, Vec3> places = landmark_places(definition, skin);
+  std::vector<int> caught(definition.held.size(), 0);
+  setup.foundation = [&](const Vec3& x) {
+    double stiffness = 0;
+    for (std::size_t k = 0; k < definition.held.size(); ++k) {
+      const HeldRegion& region = definition.held[k];
+      if ((x - places.at(region.landmark)).norm() >= region.radius) continue;
+      stiffness += region.stiffness;
+      ++caught[k];
+    }
+    return stiffness;
+  };
+  Result<VirtualStructure> body = VirtualStructure::create(setup);
+  if (!body) return body.failure();
+  for (std::size_t k = 0; k < caught.size(); ++k)
+    if (caught[k] == 0)
+      return fail(FailureKind::scenario,
+                  fmt::format("held region '{}' of organ '{}' is too small to catch any of its wall",
+                              definition.held[k].name, definition.name),
+                  "give it a larger radius, or the organ more nodes");
+  if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
+  NewtonWorkspace work(body->pattern());
+  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}};
+  organ.state.x = organ.body.rest();
+  organ.state.volume = organ.body.bile()->volume(organ.state.x);
+  for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))
+    organ.landmarks[name] = nearest(organ.body.skin_rest(), place);
+  for (const Shape& shape : field.shapes)
+    for (const Vec3& p : organ.body.skin_rest())
+      if (signed_distance(shape, p) <= 0)
+        return fail(FailureKind::scenario,
+                    fmt::format("organ '{}' starts {:.2g} mm inside the supporting plane", definition.name,
+                                -1e3 * signed_distance(shape, p)),
+                    "move the organ up or the plane down", {"", 0, "scene.anatomy.support.point"});
+  NewtonSettings settings;
+  settings.tolerance = tolerance;
+  Result<bool> filled = fill(organ, field, settings);
+  if (!filled) return filled.failure();
+  return organ;
+}
+
+}  // namespace calot

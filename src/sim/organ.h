@@ -1,0 +1,36 @@
+#pragma once
+// An organ of the world: its structure, where it is now, and what grips it.
+
+#include <map>
+#include <string>
+
+#include "sim/equilibrium.h"
+
+namespace calot {
+
+/// A skin point that a pad holds: it keeps its place in the jaw's frame until the jaw opens.
+struct GripPoint {
+  int instrument = 0, jaw = 0;
+  int row = 0;                ///< skin point
+  Vec3 local = Vec3::Zero();  ///< m, in the jaw's frame
+  double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
+};
+
+struct Organ {
+  OrganDefinition definition;
+  VirtualStructure body;
+  BodyState state;
+  NewtonWorkspace work;
+  std::map<std::string, int> landmarks;  ///< skin point of each
+  std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
+};
+
+/// Builds the organ and brings it to rest under its bile (and on `field`). Failures: scenario (a mesh that
+/// cannot be used) or simulation (no rest state found).
+Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& field, const Vec3& up,
+                         double tolerance);
+
+/// A failed solve in words: what happened, and what to change.
+Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);
+
+}  // namespace calot

@@ -1,0 +1,82 @@
+#include "sim/tool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/barrier.h"
+
+namespace calot {
+
+InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share) {
+  if (share >= 1.0) return b;
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  return {mix(a.pitch, b.pitch), mix(a.yaw, b.yaw), mix(a.insertion, b.insertion), mix(a.roll, b.roll),
+          mix(a.jaw, b.jaw)};
+}
+
+Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part) {
+  const auto frame = [&](const InstrumentPose& pose) {
+    return part == 0 ? hinge_frame(tool.trocar, pose, tool.geometry)
+                     : jaw_frame(tool.trocar, pose, tool.geometry, part - 1);
+  };
+  return frame(to) * frame(from).inverse();
+}
+
+double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b) {
+  const double reach = std::max(a.insertion, b.insertion) + tool.geometry.jaw_width;
+  const double jaws = tool.geometry.jaw_length + tool.geometry.jaw_width;
+  return std::abs(b.insertion - a.insertion) +
+         reach * (std::abs(b.pitch - a.pitch) + std::abs(b.yaw - a.yaw)) +
+         jaws * (0.5 * std::abs(b.jaw - a.jaw) + std::abs(b.roll - a.roll));
+}
+
+namespace {
+
+Shape inflated(const Shape& shape, double by) {
+  Shape out = shape;
+  if (auto* capsule = std::get_if<Capsule>(&out)) capsule->radius += by;
+  if (auto* box = std::get_if<RoundedBox>(&out)) box->radius += by;
+  return out;
+}
+
+/// Chord error of a path of unit duration is at most an eighth of its largest acceleration: turning about the
+/// trocar (lever rho) and the hinge, and turning while moving.
+double path_bend(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b, const Vec3& x,
+                 double moved) {
+  const double turn = std::abs(b.pitch - a.pitch) + std::abs(b.yaw - a.yaw) + std::abs(b.roll - a.roll) +
+                      0.5 * std::abs(b.jaw - a.jaw);
+  const double lever = (x - tool.trocar).norm() + moved;
+  return 0.125 * turn * (turn * lever + 2.0 * (moved + std::abs(b.insertion - a.insertion)));
+}
+
+}  // namespace
+
+double joint_share(const Tool& tool, int part, const Shape& shape, const InstrumentPose& from,
+                   const InstrumentPose& to, const Vec3& x, const Vec3& motion, double keep) {
+  const double gap = signed_distance(shape, x);
+  if (gap <= 0) return 0;
+  if ((1.0 - keep) * gap > travel_bound(tool, from, to) + motion.norm()) return 1.0;
+  // The bend falls with the square of the share, so few halvings make it small beside the gap.
+  double share = 1.0;
+  while (path_bend(tool, from, interpolate(from, to, share), x, share * motion.norm()) > 0.25 * gap)
+    share *= 0.5;
+  const InstrumentPose until = interpolate(from, to, share);
+  const double bend = path_bend(tool, from, until, x, share * motion.norm());
+  const Vec3 path = part_motion(tool, from, until, part).inverse() * (x + share * motion) - x;
+  if (path.norm() + bend < (1.0 - keep) * gap) return share;
+  const Shape grown = inflated(shape, bend);
+  return share * safe_share(
+                     x, path, [&grown](double) { return grown; }, 0.0, keep);
+}
+
+std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid) {
+  std::vector<double> stops;
+  const double change = to.jaw - from.jaw;
+  if (!(change < 0)) return stops;
+  constexpr double slack = 1e-9;  // of the grid: an angle that a step ends on is that step's, not the next's
+  for (double k = std::ceil(from.jaw / grid - slack) - 1; k >= to.jaw / grid - slack; --k)
+    stops.push_back(std::min(1.0, (k * grid - from.jaw) / change));
+  return stops;
+}
+
+}  // namespace calot

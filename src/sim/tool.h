@@ -1,0 +1,43 @@
+#pragma once
+// An instrument of the world: its definition, where it is now, and how it moves between two poses.
+
+#include <string>
+#include <vector>
+
+#include "collision/shapes.h"
+#include "sim/instrument.h"
+
+namespace calot {
+
+struct Tool {
+  InstrumentDefinition definition;
+  GrasperGeometry geometry;
+  Vec3 trocar = Vec3::Zero();  ///< m
+  InstrumentPose pose;
+  bool touched = false, over_limit = false;  ///< at the last step, for events
+  bool jaw_stopped = false;                  ///< the jaws rest on the fold they hold
+};
+
+inline constexpr int shapes_per_tool = 3;  ///< shaft, jaw 0, jaw 1
+
+InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
+
+/// Rigid motion (world to world) of shape `part` (0 shaft, 1 and 2 the jaws) from one pose to another.
+Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part);
+
+/// Share (0 to 1] of the joint motion of a point (x to x + motion, m) and a tool's part (`shape`, from one
+/// pose to another) that keeps them further apart than `keep` times their present distance. Judged in the
+/// part's own frame, where a point that is carried along hardly moves; the path's departure from a straight
+/// line there is bounded by the turn squared and taken off the distance.
+double joint_share(const Tool& tool, int part, const Shape& shape, const InstrumentPose& from,
+                   const InstrumentPose& to, const Vec3& x, const Vec3& motion, double keep);
+
+/// Bound on the way that any point of a tool's part inside the field travels between two poses, m.
+double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b);
+
+/// Shares (0, 1] of a motion at which closing jaws reach multiples of `grid`, increasing: the only moments at
+/// which grips are taken, so that what is gripped does not depend on the rate of the steps. Of two motions in
+/// a row the first has the angle at which they meet.
+std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid);
+
+}  // namespace calot

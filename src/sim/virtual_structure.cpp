@@ -1,0 +1,107 @@
+#include "sim/virtual_structure.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/units.h"
+#include "skin/subdivision.h"
+
+namespace calot {
+namespace {
+
+std::vector<FacePoint> quadrature_points(int faces, const std::vector<QuadraturePoint>& rule) {
+  std::vector<FacePoint> points;
+  for (int f = 0; f < faces; ++f)
+    for (const QuadraturePoint& q : rule) points.push_back({f, q.u, q.v});
+  return points;
+}
+
+std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<double> areas(points.size(), 0.0);
+  for (const Triangle& t : triangles) {
+    const double area = 0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
+    for (int p : t) areas[p] += area / 3.0;
+  }
+  return areas;
+}
+
+std::vector<double> shortest_edges(const TriMesh& mesh) {
+  std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity());
+  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      const double length = (mesh.points[a] - mesh.points[b]).norm();
+      shortest[a] = std::min(shortest[a], length);
+      shortest[b] = std::min(shortest[b], length);
+    }
+  }
+  return shortest;
+}
+
+}  // namespace
+
+Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
+  Result<LoopSurface> surface = LoopSurface::create(setup.control);
+  if (!surface) return surface.failure();
+  VirtualStructure body;
+  body.name_ = setup.name;
+  body.control_ = setup.control;
+  body.rest_ = to_coordinates(setup.control.points);
+  const int faces = surface->faces();
+  body.quadrature_ = surface->evaluate(quadrature_points(faces, setup.rule), 2);
+  Result<Shell> shell = Shell::create(body.quadrature_, setup.rule, body.rest_, setup.material);
+  if (!shell) return shell.failure();
+  body.shell_ = std::move(shell).value();
+
+  body.skin_ = surface->tessellate(skin_level);
+  body.skin_rest_ = body.skin_positions(body.rest_);
+  body.skin_areas_ = lumped_areas(body.skin_rest_, body.skin_.triangles);
+  body.edge_lengths_ = shortest_edges(setup.control);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : body.skin_rest_) box.extend(p);
+  body.size_ = box.diagonal().norm();
+
+  body.cliques_ = body.shell_.cliques();
+  if (setup.bile) {
+    const double weight = setup.bile->density * units::standard_gravity;
+    Result<Bile> bile = Bile::create(surface->tessellate(bile_level), faces, weight, setup.up, box.center());
+    if (!bile) return bile.failure();
+    body.bile_ = std::move(bile).value();
+    for (std::vector<int>& clique : body.bile_->cliques()) body.cliques_.push_back(std::move(clique));
+  }
+  for (int r = 0; r < body.skin_.stencils.rows(); ++r) {
+    const StencilTable& s = body.skin_.stencils;
+    body.cliques_.emplace_back(s.node.begin() + s.begin[r], s.node.begin() + s.begin[r + 1]);
+  }
+  if (setup.foundation) {
+    const std::vector<double> areas = body.shell_.point_areas();
+    for (int r = 0; r < body.quadrature_.rows(); ++r) {
+      const Vec3 at = blend(body.quadrature_, body.quadrature_.value, r, body.rest_);
+      const double stiffness = setup.foundation(at) * areas[r];
+      if (stiffness <= 0) continue;
+      body.foundation_.row.push_back(r);
+      body.foundation_.target.push_back(at);
+      body.foundation_.stiffness.push_back(stiffness);
+    }
+  }
+  BlockMatrix constant = body.pattern();
+  body.foundation_.add_hessian(body.quadrature_, constant);
+  body.constant_hessian_ = constant.entries();
+  return body;
+}
+
+BlockMatrix VirtualStructure::pattern() const { return BlockMatrix(nodes(), cliques_); }
+
+std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
+  return blend_all(skin_.stencils, skin_.stencils.value, x);
+}
+
+std::vector<Vec3> VirtualStructure::skin_normals(const VecX& x) const {
+  const std::vector<Vec3> u = blend_all(skin_.stencils, skin_.stencils.du, x);
+  const std::vector<Vec3> v = blend_all(skin_.stencils, skin_.stencils.dv, x);
+  std::vector<Vec3> normals(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) normals[i] = u[i].cross(v[i]).normalized();
+  return normals;
+}
+
+}  // namespace calot

@@ -1,0 +1,260 @@
+#include "sim/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+#include "sim/advance.h"
+
+namespace calot {
+namespace {
+
+Vec3 up_direction(const AnatomyDefinition& anatomy) {
+  // The table turns the patient, so in the patient's frame gravity turns the other way: head up first (about
+  // +x), then left side down (about +y).
+  const Eigen::AngleAxisd head_up(-anatomy.table_head_up, Vec3::UnitX());
+  const Eigen::AngleAxisd left_down(-anatomy.table_left_down, Vec3::UnitY());
+  return (head_up * left_down * Vec3::UnitZ()).normalized();
+}
+
+}  // namespace
+
+struct World::Impl {
+  SceneDefinition scene;
+  Vec3 up = Vec3::UnitZ();
+  Field field;
+  StepReport report;
+  long steps = 0;
+  bool failed = false;
+  Failure failure;
+
+  void observe(std::vector<WorldEvent> events);
+  InstrumentState instrument_state(std::size_t index, const ToolLoad& load) const;
+  OrganState organ_state(const Organ& organ) const;
+  std::uint64_t hash() const;
+};
+
+std::uint64_t World::Impl::hash() const {
+  Hash hash;
+  hash.add(steps);
+  for (const Organ& organ : field.organs) {
+    hash.add(std::span<const double>(organ.state.x.data(), static_cast<std::size_t>(organ.state.x.size())));
+    hash.add(organ.state.multiplier);
+    hash.add(organ.state.volume);
+    for (const GripPoint& grip : organ.grips) {
+      hash.add(grip.instrument);
+      hash.add(grip.jaw);
+      hash.add(grip.row);
+      hash.add(std::span<const double>(grip.local.data(), 3));
+    }
+  }
+  for (const Tool& tool : field.tools) hash.add(tool.jaw_stopped);
+  for (const Tool& tool : field.tools)
+    for (double v : {tool.pose.pitch, tool.pose.yaw, tool.pose.insertion, tool.pose.roll, tool.pose.jaw})
+      hash.add(v);
+  return hash.value();
+}
+
+InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad& load) const {
+  const Tool& tool = field.tools[index];
+  InstrumentState state;
+  state.pose = tool.pose;
+  state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
+  state.tip_force = load.force;
+  // The force at the tip that has the same moment about the trocar: what touches the shaft has a shorter
+  // lever.
+  const Vec3 arm = state.tip - tool.trocar, axis = arm.normalized();
+  const Vec3 at_tip = axis * axis.dot(load.force) + load.moment.cross(axis) / arm.norm();
+  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, at_tip);
+  for (const Organ& organ : field.organs) {
+    const int held = grip_count(organ, static_cast<int>(index));
+    state.grip_points += held;
+    if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
+  }
+  state.touching = load.touches > 0;
+  return state;
+}
+
+OrganState World::Impl::organ_state(const Organ& organ) const {
+  OrganState state;
+  const VecX& x = organ.state.x;
+  state.pressure = organ.body.bile()->pressure_at_top(x, organ.state.multiplier);
+  state.volume = organ.body.bile()->volume(x);
+  state.energy = organ.body.shell().value(x);
+  state.max_stretch = organ.body.shell().max_stretch(x);
+  return state;
+}
+
+void World::Impl::observe(std::vector<WorldEvent> events) {
+  const std::vector<ToolLoad> loads = tool_loads(field);
+  report.time = static_cast<double>(steps) / scene.solver.rate;
+  report.instruments.clear();
+  for (std::size_t i = 0; i < field.tools.size(); ++i)
+    report.instruments.push_back(instrument_state(i, loads[i]));
+  const std::vector<OrganState> before = std::exchange(report.organs, {});
+  for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
+
+  // Events are raised when a condition begins, not while it lasts.
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const InstrumentState& state = report.instruments[i];
+    const std::string& organ = loads[i].organ;
+    if (state.touching && !tool.touched) events.push_back({"contact", 0, tool.definition.name, organ, 0});
+    const double force = state.tip_force.norm();
+    const bool over = force > tool.definition.force_limit;
+    if (over && !tool.over_limit) events.push_back({"overforce", 0, tool.definition.name, organ, force});
+    tool.touched = state.touching;
+    tool.over_limit = over;
+  }
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const double limit = field.organs[k].definition.wall.overstretch;
+    const bool was = k < before.size() && before[k].max_stretch > limit;
+    if (report.organs[k].max_stretch > limit && !was)
+      events.push_back({"overstretch", 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
+  }
+  for (WorldEvent& event : events) event.time = report.time;
+  report.events = std::move(events);
+  report.state_hash = hash();
+}
+
+namespace {
+
+/// Inputs come from files and devices too: no pose may be beyond what the instrument can do.
+std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) {
+  const GrasperGeometry& g = tool.geometry;
+  const bool finite = std::isfinite(pose.pitch + pose.yaw + pose.insertion + pose.roll + pose.jaw);
+  const double slack = 1e-9;
+  if (finite && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
+      pose.jaw <= g.jaw_opening + slack &&
+      std::max({std::abs(pose.pitch), std::abs(pose.yaw), std::abs(pose.roll)}) < 100)
+    return std::nullopt;
+  return fail(
+      FailureKind::scenario,
+      fmt::format(
+          "instrument '{}' cannot take the pose pitch {:.3g}, yaw {:.3g}, roll {:.3g}, jaw {:.3g} rad, "
+          "insertion {:.3g} m",
+          tool.definition.name, pose.pitch, pose.yaw, pose.roll, pose.jaw, pose.insertion),
+      fmt::format("its insertion is at most {:.2f} m, its jaws open from 0 to {:.2f} rad", g.max_insertion,
+                  g.jaw_opening));
+}
+
+}  // namespace
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+Result<World> World::create(const SceneDefinition& scene) {
+  std::vector<Problem> problems = validate(scene);
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  auto impl = std::make_unique<Impl>();
+  impl->scene = scene;
+  if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
+  impl->up = up_direction(scene.anatomy);
+  impl->field.tolerance = scene.solver.tolerance;
+  if (scene.anatomy.support)
+    impl->field.support = Plane{scene.anatomy.support->point, scene.anatomy.support->normal.normalized()};
+  Surroundings still;
+  if (impl->field.support) still.shapes.push_back(*impl->field.support);
+  for (const OrganDefinition& definition : scene.anatomy.organs) {
+    Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance);
+    if (!organ) return organ.failure();
+    impl->field.organs.push_back(std::move(organ).value());
+  }
+  World world(std::move(impl));
+  for (const InstrumentDefinition& definition : scene.instruments) {
+    Tool tool;
+    tool.definition = definition;
+    tool.trocar = world.port_position(definition.port);
+    // Waiting in the trocar, closed, pointing at the first organ, just far enough in to be seen to come.
+    const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
+                                                       : Vec3(world.skin_positions(0).front());
+    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0);
+    tool.pose.insertion = 1.5 * tool.geometry.jaw_length;
+    world.impl_->field.tools.push_back(tool);
+  }
+  if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
+  world.impl_->observe({});
+  return world;
+}
+
+Result<StepReport> World::step(const StepInput& input) {
+  Impl& self = *impl_;
+  if (self.failed) return self.failure;
+  if (input.instruments.size() != self.field.tools.size())
+    return fail(FailureKind::internal, fmt::format("a step needs {} instrument poses, not {}",
+                                                   self.field.tools.size(), input.instruments.size()));
+  for (std::size_t i = 0; i < self.field.tools.size(); ++i)
+    if (std::optional<Failure> failure = check_pose(self.field.tools[i], input.instruments[i]))
+      return *failure;
+  self.report.statistics = {};
+  Result<std::vector<WorldEvent>> events = advance(self.field, input.instruments, self.report.statistics);
+  if (!events) {
+    self.failed = true;
+    self.failure = events.failure();
+    for (Problem& problem : self.failure.problems)
+      problem.message +=
+          fmt::format(", at {:.3f} s", static_cast<double>(self.steps + 1) / self.scene.solver.rate);
+    return self.failure;
+  }
+  ++self.steps;
+  self.observe(std::move(events).value());
+  return self.report;
+}
+
+const SceneDefinition& World::scene() const { return impl_->scene; }
+const StepReport& World::report() const { return impl_->report; }
+std::uint64_t World::state_hash() const { return impl_->report.state_hash; }
+Vec3 World::up() const { return impl_->up; }
+
+Vec3 World::port_position(const std::string& port) const {
+  for (const PortDefinition& p : impl_->scene.ports)
+    if (p.name == port) return p.position;
+  return Vec3::Zero();  // validated: every named port exists
+}
+
+namespace {
+
+/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
+std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  for (std::size_t k = 0; k < organs.size() && dot != std::string::npos; ++k) {
+    if (organs[k].definition.name != name.substr(0, dot)) continue;
+    const auto found = organs[k].landmarks.find(name.substr(dot + 1));
+    if (found != organs[k].landmarks.end()) return {static_cast<int>(k), found->second};
+  }
+  return {0, -1};
+}
+
+}  // namespace
+
+Vec3 World::landmark(const std::string& name) const {
+  const auto [organ, row] = find_landmark(impl_->field.organs, name);
+  if (row < 0) return Vec3::Zero();
+  const Organ& at = impl_->field.organs[organ];
+  return blend(at.body.skin().stencils, at.body.skin().stencils.value, row, at.state.x);
+}
+
+Vec3 World::landmark_normal(const std::string& name) const {
+  const auto [organ, row] = find_landmark(impl_->field.organs, name);
+  if (row < 0) return Vec3::UnitZ();
+  return skin_normals(organ)[row];
+}
+
+const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body.skin(); }
+std::vector<Vec3> World::skin_positions(int organ) const {
+  return impl_->field.organs[organ].body.skin_positions(impl_->field.organs[organ].state.x);
+}
+std::vector<Vec3> World::skin_normals(int organ) const {
+  return impl_->field.organs[organ].body.skin_normals(impl_->field.organs[organ].state.x);
+}
+const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
+  return impl_->field.organs[organ].body.skin_rest();
+}
+
+double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }
+
+}  // namespace calot

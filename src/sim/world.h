@@ -1,0 +1,103 @@
+#pragma once
+// The simulated operating field: const definition in, mutable state inside, one step at a time.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anatomy/definitions.h"
+#include "geometry/stencil.h"
+#include "sim/instrument.h"
+
+namespace calot {
+
+/// Target poses at the end of the step, one an instrument in the definition's order: the only input there is,
+/// whatever its source (demo, recording, live device).
+struct StepInput {
+  std::vector<InstrumentPose> instruments;
+};
+
+/// Kinds: contact, grasp, release, overforce, overstretch.
+struct WorldEvent {
+  std::string kind;
+  double time = 0;         ///< s
+  std::string instrument;  ///< may be empty
+  std::string organ;       ///< may be empty
+  double value = 0;        ///< N for forces, stretch for overstretch, else 0
+};
+
+struct InstrumentState {
+  InstrumentPose pose;
+  Vec3 tip = Vec3::Zero();           ///< m
+  Vec3 tip_force = Vec3::Zero();     ///< N, of the tissue on the instrument
+  Vec3 handle_force = Vec3::Zero();  ///< N, felt at the handle, lever about the trocar
+  bool touching = false;
+  std::string holds;  ///< organ's name, empty when nothing is held
+  int grip_points = 0;
+};
+
+struct OrganState {
+  double pressure = 0;     ///< Pa, gauge, at the highest point
+  double volume = 0;       ///< m^3 enclosed
+  double energy = 0;       ///< J, wall
+  double max_stretch = 1;  ///< largest principal stretch of the wall
+};
+
+struct SolveStatistics {
+  int substeps = 0;
+  int newton_iterations = 0;
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;  ///< time, not part of any hash
+};
+
+struct StepReport {
+  double time = 0;  ///< s, at the end of the step
+  std::vector<InstrumentState> instruments;
+  std::vector<OrganState> organs;
+  std::vector<WorldEvent> events;
+  SolveStatistics statistics;
+  std::uint64_t state_hash = 0;
+};
+
+class World {
+ public:
+  /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
+  /// (validation) or simulation (the rest state could not be found).
+  static Result<World> create(const SceneDefinition& scene);
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  ~World();
+
+  /// Advances by 1 / rate. On failure (FailureKind::simulation) the message says where, when and what to
+  /// change; the state stays that of the last converged sub-step and further steps fail alike.
+  Result<StepReport> step(const StepInput& input);
+
+  const SceneDefinition& scene() const;
+  /// The report of the last step (of the rest state before the first).
+  const StepReport& report() const;
+  std::uint64_t state_hash() const;
+
+  /// Upward direction (unit): minus gravity, turned by the table's tilt.
+  Vec3 up() const;
+  Vec3 port_position(const std::string& port) const;
+  /// Present place of "organ.landmark" on the skin, m.
+  Vec3 landmark(const std::string& organ_and_landmark) const;
+  /// Outward unit normal of the skin there.
+  Vec3 landmark_normal(const std::string& organ_and_landmark) const;
+
+  /// The skin that is drawn and touched: triangles fixed, positions present; rest positions for texture.
+  const Tessellation& skin(int organ) const;
+  std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
+  std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
+  const std::vector<Vec3>& skin_rest_positions(int organ) const;
+  /// Deepest penetration of any instrument part into the skin (m, 0 when none), tested on a finer
+  /// tessellation than contact uses: for tests and reports.
+  double deepest_penetration() const;
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calot

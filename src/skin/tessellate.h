@@ -1,0 +1,13 @@
+#pragma once
+// The connectivity of an even, crack-free split of triangles; inner to this room.
+
+#include "geometry/stencil.h"
+
+namespace calot {
+
+/// Each triangle split into 4^level, edges into 2^level. Points: the nodes 0 .. nodes - 1 first, then those
+/// on edges and inside triangles in the order in which the triangles meet them. Stencils are left empty.
+/// Every node must belong to a triangle.
+Tessellation split_faces(int nodes, const std::vector<Triangle>& triangles, int level);
+
+}  // namespace calot

@@ -1,0 +1,49 @@
+#include "view/build_scene.h"
+
+#include "view/grasper_mesh.h"
+#include "view/laparoscope.h"
+#include "view/organ_frame.h"
+#include "view/vessels.h"
+
+namespace calot {
+
+SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())) {
+  const SceneDefinition& scene = world.scene();
+  camera_ = laparoscope_camera(scene.laparoscope, world.port_position(scene.laparoscope.port),
+                               world.landmark(scene.laparoscope.look_at));
+  for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i) {
+    const Pose to_organ = organ_frame(scene.anatomy.organs[i]).inverse();
+    std::vector<Vec3> rest = world.skin_rest_positions(static_cast<int>(i));
+    for (Vec3& p : rest) p = to_organ * p;
+    SceneMesh mesh;
+    const bool sphere = std::holds_alternative<SphereShape>(scene.anatomy.organs[i].shape);
+    mesh.material = sphere ? Material::membrane : Material::gallbladder;
+    mesh.triangles = world.skin(static_cast<int>(i)).triangles;
+    mesh.vessels = grow_vessels(rest, mesh.triangles);
+    mesh.rest_positions = std::move(rest);
+    organs_.push_back(std::move(mesh));
+  }
+}
+
+Scene SceneBuilder::build(const World& world) const {
+  const SceneDefinition& definition = world.scene();
+  Scene scene;
+  scene.camera = camera_;
+  for (std::size_t i = 0; i < definition.instruments.size(); ++i) {
+    const Vec3 trocar = world.port_position(definition.instruments[i].port);
+    for (SceneMesh& mesh : grasper_meshes(trocar, world.report().instruments[i].pose, GrasperGeometry{}))
+      scene.meshes.push_back(std::move(mesh));
+  }
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    SceneMesh mesh = organs_[i];
+    mesh.positions = world.skin_positions(static_cast<int>(i));
+    mesh.normals = world.skin_normals(static_cast<int>(i));
+    scene.meshes.push_back(std::move(mesh));
+  }
+  scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());
+  return scene;
+}
+
+Scene build_scene(const World& world) { return SceneBuilder(world).build(world); }
+
+}  // namespace calot

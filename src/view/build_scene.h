@@ -1,0 +1,29 @@
+#pragma once
+
+#include "render/scene.h"
+#include "sim/world.h"
+
+namespace calot {
+
+/// What the laparoscope would see. Keeps what does not change from step to step; build one for a world.
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const World& world);
+  /// The picture of the world's present state. The laparoscope stays where it stood at the builder's making:
+  /// a camera held still, not one glued to the moving organ.
+  Scene build(const World& world) const;
+
+ private:
+  SceneCamera camera_;
+  std::vector<SceneMesh> still_;  // liver and surroundings, or the support
+  std::vector<SceneMesh>
+      organs_;  // all that does not move of them: material, rest positions, triangles, vessels
+};
+
+/// A builder used once.
+Scene build_scene(const World& world);
+
+/// What stands still around a scene's organs.
+std::vector<SceneMesh> still_meshes(const SceneDefinition& scene);
+
+}  // namespace calot

@@ -1,0 +1,142 @@
+#include "view/surroundings.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "view/organ_frame.h"
+#include "view/surfaces.h"
+
+namespace calot {
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr double pi = std::numbers::pi;
+
+double bump(double x, double width) { return std::exp(-x * x / (width * width)); }
+
+/// A sum of waves of no common period, in [-1, 1]: broad lobes of an organ.
+double lobes(double x, double y) {
+  return (std::sin(x + 1.3 * std::sin(0.7 * y)) + std::sin(1.31 * y + 0.9 * std::sin(0.83 * x) + 2.1) +
+          std::sin(0.71 * (x + y) + 4.0)) /
+         3;
+}
+
+/// The liver's section across its margin, in (x, z) of the organ's frame, by arc length (m) from the margin's
+/// foremost point; negative runs along the visceral surface, positive along the front.
+class LiverSection {
+ public:
+  LiverSection() {
+    // Curvature (1/m) by arc length, integrated both ways from the foremost point, where the surface faces
+    // +z.
+    for (int i = 0; i <= steps; ++i) {
+      front_.push_back(advance(front_, i * step, +1));
+      visceral_.push_back(advance(visceral_, i * step, -1));
+    }
+  }
+  Vec2 at(double s) const {
+    const auto& side = s < 0 ? visceral_ : front_;
+    const double place = std::abs(s) / step;
+    const int i = std::min(static_cast<int>(place), steps - 1);
+    const double f = place - i;
+    return side[i].place * (1 - f) + side[i + 1].place * f;
+  }
+  static constexpr int steps = 360;
+  static constexpr double step = 0.5 * mm, length = steps * step;
+
+ private:
+  struct Sample {
+    Vec2 place{0, 0};
+    double angle = 0;  // of the normal from +z: towards +x on the front, towards -x on the visceral side
+  };
+  static double curvature(double s, double side) {
+    if (side < 0) return s < 17 * mm ? 1 / (11 * mm) : 0.0;
+    return s < 7 * mm ? 1 / (16 * mm) : s < 150 * mm ? 1 / (150 * mm) : 0.0;
+  }
+  static Sample advance(const std::vector<Sample>& done, double s, double side) {
+    if (done.empty()) return {};
+    Sample next = done.back();
+    next.angle += curvature(s, side) * step;
+    next.place += step * Vec2(side * std::cos(next.angle), -std::sin(next.angle));
+    return next;
+  }
+  std::vector<Sample> front_, visceral_;
+};
+
+SceneMesh abdominal_wall(const Vec3& centre) {
+  const Vec3 half(210 * mm, 230 * mm, 135 * mm);
+  SceneMesh wall = sheet(Material::peritoneum, 28, 20, [&](double u, double v) {
+    const double a = 2 * pi * u, b = pi * v;  // runs so that its normals point inward, whence it is seen
+    const Vec3 d(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b));
+    const double fold = 1 + 0.04 * lobes(9 * d.x() + 3 * d.z(), 8 * d.y());
+    return Vec3(centre + fold * d.cwiseProduct(half));
+  });
+  return wall;
+}
+
+}  // namespace
+
+SceneMesh liver_mesh(const OrganDefinition& organ) {
+  const OrganExtent extent = organ_extent(organ);
+  const LiverSection section;
+  const double bed = 0.62 * extent.radius;       // x of the visceral surface at the fossa
+  const double margin = 0.80 * extent.length;    // z of the margin at the fossa
+  const double foot = section.at(-20 * mm).x();  // x of the visceral plane in the section
+  SceneMesh mesh = sheet(Material::liver, 40, 44, [&](double u, double v) {
+    const double across = (160 - 260 * u) * mm;  // towards the patient's right
+    // Rows are denser at the margin.
+    const double t = 2 * v - 1, s = (0.2 * t + 0.8 * t * t * t) * LiverSection::length;
+    const Vec2 p = section.at(s);
+    const double visceral = 0.5 - 0.5 * std::tanh(p.x() / (10 * mm));
+    const double fossa = bump(across, 1.25 * extent.radius);
+    double x = bed + (p.x() - foot) - (1 - fossa) * visceral * 0.55 * extent.radius;
+    double z = margin + p.y() + 6 * mm * lobes(across / (22 * mm), 1.0) - 6 * mm * fossa +
+               7 * mm * (1 - bump(across, 60 * mm));
+    const double right = std::max(across, 0.0), left = std::min(across, 0.0);
+    x += left * left / 0.9 - right * right / 1.2;  // the margin rises to the patient's left
+    z += 0.45 * across;                            // and comes down along the costal margin to the right
+    const double swell = 1.5 * mm * lobes(across / (15 * mm), s / (13 * mm));
+    return Vec3(x + swell * (1 - fossa), across, z + 0.4 * swell);
+  });
+  move(mesh, organ_frame(organ));
+  return mesh;
+}
+
+std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ) {
+  const Pose frame = organ_frame(organ);
+  const OrganExtent extent = organ_extent(organ);
+  const Vec3 neck = organ.neck, middle = frame * Vec3(0, 0, 0.5 * extent.length);
+  SceneMesh omentum = sheet(Material::fat, 36, 36, [&](double u, double v) {
+    const auto spread = [](double t) {
+      return (0.45 * t + 0.55 * t * t * t) * 190 * mm;
+    };  // denser in the middle
+    const double x = spread(2 * u - 1), y = spread(2 * v - 1);
+    double z = neck.z() - 16 * mm - middle.z();
+    z += 7 * mm * lobes(x / (19 * mm), y / (17 * mm)) + 2.6 * mm * lobes(x / (4.5 * mm) + 3, y / (5 * mm));
+    z += 29 * mm * bump((middle + Vec3(x, y, 0) - neck).head<2>().norm(), 24 * mm);  // fat around the neck
+    z += 16 * mm * bump(y + 75 * mm, 45 * mm);  // transverse colon under the omentum
+    z += 0.35 * std::max(0.0, std::hypot(x, y) - 120 * mm);
+    return Vec3(middle + Vec3(x, y, z));
+  });
+  // The duodenum crosses below the neck, medially.
+  SceneMesh duodenum = sheet(Material::peritoneum, 24, 16, [&](double u, double v) {
+    const double a = 2 * pi * v, t = 2 * u - 1;
+    const double radius = (15 + 1.6 * std::sin(9 * t) + 0.9 * std::sin(23 * t + 1)) * mm;
+    const Vec3 line = neck + Vec3((28 + 70 * t) * mm, (-16 + 14 * t * t) * mm, (-19 - 6 * t * t) * mm);
+    return Vec3(line + radius * Vec3(0.1 * std::cos(a), std::cos(a), std::sin(a)));
+  });
+  return {duodenum, omentum, abdominal_wall(middle + Vec3(40 * mm, -20 * mm, -30 * mm))};
+}
+
+std::vector<SceneMesh> support_meshes(const SupportDefinition& support, const Vec3& about) {
+  const Vec3 n = support.normal.normalized(), a = n.unitOrthogonal(), b = n.cross(a);
+  const Vec3 foot = about - n * n.dot(about - support.point);
+  SceneMesh drape = sheet(Material::peritoneum, 36, 36, [&](double u, double v) {
+    const double x = (2 * u - 1) * 200 * mm, y = (2 * v - 1) * 200 * mm;
+    // Flat where the organ lies, for contact must look like contact; wavy further out.
+    const double wave = 4 * mm * lobes(x / (23 * mm), y / (20 * mm)) - 4 * mm;
+    return Vec3(foot + x * a + y * b + n * wave * (1 - bump(std::hypot(x, y), 70 * mm)));
+  });
+  return {drape, abdominal_wall(foot)};
+}
+
+}  // namespace calot

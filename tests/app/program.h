@@ -1,0 +1,130 @@
+#pragma once
+// Runs the program as a user would: in a folder of its own, with its output caught.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace calot::test {
+
+namespace fs = std::filesystem;
+
+inline std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+inline void spill(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+struct Outcome {
+  int code = -1;  ///< exit code; 128 + signal where one ended the process
+  std::string out, err;
+};
+
+/// A scenario on a small sphere that takes 0.6 s of simulated time. `steps` and `demo` are bodies in Lua.
+inline std::string small_scenario(const std::string& steps = "t:step('move', 'Move about'); t:wait(0.6 * s)",
+                                  const std::string& demo = "t.left:move_by({ 0, 0, -10 * mm })") {
+  return R"(local calot = require "calot"
+local mm, s = calot.units.mm, calot.units.s
+return calot.exercise {
+  api = 1, id = "small", title = "A small exercise", time_limit = 30 * s,
+  params = { height = { type = "number", default = 10 } },
+  scene = function()
+    return {
+      anatomy = { organs = { { name = "ball", shape = { type = "sphere" }, nodes = 61, held = { { landmark = "bed" } } } } },
+      laparoscope = { port = "umbilical", look_at = "ball.fundus" },
+      instruments = { left = { port = "right_subcostal" } },
+    }
+  end,
+  steps = function(t) )" +
+         steps + R"( end,
+  demo = function(t) )" +
+         demo + R"( end,
+  score = calot.score.weighted {
+    { calot.score.benchmark { metric = "left.path_length_mm", novice = 20, expert = 0 }, weight = 1 },
+  },
+  golden = { at = { 0, 0.4 * s } },
+}
+)";
+}
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "calot-app-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    spill(folder_ / "small.lua", small_scenario());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Runs `calot` with these arguments in folder_; `meanwhile` sees the running process.
+  Outcome calot(const std::vector<std::string>& arguments,
+                const std::function<void(pid_t)>& meanwhile = {}) const {
+    const fs::path out = folder_ / ".stdout", err = folder_ / ".stderr";
+    const pid_t pid = fork();
+    if (pid == 0) run_child(arguments, out, err);
+    if (meanwhile) meanwhile(pid);
+    int status = 0;
+    waitpid(pid, &status, 0);
+    Outcome outcome;
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    outcome.out = slurp(out);
+    outcome.err = slurp(err);
+    return outcome;
+  }
+
+  /// Waits until a file has so many lines; false after 30 s.
+  static bool wait_for_lines(const fs::path& file, std::ptrdiff_t lines) {
+    for (int i = 0; i < 3000; ++i) {
+      const std::string text = slurp(file);
+      if (std::count(text.begin(), text.end(), '\n') >= lines) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  fs::path folder_;
+
+ private:
+  [[noreturn]] void run_child(const std::vector<std::string>& arguments, const fs::path& out,
+                              const fs::path& err) const {
+    if (chdir(folder_.c_str()) != 0) _exit(125);
+    const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    dup2(open(out.c_str(), flags, 0600), STDOUT_FILENO);
+    dup2(open(err.c_str(), flags, 0600), STDERR_FILENO);
+    std::vector<std::string> words{CALOT_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(CALOT_PROGRAM, argv.data());
+    _exit(126);
+  }
+};
+
+/// What every failure ends with.
+inline void expect_next_command(const Outcome& outcome) {
+  const std::size_t line = outcome.err.rfind("Next: ");
+  ASSERT_NE(line, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find('\n', line), outcome.err.size() - 1) << "something follows the next command:\n"
+                                                                  << outcome.err;
+}
+
+}  // namespace calot::test

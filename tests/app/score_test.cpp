@@ -1,0 +1,79 @@
+// The score can fail: what a trainee does differently shows in the parts of the main scenario's score.
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/program.h"
+
+namespace calot::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class MainScenario : public ProgramTest {
+ protected:
+  /// The score of the main scenario when the instrument does this instead of the demo.
+  Json score(const std::string& demo) {
+    std::string text = slurp(CALOT_SOURCE_DIR "/scenarios/grasp_and_traction.lua");
+    if (!demo.empty()) {
+      const std::size_t begin = text.find("demo = function(t)"), end = text.find("\n  end,", begin);
+      EXPECT_NE(end, std::string::npos);
+      text.replace(begin, end - begin, "demo = function(t)\n" + demo);
+    }
+    spill(folder_ / "path.lua", text);
+    const Outcome outcome = calot({"run", "path.lua", "--no-render", "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json::parse(outcome.out)["score"];
+  }
+
+  static Json part(const Json& score, const std::string& name) {
+    for (const Json& part : score["parts"]) {
+      if (part["name"] == name) return part;
+    }
+    ADD_FAILURE() << "no part " << name;
+    return {};
+  }
+};
+
+TEST_F(MainScenario, TellsTheExpertFromOnesWhoNeverGraspPullTooHardOrLetGoEarly) {
+  const std::string grasp = "t.left:approach('gallbladder.fundus')\n t.left:close()\n";
+  const Json expert = score("");
+  const Json idle = score("t.left:wait(1 * s)");
+  const Json hard =
+      score(grasp + "t.left:move_by({ 0, 8 * mm, 30 * mm })\n t.left:wait(5 * s)\n t.left:open()");
+  const Json early = score(
+      grasp +
+      "t.left:move_by({ 0, 4 * mm, 11 * mm }, { speed = 10 * mm / s })\n t.left:wait(5 * s)\n t.left:open()");
+
+  EXPECT_TRUE(expert["passed"].get<bool>()) << expert.dump(2);
+  EXPECT_GT(expert["total"], 95);  // the benchmarks are set by it
+
+  EXPECT_FALSE(idle["passed"].get<bool>());
+  EXPECT_FALSE(idle["completed"].get<bool>());
+  EXPECT_EQ(part(idle, "hold.band.time_in_s")["measured"], 0);
+  EXPECT_EQ(part(idle, "hold.band.time_in_s")["points"], 0);
+
+  EXPECT_FALSE(hard["passed"].get<bool>());
+  EXPECT_GT(part(hard, "overforce")["event_times_s"].size() + hard["critical"].size(), 0u) << hard.dump(2);
+
+  EXPECT_FALSE(early["passed"].get<bool>());
+  const double held = part(early, "hold.band.time_in_s")["measured"];
+  EXPECT_GT(held, 3);
+  EXPECT_LT(held, 7);
+  EXPECT_EQ(part(early, "overforce")["measured"], 0);
+
+  const std::set<double> totals{expert["total"], idle["total"], hard["total"], early["total"]};
+  EXPECT_EQ(totals.size(), 4u) << expert["total"] << " " << idle["total"] << " " << hard["total"] << " "
+                               << early["total"];
+  for (const Json& each : {expert, idle, hard, early}) {
+    double sum = 0;
+    for (const Json& entry : each["parts"]) {
+      EXPECT_FALSE(entry["explanation"].get<std::string>().empty());
+      sum += entry["points"].get<double>();
+    }
+    EXPECT_NEAR(each["uncapped_total"].get<double>(), sum, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace calot::test

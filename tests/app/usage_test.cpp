@@ -1,0 +1,130 @@
+// How the program meets someone who has never used it.
+
+#include <nlohmann/json.hpp>
+
+#include "app/program.h"
+
+namespace calot::test {
+namespace {
+
+class Usage : public ProgramTest {};
+
+TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
+  const Outcome outcome = calot({});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "");
+  for (const char* command : {"run", "replay", "check", "new", "golden", "doctor"}) {
+    EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
+  }
+}
+
+TEST_F(Usage, EveryCommandHasHelp) {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"run"},
+                                                                                     {"replay"},
+                                                                                     {"check"},
+                                                                                     {"new"},
+                                                                                     {"golden"},
+                                                                                     {"golden", "test"},
+                                                                                     {"golden", "accept"},
+                                                                                     {"golden", "report"},
+                                                                                     {"doctor"}}) {
+    std::vector<std::string> arguments = words;
+    arguments.push_back("--help");
+    const Outcome outcome = calot(arguments);
+    EXPECT_EQ(outcome.code, 0) << words.back();
+    EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << words.back();
+  }
+}
+
+TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
+  const std::vector<std::vector<std::string>> wrong{
+      {"rnu", "small.lua"},
+      {"run"},
+      {"run", "small.lua", "--frames"},
+      {"run", "small.lua", "extra.lua"},
+      {"run", "small.lua", "--size", "960"},
+      {"run", "small.lua", "--size", "0x540"},
+      {"run", "small.lua", "--size", "-960x540"},
+      {"run", "small.lua", "--param", "height"},
+      {"run", "small.lua", "--param", "hieght=3"},
+      {"run", "small.lua", "--param", "height=tall"},
+      {"run", "small.lua", "--seed", "one"},
+      {"run", "small.lua", "--fail-below", "120"},
+      {"run", "."},
+      {"run", "none.lua"},
+      {"check"},
+      {"check", "none.lua"},
+      {"replay", "none.jsonl"},
+      {"replay", "small.lua"},
+      {"golden"},
+      {"golden", "frobnicate"},
+      {"golden", "accept"},
+      {"doctor", "--fix"},
+  };
+  for (const std::vector<std::string>& arguments : wrong) {
+    const Outcome outcome = calot(arguments);
+    std::string words;
+    for (const std::string& word : arguments) words += word + " ";
+    SCOPED_TRACE(words);
+    EXPECT_EQ(outcome.code, 4) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    expect_next_command(outcome);
+  }
+}
+
+TEST_F(Usage, AMistypedCommandGetsTheNearestOne) {
+  EXPECT_NE(calot({"chek", "small.lua"}).err.find("did you mean \"check\"?"), std::string::npos);
+}
+
+TEST_F(Usage, AMistypedPathGetsTheNearestScenario) {
+  spill(folder_ / "scenarios" / "grasp.lua", small_scenario());
+  fs::create_directories(folder_ / "scripts" / "lua");
+  EXPECT_NE(calot({"run", "scenarios/gasp.lua"}).err.find("scenarios/grasp.lua"), std::string::npos);
+}
+
+TEST_F(Usage, NothingIsColouredOrOverwrittenWhereThereIsNoTerminal) {
+  const Outcome outcome = calot({"run", "small.lua", "--no-render"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find('\033'), std::string::npos);
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(Usage, AnOutputFolderThatCannotBeIsAUsageErrorBeforeAnythingIsPlayed) {
+  spill(folder_ / "taken", "a file\n");
+  for (const char* folder : {"taken", "taken/below", "/proc/calot"}) {
+    const Outcome outcome = calot({"run", "small.lua", "--no-render", "-o", folder});
+    EXPECT_EQ(outcome.code, 4) << folder << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find("-o DIR"), std::string::npos) << outcome.err;
+    expect_next_command(outcome);
+  }
+  EXPECT_EQ(slurp(folder_ / "taken"), "a file\n");
+}
+
+TEST_F(Usage, DoctorFindsNothingWrongHere) {
+  const Outcome outcome = calot({"doctor"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.out.find("FAILED"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Usage, NewWritesAnExerciseThatRunsAndPassesItsOwnScore) {
+  const Outcome written = calot({"new", "hold_tight"});
+  ASSERT_EQ(written.code, 0) << written.err;
+  EXPECT_EQ(calot({"check", "hold_tight.lua"}).code, 0);
+  const Outcome played = calot({"run", "hold_tight.lua", "--no-render", "--json"});
+  EXPECT_EQ(played.code, 0) << played.err;
+  const auto report = nlohmann::json::parse(played.out);
+  EXPECT_EQ(report["scenario"], "hold-tight");
+  EXPECT_TRUE(report["score"]["passed"].get<bool>()) << played.out;
+}
+
+TEST_F(Usage, NewNeverOverwritesAndRefusesOddNames) {
+  spill(folder_ / "mine.lua", "-- mine\n");
+  const Outcome outcome = calot({"new", "mine"});
+  EXPECT_EQ(outcome.code, 4);
+  expect_next_command(outcome);
+  EXPECT_EQ(slurp(folder_ / "mine.lua"), "-- mine\n");
+  for (const char* name : {"", "7up", "a b", "naïve"}) EXPECT_EQ(calot({"new", name}).code, 4) << name;
+}
+
+}  // namespace
+}  // namespace calot::test

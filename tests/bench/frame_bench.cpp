@@ -1,0 +1,40 @@
+// The picture of the standard field, and the way from a scene to its first frame.
+
+#include <benchmark/benchmark.h>
+
+#include "render/offscreen.h"
+#include "view/build_scene.h"
+
+namespace {
+
+using namespace calot;
+
+SceneDefinition standard() {
+  SceneDefinition scene;
+  scene.anatomy = named_anatomy("standard").value();
+  InstrumentDefinition left;
+  left.name = "left";
+  left.port = "right_subcostal";
+  scene.instruments = {left};
+  return scene;
+}
+
+void frame(benchmark::State& state) {
+  const World world = World::create(standard()).value();
+  SceneBuilder builder(world);
+  OffscreenRenderer renderer = OffscreenRenderer::create().value();
+  for (auto _ : state)
+    if (!renderer.render(builder.build(world))) return state.SkipWithError("no picture");
+}
+BENCHMARK(frame)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void start_to_first_frame(benchmark::State& state) {
+  for (auto _ : state) {
+    const World world = World::create(standard()).value();
+    OffscreenRenderer renderer = OffscreenRenderer::create().value();
+    if (!renderer.render(SceneBuilder(world).build(world))) return state.SkipWithError("no picture");
+  }
+}
+BENCHMARK(start_to_first_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace

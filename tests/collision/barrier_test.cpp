@@ -1,0 +1,74 @@
+#include "collision/barrier.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace calot {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(Barrier, DerivativesMatchFiniteDifferences) {
+  const Barrier barrier;
+  for (double share = 0.02; share < 0.99; share += 0.01) {
+    const double d = share * barrier.range, h = 1e-4 * d;
+    const BarrierSample at = barrier.sample(d), ahead = barrier.sample(d + h), behind = barrier.sample(d - h);
+    // The central difference errs by h^2/6 times the third derivative, about 1e-8 of the value where the
+    // barrier is steep; near the range all vanish together, so the scale is taken from its middle.
+    const BarrierSample scale = barrier.sample(barrier.range / 2);
+    EXPECT_NEAR(at.derivative, (ahead.energy - behind.energy) / (2 * h),
+                1e-6 * std::max(std::abs(at.derivative), std::abs(scale.derivative)));
+    EXPECT_NEAR(at.second, (ahead.derivative - behind.derivative) / (2 * h),
+                1e-6 * std::max(at.second, scale.second));
+  }
+}
+
+TEST(Barrier, PressureAtHalfTheRangeIsTheClosedForm) {
+  const Barrier barrier;
+  // -b'(range/2) = stiffness (ln 2 + 1/2)
+  EXPECT_NEAR(-barrier.sample(barrier.range / 2).derivative, barrier.stiffness * (std::log(2.0) + 0.5), 1e-9);
+}
+
+TEST(Barrier, JoinsZeroSmoothlyToTheSecondDerivative) {
+  const Barrier barrier;
+  for (const double beyond : {barrier.range, 1.5 * barrier.range, 1.0, infinity}) {
+    EXPECT_EQ(barrier.sample(beyond).energy, 0.0);
+    EXPECT_EQ(barrier.sample(beyond).derivative, 0.0);
+    EXPECT_EQ(barrier.sample(beyond).second, 0.0);
+  }
+  // With gap g = range - d the leading term is stiffness / range^2 g^3: value, slope and curvature vanish as
+  // g^3, 3 g^2 and 6 g; the next term is smaller by g / range.
+  for (const double share : {1e-2, 1e-3, 1e-4}) {
+    const double gap = share * barrier.range, lead = barrier.stiffness / barrier.range / barrier.range;
+    const BarrierSample near = barrier.sample(barrier.range - gap);
+    EXPECT_NEAR(near.energy / (lead * gap * gap * gap), 1.0, 2 * share);
+    EXPECT_NEAR(near.derivative / (-3 * lead * gap * gap), 1.0, 2 * share);
+    EXPECT_NEAR(near.second / (6 * lead * gap), 1.0, 2 * share);
+  }
+}
+
+TEST(Barrier, PushesHarderTheCloserWithoutBound) {
+  const Barrier barrier;
+  BarrierSample before = barrier.sample(0.999 * barrier.range);
+  for (double d = 0.99 * barrier.range; d > 1e-15; d *= 0.9) {
+    const BarrierSample now = barrier.sample(d);
+    EXPECT_GT(now.energy, before.energy);
+    EXPECT_LT(now.derivative, before.derivative);
+    EXPECT_GT(now.second, before.second);
+    before = now;
+  }
+  EXPECT_GT(-before.derivative, 1e9 * barrier.stiffness);
+}
+
+TEST(Barrier, IsInfiniteAtTouchAndInside) {
+  for (const double d : {0.0, -1e-6, -infinity}) {
+    const BarrierSample at = Barrier{}.sample(d);
+    EXPECT_EQ(at.energy, infinity);
+    EXPECT_EQ(at.derivative, -infinity);
+    EXPECT_EQ(at.second, infinity);
+  }
+}
+
+}  // namespace
+}  // namespace calot

@@ -1,0 +1,240 @@
+#include "fem/bile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/bodies.h"
+#include "support/derivatives.h"
+
+namespace calot {
+namespace {
+
+constexpr double weight = 1020 * 9.80665;  // N/m^3
+const Vec3 up = Vec3(0.2, -0.3, 0.9).normalized();
+
+struct Body {
+  Tessellation surface;
+  VecX rest;
+  Bile bile;
+  BlockMatrix matrix;
+  Vec3 datum;
+};
+
+Body make_body(const TriMesh& mesh, const Vec3& datum) {
+  const LoopSurface surface = LoopSurface::create(mesh).value();
+  Tessellation skin = surface.tessellate(1);
+  Bile bile = Bile::create(skin, surface.faces(), weight, up, datum).value();
+  BlockMatrix matrix(surface.nodes(), bile.cliques());
+  return {std::move(skin), to_coordinates(mesh.points), std::move(bile), std::move(matrix), datum};
+}
+
+std::vector<Body> bodies() {
+  std::vector<Body> out;
+  out.push_back(make_body(test::sphere(14), {1e-3, 2e-3, -3e-3}));
+  out.push_back(make_body(test::pear(30), {0, 0, 50e-3}));
+  return out;
+}
+
+VecX deformed(const Body& body, Rng& rng) {
+  return body.rest + test::random_coordinates(rng, static_cast<int>(body.rest.size()), 2e-3);
+}
+
+/// Volume and centroid of the tetrahedra between the summed triangles and a point.
+struct Content {
+  double volume = 0;
+  Vec3 centroid = Vec3::Zero();
+};
+Content content(const Body& body, const VecX& x) {
+  const std::vector<Vec3> p = blend_all(body.surface.stencils, body.surface.stencils.value, x);
+  const Vec3 apex = p.front();
+  Content out;
+  for (const auto& [t, local, share] : body.bile.parts()) {
+    const double v = share * (p[t[0]] - apex).dot((p[t[1]] - apex).cross(p[t[2]] - apex)) / 6;
+    out.volume += v;
+    out.centroid += v * (p[t[0]] + p[t[1]] + p[t[2]] + apex) / 4;
+  }
+  out.centroid /= out.volume;
+  return out;
+}
+
+VecX load(const Bile& bile, const VecX& x, double multiplier) {
+  VecX f = VecX::Zero(x.size());
+  bile.add_load(x, multiplier, f);
+  return f;
+}
+VecX volume_gradient(const Bile& bile, const VecX& x) {
+  VecX g = VecX::Zero(x.size());
+  bile.add_volume_gradient(x, g);
+  return g;
+}
+
+TEST(Bile, VolumeAndWeightAreThoseOfTheEnclosedLiquid) {
+  Rng rng(1);
+  for (const Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const Content inside = content(body, x);
+    EXPECT_NEAR(body.bile.volume(x), inside.volume, 1e-13 * inside.volume);
+    EXPECT_NEAR(body.bile.value(x), weight * inside.volume * up.dot(inside.centroid - body.datum),
+                1e-12 * weight * inside.volume * 0.1);
+    VecX g = VecX::Zero(x.size());
+    EXPECT_EQ(body.bile.add_volume_gradient(x, g), body.bile.volume(x));
+  }
+}
+
+TEST(Bile, VolumeOfASphereConvergesToTheClosedFormWithTheFourthPowerOfTheEdges) {
+  const double exact = 4.0 / 3.0 * M_PI * std::pow(20e-3, 3);
+  const auto error = [&](int nodes) {
+    const Body body = make_body(test::sphere(nodes), Vec3::Zero());
+    return std::abs(body.bile.volume(body.rest) / exact - 1);
+  };
+  const double coarse = error(61), fine = error(238);
+  // Edges are halved: a sixteenth. The limit surface itself is no exact sphere (and errs by the same order), and the
+  // meshes are not nested, hence the slack.
+  EXPECT_LT(coarse, 5e-3);
+  EXPECT_LT(fine, coarse / 8);
+  EXPECT_GT(fine, 0);
+}
+
+TEST(Bile, LoadAndVolumeGradientAreTheDerivativesOfTheirEnergies) {
+  Rng rng(2);
+  for (const Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const double multiplier = 1500;
+    const auto energy = [&](const VecX& y) { return body.bile.value(y) - multiplier * body.bile.volume(y); };
+    const auto volume = [&](const VecX& y) { return body.bile.volume(y); };
+    // Cubic and quartic polynomials of x: differences are wrong by (h / size)^2 = 1e-9 and by rounding.
+    EXPECT_LT(
+        test::relative_error(load(body.bile, x, multiplier), test::difference_gradient(energy, x, 1e-6)),
+        1e-7);
+    EXPECT_LT(test::relative_error(volume_gradient(body.bile, x), test::difference_gradient(volume, x, 1e-6)),
+              1e-7);
+  }
+}
+
+TEST(Bile, HessianIsTheDerivativeOfTheLoadAndSymmetric) {
+  Rng rng(3);
+  for (Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    for (double multiplier : {0.0, 1500.0}) {
+      body.matrix.set_zero();
+      body.bile.add_hessian(x, multiplier, body.matrix);
+      const Eigen::MatrixXd by_difference =
+          test::difference_hessian([&](const VecX& y) { return load(body.bile, y, multiplier); }, x, 1e-6);
+      EXPECT_LT(test::relative_error(test::dense(body.matrix), by_difference), 1e-7);
+      const Eigen::MatrixXd kept = test::stored(body.matrix);
+      EXPECT_GT(kept.norm(), 0);
+      for (int i = 0; i < kept.rows(); i += 3) {
+        const Mat3 block = kept.block<3, 3>(i, i);
+        EXPECT_LT((block - block.transpose()).norm(), 1e-13 * kept.norm());
+      }
+    }
+  }
+}
+
+TEST(Bile, NetLoadIsItsWeightAtTheCentreOfBuoyancy) {
+  Rng rng(4);
+  for (const Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const Content inside = content(body, x);
+    for (double multiplier : {0.0, 1600.0}) {
+      // The gradient is minus the load on the wall: the liquid pulls down with its weight, whatever its
+      // pressure.
+      const VecX f = -load(body.bile, x, multiplier);
+      const double scale = weight * inside.volume;
+      const double rounding = 1e-13 * (scale + 1600 * 4e-3);  // pressure times area is what cancels
+      EXPECT_LT((test::net_force(f) + scale * up).norm(), rounding);
+      EXPECT_LT(test::net_torque(x, f, inside.centroid).norm(), rounding * 80e-3);
+    }
+  }
+}
+
+TEST(Bile, PressureAloneHasNoNetForceAndNoTorque) {
+  Rng rng(5);
+  for (const Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const VecX g = volume_gradient(body.bile, x);
+    EXPECT_LT(test::net_force(g).norm(), 1e-13 * g.norm());
+    EXPECT_LT(test::net_torque(x, g, Vec3::Zero()).norm(), 1e-13 * g.norm() * 80e-3);
+  }
+}
+
+TEST(Bile, PressureGrowsWithDepthByTheSpecificWeight) {
+  Rng rng(6);
+  for (const Body& body : bodies()) {
+    EXPECT_EQ(body.bile.specific_weight(), weight);
+    const VecX x = deformed(body, rng);
+    const std::vector<Vec3> skin = blend_all(body.surface.stencils, body.surface.stencils.value, x);
+    const double multiplier = 1200, top = body.bile.pressure_at_top(x, multiplier);
+    double least = INFINITY;
+    for (const Vec3& p : skin) {
+      const double deeper = body.bile.pressure_at(p - 7e-3 * up, multiplier);
+      const double aside = body.bile.pressure_at(p + up.unitOrthogonal() * 7e-3, multiplier);
+      const double pressure = body.bile.pressure_at(p, multiplier);
+      EXPECT_NEAR(deeper - pressure, weight * 7e-3, 1e-10 * multiplier);
+      EXPECT_NEAR(aside, pressure, 1e-10 * multiplier);
+      least = std::min(least, pressure);
+    }
+    EXPECT_NEAR(top, least, 1e-12 * multiplier);
+  }
+}
+
+TEST(Bile, LoadIsThePressureOnEachTriangle) {
+  // The integral of pressure times outward normal times corner function, which is linear times linear.
+  Rng rng(7);
+  for (const Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const double multiplier = 1500;
+    const std::vector<Vec3> skin = blend_all(body.surface.stencils, body.surface.stencils.value, x);
+    std::vector<Vec3> by_point(skin.size(), Vec3::Zero());
+    for (const auto& [t, local, share] : body.bile.parts()) {
+      const Vec3 area = 0.5 * share * (skin[t[1]] - skin[t[0]]).cross(skin[t[2]] - skin[t[0]]);
+      double sum = 0;
+      for (int corner : t) sum += body.bile.pressure_at(skin[corner], multiplier);
+      for (int corner : t)
+        by_point[corner] += area * (sum + body.bile.pressure_at(skin[corner], multiplier)) / 12;
+    }
+    VecX expected = VecX::Zero(x.size());
+    spread(body.surface.stencils, by_point, expected);
+    EXPECT_LT(test::relative_error(-load(body.bile, x, multiplier), expected), 1e-12);
+  }
+}
+
+TEST(Bile, VolumeGradientIntegratesToTheChangeOfVolume) {
+  Rng rng(8);
+  for (const Body& body : bodies()) {
+    const VecX step = deformed(body, rng) - body.rest;
+    const auto rate = [&](double s) { return volume_gradient(body.bile, body.rest + s * step).dot(step); };
+    // The volume is cubic along a line, its rate quadratic: Simpson's rule is exact.
+    const double by_gradient = (rate(0) + 4 * rate(0.5) + rate(1)) / 6;
+    const double change = body.bile.volume(body.rest + step) - body.bile.volume(body.rest);
+    EXPECT_NEAR(by_gradient, change, 1e-12 * body.bile.volume(body.rest));
+  }
+}
+
+TEST(Bile, RigidMotionTurnsThePressuresLoadAndLiftsTheWeight) {
+  Rng rng(9);
+  for (const Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const Pose motion = test::random_motion(rng, 0.1);
+    const VecX elsewhere = test::moved(motion, x);
+    const double volume = body.bile.volume(x);
+    EXPECT_NEAR(body.bile.volume(elsewhere), volume, 1e-12 * volume * 10);  // 10: how far it went
+    EXPECT_LT(test::relative_error(volume_gradient(body.bile, elsewhere),
+                                   test::turned(motion.linear(), volume_gradient(body.bile, x))),
+              1e-11);
+    const double lift = up.dot(content(body, elsewhere).centroid - content(body, x).centroid);
+    EXPECT_NEAR(body.bile.value(elsewhere) - body.bile.value(x), weight * volume * lift,
+                1e-11 * weight * volume * 0.1);
+  }
+}
+
+TEST(Bile, SurfaceWithoutMidpointsIsRefused) {
+  const LoopSurface surface = LoopSurface::create(test::sphere(14)).value();
+  const Result<Bile> bile = Bile::create(surface.tessellate(0), surface.faces(), weight, up, Vec3::Zero());
+  ASSERT_FALSE(bile);
+  EXPECT_EQ(bile.failure().kind, FailureKind::internal);
+}
+
+}  // namespace
+}  // namespace calot

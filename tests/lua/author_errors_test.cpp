@@ -1,0 +1,261 @@
+// What an author gets wrong is reported all at once, each with file, line and what to do.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "base/log.h"
+#include "lua/scenario_files.h"
+
+namespace calot {
+namespace {
+
+using test::Folder;
+using test::line_of;
+using test::load_text;
+using test::ScenarioText;
+
+Failure failure_of(const std::string& text, const LoadOptions& options = {}) {
+  const Folder folder;
+  Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, text, options);
+  if (loaded) {
+    ADD_FAILURE() << "loaded without a complaint:\n" << text;
+    return {};
+  }
+  return loaded.failure();
+}
+
+/// One mistake, and what its report must say: the line is the one on which `at` stands.
+struct Mistake {
+  std::string name;
+  ScenarioText text;
+  std::string at, message, hint;
+};
+
+ScenarioText with_scene(const std::string& scene) {
+  ScenarioText text;
+  text.scene = scene;
+  return text;
+}
+ScenarioText with_instruments(const std::string& instruments) {
+  return with_scene("return { anatomy = calot.anatomy('standard'),\n instruments = " + instruments + " }");
+}
+ScenarioText with_anatomy(const std::string& anatomy) {
+  return with_scene("return {\n anatomy = " + anatomy +
+                    ",\n instruments = { left = { port = 'right_subcostal' } } }");
+}
+ScenarioText with_steps(const std::string& steps) {
+  ScenarioText text;
+  text.steps = steps;
+  return text;
+}
+ScenarioText with_demo(const std::string& demo) {
+  ScenarioText text;
+  text.demo = demo;
+  return text;
+}
+ScenarioText with_score(const std::string& parts) {
+  ScenarioText text;
+  text.score = "calot.score.weighted {\n" + parts + "}";
+  return text;
+}
+ScenarioText with_more(const std::string& more) {
+  ScenarioText text;
+  text.more = more;
+  return text;
+}
+ScenarioText with_head(const std::string& head) {
+  ScenarioText text;
+  text.head = head;
+  return text;
+}
+
+std::vector<Mistake> mistakes() {
+  const std::string whole_weight =
+      "{ calot.score.benchmark { metric = 'total.time_s', novice = 2, expert = 1 }, weight = 1 }";
+  return {
+      {"SyntaxError", with_head("local x = = 1"), "local x = =", "unexpected symbol", ""},
+      {"ErrorAtTopLevel", with_head("\nerror('no such luck')"), "error(", "no such luck", ""},
+      {"UndeclaredName", with_head("local x = 5 * kPa"), "5 * kPa", "unknown name 'kPa'", "calot.units.kPa"},
+      {"GlobalVariable", with_head("x = 5"), "x = 5", "local x", ""},
+      {"UnknownUnit", with_head("local x = calot.units.mn"), "units.mn", "mn", "mN"},
+      {"UnknownTopLevelKey", with_more("tme_limit = 10"), "tme_limit", "unknown key", "time_limit"},
+      {"WrongTypeAtTopLevel", with_more("time_limit = 'long'"), "time_limit", "must be a number", "120 * s"},
+      {"TimeOutOfRange", with_more("time_limit = 1e6 * s"), "time_limit", "1e+06 s", "3600"},
+      {"UnknownSceneKey", with_scene("return { anatomy = calot.anatomy('standard'),\n lapraoscope = {} }"),
+       "lapraoscope", "unknown key", "laparoscope"},
+      {"UnknownAnatomy", with_anatomy("calot.anatomy('standrad')"), "standrad", "unknown base", "standard"},
+      {"UnknownPort", with_instruments("{ left = {\n port = 'right_subcostel' } }"), "right_subcostel",
+       "unknown port", "right_subcostal"},
+      {"MissingPort", with_instruments("{\n left = { force_limit = 5 * N } }"), "left = {",
+       "\"port\" is missing", "port = "},
+      {"UnknownInstrumentType", with_instruments("{ left = {\n type = 'grasper', port = 'right_flank' } }"),
+       "'grasper'", "unknown type", "atraumatic_grasper"},
+      {"UnknownLandmarkToLookAt",
+       with_scene("return { anatomy = calot.anatomy('standard'), laparoscope = {\n look_at = "
+                  "'gallbladder.fundas' } }"),
+       "fundas", "unknown", "gallbladder.fundus"},
+      {"UnknownOrganKey",
+       with_anatomy("calot.anatomy('standard', { organs = {\n { nodes = 200,\n color = 3 } } })"), "color",
+       "unknown key", "known"},
+      {"MissingUnitScale",
+       with_anatomy("{ organs = { { shape = { type = 'pear',\n length = 70, width = 35 * mm } } } }"),
+       "length = 70", "70 m is not a gallbladder's length", "70 * mm"},
+      {"MissingPressureScale",
+       with_anatomy("calot.anatomy('standard', { organs = { {\n wall = { shear_modulus = 100 } } } })"),
+       "shear_modulus", "100 Pa", "100 * kPa"},
+      {"BothFillings",
+       with_anatomy("{ organs = { { bile = { fill_volume = 40e-6,\n fill_pressure = 1000 } } } }"),
+       "fill_pressure", "both given", "give one"},
+      {"UnknownShape", with_anatomy("{ organs = { { shape = {\n type = 'pair' } } } }"), "'pair'",
+       "unknown shape", "pear"},
+      {"MissingMesh", with_anatomy("{ organs = { { shape = {\n type = 'obj', path = '../secret.obj' } } } }"),
+       "'obj'", "no mesh file", "below"},
+      {"WrongTypeDeepDown", with_anatomy("{ organs = { { wall = {\n thickness = '2 mm' } } } }"), "thickness",
+       "must be a number", "2 * mm"},
+      {"PointOfTwo",
+       with_scene("return { anatomy = calot.anatomy('standard'),\n ports = { here = { 0, 1 } } }"), "here",
+       "no point", "three numbers"},
+      {"ExtensionsNotYet",
+       with_scene(
+           "return { anatomy = calot.anatomy('standard'),\n solver = { extensions = {\n levels = 2 } } }"),
+       "levels = 2", "not available", "levels must be 0"},
+      {"InstrumentNamedLikeAMethod", with_instruments("{\n wait = { port = 'right_flank' } }"), "wait = {",
+       "method of t", "another name"},
+      {"ErrorInScene", with_scene("local q\n return q.x"), "return q.x", "nil value", ""},
+      {"SceneThatIsNoTable", with_scene("return 5"), "scene = function", "must be a table", ""},
+      {"ThroughALocalTable",
+       with_scene(
+           "local organ = {\n  wall = { thickness = 5 } }\n return { anatomy = { organs = { organ } } }"),
+       "thickness = 5", "5 m", "5 * mm"},
+      {"UnknownMetric",
+       with_score("{ calot.score.benchmark {\n metric = 'left.path_lenght_mm', novice = 2, expert = 1 }, "
+                  "weight = 1 }"),
+       "path_lenght", "unknown metric", "left.path_length_mm"},
+      {"UnknownEvent", with_score("{ calot.score.penalty {\n event = 'overfroce' }, weight = 1 }"),
+       "overfroce", "unknown event", "overforce"},
+      {"UnknownCriticalEvent", with_score(whole_weight + ",\n critical = { 'perforation' }"), "perforation",
+       "unknown event", "overforce"},
+      {"WeightsNotOne",
+       with_score("{ calot.score.penalty { event = 'contact' }, weight = 0.5 },\n"
+                  "{ calot.score.penalty { event = 'grasp' }, weight = 0.4 }"),
+       "score =", "sum to 0.9", "sum to 1"},
+      {"MissingWeight", with_score("\n{ calot.score.penalty { event = 'grasp' } }"), "event = 'grasp'",
+       "\"weight\" is missing", "weight = "},
+      {"PartWithoutScore", with_score("\n{ weight = 1 }"), "{ weight", "benchmark or calot.score.penalty",
+       "write"},
+      {"NoviceIsExpert",
+       with_score(
+           "{ calot.score.benchmark { metric = 'total.time_s', novice = 2,\n expert = 2 }, weight = 1 }"),
+       "expert = 2", "both 2", "differ"},
+      {"GoldenBeyondTheLimit", with_more("golden = { at = { 0,\n 500 * s } }"), "500 * s", "500 s", "120 s"},
+      {"UnknownMethod", with_steps("\nt:hodl('a', function() end, 1)"), "t:hodl", "t has no \"hodl\"",
+       "hold"},
+      {"UnknownInstrument", with_steps("t:wait_until(function() return true end)\nlocal x = t.lfet:force()"),
+       "t.lfet", "t has no \"lfet\"", "left"},
+      {"UnknownInstrumentMethod", with_demo("\nt.left:graps()"), "t.left:graps", "t.left has no \"graps\"",
+       ""},
+      {"UnknownOrgan", with_steps("\nlocal x = t:pressure('galbladder')"), "t:pressure", "unknown organ",
+       "gallbladder"},
+      {"UnknownLandmarkToApproach", with_demo("\nt.left:approach('gallbladder.fundis')"), "approach",
+       "unknown landmark", "gallbladder.fundus"},
+      {"UnknownOption", with_demo("\nt.left:approach('gallbladder.fundus', { sped = 1 })"), "approach",
+       "unknown key", "speed"},
+      {"DistanceWithoutUnit", with_demo("\nt.left:move_by({ 0, 10, 25 })"), "move_by", "(0, 10, 25)", "* mm"},
+      {"SpeedWithoutUnit", with_demo("\nt.left:move_by({ 0, 0, 5 * mm }, { speed = 20 })"), "move_by",
+       "20 m/s", "20 * mm / s"},
+      {"AngleWithoutUnit", with_demo("\nt.left:rotate(60)"), "rotate", "60 rad", "60 * deg"},
+      {"TooManyArguments", with_demo("\nt.left:close(1)"), "close(1)", "no arguments", "empty"},
+      {"MissingArgument", with_steps("\nt:step('a')"), "t:step('a')", "title", "title"},
+      {"WrongArgument", with_steps("\nt:wait('long')"), "t:wait('long')", "must be a number", ""},
+      {"DotForColon", with_steps("\nt.wait(1)"), "t.wait(1)", "colon", "t:wait"},
+      {"StepTwice", with_steps("t:step('a', 'A')\nt:step('a', 'A again')"), "A again", "already", "own name"},
+      {"StepNamedLikeAnInstrument", with_steps("\nt:step('left', 'Left')"), "t:step('left'",
+       "metrics of that name", "rename"},
+      {"HoldBeforeAStep", with_steps("\nt:hold('a', function() end, 1 * s)"), "t:hold", "before the first",
+       "start a step"},
+      {"ErrorInSteps", with_steps("t:wait(1 * s)\nerror('broken')"), "error('broken')", "broken", ""},
+      {"ErrorInDemo", with_demo("t:wait(1 * s)\nlocal x = nil + 1"), "nil + 1", "arithmetic", ""},
+      {"MissingModule", with_head("local g = require 'grips'"), "require 'grips'", "no module", "looked for"},
+      {"ModuleUpward", with_head("local g = require '../grips'"), "require '../grips'", "no module's name",
+       "letters"},
+      {"AbsoluteModule", with_head("local g = require '/etc/passwd'"), "require '/etc", "no module's name",
+       "letters"},
+  };
+}
+
+class Mistakes : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(Mistakes, AreReportedOnceWithTheirLineAndWhatToDo) {
+  const Mistake& mistake = GetParam();
+  const std::string text = mistake.text.text();
+  const Failure failure = failure_of(text);
+  ASSERT_EQ(failure.problems.size(), 1u) << to_text(failure);
+  EXPECT_EQ(failure.kind, FailureKind::scenario);
+  const Problem& problem = failure.problems[0];
+  EXPECT_EQ(std::filesystem::path(problem.place.file).filename(), "test.lua");
+  EXPECT_EQ(problem.place.line, line_of(text, mistake.at)) << to_text(problem) << "\n" << text;
+  const std::string report = to_text(problem);
+  EXPECT_NE(report.find(mistake.message), std::string::npos) << report;
+  EXPECT_NE(report.find(mistake.hint), std::string::npos) << report;
+}
+
+INSTANTIATE_TEST_SUITE_P(AuthorErrors, Mistakes, ::testing::ValuesIn(mistakes()),
+                         [](const auto& mistake) { return mistake.param.name; });
+
+TEST(AuthorErrors, AreReportedAllAtOnceInTheOrderOfLines) {
+  ScenarioText text;
+  text.params = "{ a = { type = 'choice', default = 'x', choices = { 'y' } } }";
+  text.scene =
+      "return { anatomy = calot.anatomy('standard', {\n organs = { { wall = { thickness = 2 } } } }),\n"
+      " instruments = {\n left = { port = 'nowhere' } }, colour = 1 }";
+  text.steps = "t:step('a', 'A')\n t:hold('b', function() end, 10 * s)\n t.left:lift()\n t.right:force()";
+  text.demo = "t.left:approach('liver.fundus')\n t.left:move_by({ 1, 2 })";
+  text.score =
+      "calot.score.weighted {\n { calot.score.benchmark { metric = 'a.c.time_in_s', novice = 1, expert = 2 "
+      "},\n weight = 0.5 } }";
+  text.more = "goldn = {}";
+  const Failure failure = failure_of(text.text());
+  // params.a.default, thickness, port, colour, lift, right, landmark, point, metric, weights, goldn
+  EXPECT_EQ(failure.problems.size(), 11u) << to_text(failure);
+  for (std::size_t i = 1; i < failure.problems.size(); ++i)
+    EXPECT_LE(failure.problems[i - 1].place.line, failure.problems[i].place.line);
+}
+
+TEST(AuthorErrors, OfAFileThatReturnsNoExercise) {
+  EXPECT_THAT(to_text(failure_of("return 5")), ::testing::HasSubstr("return calot.exercise"));
+  EXPECT_THAT(to_text(failure_of("")), ::testing::HasSubstr("return calot.exercise"));
+  EXPECT_THAT(to_text(failure_of("return { api = 1 }")), ::testing::HasSubstr("return calot.exercise"));
+}
+
+TEST(AuthorErrors, OfAnEmptyExerciseNameEveryKeyItNeeds) {
+  const Failure failure = failure_of("return require('calot').exercise {}");
+  for (const char* key : {"api", "id", "title", "scene", "steps", "score"})
+    EXPECT_THAT(to_text(failure), ::testing::HasSubstr(fmt::format("\"{}\" is missing", key)));
+}
+
+TEST(AuthorErrors, OfBytecodeAreClear) {
+  const Failure failure = failure_of(std::string("\x1bLua", 4));
+  EXPECT_EQ(failure.kind, FailureKind::scenario);
+  EXPECT_THAT(to_text(failure), ::testing::HasSubstr("bytecode"));
+}
+
+TEST(AuthorErrors, OfEndlessLoopsAreResourceFailuresWherever) {
+  for (const ScenarioText& text : {with_head("while true do end"), with_scene("while true do end"),
+                                   with_steps("while true do end"), with_demo("while true do end")}) {
+    const Failure failure = failure_of(text.text());
+    EXPECT_EQ(failure.kind, FailureKind::resource);
+    EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "while true")) << to_text(failure);
+  }
+}
+
+TEST(AuthorErrors, AMissingFileIsAUsageFailureWithASuggestion) {
+  const Folder folder;
+  folder.write("grasp.lua", "");
+  const Result<std::unique_ptr<ExerciseScript>> loaded = load_exercise(folder.path() / "garsp.lua");
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.failure().kind, FailureKind::usage);
+  EXPECT_THAT(to_text(loaded.failure()), ::testing::HasSubstr("grasp.lua"));
+}
+
+}  // namespace
+}  // namespace calot

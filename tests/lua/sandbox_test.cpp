@@ -1,0 +1,380 @@
+// Hostile scripts end with a clear error of the right kind, wherever they hide their loop.
+
+#include "lua/sandbox.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+
+#include "base/log.h"
+#include "lua/lua_headers.h"
+#include "lua/sandbox_library.h"
+#include "lua/scenario_files.h"
+
+namespace calot {
+namespace {
+
+using test::Folder;
+
+struct Attack {
+  const char* name;
+  const char* script;
+};
+
+/// Runs the text as a chunk of its own.
+std::optional<Failure> run(const std::string& text, const ScriptLimits& limits = {}) {
+  const Folder folder;
+  SandboxOptions options;
+  options.script = folder.write("attack.lua", text);
+  options.limits = limits;
+  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+  if (!sandbox) return sandbox.failure();
+  return sandbox.value()->protect([&](lua_State* L) {
+    sandbox.value()->push_chunk(L, options.script);
+    lua_call(L, 0, 0);
+  });
+}
+
+class EndlessLoops : public ::testing::TestWithParam<Attack> {};
+
+TEST_P(EndlessLoops, EndAsResourceFailuresThatNameTheScript) {
+  const std::optional<Failure> failure = run(GetParam().script);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, FailureKind::resource) << to_text(*failure);
+  EXPECT_NE(to_text(*failure).find("attack.lua"), std::string::npos) << to_text(*failure);
+  EXPECT_NE(to_text(*failure).find("instructions"), std::string::npos) << to_text(*failure);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sandbox, EndlessLoops,
+    ::testing::Values(
+        Attack{"Plain", "while true do end"},
+        Attack{"InPcall", "while true do pcall(function() while true do end end) end"},
+        Attack{"InNestedPcalls", "local function f() pcall(f) while true do pcall(f) end end f()"},
+        Attack{"InXpcallHandler", "xpcall(error, function() while true do end end)"},
+        Attack{"InXpcall",
+               "while true do xpcall(function() while true do end end, function() return 1 end) end"},
+        Attack{"InSortComparator",
+               "local t = {} for i = 1, 100 do t[i] = i end\n"
+               "table.sort(t, function(a, b) while true do end end)"},
+        Attack{"InMetamethod",
+               "local t = setmetatable({}, { __add = function() while true do end end }) local _ = t + t"},
+        Attack{"InTostring", "print(setmetatable({}, { __tostring = function() while true do end end }))"},
+        Attack{"InPairs", "pairs(setmetatable({}, { __pairs = function() while true do end end }))"},
+        Attack{"InManyCoroutines",
+               "while true do local c = coroutine.wrap(function() for i = 1, 500 do end end) c() end"},
+        Attack{"InCoroutineThatIsResumed",
+               "local c = coroutine.create(function() while true do coroutine.yield() end end)\n"
+               "while true do coroutine.resume(c) end"},
+        Attack{"InCoroutineWithinPcall",
+               "while true do pcall(coroutine.wrap(function() while true do end end)) end"},
+        Attack{"InGsubCallback", "string.gsub('x', '.', function() while true do end end)"},
+        // A closer given to its metatable only after setmetatable looked at it, in a dying coroutine.
+        Attack{"InLateClose",
+               "local mt = {}\n"
+               "local c = coroutine.wrap(function()\n"
+               "  local x = setmetatable({}, mt)\n"
+               "  mt.__close = function() while true do end end\n"
+               "  local y <close> = x\n"
+               "  while true do end\n"
+               "end)\n"
+               "pcall(c) c()"}),
+    [](const auto& attack) { return std::string(attack.param.name); });
+
+TEST(Sandbox, RefusesFinalisersClosersAndWeakTables) {
+  for (const char* key : {"__gc", "__close", "__mode"}) {
+    const std::optional<Failure> failure =
+        run("setmetatable({}, { " + std::string(key) + " = function() while true do end end })");
+    ASSERT_TRUE(failure) << key;
+    EXPECT_EQ(failure->kind, FailureKind::scenario);
+    EXPECT_NE(to_text(*failure).find(key), std::string::npos) << to_text(*failure);
+  }
+}
+
+class MemoryBombs : public ::testing::TestWithParam<Attack> {};
+
+TEST_P(MemoryBombs, EndAsResourceFailures) {
+  ScriptLimits limits;
+  limits.memory = std::size_t{32} << 20;  // smaller than the default, so that the test is quick
+  const std::optional<Failure> failure = run(GetParam().script, limits);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, FailureKind::resource) << to_text(*failure);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sandbox, MemoryBombs,
+    ::testing::Values(
+        Attack{"Doubling", "local s = 'x' while true do s = s .. s end"},
+        Attack{"Repetition", "local s = string.rep('x', 1 << 30)"},
+        Attack{"WithinPcall", "while true do pcall(string.rep, 'x', 1 << 30) end"},
+        Attack{"Tables", "local t = {} for i = 1, 1e9 do t[i] = { i } end"},
+        Attack{"Concatenation",
+               "local t = {} for i = 1, 1000 do t[i] = string.rep('x', 60000) end table.concat(t)"},
+        Attack{"Coroutines",
+               "local t = {} for i = 1, 1e9 do t[i] = coroutine.create(function() end) "
+               "coroutine.resume(t[i]) end"},
+        Attack{"Recursion", "local function f() return 1 + f() end f()"},
+        Attack{
+            "RecursionThroughMetamethods",
+            "local t = setmetatable({}, {}) getmetatable(t).__index = function(s, k) return s[k .. 'x'] end\n"
+            "local _ = t.x"},
+        Attack{"NestedCoroutines", "local function f() coroutine.wrap(f)() end f()"},
+        Attack{"NestedPcalls",
+               "local function f() local ok, e = pcall(f) if not ok then error(e, 0) end end f()"}),
+    [](const auto& attack) { return std::string(attack.param.name); });
+
+TEST(Sandbox, RefusesBytecode) {
+  const std::optional<Failure> failure = run(std::string("\x1bLua", 4) + "T");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, FailureKind::scenario);
+  EXPECT_NE(to_text(*failure).find("bytecode"), std::string::npos) << to_text(*failure);
+}
+
+TEST(Sandbox, HidesWhatReachesOutside) {
+  for (const char* name : {"os", "io", "debug", "package", "load", "loadstring", "loadfile", "dofile",
+                           "collectgarbage", "next", "_G"}) {
+    const std::optional<Failure> failure = run("\nlocal x = " + std::string(name));
+    ASSERT_TRUE(failure) << name;
+    EXPECT_EQ(failure->kind, FailureKind::scenario);
+    EXPECT_EQ(failure->problems[0].place.line, 2) << to_text(*failure);
+    EXPECT_NE(to_text(*failure).find("not available"), std::string::npos) << to_text(*failure);
+  }
+  for (const char* code :
+       {"assert(string.dump == nil)", "assert(('').dump == nil)", "assert(coroutine.close == nil)",
+        "assert(math.randomseed == nil)", "assert(getmetatable('') == false)",
+        "assert(rawget(_ENV, 'os') == nil)", "assert(not pcall(string.format, '%p', {}))"}) {
+    const std::optional<Failure> failure = run(code);
+    EXPECT_FALSE(failure) << code << ": " << to_text(*failure);
+  }
+}
+
+TEST(Sandbox, HoldsExactlyTheLibraryItLists) {
+  std::string code = "local listed = {";
+  for (const std::string& name : library_names()) code += "['" + name + "'] = true,";
+  code +=
+      "}\nlocal count = 0\n"
+      "for k, v in pairs(_ENV) do\n"
+      "  assert(listed[k], k) count = count + 1\n"
+      "  if type(v) == 'table' then for m in pairs(v) do assert(listed[k .. '.' .. m], k .. '.' .. m) count "
+      "= count + 1 end end\n"
+      "end\n"
+      "local wanted = 0 for _ in pairs(listed) do wanted = wanted + 1 end\n"
+      "assert(count == wanted, count .. ' of ' .. wanted)";
+  const std::optional<Failure> failure = run(code);
+  EXPECT_FALSE(failure) << to_text(*failure);
+}
+
+TEST(Sandbox, KeepsLuaAsItIsOtherwise) {
+  const char* code = R"(
+    local ok, message = pcall(error, { 1 })
+    assert(not ok and message[1] == 1)
+    assert(select(2, xpcall(function() error("e", 0) end, function(m) return m .. "!" end)) == "e!")
+    assert(select("#", xpcall(function(...) return ... end, print, 1, 2)) == 3)
+    local t = { 3, 1, 2 }
+    table.sort(t) assert(table.concat(t, ",") == "1,2,3")
+    table.sort(t, function(a, b) return a > b end) assert(table.concat(t, ",") == "3,2,1")
+    local pairs_of = { { 1, "a" }, { 0, "b" }, { 1, "c" }, { 0, "d" } }
+    table.sort(pairs_of, function(a, b) return a[1] < b[1] end)
+    assert(pairs_of[1][2] .. pairs_of[2][2] .. pairs_of[3][2] .. pairs_of[4][2] == "bdac")
+    local c = coroutine.wrap(function(a) local b = coroutine.yield(a + 1) return b * 2 end)
+    assert(c(1) == 2 and c(21) == 42)
+    local d = coroutine.create(function() error("inside") end)
+    local done, why = coroutine.resume(d)
+    assert(not done and why:find("inside") and coroutine.status(d) == "dead")
+    assert(not coroutine.resume(d))
+    -- yields pass through pcall
+    local e = coroutine.wrap(function() return pcall(function() coroutine.yield(1) return 2 end) end)
+    assert(e() == 1) local fine, two = e() assert(fine and two == 2)
+    assert(string.format("%s %5.1f %d %%", {}, 1.25, 3) == "table   1.2 3 %")
+    assert(tostring(print) == "function" and tostring(1) == "1" and tostring(nil) == "nil")
+    local seen = {}
+    for k in pairs({ b = 1, a = 1, [2] = 1, [1] = 1, [1.5] = 1, [true] = 1, [false] = 1 }) do seen[#seen + 1] = tostring(k) end
+    assert(table.concat(seen, " ") == "1 1.5 2 a b false true")
+    local keys = {} for k in pairs({ a = 1, b = 2 }) do keys[#keys + 1] = k end
+    local gone = { a = 1, b = 2, c = 3 } for k in pairs(gone) do gone.c = nil keys[#keys + 1] = k end
+    assert(table.concat(keys) == "abab"))";
+  const std::optional<Failure> failure = run(code);
+  EXPECT_FALSE(failure) << to_text(*failure);
+}
+
+TEST(Sandbox, RefusesKeysWithoutAnOrderInPairs) {
+  const std::optional<Failure> failure = run("local t = { [{}] = 1 }\nfor k in pairs(t) do end");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->problems[0].place.line, 2);
+}
+
+TEST(Sandbox, GivesNoAddresses) {
+  std::string printed;
+  LogSink before = set_log_sink([&](LogLevel, const std::string& text) { printed += text; });
+  const std::optional<Failure> failure =
+      run("print({}, print, coroutine.create(print), string.format('%s', {}))");
+  set_log_sink(std::move(before));
+  EXPECT_FALSE(failure);
+  EXPECT_EQ(printed.find("0x"), std::string::npos) << printed;
+}
+
+TEST(Sandbox, RaisesErrorsThatAreNoTextAsText) {
+  const std::optional<Failure> failure = run("error({})");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, FailureKind::scenario);
+  EXPECT_EQ(to_text(*failure).find("0x"), std::string::npos);
+}
+
+TEST(Sandbox, TracesErrorsToTheScriptsOwnLines) {
+  const std::optional<Failure> failure =
+      run("local function f() error('bad') end\nlocal function g() f() return 1 end\nxpcall(print, "
+          "print)\ng()\n");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->problems[0].place.line, 1);
+  const std::string text = to_text(*failure);
+  EXPECT_NE(text.find("attack.lua:2"), std::string::npos) << text;
+  EXPECT_NE(text.find("attack.lua:4"), std::string::npos) << text;
+  EXPECT_EQ(text.find(prelude_name), std::string::npos) << text;
+}
+
+TEST(Sandbox, PlacesErrorsOfItsOwnLuaAtTheScriptsLine) {
+  const std::optional<Failure> failure = run("\ntable.sort({ 1, 'x' })");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->problems[0].place.line, 2) << to_text(*failure);
+  EXPECT_EQ(to_text(*failure).find(prelude_name), std::string::npos) << to_text(*failure);
+}
+
+TEST(Sandbox, BudgetIsPerCallAndPerRun) {
+  const Folder folder;
+  SandboxOptions options;
+  options.script = folder.write("a.lua", "for i = 1, 100000 do end");
+  options.limits.instructions_per_run = 450'000;  // four runs of a bit over 100,000 instructions
+  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+  ASSERT_TRUE(sandbox);
+  int runs = 0;
+  std::optional<Failure> failure;
+  while (!failure && runs < 10) {
+    failure = sandbox.value()->protect([&](lua_State* L) {
+      sandbox.value()->push_chunk(L, options.script);
+      lua_call(L, 0, 0);
+    });
+    ++runs;
+  }
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, FailureKind::resource);
+  EXPECT_EQ(runs, 5);
+}
+
+TEST(Sandbox, StaysDeadOnceItsBudgetIsUsedUp) {
+  const Folder folder;
+  SandboxOptions options;
+  options.script = folder.write("a.lua", "while true do end");
+  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+  ASSERT_TRUE(sandbox);
+  folder.write("b.lua", "return 1 + 1");
+  for (const char* name : {"a.lua", "b.lua"}) {
+    const std::optional<Failure> failure = sandbox.value()->protect([&](lua_State* L) {
+      sandbox.value()->push_chunk(L, folder.path() / name);
+      lua_call(L, 0, 0);
+    });
+    ASSERT_TRUE(failure) << name;
+    EXPECT_EQ(failure->kind, FailureKind::resource);
+  }
+}
+
+// ---- the watchdog
+
+using SandboxDeathTest = ::testing::Test;
+
+void hang(const std::string& code) {
+  const Folder folder;
+  SandboxOptions options;
+  options.script = folder.write("hang.lua", code);
+  options.limits.call_seconds = 0.2;
+  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+  sandbox.value()->watchdog().set_flush([] { std::fputs("flushed\n", stderr); });
+  (void)sandbox.value()->protect([&](lua_State* L) {
+    sandbox.value()->push_chunk(L, options.script);
+    lua_call(L, 0, 0);
+  });
+  std::fputs("it came back\n", stderr);
+}
+
+TEST(SandboxDeathTest, WatchdogEndsACatastrophicPatternAfterFlushing) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(hang("string.find(string.rep('a', 5000), string.rep('.-', 20) .. 'b')"),
+              ::testing::ExitedWithCode(7), "hang.lua: one call into the script[^\n]*\nflushed");
+}
+
+TEST(SandboxDeathTest, WatchdogEndsTableFunctionsOverHugeRanges) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(hang("table.move({}, 1, 1 << 60, 2)"), ::testing::ExitedWithCode(7), "hang.lua");
+}
+
+TEST(Sandbox, WatchdogSleepsWhileNoScriptRuns) {
+  const Folder folder;
+  SandboxOptions options;
+  options.script = folder.write("a.lua", "return 1");
+  options.limits.call_seconds = 0.05;
+  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+  ASSERT_TRUE(sandbox);
+  EXPECT_FALSE(sandbox.value()->protect([&](lua_State* L) {
+    sandbox.value()->push_chunk(L, options.script);
+    lua_call(L, 0, 0);
+  }));
+  ::usleep(200'000);  // a long solve: the process must still be there after it
+}
+
+// ---- the same in every process
+
+TEST(Sandbox, DISABLED_PrintsOrderAndRandomNumbers) {
+  LogSink before =
+      set_log_sink([](LogLevel, const std::string& text) { std::printf("law: %s\n", text.c_str()); });
+  const std::optional<Failure> failure = run(R"(
+    local t = {} for i = 1, 50 do t["key" .. math.random(1000)] = i t[i / 4] = i end
+    local keys = {} for k, v in pairs(t) do keys[#keys + 1] = k .. "=" .. v end
+    print(table.concat(keys, " "), math.random(), {}, print)
+    local many = {} for i = 1, 2000 do many[i] = { i % 7, i } end
+    table.sort(many, function(a, b) return a[1] < b[1] end)
+    for i = 1, #many do many[i] = many[i][2] end print(table.concat(many, " ")))");
+  set_log_sink(std::move(before));
+  EXPECT_FALSE(failure);
+}
+
+std::string output_of_fresh_process() {
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string command =
+      self + " --gtest_also_run_disabled_tests --gtest_filter=Sandbox.DISABLED_PrintsOrder*";
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  std::string laws;
+  std::array<char, 65536> line;
+  while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr)
+    if (std::string(line.data()).starts_with("law: ")) laws += line.data();
+  ::pclose(pipe);
+  return laws;
+}
+
+TEST(Sandbox, OrderAndRandomNumbersAreTheSameInFreshProcesses) {
+  const std::string first = output_of_fresh_process();
+  EXPECT_GT(first.size(), 1000u);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(output_of_fresh_process(), first);
+}
+
+TEST(Sandbox, RandomNumbersFollowTheSeed) {
+  const auto numbers = [](std::uint64_t seed) {
+    const Folder folder;
+    SandboxOptions options;
+    options.script = folder.write("a.lua", "print(math.random(), math.random(1000))");
+    options.seed = seed;
+    std::string printed;
+    LogSink before = set_log_sink([&](LogLevel, const std::string& text) { printed += text; });
+    Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
+    (void)sandbox.value()->protect([&](lua_State* L) {
+      sandbox.value()->push_chunk(L, options.script);
+      lua_call(L, 0, 0);
+    });
+    set_log_sink(std::move(before));
+    return printed;
+  };
+  EXPECT_EQ(numbers(7), numbers(7));
+  EXPECT_NE(numbers(7), numbers(8));
+}
+
+}  // namespace
+}  // namespace calot

@@ -1,0 +1,77 @@
+#pragma once
+// Scenarios written for one test, in a folder of their own.
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "lua/load_exercise.h"
+
+namespace calot::test {
+
+/// A folder that is removed with everything in it.
+class Folder {
+ public:
+  Folder() {
+    static int count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("calot_lua_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A sound exercise, its parts replaceable. `head` is Lua before it.
+struct ScenarioText {
+  std::string head = "";
+  std::string params = "{}";
+  std::string scene =
+      "return { anatomy = calot.anatomy(\"standard\"),\n"
+      "  instruments = { left = { port = \"right_subcostal\" } } }";
+  std::string steps = "t:step(\"look\", \"Look\") t:wait(1 * s)";
+  std::string demo = "t:wait(1 * s)";
+  std::string score =
+      "calot.score.weighted { { calot.score.benchmark { metric = \"total.time_s\", novice = 2, expert = 1 }, "
+      "weight = 1 } }";
+  std::string more = "";  ///< further keys
+
+  std::string text() const {
+    return "local calot = require \"calot\"\n"
+           "local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg\n" +
+           head +
+           "\nreturn calot.exercise {\n  api = 1, id = \"test\", title = \"Test\",\n  params = " + params +
+           ",\n  scene = function(p)\n" + scene + "\nend,\n  steps = function(t)\n" + steps +
+           "\nend,\n  demo = function(t)\n" + demo + "\nend,\n  score = " + score + ",\n" + more + "\n}\n";
+  }
+};
+
+inline Result<std::unique_ptr<ExerciseScript>> load_text(const Folder& folder, const std::string& text,
+                                                         LoadOptions options = {}) {
+  if (options.modules.empty()) options.modules = std::filesystem::path(CALOT_SOURCE_DIR) / "scripts/lua";
+  return load_exercise(folder.write("test.lua", text), options);
+}
+
+/// The line (from 1) of the text on which `part` first appears.
+inline int line_of(const std::string& text, const std::string& part) {
+  const std::size_t at = text.find(part);
+  if (at == std::string::npos) return -1;
+  int line = 1;
+  for (std::size_t i = 0; i < at; ++i) line += text[i] == '\n' ? 1 : 0;
+  return line;
+}
+
+}  // namespace calot::test

@@ -1,0 +1,365 @@
+// Steps and demos keep time: what they do depends on the simulated time, not on the rate.
+
+#include <gmock/gmock.h>
+
+#include "base/log.h"
+#include "lua/demo_script.h"
+#include "lua/motion.h"
+#include "lua/scenario_files.h"
+
+namespace calot {
+namespace {
+
+using test::Folder;
+using test::line_of;
+using test::load_text;
+using test::ScenarioText;
+
+constexpr double rounding =
+    1e-9;  // of times: the slack of waits; of places: a metre a second over that slack
+
+/// A ball far from every instrument, so that a step of the world is cheap and nothing is in the way.
+std::string scene_at(double rate) {
+  return "return { anatomy = { organs = { { name = 'ball', shape = { type = 'sphere', radius = 20 * mm }, "
+         "nodes = 61,\n"
+         "neck = { 0, 0, -400 * mm }, fundus = { 0, 0, -360 * mm }, held = { { landmark = 'bed' } } } } }, "
+         "laparoscope = { look_at = 'ball.fundus' },\n"
+         "solver = { rate = " +
+         std::to_string(rate) +
+         " },\ninstruments = { left = { port = 'right_subcostal' }, right = { port = 'epigastric' } } }";
+}
+
+struct Moment {
+  double time = 0;
+  std::vector<InstrumentPose> poses;
+  std::vector<Vec3> tips;
+};
+
+struct Played {
+  std::optional<Failure> failure;
+  std::vector<Moment> moments;
+  double source_ended = -1, steps_ended = -1;
+  Progress progress;
+  std::vector<std::string> printed;
+  std::string text;  ///< of the scenario
+};
+
+/// Plays steps and demo together for `seconds`.
+Played play(ScenarioText text, double rate, double seconds) {
+  Played played;
+  LogSink before = set_log_sink([&](LogLevel, const std::string& line) { played.printed.push_back(line); });
+  const Folder folder;
+  text.scene = scene_at(rate);
+  played.text = text.text();
+  Result<std::unique_ptr<ExerciseScript>> script = load_text(folder, played.text);
+  if (!script) {
+    played.failure = script.failure();
+    set_log_sink(std::move(before));
+    return played;
+  }
+  Result<World> world = World::create(script.value()->definition().scene);
+  if (!world) {
+    played.failure = world.failure();
+    set_log_sink(std::move(before));
+    return played;
+  }
+  StepInput input;
+  for (const InstrumentState& state : world->report().instruments) input.instruments.push_back(state.pose);
+  const double dt = 1 / rate;
+  while (world->report().time < seconds - rounding && !played.failure) {
+    Result<std::optional<StepInput>> next = script.value()->demo().next(world.value(), dt);
+    if (!next) played.failure = next.failure();
+    if (next && next.value()) input = *next.value();
+    if (next && !next.value() && played.source_ended < 0) played.source_ended = world->report().time;
+    if (played.failure) break;
+    EXPECT_TRUE(world->step(input));
+    Moment moment{world->report().time, input.instruments, {}};
+    for (std::size_t i = 0; i < input.instruments.size(); ++i) {
+      InstrumentPose closed = input.instruments[i];
+      closed.jaw = 0;
+      const Vec3 trocar = world->port_position(world->scene().instruments[i].port);
+      moment.tips.push_back(tip_position(trocar, closed, {}));
+    }
+    played.moments.push_back(moment);
+    Result<bool> done = script.value()->advance(world.value(), played.progress, dt);
+    if (!done) played.failure = done.failure();
+    if (done && done.value() && played.steps_ended < 0) played.steps_ended = world->report().time;
+  }
+  set_log_sink(std::move(before));
+  return played;
+}
+
+ScenarioText with_demo(const std::string& demo) {
+  ScenarioText text;
+  text.demo = demo;
+  return text;
+}
+ScenarioText with_steps(const std::string& steps) {
+  ScenarioText text;
+  text.steps = steps;
+  text.demo = "";
+  text.score = "calot.score.weighted { { calot.score.penalty { event = 'contact' }, weight = 1 } }";
+  return text;
+}
+
+// ---- travels
+
+TEST(Motion, CoversItsDistanceSmoothlyAndNeverFasterThanAsked) {
+  for (const double distance : {0.5e-3, 5e-3, 40e-3}) {
+    const double speed = 20e-3, h = 1e-4;
+    const Travel travel(distance, speed);
+    EXPECT_EQ(travel.share(0), 0);
+    EXPECT_EQ(travel.share(travel.duration()), 1);
+    double fastest = 0, last_speed = 0, hardest = 0;
+    for (double t = 0; t < travel.duration() + h; t += h) {
+      const double v = (travel.share(t + h) - travel.share(t)) * distance / h;
+      EXPECT_GE(v, -1e-12);  // rounding of shares over h
+      fastest = std::max(fastest, v);
+      hardest = std::max(hardest, std::abs(v - last_speed) / h);
+      last_speed = v;
+    }
+    EXPECT_LE(fastest, speed * (1 + 1e-9));
+    EXPECT_LE(hardest,
+              1.5 * speed / 0.2 * 1.01);  // steepest slope of 3 x^2 - 2 x^3, 1% for the finite difference
+  }
+}
+
+TEST(Motion, LastsAsLongAsItsDistanceAndRampTake) {
+  EXPECT_DOUBLE_EQ(Travel(100e-3, 20e-3, 0.2).duration(), 5.2);
+  EXPECT_DOUBLE_EQ(Travel(1e-3, 20e-3, 0.2).duration(), 0.4);  // too short for the speed: two ramps
+  EXPECT_DOUBLE_EQ(Travel(0, 20e-3, 0.2).duration(), 0);
+}
+
+// ---- demo
+
+const char* const busy_demo =
+    "t.left:open() t.left:move_by({ 10 * mm, 0, -20 * mm }, { speed = 25 * mm / s })\n"
+    "t:together(function() t.left:rotate(40 * deg) t.left:close() end,\n"
+    "           function() t.right:wait(0.13 * s) t.right:move_by({ 0, -7 * mm, -9 * mm }) end)\n"
+    "t.left:wait(0.037 * s) t.left:move_by({ 0, 3 * mm, 0 })";
+
+TEST(Demo, PathDoesNotDependOnTheRate) {
+  const Played coarse = play(with_demo(busy_demo), 25, 4), fine = play(with_demo(busy_demo), 100, 4);
+  ASSERT_FALSE(coarse.failure) << to_text(*coarse.failure);
+  ASSERT_FALSE(fine.failure) << to_text(*fine.failure);
+  for (const Moment& moment : coarse.moments) {
+    const auto same = std::find_if(fine.moments.begin(), fine.moments.end(), [&](const Moment& m) {
+      return std::abs(m.time - moment.time) < rounding;
+    });
+    ASSERT_NE(same, fine.moments.end());
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(moment.poses[i].pitch, same->poses[i].pitch, rounding) << moment.time;
+      EXPECT_NEAR(moment.poses[i].yaw, same->poses[i].yaw, rounding) << moment.time;
+      EXPECT_NEAR(moment.poses[i].insertion, same->poses[i].insertion, rounding) << moment.time;
+      EXPECT_NEAR(moment.poses[i].roll, same->poses[i].roll, rounding) << moment.time;
+      EXPECT_NEAR(moment.poses[i].jaw, same->poses[i].jaw, rounding) << moment.time;
+    }
+  }
+}
+
+TEST(Demo, MovesByWhatItSays) {
+  const Played played = play(with_demo("t.left:move_by({ 10 * mm, -5 * mm, -20 * mm })"), 50, 2);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  const Vec3 moved = played.moments.back().tips[0] - played.moments.front().tips[0];
+  // The first moment is one step into the motion, less than a ramp's 0.02 s share of it.
+  EXPECT_LT((moved - Vec3(10e-3, -5e-3, -20e-3)).norm(), 0.1e-3);
+  EXPECT_EQ(played.moments.back().tips[1], played.moments.front().tips[1]);
+}
+
+TEST(Demo, MovesToAPlaceWithTheTipOfItsOpenJaws) {
+  const Played played =
+      play(with_demo("t.left:open(40 * deg) t.left:move_to({ -60 * mm, 90 * mm, -90 * mm })"), 50, 5);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  const InstrumentPose pose = played.moments.back().poses[0];
+  EXPECT_NEAR(pose.jaw, 40 * 3.14159265358979 / 180, rounding);
+  const Vec3 trocar(-80e-3, 70e-3, -5e-3);  // right_subcostal
+  EXPECT_LT((tip_position(trocar, pose, {}) - Vec3(-60e-3, 90e-3, -90e-3)).norm(), rounding);
+}
+
+TEST(Demo, RunsFunctionsSideBySide) {
+  const std::string serial = "t.left:move_by({ 0, 0, -20 * mm }) t.right:move_by({ 0, 0, -20 * mm })";
+  const std::string parallel =
+      "t:together(function() t.left:move_by({ 0, 0, -20 * mm }) end, function() t.right:move_by({ 0, 0, -20 "
+      "* mm }) end)";
+  const Played one = play(with_demo(serial), 50, 3), both = play(with_demo(parallel), 50, 3);
+  const double duration = Travel(20e-3, default_speed).duration();
+  EXPECT_NEAR(one.source_ended, 2 * duration, 0.02 + rounding);  // the step in which it ended still has input
+  EXPECT_NEAR(both.source_ended, duration, 0.02 + rounding);
+  EXPECT_LT((one.moments.back().tips[0] - both.moments.back().tips[0]).norm(), rounding);
+  EXPECT_LT((one.moments.back().tips[1] - both.moments.back().tips[1]).norm(), rounding);
+}
+
+TEST(Demo, WaitsForConditions) {
+  const Played played = play(
+      with_demo("t:wait_until(function() return t:time() > 0.99 * s end) t.left:move_by({ 0, 0, -9 * mm })"),
+      50, 2);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  for (const Moment& moment : played.moments)
+    EXPECT_EQ(moment.poses[0].insertion > played.moments.front().poses[0].insertion,
+              moment.time > 1 + rounding)
+        << moment.time;
+}
+
+TEST(Demo, EndsWhenItsFunctionReturnsAndAtOnceWithoutOne) {
+  EXPECT_NEAR(play(with_demo("t:wait(0.5 * s)"), 50, 1).source_ended, 0.5, 0.02 + rounding);
+  EXPECT_LE(play(with_demo(""), 50, 0.1).source_ended, 0.02 + rounding);
+}
+
+TEST(Demo, RefusesPlacesOutOfReach) {
+  const ScenarioText text = with_demo("t:wait(0.1 * s)\nt.left:move_to({ 300 * mm, 0, -300 * mm })");
+  const Played played = play(text, 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_EQ(played.failure->kind, FailureKind::scenario);
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("mm from its port"));
+}
+
+TEST(Demo, RefusesTwoMotionsOfOneInstrumentAtATime) {
+  const Played played = play(with_demo("t:together(function() t.left:move_by({ 0, 0, -20 * mm }) end,\n"
+                                       "function() t.left:close() end)"),
+                             50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("another function of t:together"));
+}
+
+TEST(Demo, CannotBeDrivenFromACoroutineOrPredicateOfItsOwn) {
+  for (const char* demo : {"coroutine.wrap(function() t:wait(1 * s) end)()", "coroutine.yield()"}) {
+    const Played played =
+        play(with_demo("if t:time() < 1e9 then local x = t:time() end\n" + std::string(demo)), 50, 1);
+    ASSERT_TRUE(played.failure) << demo;
+    EXPECT_EQ(played.failure->kind, FailureKind::scenario);
+  }
+}
+
+// ---- steps
+
+TEST(Steps, BeginAtTimeZeroAndEndAsTheyShould) {
+  const Played played = play(with_steps("t:step('a', 'A') t:wait(0.5 * s)\n"
+                                        "t:step('b', 'B', { limit = 0.3 * s })\n"
+                                        "local held = t:wait_until(function() return false end) print(held)\n"
+                                        "print(t:wait_until(function() return true end))\n"
+                                        "t:step('c', 'C') print(t:wait_until(function() return true end))"),
+                             50, 1.5);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  const std::vector<StepRecord>& steps = played.progress.steps();
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].started, 0);
+  EXPECT_EQ(steps[0].outcome, "done");
+  EXPECT_NEAR(steps[0].ended, 0.5, rounding);
+  EXPECT_EQ(steps[1].outcome, "timeout");
+  EXPECT_NEAR(steps[1].ended, 0.8, rounding);
+  EXPECT_EQ(steps[2].outcome, "done");
+  EXPECT_NEAR(played.steps_ended, 0.8, rounding);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("false", "false", "true"));
+}
+
+TEST(Steps, HoldsAddUpTheTimeInTheBandOverInterruptions) {
+  // In the band in (0, 0.4] and (0.6, ...]: half a second is reached at 0.7 s, at whatever rate.
+  const std::string steps =
+      "t:step('hold', 'Hold')\n"
+      "print(t:hold('band', function() local now = t:time() return now < 0.41 * s or now > 0.61 * s end, 0.5 "
+      "* s))";
+  for (const double rate : {25.0, 50.0, 100.0}) {
+    const Played played = play(with_steps(steps), rate, 1);
+    ASSERT_FALSE(played.failure) << to_text(*played.failure);
+    EXPECT_NEAR(played.steps_ended, 0.7, 1 / rate + rounding) << rate;  // seen at the end of a step
+    EXPECT_NEAR(played.progress.metrics().at("hold.band.time_in_s"), 0.5, 1 / rate + rounding) << rate;
+    EXPECT_THAT(played.printed, ::testing::ElementsAre("true"));
+  }
+}
+
+TEST(Steps, AHoldThatIsNeverReachedHasNoTimeInIt) {
+  const Played played = play(
+      with_steps(
+          "t:step('a', 'A') t:wait(9 * s)\nt:step('b', 'B') t:hold('c', function() return true end, 1 * s)"),
+      50, 0.2);
+  EXPECT_EQ(played.progress.metrics().at("b.c.time_in_s"), 0);
+}
+
+TEST(Steps, AHoldEndsWithItsStepsLimit) {
+  const Played played =
+      play(with_steps("t:step('a', 'A', { limit = 0.4 * s })\n"
+                      "print(t:hold('b', function() return t:time() < 0.31 * s end, 1 * s))"),
+           50, 1);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("false"));
+  EXPECT_NEAR(played.progress.metrics().at("a.b.time_in_s"), 0.3, rounding);
+  EXPECT_NEAR(played.steps_ended, 0.4, rounding);
+}
+
+TEST(Steps, SeeTheWorldAsItIs) {
+  ScenarioText text = with_steps(
+      "t:step('a', 'A') t:wait(0.2 * s)\n"
+      "print(string.format('%.12g %.12g %s %s', t:pressure('ball'), t:volume('ball'), t.left:holds(), "
+      "t.left:touching()))\n"
+      "local tip = t.left:tip() print(string.format('%.12g %.12g %.12g', tip[1], tip[2], tip[3]))");
+  const Played played = play(text, 50, 0.3);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  ASSERT_EQ(played.printed.size(), 2u);
+  double pressure = 0, volume = 0;
+  std::sscanf(played.printed[0].c_str(), "%lf %lf", &pressure, &volume);
+  const double ball = 4.0 / 3 * 3.14159265358979 * 20e-3 * 20e-3 * 20e-3;
+  EXPECT_NEAR(volume, ball,
+              0.05 * ball);  // filled to its unstressed volume; 61 nodes make a ball to a few percent
+  EXPECT_THAT(played.printed[0], ::testing::HasSubstr("false false"));
+  Vec3 tip;
+  std::sscanf(played.printed[1].c_str(), "%lf %lf %lf", &tip.x(), &tip.y(), &tip.z());
+  EXPECT_LT((tip - played.moments.front().tips[0]).norm(), rounding);
+}
+
+TEST(Steps, ErrorsWhileTheyRunNameTheScriptsLines) {
+  const ScenarioText text = with_steps(
+      "t:step('a', 'A') t:wait_until(function()\n local x = t:time() > 0.1 and nil\n return x + 1 end)");
+  const Played played = play(text, 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_EQ(played.failure->kind, FailureKind::scenario);
+  EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "return x + 1"));
+  EXPECT_EQ(to_text(*played.failure).find("[C]"), std::string::npos);
+}
+
+TEST(Steps, BudgetsEndThemWhileTheyRunToo) {
+  const ScenarioText text =
+      with_steps("t:step('a', 'A') t:wait_until(function()\n while t:time() > 0.1 do end end)");
+  const Played played = play(text, 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_EQ(played.failure->kind, FailureKind::resource);
+  EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "while t:time()"));
+}
+
+TEST(Steps, RefuseToWaitInsidePredicates) {
+  const Played played =
+      play(with_steps("t:step('a', 'A') t:wait_until(function()\n t:wait(1 * s) return true end)"), 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("inside a predicate"));
+}
+
+TEST(Handles, SayWhenTheirSessionHasEndedOrIsNotRunning) {
+  ScenarioText text;
+  text.head = "local kept";
+  text.steps = "kept = t.left t:step('a', 'A') t:wait(0.1 * s)";
+  text.demo = "t:wait(0.3 * s)\nif kept and t:time() < 1e3 then local f = kept:force() end";
+  const Played played = play(text, 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("can no longer be used"));
+}
+
+TEST(Handles, OfOneKindAreRefusedByTheMethodsOfAnother) {
+  for (const char* demo : {"local close = t.left.close close(t)", "local wait = t.wait wait(5)",
+                           "local together = t.together together(t.left, print, print)"}) {
+    ScenarioText text = with_demo(demo);
+    const Played played = play(text, 50, 0.1);
+    ASSERT_TRUE(played.failure) << demo;
+    EXPECT_EQ(played.failure->kind, FailureKind::scenario) << demo;
+  }
+}
+
+TEST(Handles, OfTheSimulatorsCoroutinesCannotBeResumed) {
+  ScenarioText text;
+  text.head = "local mine";
+  text.steps = "mine = coroutine.running() t:step('a', 'A') t:wait(1 * s)";
+  text.demo = "t:wait(0.1 * s) if mine then print(coroutine.resume(mine)) end t:wait(1 * s)";
+  const Played played = play(text, 50, 0.3);
+  EXPECT_FALSE(played.failure);
+  EXPECT_THAT(played.printed, ::testing::Contains(::testing::HasSubstr("the simulator resumes")));
+}
+
+}  // namespace
+}  // namespace calot

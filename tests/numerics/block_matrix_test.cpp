@@ -1,0 +1,93 @@
+#include "numerics/block_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include "random_matrices.h"
+
+namespace calot {
+namespace {
+
+TEST(BlockMatrix, ProductsAreThoseOfTheDenseMatrix) {
+  Rng rng(1);
+  for (int nodes : {1, 4, 20}) {
+    const BlockMatrix matrix = test::random_matrix(rng, nodes);
+    const VecX x = test::random_coordinates(rng, matrix.size(), 1.0);
+    const VecX expected = test::dense(matrix) * x;
+    EXPECT_LT((matrix.multiply(x) - expected).norm(), 1e-14 * expected.norm());
+  }
+}
+
+TEST(BlockMatrix, BlocksAddUpAtTheirSlots) {
+  Rng rng(2);
+  const std::vector<std::vector<int>> cliques = {{3, 0}, {1, 3, 4}};
+  BlockMatrix matrix(5, cliques);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(15, 15);
+  for (const auto& [i, j] : {std::pair{0, 0}, {3, 0}, {3, 1}, {4, 1}, {4, 3}, {3, 0}, {2, 2}}) {
+    const Mat3 block = test::random_block(rng);
+    matrix.add(i, j, block);
+    expected.block<3, 3>(3 * i, 3 * j) += block;
+  }
+  EXPECT_EQ(test::stored(matrix), expected);
+  for (const auto& [i, j] : {std::pair{3, 0}, {4, 3}, {2, 2}})
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r)
+        EXPECT_EQ(matrix.values()[matrix.slot(i, j) + c * matrix.stride(j) + r],
+                  expected(3 * i + r, 3 * j + c));
+}
+
+TEST(BlockMatrix, PatternHoldsTheCliquesAndEveryDiagonalBlockOnly) {
+  const std::vector<std::vector<int>> cliques = {{3, 0}, {1, 3, 4}, {3, 0}};
+  const BlockMatrix matrix(6, cliques);
+  for (int j = 0; j < 6; ++j)
+    for (int i = j; i < 6; ++i) {
+      const bool coupled = std::any_of(cliques.begin(), cliques.end(), [&](const std::vector<int>& clique) {
+        return std::count(clique.begin(), clique.end(), i) && std::count(clique.begin(), clique.end(), j);
+      });
+      EXPECT_EQ(matrix.slot(i, j) >= 0, i == j || coupled) << i << " " << j;
+    }
+  EXPECT_EQ(matrix.nodes(), 6);
+  EXPECT_EQ(matrix.size(), 18);
+}
+
+TEST(BlockMatrix, RowsOfAColumnIncrease) {
+  Rng rng(3);
+  const BlockMatrix matrix = test::random_matrix(rng, 12);
+  ASSERT_EQ(matrix.column_starts().size(), 37u);
+  EXPECT_EQ(matrix.column_starts().back(), static_cast<int>(matrix.entries().size()));
+  for (int c = 0; c < matrix.size(); ++c)
+    for (int e = matrix.column_starts()[c] + 1; e < matrix.column_starts()[c + 1]; ++e)
+      EXPECT_LT(matrix.rows()[e - 1], matrix.rows()[e]);
+}
+
+TEST(BlockMatrix, ShiftIsAddedToTheDiagonalAlone) {
+  Rng rng(4);
+  BlockMatrix matrix = test::random_matrix(rng, 6);
+  const Eigen::MatrixXd before = test::stored(matrix);
+  EXPECT_NEAR(matrix.diagonal_mean(), before.diagonal().cwiseAbs().mean(), 1e-14);
+  matrix.add_to_diagonal(0.75);
+  const Eigen::MatrixXd added = test::stored(matrix) - before;
+  EXPECT_LT((added - 0.75 * Eigen::MatrixXd::Identity(18, 18)).norm(), 1e-14);
+}
+
+TEST(BlockMatrix, StartsFromAssignedValuesOrZero) {
+  Rng rng(5);
+  BlockMatrix matrix = test::random_matrix(rng, 6);
+  const BlockMatrix copy = matrix;
+  matrix.set_zero();
+  EXPECT_EQ(test::stored(matrix).norm(), 0);
+  matrix.assign(copy.entries());
+  EXPECT_EQ(test::stored(matrix), test::stored(copy));
+}
+
+TEST(BlockMatrix, OneValueThatIsNotFiniteIsFound) {
+  Rng rng(6);
+  for (double bad : {std::nan(""), HUGE_VAL}) {
+    BlockMatrix matrix = test::random_matrix(rng, 6);
+    EXPECT_TRUE(matrix.all_finite());
+    matrix.values()[17] = bad;
+    EXPECT_FALSE(matrix.all_finite());
+  }
+}
+
+}  // namespace
+}  // namespace calot

@@ -1,0 +1,116 @@
+#include "numerics/cholesky.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "random_matrices.h"
+
+namespace calot {
+namespace {
+
+/// Both factorisations, dense and sparse, obey the same laws.
+class CholeskyOf : public ::testing::TestWithParam<bool> {
+ protected:
+  static Cholesky factor(const BlockMatrix& matrix) { return Cholesky(matrix, GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Both, CholeskyOf, ::testing::Values(true, false),
+                         [](const auto& kind) { return kind.param ? "Dense" : "Sparse"; });
+
+TEST_P(CholeskyOf, SolvesRandomPositiveSystems) {
+  Rng rng(1);
+  for (int nodes : {1, 5, 40}) {
+    const BlockMatrix matrix = test::random_positive(rng, nodes);
+    Cholesky cholesky = factor(matrix);
+    ASSERT_EQ(cholesky.factorise(matrix), FactorStatus::ok);
+    const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
+    const VecX x = cholesky.solve(right);
+    // Condition numbers near 10: the residual is rounding.
+    EXPECT_LT((matrix.multiply(x) - right).norm(), 1e-13 * right.norm());
+  }
+}
+
+TEST_P(CholeskyOf, AnalysisServesEveryMatrixOfItsPattern) {
+  Rng rng(2);
+  BlockMatrix matrix = test::random_positive(rng, 20);
+  Cholesky cholesky = factor(matrix);
+  Cholesky moved = std::move(cholesky);
+  const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
+  for (int trial = 0; trial < 5; ++trial) {
+    for (int k = 0; k < static_cast<int>(matrix.entries().size()); ++k)
+      matrix.values()[k] *= rng.uniform(0.95, 1.0);
+    ASSERT_EQ(moved.factorise(matrix), FactorStatus::ok);
+    EXPECT_LT((matrix.multiply(moved.solve(right)) - right).norm(), 1e-13 * right.norm());
+  }
+}
+
+TEST_P(CholeskyOf, SameMatrixGivesTheSameBits) {
+  Rng rng(3);
+  const BlockMatrix matrix = test::random_positive(rng, 20);
+  const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
+  Cholesky first = factor(matrix), second = factor(matrix);
+  ASSERT_EQ(first.factorise(matrix), FactorStatus::ok);
+  ASSERT_EQ(second.factorise(matrix), FactorStatus::ok);
+  const VecX x = first.solve(right);
+  EXPECT_EQ(second.solve(right), x);
+  ASSERT_EQ(first.factorise(matrix), FactorStatus::ok);
+  EXPECT_EQ(first.solve(right), x);
+}
+
+TEST_P(CholeskyOf, ValueThatIsNotFiniteIsRefused) {
+  Rng rng(4);
+  for (double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    BlockMatrix matrix = test::random_positive(rng, 10);
+    Cholesky cholesky = factor(matrix);
+    matrix.values()[matrix.slot(4, 4)] = bad;  // on the diagonal, which CHOLMOD 3.0.14 lets pass
+    EXPECT_EQ(cholesky.factorise(matrix), FactorStatus::not_finite);
+  }
+}
+
+TEST_P(CholeskyOf, IndefiniteMatrixIsReportedAndTheNextOneServed) {
+  Rng rng(5);
+  BlockMatrix matrix = test::random_positive(rng, 10);
+  Cholesky cholesky = factor(matrix);
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(test::dense(matrix)).eigenvalues()[0];
+  matrix.add_to_diagonal(-1.01 * least);
+  EXPECT_EQ(cholesky.factorise(matrix), FactorStatus::not_positive_definite);
+  matrix.add_to_diagonal(0.02 * least);
+  ASSERT_EQ(cholesky.factorise(matrix), FactorStatus::ok);
+  const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
+  EXPECT_LT((matrix.multiply(cholesky.solve(right)) - right).norm(), 1e-10 * right.norm());
+}
+
+TEST_P(CholeskyOf, ConditionEstimateIsThatOfADiagonalMatrix) {
+  BlockMatrix matrix(3, std::vector<std::vector<int>>{});
+  for (int i = 0; i < 3; ++i) matrix.add(i, i, Vec3(1.0, 4.0, std::pow(10.0, -i)).asDiagonal());
+  Cholesky cholesky = factor(matrix);
+  ASSERT_EQ(cholesky.factorise(matrix), FactorStatus::ok);
+  EXPECT_NEAR(cholesky.reciprocal_condition(), 0.01 / 4.0, 1e-15);
+}
+
+TEST_P(CholeskyOf, FactorIsNeverSmallerThanTheMatrix) {
+  Rng rng(6);
+  const BlockMatrix matrix = test::random_positive(rng, 20);
+  Cholesky cholesky = factor(matrix);
+  ASSERT_EQ(cholesky.factorise(matrix), FactorStatus::ok);
+  long below = 0;
+  for (int c = 0; c < matrix.size(); ++c)
+    for (int e = matrix.column_starts()[c]; e < matrix.column_starts()[c + 1]; ++e)
+      below += matrix.rows()[e] >= c;
+  EXPECT_GE(cholesky.factor_nonzeros(), below);
+  EXPECT_LE(cholesky.factor_nonzeros(), 60L * 61 / 2);
+  EXPECT_GE(cholesky.factor_flops(), static_cast<double>(below));
+}
+
+TEST(Cholesky, SmallBodiesAreDenseAndBothKindsAgree) {
+  Rng rng(7);
+  const BlockMatrix matrix = test::random_positive(rng, 30);
+  Cholesky chosen(matrix), dense(matrix, true), sparse(matrix, false);
+  const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
+  for (Cholesky* one : {&chosen, &dense, &sparse}) ASSERT_EQ(one->factorise(matrix), FactorStatus::ok);
+  EXPECT_EQ(chosen.solve(right), dense.solve(right));
+  EXPECT_LT((sparse.solve(right) - dense.solve(right)).norm(), 1e-14 * dense.solve(right).norm());
+}
+
+}  // namespace
+}  // namespace calot

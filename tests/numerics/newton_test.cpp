@@ -1,0 +1,343 @@
+#include "numerics/newton.h"
+
+#include <gtest/gtest.h>
+
+#include "support/derivatives.h"
+
+namespace calot {
+namespace {
+
+/// A net of stiffening springs, some to the ground, under a dead load; optionally the enclosed volume of a
+/// tetrahedron of its first four nodes is kept.
+class Net : public ConstrainedEnergy {
+ public:
+  explicit Net(bool keeps_volume) : keeps_volume_(keeps_volume) {
+    Rng rng(1);
+    rest_ = test::random_coordinates(rng, 3 * nodes, 0.5);
+    rest_.segment<12>(0) << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    load = 0.05 * test::random_coordinates(rng, 3 * nodes, 1.0);
+    for (int i = 0; i < nodes; ++i)
+      for (int j = i + 1; j < nodes; ++j) springs_.push_back({i, j});
+    volume = volume_of(rest_);
+  }
+
+  static constexpr int nodes = 6;
+  VecX load;
+  double ground = 1.0;  ///< N/m, of every node to its rest place
+  double poison = 0.0;  ///< added to gradients
+  double volume = 0;
+
+  const VecX& rest() const { return rest_; }
+  NewtonWorkspace workspace() const {
+    std::vector<int> all(nodes);
+    for (int i = 0; i < nodes; ++i) all[i] = i;
+    return NewtonWorkspace(BlockMatrix(nodes, std::vector<std::vector<int>>{all}));
+  }
+
+  bool constrained() const override { return keeps_volume_; }
+  double value(const VecX& x) const override {
+    double sum = 0.5 * ground * (x - rest_).squaredNorm() - load.dot(x);
+    for (const auto& [i, j] : springs_) {
+      const double e = extension(x, i, j);
+      sum += 0.5 * e * e + 0.25 * e * e * e * e;
+    }
+    return sum;
+  }
+  void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override {
+    gradient = ground * (x - rest_) - load;
+    for (const auto& [i, j] : springs_) {
+      const double e = extension(x, i, j);
+      const Vec3 pull = (e + e * e * e) * 2 * (x.segment<3>(3 * i) - x.segment<3>(3 * j));
+      gradient.segment<3>(3 * i) += pull;
+      gradient.segment<3>(3 * j) -= pull;
+    }
+    gradient[0] += poison;
+    largest_internal = load.lpNorm<Eigen::Infinity>();
+  }
+  void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override {
+    matrix.set_zero();
+    for (int i = 0; i < nodes; ++i) matrix.add(i, i, ground * Mat3::Identity());
+    for (const auto& [i, j] : springs_) {
+      const double e = extension(x, i, j);
+      const Vec3 d = 2 * (x.segment<3>(3 * i) - x.segment<3>(3 * j));
+      const Mat3 h = (1 + 3 * e * e) * d * d.transpose() + 2 * (e + e * e * e) * Mat3::Identity();
+      matrix.add(i, i, h);
+      matrix.add(j, j, h);
+      matrix.add(j, i, -h);
+    }
+    if (!keeps_volume_) return;
+    // Minus multiplier times the volume's Hessian, itself by differences: exact, the volume being cubic.
+    const Eigen::MatrixXd second =
+        test::difference_hessian([&](const VecX& y) { return volume_gradient(y); }, x, 0.1);
+    for (int j = 0; j < 4; ++j)
+      for (int i = j; i < 4; ++i) matrix.add(i, j, -multiplier * second.block<3, 3>(3 * i, 3 * j));
+  }
+  double constraint(const VecX& x, VecX& gradient) const override {
+    gradient = volume_gradient(x);
+    return constraint_value(x);
+  }
+  double constraint_value(const VecX& x) const override { return volume_of(x) - volume; }
+  double constraint_scale() const override { return volume_of(rest_); }
+  double length_scale() const override { return 1.0; }
+  double safe_share(const VecX&, const VecX&) const override { return 1.0; }
+
+ private:
+  /// Half the growth of the squared length.
+  double extension(const VecX& x, int i, int j) const {
+    return (x.segment<3>(3 * i) - x.segment<3>(3 * j)).squaredNorm() -
+           (rest_.segment<3>(3 * i) - rest_.segment<3>(3 * j)).squaredNorm();
+  }
+  static double volume_of(const VecX& x) {
+    const Vec3 a = x.segment<3>(0);
+    return (x.segment<3>(3) - a).dot((x.segment<3>(6) - a).cross(x.segment<3>(9) - a)) / 6;
+  }
+  static VecX volume_gradient(const VecX& x) {
+    const Vec3 a = x.segment<3>(0);
+    const Vec3 b = x.segment<3>(3) - a, c = x.segment<3>(6) - a, d = x.segment<3>(9) - a;
+    VecX g = VecX::Zero(x.size());
+    g.segment<3>(3) = c.cross(d) / 6;
+    g.segment<3>(6) = d.cross(b) / 6;
+    g.segment<3>(9) = b.cross(c) / 6;
+    g.segment<3>(0) = -(g.segment<3>(3) + g.segment<3>(6) + g.segment<3>(9));
+    return g;
+  }
+
+  bool keeps_volume_;
+  VecX rest_;
+  std::vector<std::pair<int, int>> springs_;
+};
+
+/// Residual of stationarity of the Lagrangian.
+VecX residual(const Net& net, const VecX& x, double multiplier) {
+  VecX g, c;
+  double scale = 0;
+  net.gradient(x, g, scale);
+  if (!net.constrained()) return g;
+  net.constraint(x, c);
+  return g - multiplier * c;
+}
+
+TEST(Newton, NetUsedHereHasExactDerivatives) {
+  const Net net(true);
+  Rng rng(2);
+  const VecX x = net.rest() + test::random_coordinates(rng, 18, 0.1);
+  const auto lagrangian = [&](const VecX& y) { return net.value(y) - 0.7 * net.constraint_value(y); };
+  EXPECT_LT(test::relative_error(residual(net, x, 0.7), test::difference_gradient(lagrangian, x, 1e-5)),
+            1e-8);
+  NewtonWorkspace work = net.workspace();
+  net.hessian(x, 0.7, work.matrix);
+  const auto gradient = [&](const VecX& y) { return residual(net, y, 0.7); };
+  EXPECT_LT(test::relative_error(test::dense(work.matrix), test::difference_hessian(gradient, x, 1e-5)),
+            1e-8);
+}
+
+TEST(Newton, FindsTheStationaryPointOfANonlinearEnergy) {
+  for (bool constrained : {false, true}) {
+    Net net(constrained);
+    net.volume *= 1.2;
+    NewtonWorkspace work = net.workspace();
+    VecX x = net.rest();
+    double multiplier = 0;
+    const NewtonResult result = solve_equilibrium(net, {}, work, x, multiplier);
+    ASSERT_TRUE(result.converged()) << to_text(result.status);
+    EXPECT_GT(result.iterations, 1);
+    // The tolerance is relative to the load; a stationary point that is a minimum: energy rises around it.
+    const double scale = net.load.lpNorm<Eigen::Infinity>();
+    EXPECT_LT(residual(net, x, multiplier).norm(), 1e-5 * scale);
+    EXPECT_LE(result.residual, 1e-6);
+    EXPECT_LE(result.increment, 1e-6);
+    EXPECT_GT((x - net.rest()).norm(), 1e-3);
+    if (constrained) {
+      EXPECT_NE(multiplier, 0);
+      continue;
+    }
+    Rng rng(3);
+    for (int trial = 0; trial < 20; ++trial)
+      EXPECT_GT(net.value(x + test::random_coordinates(rng, 18, 1e-2)), net.value(x));
+  }
+}
+
+TEST(Newton, ConstraintIsKeptToItsTolerance) {
+  Net net(true);
+  const double unstressed = net.volume;
+  for (double growth : {0.8, 1.0, 1.3}) {
+    net.volume = growth * unstressed;
+    NewtonWorkspace work = net.workspace();
+    VecX x = net.rest();
+    double multiplier = 0;
+    const NewtonResult result = solve_equilibrium(net, {}, work, x, multiplier);
+    ASSERT_TRUE(result.converged()) << to_text(result.status);
+    EXPECT_LT(std::abs(net.constraint_value(x)), 1e-10 * unstressed);
+    EXPECT_LE(result.constraint_error, 1e-10);
+  }
+}
+
+TEST(Newton, MultiplierIsTheRateOfEnergyByTheConstraint) {
+  Net net(true);
+  const double unstressed = net.volume, h = 1e-4 * unstressed;
+  NewtonSettings tight;
+  tight.tolerance = 1e-10;
+  const auto solve = [&](double volume, double& multiplier) {
+    net.volume = volume;
+    NewtonWorkspace work = net.workspace();
+    VecX x = net.rest();
+    EXPECT_TRUE(solve_equilibrium(net, tight, work, x, multiplier).converged());
+    return net.value(x);
+  };
+  double here = 0, other = 0;
+  solve(1.2 * unstressed, here);
+  const double rate = (solve(1.2 * unstressed + h, other) - solve(1.2 * unstressed - h, other)) / (2 * h);
+  EXPECT_NEAR(rate, here, 1e-5 * std::abs(here));  // central difference with a step of 1e-4
+}
+
+TEST(Newton, ResidualFallsWithItsSquareOnceNear) {
+  // From one iterate to the next with a fresh factor each: residual' <= C residual^2.
+  Net net(true);
+  net.volume *= 1.05;
+  VecX x = net.rest();
+  double multiplier = 0;
+  std::vector<double> residuals;
+  for (int step = 0; step < 8; ++step) {
+    NewtonWorkspace work = net.workspace();  // nothing to reuse: a full Newton step
+    NewtonSettings one;
+    one.max_iterations = 1;
+    one.tolerance = 1e-30;  // never met: exactly one step is taken
+    solve_equilibrium(net, one, work, x, multiplier);
+    residuals.push_back(residual(net, x, multiplier).norm() + std::abs(net.constraint_value(x)));
+  }
+  int squared = 0;
+  for (std::size_t k = 1; k < residuals.size(); ++k) {
+    if (residuals[k - 1] > 1e-2 || residuals[k - 1] < 1e-7) continue;  // far, or its square is rounding
+    EXPECT_LT(residuals[k], 50 * residuals[k - 1] * residuals[k - 1]);
+    ++squared;
+  }
+  EXPECT_GE(squared, 1);
+  EXPECT_LT(residuals.back(), 1e-12);
+}
+
+TEST(Newton, KeptFactorLeadsToTheSamePoint) {
+  Net net(true);
+  NewtonSettings tight;
+  tight.tolerance = 1e-9;
+  NewtonWorkspace kept = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  ASSERT_TRUE(solve_equilibrium(net, tight, kept, x, multiplier).converged());
+  net.load *= 1.01;  // a small step further: the factor may serve
+  VecX with_kept = x, with_fresh = x;
+  double kept_multiplier = multiplier, fresh_multiplier = multiplier;
+  NewtonWorkspace fresh = net.workspace();
+  const NewtonResult chord = solve_equilibrium(net, tight, kept, with_kept, kept_multiplier);
+  ASSERT_TRUE(chord.converged());
+  ASSERT_TRUE(solve_equilibrium(net, tight, fresh, with_fresh, fresh_multiplier).converged());
+  EXPECT_GT(chord.chords, 0);
+  EXPECT_LT((with_kept - with_fresh).norm(), 1e-8);
+  EXPECT_NEAR(kept_multiplier, fresh_multiplier, 1e-8);
+}
+
+TEST(Newton, SolvedProblemIsLeftBitIdentical) {
+  const Net net(true);
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  ASSERT_TRUE(solve_equilibrium(net, {}, work, x, multiplier).converged());
+  const VecX solved = x;
+  const double pressure = multiplier;
+  const NewtonResult again = solve_equilibrium(net, {}, work, x, multiplier);
+  EXPECT_TRUE(again.converged());
+  EXPECT_EQ(again.iterations, 0);
+  EXPECT_EQ(x, solved);
+  EXPECT_EQ(multiplier, pressure);
+}
+
+TEST(Newton, BodyThatNothingHoldsIsAMechanism) {
+  for (bool constrained : {false, true}) {
+    Net net(constrained);
+    net.ground = 0;
+    NewtonWorkspace work = net.workspace();
+    VecX x = net.rest();
+    double multiplier = 0;
+    EXPECT_EQ(solve_equilibrium(net, {}, work, x, multiplier).status, NewtonStatus::mechanism);
+  }
+}
+
+TEST(Newton, ValueThatIsNotFiniteIsReported) {
+  Net net(false);
+  net.poison = std::nan("");
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  EXPECT_EQ(solve_equilibrium(net, {}, work, x, multiplier).status, NewtonStatus::not_finite);
+}
+
+TEST(Newton, IterationLimitIsReportedWithTheLastIterate) {
+  Net net(false);
+  net.load *= 40;
+  NewtonSettings settings;
+  settings.max_iterations = 2;
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  const NewtonResult result = solve_equilibrium(net, settings, work, x, multiplier);
+  EXPECT_EQ(result.status, NewtonStatus::iteration_limit);
+  EXPECT_EQ(result.iterations, 2);
+  EXPECT_LT(net.value(x), net.value(net.rest())) << "x holds how far it came";
+  const double scale = net.load.lpNorm<Eigen::Infinity>();
+  double largest = 0;
+  const VecX left = residual(net, x, multiplier);
+  for (int i = 0; i < 18; i += 3) largest = std::max(largest, left.segment<3>(i).norm());
+  EXPECT_NEAR(result.residual, largest / scale, 1e-12) << "the residual is that of x";
+}
+
+TEST(Newton, IndefiniteTangentIsPassedByAShift) {
+  // Squeezed springs push outward: the tangent at a strongly squeezed start is indefinite, the rest is not.
+  Net net(false);
+  net.load.setZero();
+  net.load[0] = 1e-3;
+  NewtonWorkspace work = net.workspace();
+  VecX x = 0.3 * net.rest();
+  net.hessian(x, 0, work.matrix);
+  ASSERT_EQ(work.factor.factorise(work.matrix), FactorStatus::not_positive_definite);
+  double multiplier = 0;
+  const NewtonResult result = solve_equilibrium(net, {}, work, x, multiplier);
+  EXPECT_TRUE(result.converged()) << to_text(result.status);
+  EXPECT_GT(result.shifts, 0);
+}
+
+TEST(Newton, LinearResponseIsTheChangeOfTheSolutionToFirstOrder) {
+  Net net(true);
+  net.volume *= 1.1;
+  NewtonSettings tight;
+  tight.tolerance = 1e-11;
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  ASSERT_TRUE(solve_equilibrium(net, tight, work, x, multiplier).converged());
+  ASSERT_EQ(factorise_tangent(net, work, x, multiplier, true), NewtonStatus::converged);
+  Rng rng(4);
+  const VecX more = test::random_coordinates(rng, 18, 1.0);
+  double dmultiplier = 0;
+  const double h = 1e-5;
+  const VecX dx = linear_response(work, h * more, dmultiplier);
+  net.load += h * more;
+  VecX moved = x;
+  double there = multiplier;
+  ASSERT_TRUE(solve_equilibrium(net, tight, work, moved, there).converged());
+  EXPECT_LT((moved - x - dx).norm(), 1e-3 * dx.norm());
+  EXPECT_NEAR(there - multiplier, dmultiplier, 1e-3 * std::abs(dmultiplier));
+}
+
+TEST(Newton, EveryStatusHasItsWords) {
+  std::vector<std::string> words;
+  for (NewtonStatus status :
+       {NewtonStatus::converged, NewtonStatus::not_finite, NewtonStatus::mechanism, NewtonStatus::stalled,
+        NewtonStatus::iteration_limit, NewtonStatus::out_of_memory})
+    words.push_back(to_text(status));
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    EXPECT_FALSE(words[i].empty());
+    EXPECT_EQ(std::count(words.begin(), words.end(), words[i]), 1) << words[i];
+  }
+}
+
+}  // namespace
+}  // namespace calot

@@ -1,0 +1,213 @@
+#include "session/runner.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "session/metrics.h"
+#include "session/report.h"
+#include "session/session_for_tests.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+World small_world() {
+  Result<World> world = World::create(test::small_scene());
+  EXPECT_TRUE(world) << to_text(world.failure());
+  return std::move(world).value();
+}
+
+SessionResult played(test::TimedScript& script, InputSource& source, SessionOptions options = {}) {
+  World world = small_world();
+  return run_session(world, script, source, options);
+}
+
+TEST(Runner, EndsWithItsScriptAndHoldsTheLastInputWhereTheSourceEndsBefore) {
+  test::TimedScript script(0.4);
+  test::SwayingSource source(0.2);
+  const SessionResult result = played(script, source);
+  EXPECT_EQ(result.end, SessionEnd::steps_done);
+  EXPECT_EQ(result.state_hashes.size(), 21u);  // 0.4 s at 50 Hz, and the rest state
+  EXPECT_EQ(result.progress.steps().at(0).outcome, "done");
+  EXPECT_EQ(result.progress.steps().at(0).started, 0);
+  const auto& samples = result.traces.instruments.at(0);
+  EXPECT_EQ((samples[20].tip - samples[10].tip).norm(), 0);
+  EXPECT_GT((samples[10].tip - samples[0].tip).norm(), 1e-4);
+}
+
+TEST(Runner, StopsAtTheTimeLimitAndSaysThatTheStepTimedOut) {
+  ExerciseDefinition exercise = test::small_exercise();
+  exercise.time_limit = 0.3;
+  test::TimedScript script(5, exercise);
+  const SessionResult result = played(script, script.demo());
+  EXPECT_EQ(result.end, SessionEnd::time_limit);
+  EXPECT_NEAR(result.traces.time.back(), 0.3, 1e-12);
+  EXPECT_EQ(result.progress.steps().at(0).outcome, "timeout");
+}
+
+TEST(Runner, AStopFlagEndsItBeforeTheNextStepWithTheStepAborted) {
+  test::TimedScript script(5);
+  std::atomic<bool> stop{false};
+  SessionOptions options;
+  options.stop = &stop;
+  options.observer = [&](const World& world, const Progress&, bool) { stop = world.report().time > 0.09; };
+  const SessionResult result = played(script, script.demo(), options);
+  EXPECT_EQ(result.end, SessionEnd::interrupted);
+  EXPECT_NEAR(result.traces.time.back(), 0.1, 1e-12);
+  EXPECT_EQ(result.progress.steps().at(0).outcome, "aborted");
+}
+
+TEST(Runner, ShowsEveryStateOnceAndTheLastOneAsLast) {
+  test::TimedScript script(0.1);
+  std::vector<double> times;
+  int last = 0;
+  SessionOptions options;
+  options.observer = [&](const World& world, const Progress&, bool is_last) {
+    if (!is_last) times.push_back(world.report().time);
+    last += is_last ? 1 : 0;
+  };
+  played(script, script.demo(), options);
+  ASSERT_EQ(times.size(), 5u);
+  EXPECT_EQ(times[0], 0);
+  EXPECT_EQ(last, 1);
+}
+
+TEST(Runner, AReplayGoesThroughTheSameStatesAsTheRun) {
+  std::string folder = (fs::temp_directory_path() / "calot-runner-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  test::TimedScript script(0.4);
+  World world = small_world();
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(folder + "/r.jsonl", recording_header(script.definition(), world));
+  ASSERT_TRUE(writer);
+  SessionOptions options;
+  options.recording = &writer.value();
+  const SessionResult run = run_session(world, script, script.demo(), options);
+
+  const Result<Recording> recording = read_recording(folder + "/r.jsonl");
+  fs::remove_all(folder);
+  ASSERT_TRUE(recording) << to_text(recording.failure());
+  EXPECT_EQ(recording->end, "done");
+  ReplaySource source(recording.value());
+  test::TimedScript again(0.4);
+  SessionOptions replaying;
+  replaying.end_with_source = true;
+  const SessionResult replay = played(again, source, replaying);
+  EXPECT_EQ(replay.state_hashes, run.state_hashes);
+  ASSERT_EQ(recording->steps.size() + 1, run.state_hashes.size());
+  EXPECT_EQ(recording->header.state_hash, run.state_hashes[0]);
+  for (std::size_t i = 0; i < recording->steps.size(); ++i) {
+    EXPECT_EQ(recording->steps[i].state_hash, run.state_hashes[i + 1]);
+  }
+}
+
+TEST(Runner, AReplayOfAnInterruptedRunEndsWhereTheRunDid) {
+  Recording recording;
+  World world = small_world();
+  test::SwayingSource sway(1);
+  for (int i = 0; i < 5; ++i) {
+    RecordedStep step;
+    step.input = *sway.next(world, 0.02).value();
+    recording.steps.push_back(step);
+  }
+  ReplaySource source(recording);
+  test::TimedScript script(5);
+  SessionOptions options;
+  options.end_with_source = true;
+  const SessionResult result = played(script, source, options);
+  EXPECT_EQ(result.end, SessionEnd::source_ended);
+  EXPECT_EQ(result.state_hashes.size(), 6u);
+}
+
+TEST(Runner, AScriptsErrorEndsTheSessionWithItsFailure) {
+  class Broken : public test::TimedScript {
+   public:
+    Broken() : TimedScript(5) {}
+    Result<bool> advance(const World& world, Progress& progress, double dt) override {
+      if (world.report().time > 0.05)
+        return fail(FailureKind::scenario, "attempt to index a nil value", "", {"x.lua", 9, {}});
+      return TimedScript::advance(world, progress, dt);
+    }
+  } script;
+  const SessionResult result = played(script, script.demo());
+  EXPECT_EQ(result.end, SessionEnd::failed);
+  EXPECT_EQ(result.failure.kind, FailureKind::scenario);
+  EXPECT_EQ(result.progress.steps().at(0).outcome, "aborted");
+  EXPECT_NEAR(result.traces.time.back(), 0.06, 1e-12);
+}
+
+TEST(Runner, AnInputThatCannotBeFollowedEndsTheSessionInTheStateBeforeIt) {
+  class Absurd : public InputSource {
+   public:
+    Result<std::optional<StepInput>> next(const World& world, double) override {
+      StepInput input;
+      input.instruments.push_back(world.report().instruments[0].pose);
+      if (world.report().time > 0.05) input.instruments.push_back(input.instruments[0]);  // one too many
+      return std::optional<StepInput>(input);
+    }
+  } source;
+  test::TimedScript script(5);
+  const SessionResult result = played(script, source);
+  EXPECT_EQ(result.end, SessionEnd::failed);
+  EXPECT_EQ(result.state_hashes.size(), 5u)
+      << "rest, three steps, and the state in which the last one failed";
+  EXPECT_EQ(result.state_hashes[4], result.state_hashes[3]);
+}
+
+TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
+  test::TimedScript script(0.2);
+  const SessionResult result = played(script, script.demo());
+  SessionReport report;
+  report.metrics = measure(script.definition().scene, result.traces, result.progress);
+  report.score = score(script.definition(), report.metrics, result.progress);
+  const auto json = nlohmann::json::parse(report_json(script.definition(), result, report));
+  for (const char* key :
+       {"schema", "scenario", "seed", "steps", "events", "metrics", "score", "state_hash", "timing"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(json["schema"], "calot.report/1");
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_GT(json["timing"]["real_time_factor"].get<double>(), 0);
+  double sum = 0;
+  for (const auto& part : json["score"]["parts"]) {
+    for (const char* key : {"name", "measured", "benchmark", "points", "weight", "event_times_s"}) {
+      EXPECT_TRUE(part.contains(key)) << key;
+    }
+    EXPECT_EQ(part["benchmark"]["calibration"], "uncalibrated");
+    sum += part["points"].get<double>();
+  }
+  EXPECT_NEAR(json["score"]["total"].get<double>(), sum, 1e-9);
+  EXPECT_EQ(json["events"][0]["event"], "step_done");
+  EXPECT_NEAR(json["events"][0]["duration_s"].get<double>(), 0.2, 1e-12);
+}
+
+TEST(Report, TextThatIsNotUtf8IsReplacedNotRefused) {
+  ExerciseDefinition exercise = test::small_exercise();
+  exercise.title = "bad \xff byte";
+  const std::string text = report_json(exercise, SessionResult(), SessionReport());
+  EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+TEST(StepTable, HasOneColumnCountThroughoutAndARowAState) {
+  std::string folder = (fs::temp_directory_path() / "calot-table-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  test::TimedScript script(0.1);
+  Result<StepTable> table = StepTable::create(folder + "/steps.csv", script.definition().scene);
+  ASSERT_TRUE(table);
+  SessionOptions options;
+  options.table = &table.value();
+  played(script, script.demo(), options);
+  std::ifstream in(folder + "/steps.csv");
+  std::string line;
+  std::vector<std::ptrdiff_t> commas;
+  while (std::getline(in, line)) commas.push_back(std::count(line.begin(), line.end(), ','));
+  fs::remove_all(folder);
+  EXPECT_EQ(commas, std::vector<std::ptrdiff_t>(7, 10));  // header, rest, 5 steps; 11 columns
+}
+
+}  // namespace
+}  // namespace calot

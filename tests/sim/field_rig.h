@@ -1,0 +1,60 @@
+#pragma once
+// The field below the world: where held points, bed forces and supports can be looked at.
+
+#include "base/units.h"
+#include "sim/advance.h"
+#include "sim/grip.h"
+
+namespace calot::test {
+
+/// One organ and, at `trocar`, one grasper pulled far back.
+inline Field make_field(const OrganDefinition& definition, double tolerance, const Vec3& up,
+                        const std::optional<Plane>& support = {}) {
+  Field field;
+  field.tolerance = tolerance;
+  field.support = support;
+  Surroundings still;
+  if (support) still.shapes.push_back(*support);
+  field.organs.push_back(make_organ(definition, still, up, tolerance).value());
+  return field;
+}
+
+inline void add_grasper(Field& field, const Vec3& trocar) {
+  Tool tool;
+  tool.definition.name = "left";
+  tool.trocar = trocar;
+  tool.pose = pose_reaching(trocar, trocar + 1e-3 * Vec3::UnitZ(), 0, 0);
+  tool.pose.insertion = 0;
+  field.tools.push_back(tool);
+}
+
+/// Moves the first grasper's tip in `parts` even parts. The failure's text, empty when it arrived.
+inline std::string move_tip(Field& field, const Vec3& tip, double jaw, int parts = 4, double roll = 0) {
+  const InstrumentPose from = field.tools[0].pose, to = pose_reaching(field.tools[0].trocar, tip, roll, jaw);
+  for (int k = 1; k <= parts; ++k) {
+    SolveStatistics statistics;
+    const auto events = advance(field, {interpolate(from, to, static_cast<double>(k) / parts)}, statistics);
+    if (!events) return to_text(events.failure());
+  }
+  return {};
+}
+
+/// Force of the bed and other held regions on the organ, N.
+inline Vec3 bed_force(const Organ& organ) {
+  const Links& bed = organ.body.foundation();
+  const StencilTable& table = organ.body.quadrature();
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < bed.row.size(); ++i)
+    sum += bed.stiffness[i] * (bed.target[i] - blend(table, table.value, bed.row[i], organ.state.x));
+  return sum;
+}
+
+/// Weight of the organ's bile, N.
+inline double bile_weight(const Organ& organ) {
+  return organ.body.bile()->specific_weight() * organ.body.bile()->volume(organ.state.x);
+}
+
+/// Force of the tissue on the first tool, N.
+inline Vec3 tool_force(const Field& field) { return tool_loads(field)[0].force; }
+
+}  // namespace calot::test

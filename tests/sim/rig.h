@@ -1,0 +1,98 @@
+#pragma once
+// A grasper on a gallbladder, driven along straight ways.
+
+#include <functional>
+#include <optional>
+
+#include "sim/world.h"
+
+namespace calot::test {
+
+inline constexpr double open_jaw = 0.8;  // rad
+
+/// The standard gallbladder with one grasper, "left".
+inline SceneDefinition grasper_scene(int nodes = 120) {
+  SceneDefinition scene;
+  scene.anatomy = named_anatomy("standard").value();
+  scene.anatomy.organs[0].nodes = nodes;
+  InstrumentDefinition left;
+  left.name = "left";
+  left.port = "right_subcostal";
+  scene.instruments.push_back(left);
+  return scene;
+}
+
+/// Moves the one grasper of a world; collects what happens on the way.
+class Driver {
+ public:
+  explicit Driver(World& world, double roll = 0)
+      : world_(world), trocar_(world.port_position(world.scene().instruments[0].port)), roll_(roll) {
+    tip_ = world.report().instruments[0].tip;
+  }
+
+  std::function<void(const StepReport&)> watch = [](const StepReport&) {};
+  std::vector<WorldEvent> events;
+  std::optional<Failure> failure;
+
+  /// Evenly to a place and an opening of the jaws; false when a step failed.
+  bool go(const Vec3& tip, double jaw, int steps) {
+    const Vec3 from = tip_;
+    const double jaw_from = jaw_;
+    for (int k = 1; k <= steps && !failure; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      tip_ = from + share * (tip - from);
+      jaw_ = jaw_from + share * (jaw - jaw_from);
+      StepInput input;
+      input.instruments = {pose_reaching(trocar_, tip_, roll_, jaw_)};
+      const Result<StepReport> report = world_.step(input);
+      if (!report) {
+        failure = report.failure();
+        break;
+      }
+      for (const WorldEvent& event : report.value().events) events.push_back(event);
+      watch(report.value());
+    }
+    return !failure;
+  }
+  bool stay(int steps) { return go(tip_, jaw_, steps); }
+
+  const Vec3& trocar() const { return trocar_; }
+  int count(const std::string& kind) const {
+    int n = 0;
+    for (const WorldEvent& event : events) n += event.kind == kind;
+    return n;
+  }
+  std::string why() const { return failure ? to_text(*failure) : std::string(); }
+
+ private:
+  World& world_;
+  Vec3 trocar_, tip_;
+  double roll_, jaw_ = 0;
+};
+
+/// Presses on a place of the skin (`out`: from there towards the trocar) with open jaws and closes them.
+inline bool grasp(Driver& driver, const Vec3& place, const Vec3& out, int steps) {
+  return driver.go(place + 15e-3 * out, open_jaw, steps) && driver.go(place + 2e-3 * out, open_jaw, steps) &&
+         driver.go(place - 4e-3 * out, open_jaw, steps) && driver.go(place - 4e-3 * out, 0.0, 2 * steps);
+}
+
+/// Grasp at the fundus, lift by 8 mm, let go there and withdraw: the way most laws are watched along.
+struct FundusPath {
+  World world;
+  Driver driver;
+  Vec3 fundus, out;
+
+  explicit FundusPath(const SceneDefinition& scene)
+      : world(World::create(scene).value()),
+        driver(world),
+        fundus(world.landmark("gallbladder.fundus")),
+        out((driver.trocar() - fundus).normalized()) {}
+
+  bool grasp(int steps = 5) { return test::grasp(driver, fundus, out, steps); }
+  bool lift(int steps = 5) { return driver.go(fundus + 4e-3 * out, 0.0, steps); }
+  bool lower(int steps = 5) { return driver.go(fundus - 4e-3 * out, 0.0, steps); }
+  bool release(int steps = 4) { return driver.go(fundus + 4e-3 * out, open_jaw, steps); }
+  bool withdraw(int steps = 4) { return driver.go(fundus + 30e-3 * out, open_jaw, steps); }
+};
+
+}  // namespace calot::test

@@ -1,0 +1,75 @@
+// An inflated neo-Hookean sphere without bending and weight against its closed form,
+// p = 2 mu (t / R) (1 / L - 1 / L^7) at stretch L (Green and Adkins 1970, thin-walled).
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bodies.h"
+
+namespace calot {
+namespace {
+
+constexpr double radius = 20e-3, thickness = 2e-3, shear_modulus = 100e3;
+constexpr double stretches[] = {1.02, 1.05, 1.1, 1.2, 1.3};
+
+double closed_form(double stretch) {
+  return 2 * shear_modulus * thickness / radius * (1 / stretch - std::pow(stretch, -7));
+}
+
+VirtualStructure balloon(const TriMesh& mesh) {
+  VirtualStructure::Setup setup;
+  setup.control = mesh;
+  setup.material = {{shear_modulus, thickness}, {shear_modulus, thickness}, false};
+  setup.bile = BileDefinition{};
+  setup.bile->density = 0;
+  // Keeps it from drifting; 1e-6 of the wall's stiffness mu t / R^2.
+  setup.foundation = [](const Vec3&) { return 1e-6 * shear_modulus * thickness / (radius * radius); };
+  return VirtualStructure::create(setup).value();
+}
+
+struct Errors {
+  double pressure = 0;      ///< largest relative error of the pressure
+  double wall = 0;          ///< the same with the volume of the true sphere: the shell's share of it
+  double out_of_round = 0;  ///< largest relative deviation of the radius
+};
+
+Errors errors_of(const TriMesh& mesh) {
+  const VirtualStructure body = balloon(mesh);
+  NewtonWorkspace work(body.pattern());
+  const double unstressed = body.bile()->volume(body.rest());
+  const double share_of_sphere = unstressed / (4.0 / 3.0 * M_PI * std::pow(radius, 3));
+  Errors errors;
+  for (double stretch : stretches) {
+    BodyState state{stretch * body.rest(), closed_form(stretch), unstressed * std::pow(stretch, 3)};
+    const NewtonResult result = test::equilibrium(body, {}, state, work);
+    EXPECT_TRUE(result.converged()) << to_text(result.status);
+    const double exact = closed_form(stretch);
+    errors.pressure = std::max(errors.pressure, std::abs(state.multiplier / exact - 1));
+    errors.wall = std::max(errors.wall, std::abs(state.multiplier * share_of_sphere / exact - 1));
+    for (const Vec3& p : body.skin_positions(state.x))
+      errors.out_of_round = std::max(errors.out_of_round, std::abs(p.norm() / (stretch * radius) - 1));
+  }
+  return errors;
+}
+
+TEST(Validation, InflatedSphereConvergesToTheClosedForm) {
+  std::vector<Errors> errors;
+  for (const TriMesh& mesh : test::nested_spheres(3)) {
+    errors.push_back(errors_of(mesh));
+    fmt::print("{} nodes: pressure {:.2e}, wall alone {:.2e}, out of round {:.2e}\n", mesh.points.size(),
+               errors.back().pressure, errors.back().wall, errors.back().out_of_round);
+  }
+  const double order = test::order(errors[0].wall, errors[1].wall);
+  const double later = test::order(errors[1].wall, errors[2].wall);
+  fmt::print("order of the wall {:.2f}, {:.2f}\n", order, later);
+  EXPECT_LT(errors[0].pressure, 5e-3);
+  EXPECT_LT(errors[1].pressure, errors[0].pressure / 4);
+  EXPECT_LT(errors[2].pressure, 2e-4);
+  EXPECT_GT(order, 1.8);
+  EXPECT_GT(later, 1.8);
+  EXPECT_LT(errors[0].out_of_round, 0.01);
+  EXPECT_LT(errors[2].out_of_round, errors[0].out_of_round / 4);
+}
+
+}  // namespace
+}  // namespace calot

@@ -1,0 +1,92 @@
+#include "view/build_scene.h"
+
+#include "render/image_compare.h"
+#include "render/offscreen.h"
+#include "view/organ_frame.h"
+
+namespace calot {
+namespace {
+
+/// A sphere on its supporting plane and one grasper above it: the quickest whole world.
+SceneDefinition sphere_scene() {
+  SceneDefinition scene;
+  OrganDefinition organ;
+  organ.name = "ball";
+  organ.shape = SphereShape{};
+  organ.nodes = 61;
+  organ.neck = Vec3(-60e-3, 110e-3, -100e-3);
+  organ.fundus = organ.neck + Vec3(0, 0, 40e-3);
+  organ.held.push_back({"base", "neck", 12e-3, 2e6});
+  scene.anatomy.organs.push_back(organ);
+  scene.anatomy.support = SupportDefinition{organ.neck - Vec3(0, 0, 0.5e-3), Vec3::UnitZ()};
+  scene.instruments.push_back({"left", InstrumentType::atraumatic_grasper, "right_subcostal", 8.0});
+  scene.laparoscope.look_at = "ball.fundus";
+  return scene;
+}
+
+World make_world(const SceneDefinition& scene) {
+  Result<World> world = World::create(scene);
+  if (!world) {
+    ADD_FAILURE() << to_text(world.failure());
+    std::abort();
+  }
+  return std::move(world).value();
+}
+
+const SceneMesh* mesh_of(const Scene& scene, Material material) {
+  for (const SceneMesh& mesh : scene.meshes)
+    if (mesh.material == material) return &mesh;
+  return nullptr;
+}
+
+TEST(BuildScene, DrawsTheSkinThatTheWorldTouches) {
+  const World world = make_world(sphere_scene());
+  const Scene scene = build_scene(world);
+  const SceneMesh* skin = mesh_of(scene, Material::membrane);
+  ASSERT_NE(skin, nullptr);
+  EXPECT_EQ(skin->triangles, world.skin(0).triangles);
+  EXPECT_EQ(skin->positions, world.skin_positions(0));
+  EXPECT_EQ(skin->normals, world.skin_normals(0));
+  const Pose frame = organ_frame(world.scene().anatomy.organs[0]);
+  for (std::size_t i = 0; i < skin->rest_positions.size(); i += 97)
+    EXPECT_LT((frame * skin->rest_positions[i] - world.skin_rest_positions(0)[i]).norm(), 1e-14);  // rounding
+  EXPECT_NE(skin->vessels, nullptr);
+}
+
+TEST(BuildScene, ASupportedOrganHasADrapeAndNoLiver) {
+  const Scene scene = build_scene(make_world(sphere_scene()));
+  EXPECT_EQ(mesh_of(scene, Material::liver), nullptr);
+  EXPECT_NE(mesh_of(scene, Material::peritoneum), nullptr);
+  EXPECT_NE(mesh_of(scene, Material::steel), nullptr);
+}
+
+TEST(BuildScene, ThePictureFollowsTheInstrumentAndTheCameraHoldsStill) {
+  World world = make_world(sphere_scene());
+  const SceneBuilder builder(world);
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(200, 160);
+  ASSERT_TRUE(renderer);
+  const Scene before = builder.build(world);
+  const Result<Image> first = renderer->render(before);
+  StepInput input;
+  input.instruments.push_back(world.report().instruments[0].pose);
+  input.instruments[0].yaw += 0.01;
+  ASSERT_TRUE(world.step(input));
+  const Scene after = builder.build(world);
+  const Result<Image> second = renderer->render(after);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(before.camera.position, after.camera.position);
+  EXPECT_EQ(before.camera.direction, after.camera.direction);
+  EXPECT_FALSE(compare(first.value(), second.value())->within);
+}
+
+TEST(BuildScene, LookingDoesNotTouchTheWorld) {
+  const World world = make_world(sphere_scene());
+  const std::uint64_t hash = world.state_hash();
+  const Scene a = build_scene(world), b = build_scene(world);
+  EXPECT_EQ(world.state_hash(), hash);
+  ASSERT_EQ(a.meshes.size(), b.meshes.size());
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) EXPECT_EQ(a.meshes[i].positions, b.meshes[i].positions);
+}
+
+}  // namespace
+}  // namespace calot
