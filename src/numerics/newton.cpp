@@ -1,17 +1,12 @@
 #include "numerics/newton.h"
 
 #include <Eigen/Eigenvalues>
-#include <chrono>
 #include <cmath>
+
+#include "base/timed.h"
 
 namespace calot {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The six rigid motions of a body at x, orthonormal columns.
 Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x) {
@@ -51,7 +46,9 @@ struct State {
   double relative_residual = 0, constraint_error = 0;  ///< dimensionless
 };
 
-void evaluate(const ConstrainedEnergy& problem, const VecX& x, double multiplier, State& state) {
+void evaluate(const ConstrainedEnergy& problem, const VecX& x, double multiplier, State& state,
+              NewtonResult& result) {
+  const Timed timed(result.assembly_s);
   double largest_internal = 0;
   problem.gradient(x, state.gradient, largest_internal);
   state.residual = state.gradient;
@@ -73,7 +70,9 @@ double imbalance(const State& state, const NewtonSettings& settings) {
 
 /// Factorises, raising a diagonal shift until the matrix is positive definite (an instability is passed by
 /// descent on the energy); a mechanism is reported instead.
-NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, int& shifts) {
+NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, NewtonResult& result) {
+  const Timed timed(result.factorisation_s);
+  int& shifts = result.shifts;
   const int shifts_before = shifts;
   work.factored = false;
   FactorStatus status = work.factor.factorise(work.matrix);
@@ -96,10 +95,15 @@ NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, int& shifts) {
   return NewtonStatus::converged;
 }
 
+double safe_share(const ConstrainedEnergy& problem, const VecX& x, const VecX& step, NewtonResult& result) {
+  const Timed timed(result.safety_s);
+  return problem.safe_share(x, step);
+}
+
 /// Backtracking on phi = energy - m * constraint + penalty / 2 * constraint^2. Returns the share taken; 0
 /// when no decrease was found.
 double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& step, const State& state,
-                   double multiplier, double curvature) {
+                   double multiplier, double curvature, NewtonResult& result) {
   const bool constrained = problem.constrained();
   const double c = state.constraint;
   // Large enough that the bordered step descends whatever the curvature along it.
@@ -116,7 +120,8 @@ double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& 
   const double start = merit(energy, c);
   // Differences below the rounding of the sum cannot be judged.
   const double rounding = 1e-13 * (std::abs(energy) + std::abs(multiplier) * problem.constraint_scale());
-  double share = problem.safe_share(x, step);
+  double share = safe_share(problem, x, step, result);
+  const Timed timed(result.assembly_s);
   for (int trial = 0; trial < 40 && share > 0; ++trial) {
     const VecX next = x + share * step;
     const double e = problem.value(next);
@@ -147,6 +152,7 @@ void NewtonResult::add(const NewtonResult& next) {
   assembly_s += before.assembly_s;
   factorisation_s += before.factorisation_s;
   solve_s += before.solve_s;
+  safety_s += before.safety_s;
 }
 
 std::string to_text(NewtonStatus status) {
@@ -169,6 +175,15 @@ std::string to_text(NewtonStatus status) {
 
 namespace {
 
+void assemble(const ConstrainedEnergy& problem, const VecX& x, double multiplier, NewtonWorkspace& work,
+              NewtonResult& result) {
+  const Timed timed(result.assembly_s);
+  problem.hessian(x, multiplier, work.matrix);
+}
+
+/// Of the body's size: a step cut down to this gets nowhere.
+constexpr double smallest_move = 1e-13;
+
 /// Whether the last factor can serve this problem's chord steps and predictions.
 bool serves(const NewtonWorkspace& work, const ConstrainedEnergy& problem) {
   return work.factored && !work.shifted && problem.constrained() == (work.constraint_gradient.size() > 0);
@@ -186,7 +201,7 @@ struct Iteration {
 
   /// Bordered step with the factor at hand, for the residual and constraint at x.
   VecX bordered_step(double& dmultiplier) {
-    const auto start = Clock::now();
+    const Timed timed(result.solve_s);
     VecX step = -work.factor.solve(state.residual);
     dmultiplier = 0;
     if (problem.constrained()) {
@@ -194,7 +209,6 @@ struct Iteration {
       dmultiplier = -(state.constraint + work.constraint_gradient.dot(step)) / complement;
       step += dmultiplier * work.bordered;
     }
-    result.solve_s += seconds_since(start);
     return step;
   }
 
@@ -204,10 +218,10 @@ struct Iteration {
     constexpr double worth = 0.25;  // slower than this, a factorisation pays
     double dmultiplier = 0;
     const VecX step = bordered_step(dmultiplier);
-    if (!step.allFinite() || problem.safe_share(x, step) < 1.0) return false;
+    if (!step.allFinite() || safe_share(problem, x, step, result) < 1.0) return false;
     const VecX next = x + step;
     State then;
-    evaluate(problem, next, multiplier + dmultiplier, then);
+    evaluate(problem, next, multiplier + dmultiplier, then, result);
     if (!then.residual.allFinite() || imbalance(then, settings) > worth * imbalance(state, settings))
       return false;
     x = next;
@@ -220,13 +234,9 @@ struct Iteration {
 
   /// A full Newton step with a line search; false when it failed (result.status says why).
   bool newton() {
-    const auto start = Clock::now();
-    problem.hessian(x, multiplier, work.matrix);
+    assemble(problem, x, multiplier, work, result);
     work.constraint_gradient = state.constraint_gradient;  // empty when there is no constraint
-    result.assembly_s += seconds_since(start);
-    const auto factor_start = Clock::now();
-    result.status = factorise(work, x, result.shifts);
-    result.factorisation_s += seconds_since(factor_start);
+    result.status = factorise(work, x, result);
     if (result.status != NewtonStatus::converged) return false;
     double dmultiplier = 0;
     const VecX step = bordered_step(dmultiplier);
@@ -235,12 +245,12 @@ struct Iteration {
     // step' K step, from the bordered equations, without another product with the matrix.
     double curvature = -state.residual.dot(step);
     if (problem.constrained()) curvature += dmultiplier * work.constraint_gradient.dot(step);
-    const double share = line_search(problem, x, step, state, multiplier + dmultiplier, curvature);
+    const double share = line_search(problem, x, step, state, multiplier + dmultiplier, curvature, result);
     result.status = NewtonStatus::stalled;
-    if (share <= 0) return false;
+    if (share * step.lpNorm<Eigen::Infinity>() <= smallest_move * problem.length_scale()) return false;
     x += share * step;
     multiplier += share * dmultiplier;
-    evaluate(problem, x, multiplier, state);
+    evaluate(problem, x, multiplier, state, result);
     result.increment = share * step.lpNorm<Eigen::Infinity>() / problem.length_scale();
     result.status = NewtonStatus::converged;
     return true;
@@ -257,7 +267,7 @@ NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSet
                                NewtonWorkspace& work, VecX& x, double& multiplier) {
   Iteration it{problem, settings, work, x, multiplier, {}, {}};
   NewtonResult& result = it.result;
-  evaluate(problem, x, multiplier, it.state);
+  evaluate(problem, x, multiplier, it.state, result);
   while (true) {
     result.residual = it.state.relative_residual;
     result.constraint_error = it.state.constraint_error;
@@ -272,14 +282,15 @@ NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSet
   }
 }
 
-NewtonStatus factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
+NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
                                double multiplier, bool fresh) {
-  if (!fresh && serves(work, problem)) return NewtonStatus::converged;
+  NewtonResult result;
+  if (!fresh && serves(work, problem)) return result;
   work.constraint_gradient.resize(0);
   if (problem.constrained()) problem.constraint(x, work.constraint_gradient);
-  problem.hessian(x, multiplier, work.matrix);
-  int shifts = 0;
-  return factorise(work, x, shifts);
+  assemble(problem, x, multiplier, work, result);
+  result.status = factorise(work, x, result);
+  return result;
 }
 
 VecX linear_response(const NewtonWorkspace& work, const VecX& load, double& dmultiplier) {

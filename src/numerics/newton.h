@@ -52,7 +52,8 @@ struct NewtonResult {
   double residual = 0;          ///< largest nodal residual / largest internal nodal force
   double increment = 0;         ///< largest coordinate of the last increment / length scale
   double constraint_error = 0;  ///< relative
-  double assembly_s = 0, factorisation_s = 0, solve_s = 0;  ///< wall time, for benchmarks only
+  /// Wall time, for benchmarks only: energies and their derivatives, factors, solves with them, and safe_share.
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, safety_s = 0;
   bool converged() const { return status == NewtonStatus::converged; }
   /// Takes over the outcome of a further solve and adds its counts and times.
   void add(const NewtonResult& next);
@@ -81,8 +82,8 @@ NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSet
 VecX linear_response(const NewtonWorkspace& workspace, const VecX& load, double& dmultiplier);
 
 /// Factorises the tangent at (x, multiplier) into the workspace, for linear_response; unless `fresh`, a last
-/// factor that can serve is kept.
-NewtonStatus factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& workspace, const VecX& x,
+/// factor that can serve is kept. Of the result only status, shifts and times have a meaning.
+NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& workspace, const VecX& x,
                                double multiplier, bool fresh);
 
 }  // namespace calot

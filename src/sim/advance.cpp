@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/timed.h"
 #include "sim/grip.h"
 
 namespace calot {
@@ -15,6 +16,8 @@ using Poses = std::vector<InstrumentPose>;
 /// No predicted node moves further than this share of its shortest edge in one part.
 constexpr double edge_share = 0.5;
 constexpr int max_parts = 100;
+/// A part that takes more than this is cheaper cut in two.
+constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
 
 Poses present_poses(const Field& field) {
@@ -41,6 +44,14 @@ Surroundings surroundings(const Field& field, const Organ& organ, const Poses& p
   return out;
 }
 
+void count(const NewtonResult& result, SolveStatistics& statistics) {
+  statistics.newton_iterations += result.iterations;
+  statistics.assembly_s += result.assembly_s;
+  statistics.factorisation_s += result.factorisation_s;
+  statistics.solve_s += result.solve_s;
+  statistics.contact_s += result.safety_s;
+}
+
 /// One part of a motion for one organ: where the tools are, where they go, and what the organ answers.
 struct Prediction {
   VecX dx;
@@ -59,12 +70,12 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
   loaded = false;
   const StencilTable& stencils = organ.body.skin().stencils;
   for (const ContactPair& pair : pairs) {
+    if (pair.distance >= field.barrier.range) continue;
     const int tool = pair.shape / shapes_per_tool;
     if (tool >= static_cast<int>(field.tools.size())) continue;  // the support stays
     if (from[tool] == to[tool]) continue;
     const Vec3 at = blend(stencils, stencils.value, pair.row, organ.state.x);
     const DistanceSample d = sample_distance(field_now.shapes[pair.shape], at);
-    if (d.distance >= field.barrier.range) continue;
     const BarrierSample b = field.barrier.sample(d.distance);
     const Mat3 h = organ.body.skin_areas()[pair.row] *
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
@@ -88,8 +99,15 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
   const StencilTable& stencils = organ.body.skin().stencils;
+  const double longest = largest_node(dx);
+  std::vector<double> travel;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    travel.push_back(travel_bound(field.tools[i], from[i], to[i]));
   double share = 1.0;
   for (const ContactPair& pair : pairs) {
+    const std::size_t of = static_cast<std::size_t>(pair.shape) / shapes_per_tool;
+    const double approach = longest + (of < travel.size() ? travel[of] : 0.0);
+    if (share * approach < (1.0 - contact_keep) * pair.distance) continue;
     const Vec3 at = blend(stencils, stencils.value, pair.row, organ.state.x);
     const Vec3 motion = blend(stencils, stencils.value, pair.row, dx);
     const int tool = pair.shape / shapes_per_tool;
@@ -108,25 +126,28 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
 
 /// First-order answer of an organ to tools that move from `from` to `to`, and the share of it that is safe.
 /// With `fresh` the tangent is factorised anew, else the last factor serves if there is one.
-Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh) {
+Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh,
+                           SolveStatistics& statistics) {
   Prediction out;
   const Surroundings now = surroundings(field, organ, from);
   double travel = 0;
   for (std::size_t i = 0; i < from.size(); ++i)
     travel = std::max(travel, travel_bound(field.tools[i], from[i], to[i]));
-  const std::vector<ContactPair> pairs = gather_pairs(organ.body, organ.state.x, now, travel);
+  std::vector<ContactPair> pairs;
+  {
+    const Timed timed(statistics.contact_s);
+    pairs = gather_pairs(organ.body, organ.state.x, now, travel);
+  }
   bool loaded = false;
   const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
   out.dx = VecX::Zero(organ.state.x.size());
   if (loaded) {
     const BodyProblem problem(organ.body, now, pairs, organ.state);
-    const NewtonStatus status =
+    const NewtonResult factored =
         factorise_tangent(problem, organ.work, organ.state.x, organ.state.multiplier, fresh);
-    if (status != NewtonStatus::converged) {
-      NewtonResult failed;
-      failed.status = status;
-      return solve_failure(failed, organ.definition.name, "under its instruments");
-    }
+    count(factored, statistics);
+    if (!factored.converged()) return solve_failure(factored, organ.definition.name, "under its instruments");
+    const Timed timed(statistics.solve_s);
     out.dx = linear_response(organ.work, load, out.dmultiplier);
     for (int i = 0; i < organ.body.nodes(); ++i) {
       const double move = out.dx.segment<3>(3 * i).norm();
@@ -134,6 +155,7 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
         out.share = edge_share * organ.body.edge_lengths()[i] / move;
     }
   }
+  const Timed timed(statistics.contact_s);
   const Poses partly = between(from, to, out.share);
   out.share *= share_kept_apart(field, organ, now, pairs, out.share * out.dx, from, partly);
   return out;
@@ -145,18 +167,13 @@ NewtonSettings newton_settings(const Field& field) {
   return settings;
 }
 
-NewtonResult correct(const Field& field, Organ& organ, const Poses& poses) {
+NewtonResult correct(const Field& field, Organ& organ, const Poses& poses, SolveStatistics& statistics) {
   const Surroundings now = surroundings(field, organ, poses);
-  const BodyProblem problem(organ.body, now, gather_pairs(organ.body, organ.state.x, now, 0.0), organ.state);
-  return solve_equilibrium(problem, newton_settings(field), organ.work, organ.state.x,
-                           organ.state.multiplier);
-}
-
-void count(const NewtonResult& result, SolveStatistics& statistics) {
-  statistics.newton_iterations += result.iterations;
-  statistics.assembly_s += result.assembly_s;
-  statistics.factorisation_s += result.factorisation_s;
-  statistics.solve_s += result.solve_s;
+  NewtonSettings settings = newton_settings(field);
+  settings.max_iterations = part_iterations;
+  const NewtonResult result = settle(organ.body, now, settings, organ.work, organ.state);
+  count(result, statistics);
+  return result;
 }
 
 Failure cannot_follow(const Field& field, const std::string& why, double done) {
@@ -185,8 +202,8 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
     double share = 1.0;
     std::vector<Prediction> predictions;
     for (Organ& organ : field.organs) {
-      Result<Prediction> p = predict(field, organ, from, to, fresh);
-      if (p && p->share < 1.0 && !fresh) p = predict(field, organ, from, to, true);
+      Result<Prediction> p = predict(field, organ, from, to, fresh, statistics);
+      if (p && p->share < 1.0 && !fresh) p = predict(field, organ, from, to, true, statistics);
       if (!p) return p.failure();
       share = std::min(share, p->share);
       predictions.push_back(std::move(p).value());
@@ -210,8 +227,7 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
         before.push_back(organ.state);
         organ.state.x += share * predictions[k].dx;
         organ.state.multiplier += share * predictions[k].dmultiplier;
-        last = correct(field, organ, poses);
-        count(last, statistics);
+        last = correct(field, organ, poses, statistics);
         accepted = last.converged();
       }
       if (accepted) {
@@ -383,9 +399,12 @@ double deepest_penetration(const Field& field) {
   double deepest = 0;
   for (const Tool& tool : field.tools) {
     for (const Shape& shape : grasper_shapes(tool.trocar, tool.pose, tool.geometry)) {
+      const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
+      const auto sample = [&](const Vec3& p) {
+        if (box.contains(p)) deepest = std::max(deepest, -signed_distance(shape, p));
+      };
       for (const Organ& organ : field.organs) {
         const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
-        const auto sample = [&](const Vec3& p) { deepest = std::max(deepest, -signed_distance(shape, p)); };
         for (const Vec3& p : skin) sample(p);
         for (const Triangle& t : organ.body.skin().triangles) {
           for (int k = 0; k < 3; ++k) sample(0.5 * (skin[t[k]] + skin[t[(k + 1) % 3]]));

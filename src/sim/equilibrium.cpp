@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/timed.h"
+
 namespace calot {
 namespace {
 
@@ -15,15 +17,25 @@ Vec3 skin_point(const VirtualStructure& body, int row, const VecX& x) {
 std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                       double extra) {
   const double reach = field.barrier.range + contact_margin + extra;
-  const std::vector<Vec3> points = body.skin_positions(x);
+  std::vector<Eigen::AlignedBox3d> faces;
+  for (const VirtualStructure::SkinFace& face : body.skin_faces()) {
+    Eigen::AlignedBox3d box;
+    for (int node : face.nodes) box.extend(x.segment<3>(Eigen::Index{3} * node));
+    faces.push_back(box);
+  }
   std::vector<ContactPair> pairs;
   for (std::size_t k = 0; k < field.shapes.size(); ++k) {
-    const Bounds box = bounds(field.shapes[k]);
-    const Vec3 lower = box.lower - Vec3::Constant(reach), upper = box.upper + Vec3::Constant(reach);
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      if ((points[p].array() < lower.array()).any() || (points[p].array() > upper.array()).any()) continue;
-      if (signed_distance(field.shapes[k], points[p]) < reach)
-        pairs.push_back({static_cast<int>(p), static_cast<int>(k)});
+    const Bounds b = bounds(field.shapes[k]);
+    const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const double far = reach + 0.5 * faces[f].diagonal().norm();
+      if (!near.intersects(faces[f]) || signed_distance(field.shapes[k], faces[f].center()) > far) continue;
+      for (int row : body.skin_faces()[f].rows) {
+        const Vec3 at = skin_point(body, row, x);
+        if (!near.contains(at)) continue;
+        const double distance = signed_distance(field.shapes[k], at);
+        if (distance < reach) pairs.push_back({row, static_cast<int>(k), distance});
+      }
     }
   }
   return pairs;
@@ -39,6 +51,23 @@ BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field
       multiplier_(start.multiplier),
       fixed_pressure_(fixed_pressure) {}
 
+double BodyProblem::moved(const VecX& x) const {
+  double squared = 0;
+  for (Eigen::Index i = 0; i < x.size(); i += 3)
+    squared = std::max(squared, (x.segment<3>(i) - start_.segment<3>(i)).squaredNorm());
+  return std::sqrt(squared);
+}
+
+template <class Use>
+void BodyProblem::for_touching(const VecX& x, const Use& use) const {
+  const double far = field_.barrier.range + moved(x);
+  for (const ContactPair& pair : pairs_) {
+    if (pair.distance >= far) continue;
+    const Vec3 at = skin_point(body_, pair.row, x);
+    if (signed_distance(field_.shapes[pair.shape], at) < field_.barrier.range) use(pair, at);
+  }
+}
+
 double BodyProblem::value(const VecX& x) const {
   double sum = body_.shell().value(x);
   if (!std::isfinite(sum)) return sum;
@@ -48,11 +77,10 @@ double BodyProblem::value(const VecX& x) const {
     sum += body_.bile()->value(x);
     if (fixed_pressure_) sum -= multiplier_ * body_.bile()->volume(x);
   }
-  for (const ContactPair& pair : pairs_) {
-    const double distance = signed_distance(field_.shapes[pair.shape], skin_point(body_, pair.row, x));
-    if (distance < field_.barrier.range)
-      sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
-  }
+  for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
+    const double distance = signed_distance(field_.shapes[pair.shape], at);
+    sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
+  });
   return sum;
 }
 
@@ -63,13 +91,11 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_intern
   body_.foundation().add_gradient(body_.quadrature(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
   if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
-  for (const ContactPair& pair : pairs_) {
-    const Vec3 at = skin_point(body_, pair.row, x);
-    if (signed_distance(field_.shapes[pair.shape], at) >= field_.barrier.range) continue;
+  for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
     const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
     spread(body_.skin().stencils, pair.row, force * d.gradient, gradient);
-  }
+  });
   // A body at rest carries no force yet: then the loads on it are the scale.
   largest_internal = std::max(largest_internal, 1e-3 * largest_node(gradient));
 }
@@ -79,15 +105,13 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
-  for (const ContactPair& pair : pairs_) {
-    const Vec3 at = skin_point(body_, pair.row, x);
-    if (signed_distance(field_.shapes[pair.shape], at) >= field_.barrier.range) continue;
+  for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
     const BarrierSample b = field_.barrier.sample(d.distance);
     const Mat3 h = body_.skin_areas()[pair.row] *
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
     add_point_hessian(body_.skin().stencils, pair.row, h, matrix);
-  }
+  });
 }
 
 double BodyProblem::constraint(const VecX& x, VecX& gradient) const {
@@ -110,7 +134,9 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
       share = std::min(share, std::max(0.0, left) / length);
     }
   }
+  const double gone = moved(x), longest = largest_node(step);
   for (const ContactPair& pair : pairs_) {
+    if (share * longest < (1.0 - contact_keep) * (pair.distance - gone)) continue;
     const Shape& shape = field_.shapes[pair.shape];
     const Vec3 motion = share * blend(body_.skin().stencils, body_.skin().stencils.value, pair.row, step);
     const Vec3 at = skin_point(body_, pair.row, x);
@@ -127,9 +153,16 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
   NewtonResult total;
   for (int round = 0; round < max_rounds; ++round) {
     const VecX before = state.x;
-    const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state, fixed_pressure);
+    double gathering_s = 0;
+    std::vector<ContactPair> pairs;
+    {
+      const Timed timed(gathering_s);
+      pairs = gather_pairs(body, state.x, field, 0.0);
+    }
+    const BodyProblem problem(body, field, std::move(pairs), state, fixed_pressure);
     const NewtonResult result = solve_equilibrium(problem, settings, work, state.x, state.multiplier);
     total.add(result);
+    total.safety_s += gathering_s;
     const bool moved = (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;
     if (result.converged() || result.status == NewtonStatus::mechanism || !moved) break;
   }

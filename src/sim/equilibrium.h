@@ -20,8 +20,9 @@ struct Surroundings {
 
 /// A skin point near enough to a shape to meet it within a solve.
 struct ContactPair {
-  int row = 0;    ///< skin point
-  int shape = 0;  ///< index into Surroundings::shapes
+  int row = 0;          ///< skin point
+  int shape = 0;        ///< index into Surroundings::shapes
+  double distance = 0;  ///< m, when it was gathered
 };
 
 /// How far outside the contact range pairs are gathered, m; no solve may move a node further than this.
@@ -30,7 +31,7 @@ inline constexpr double contact_margin = 5e-3;
 /// No step takes a skin point nearer to a shape than this share of its distance before it.
 inline constexpr double contact_keep = 0.2;
 
-/// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then point.
+/// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then face, then point.
 std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                       double extra);
 
@@ -51,6 +52,12 @@ class BodyProblem : public ConstrainedEnergy {
   double safe_share(const VecX& x, const VecX& step) const override;
 
  private:
+  /// How far any node, and so any skin point, is from where the solve began, m.
+  double moved(const VecX& x) const;
+  /// Calls use(pair, skin point) for the pairs whose distance at x is below the barrier's range.
+  template <class Use>
+  void for_touching(const VecX& x, const Use& use) const;
+
   const VirtualStructure& body_;
   const Surroundings& field_;
   std::vector<ContactPair> pairs_;

@@ -38,6 +38,38 @@ std::vector<double> shortest_edges(const TriMesh& mesh) {
   return shortest;
 }
 
+double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  double widest = 0;
+  for (const Triangle& t : triangles)
+    for (int k = 0; k < 3; ++k) widest = std::max(widest, (points[t[k]] - points[t[(k + 1) % 3]]).norm());
+  return widest;
+}
+
+/// The coarsest tessellation whose points stand close enough.
+Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
+  constexpr int coarsest = 3, finest = 5;
+  for (int level = coarsest;; ++level) {
+    Tessellation skin = surface.tessellate(level);
+    const std::vector<Vec3> points = blend_all(skin.stencils, skin.stencils.value, rest);
+    if (level == finest || widest_gap(points, skin.triangles) <= skin_spacing) return skin;
+  }
+}
+
+std::vector<VirtualStructure::SkinFace> faces_of(const Tessellation& skin, int faces) {
+  std::vector<VirtualStructure::SkinFace> out(faces);
+  for (int r = 0; r < skin.stencils.rows(); ++r) {
+    VirtualStructure::SkinFace& face = out[skin.at[r].face];
+    face.rows.push_back(r);
+    face.nodes.insert(face.nodes.end(), skin.stencils.node.begin() + skin.stencils.begin[r],
+                      skin.stencils.node.begin() + skin.stencils.begin[r + 1]);
+  }
+  for (VirtualStructure::SkinFace& face : out) {
+    std::sort(face.nodes.begin(), face.nodes.end());
+    face.nodes.erase(std::unique(face.nodes.begin(), face.nodes.end()), face.nodes.end());
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
@@ -53,7 +85,8 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   if (!shell) return shell.failure();
   body.shell_ = std::move(shell).value();
 
-  body.skin_ = surface->tessellate(skin_level);
+  body.skin_ = close_skin(surface.value(), body.rest_);
+  body.skin_faces_ = faces_of(body.skin_, faces);
   body.skin_rest_ = body.skin_positions(body.rest_);
   body.skin_areas_ = lumped_areas(body.skin_rest_, body.skin_.triangles);
   body.edge_lengths_ = shortest_edges(setup.control);
@@ -69,10 +102,7 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
     body.bile_ = std::move(bile).value();
     for (std::vector<int>& clique : body.bile_->cliques()) body.cliques_.push_back(std::move(clique));
   }
-  for (int r = 0; r < body.skin_.stencils.rows(); ++r) {
-    const StencilTable& s = body.skin_.stencils;
-    body.cliques_.emplace_back(s.node.begin() + s.begin[r], s.node.begin() + s.begin[r + 1]);
-  }
+  for (const SkinFace& face : body.skin_faces_) body.cliques_.push_back(face.nodes);
   if (setup.foundation) {
     const std::vector<double> areas = body.shell_.point_areas();
     for (int r = 0; r < body.quadrature_.rows(); ++r) {

@@ -15,9 +15,11 @@
 
 namespace calot {
 
-/// Tessellation levels: the skin (drawn and touched) and the surface that encloses the bile.
-inline constexpr int skin_level = 3;
+/// Tessellation level of the surface that encloses the bile.
 inline constexpr int bile_level = 1;
+/// The skin (drawn and touched) is split until its points stand this close at rest, m: a jaw's edge, 0.8 mm
+/// round, then finds a point wherever it presses. Levels 3 to 5.
+inline constexpr double skin_spacing = 1.0e-3;
 
 struct BodyState {
   VecX x;                 ///< control nodes, 3 each, m
@@ -54,6 +56,13 @@ class VirtualStructure {
   const std::vector<double>& edge_lengths() const { return edge_lengths_; }
   double size() const { return size_; }  ///< m, diagonal of the rest shape's box
 
+  /// Skin points of one control face (each point belongs to one face) and the nodes they depend on. As the
+  /// weights are not negative the points lie in the box of these nodes, whatever the state.
+  struct SkinFace {
+    std::vector<int> rows, nodes;
+  };
+  const std::vector<SkinFace>& skin_faces() const { return skin_faces_; }
+
   /// Empty matrix with this structure's pattern; and the constant part of its Hessian (the bed).
   BlockMatrix pattern() const;
   const std::vector<double>& constant_hessian() const { return constant_hessian_; }
@@ -76,6 +85,7 @@ class VirtualStructure {
   StencilTable quadrature_;
   Links foundation_;
   std::vector<std::vector<int>> cliques_;
+  std::vector<SkinFace> skin_faces_;
   double size_ = 0;
 };
 

@@ -47,7 +47,9 @@ struct OrganState {
 struct SolveStatistics {
   int substeps = 0;
   int newton_iterations = 0;
-  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;  ///< time, not part of any hash
+  /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,
+  /// and finding who meets whom and how far each may go.
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
 };
 
 struct StepReport {

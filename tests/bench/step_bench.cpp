@@ -56,12 +56,14 @@ void converged_step(benchmark::State& state) {
     sum.assembly_s += report->statistics.assembly_s;
     sum.factorisation_s += report->statistics.factorisation_s;
     sum.solve_s += report->statistics.solve_s;
+    sum.contact_s += report->statistics.contact_s;
   }
   using benchmark::Counter;
   state.counters["iterations"] = Counter(iterations, Counter::kAvgIterations);
   state.counters["assembly_ms"] = Counter(1e3 * sum.assembly_s, Counter::kAvgIterations);
   state.counters["factor_ms"] = Counter(1e3 * sum.factorisation_s, Counter::kAvgIterations);
   state.counters["solve_ms"] = Counter(1e3 * sum.solve_s, Counter::kAvgIterations);
+  state.counters["contact_ms"] = Counter(1e3 * sum.contact_s, Counter::kAvgIterations);
 }
 BENCHMARK(converged_step)
     ->ArgNames({"nodes", "rate_hz"})

@@ -313,7 +313,7 @@ TEST(Newton, LinearResponseIsTheChangeOfTheSolutionToFirstOrder) {
   VecX x = net.rest();
   double multiplier = 0;
   ASSERT_TRUE(solve_equilibrium(net, tight, work, x, multiplier).converged());
-  ASSERT_EQ(factorise_tangent(net, work, x, multiplier, true), NewtonStatus::converged);
+  ASSERT_TRUE(factorise_tangent(net, work, x, multiplier, true).converged());
   Rng rng(4);
   const VecX more = test::random_coordinates(rng, 18, 1.0);
   double dmultiplier = 0;

@@ -33,7 +33,7 @@ Approach random_approach(const World& rest, int number) {
 class RandomGrasps : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Tens, RandomGrasps, ::testing::Range(0, 100 / a_test));
 
-TEST_P(RandomGrasps, DISABLED_StayOutOfTheSkinAndFailCleanlyIfAtAll) {
+TEST_P(RandomGrasps, StayOutOfTheSkinAndFailCleanlyIfAtAll) {
   SceneDefinition scene = test::grasper_scene(180);
   const World rest = World::create(scene).value();
   const double volume = rest.report().organs[0].volume;
