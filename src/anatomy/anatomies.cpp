@@ -11,8 +11,8 @@ using units::mL;
 using units::mm;
 using units::mmHg;
 
-/// A pear held along the liver and at its neck. The stiffnesses are design values: pulled up by its fundus with 3 N
-/// it follows the jaws by about 20 mm, as a gallbladder retracted over the liver does.
+/// A pear held along the liver and at its neck. The stiffnesses are design values: pulled up by its fundus
+/// with 3 N it follows the jaws by about 20 mm, as a gallbladder retracted over the liver does.
 OrganDefinition gallbladder(double length, double width) {
   OrganDefinition organ;
   PearShape pear;

@@ -14,8 +14,8 @@ namespace calot {
 /// folder that this program was built from.
 std::filesystem::path project_folder();
 
-/// A file or folder that every project has, such as "assets": the project's own, or the one that came with this
-/// program.
+/// A file or folder that every project has, such as "assets": the project's own, or the one that came with
+/// this program.
 std::filesystem::path project_part(const std::string& name);
 
 /// Every scenario of the project (scenarios/*.lua), sorted.

@@ -21,10 +21,8 @@ class Hash {
   }
   /// Bits, not values: -0.0 differs from 0.0. Arithmetic types only, so that no padding is hashed.
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void add(T value) {
-    add_bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(T value) { add_bytes(&value, sizeof value); }
   void add(std::span<const double> values) { add_bytes(values.data(), values.size_bytes()); }
   void add(std::string_view text) { add_bytes(text.data(), text.size()); }
   std::uint64_t value() const { return state_; }

@@ -14,7 +14,7 @@ namespace calot {
 /// face lose 2%.
 class Bile {
  public:
-  /// `surface` is closed and outward with 4 consecutive triangles a face (tessellate(1)). `specific_weight`
+  /// `surface` is closed and outward with 4 consecutive triangles a face (tessellate(2)). `specific_weight`
   /// in N/m^3; `up` is unit; heights count from `datum` (m, a point; near the organ keeps rounding small).
   static Result<Bile> create(const Tessellation& surface, int faces, double specific_weight, const Vec3& up,
                              const Vec3& datum);

@@ -15,11 +15,11 @@ struct Value {
   Kind kind = Kind::nil;
   bool boolean = false;
   double number = 0;
-  std::string text;                                   ///< a text; of other kinds what they are called
+  std::string text;                ///< a text; of other kinds what they are called
   std::vector<ValueField> fields;  ///< text keys, sorted
-  std::vector<Value> items;                           ///< keys 1 to n
-  bool has_other_keys = false;                        ///< keys that are neither text nor 1 to n
-  int function = 0;                                   ///< registry reference
+  std::vector<Value> items;        ///< keys 1 to n
+  bool has_other_keys = false;     ///< keys that are neither text nor 1 to n
+  int function = 0;                ///< registry reference
 
   const Value* field(const std::string& name) const;
   bool is(Kind wanted) const { return kind == wanted; }

@@ -108,7 +108,8 @@ VecX Cholesky::solve(const VecX& right) const {
   b.dtype = CHOLMOD_DOUBLE;
   cholmod_solve2(CHOLMOD_A, impl_->factor, &b, nullptr, &impl_->solution, nullptr, &impl_->work_y,
                  &impl_->work_e, &impl_->common);
-  VecX x = VecX::Constant(right.size(), std::numeric_limits<double>::quiet_NaN());  // out of memory: not finite
+  VecX x =
+      VecX::Constant(right.size(), std::numeric_limits<double>::quiet_NaN());  // out of memory: not finite
   if (impl_->solution == nullptr || impl_->common.status < CHOLMOD_OK) return x;
   std::memcpy(x.data(), impl_->solution->x, sizeof(double) * static_cast<std::size_t>(x.size()));
   return x;

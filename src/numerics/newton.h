@@ -52,7 +52,8 @@ struct NewtonResult {
   double residual = 0;          ///< largest nodal residual / largest internal nodal force
   double increment = 0;         ///< largest coordinate of the last increment / length scale
   double constraint_error = 0;  ///< relative
-  /// Wall time, for benchmarks only: energies and their derivatives, factors, solves with them, and safe_share.
+  /// Wall time, for benchmarks only: energies and their derivatives, factors, solves with them, and
+  /// safe_share.
   double assembly_s = 0, factorisation_s = 0, solve_s = 0, safety_s = 0;
   bool converged() const { return status == NewtonStatus::converged; }
   /// Takes over the outcome of a further solve and adds its counts and times.

@@ -13,8 +13,9 @@ namespace calot {
   X(ACTIVETEXTURE, ActiveTexture)                                                                            \
   X(ATTACHSHADER, AttachShader)                                                                              \
   X(BINDBUFFER, BindBuffer)                                                                                  \
-  X(BINDFRAMEBUFFER, BindFramebuffer) X(BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture) X(   \
-      BINDVERTEXARRAY, BindVertexArray) X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData)        \
+  X(BINDFRAMEBUFFER, BindFramebuffer)                                                                        \
+  X(BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(   \
+      BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData)                                            \
       X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear) X(CLEARCOLOR, ClearColor) X(         \
           COLORMASK, ColorMask) X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram)              \
           X(CREATESHADER, CreateShader) X(DELETESHADER, DeleteShader) X(DEPTHFUNC, DepthFunc) X(             \

@@ -26,8 +26,8 @@ struct Field {
 
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
-/// Stiffness of a held skin point, N/m: some thousand times the wall's, so that 5 N on a single point move it by
-/// 10 um.
+/// Stiffness of a held skin point, N/m: some thousand times the wall's, so that 5 N on a single point move it
+/// by 10 um.
 inline constexpr double grip_stiffness = 5e5;
 
 /// Moves every tool to its target. The field is left at the last converged part on failure (simulation).

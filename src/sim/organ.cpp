@@ -193,7 +193,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   setup.up = up;
   Result<LoopSurface> surface = LoopSurface::create(control.value());
   if (!surface) return surface.failure();
-  const Tessellation corners = surface->tessellate(0);
+  const Tessellation corners = surface->tessellate(1);
   const std::vector<Vec3> skin =
       blend_all(corners.stencils, corners.stencils.value, to_coordinates(control->points));
   const std::map<std::string, Vec3> places = landmark_places(definition, skin);

@@ -1,6 +1,7 @@
 #include "sim/virtual_structure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/units.h"
@@ -45,13 +46,15 @@ double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& 
   return widest;
 }
 
-/// The coarsest tessellation whose points stand close enough.
+/// The coarsest tessellation whose points stand close enough, or the finest that is allowed.
 Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
-  constexpr int coarsest = 3, finest = 5;
-  for (int level = coarsest;; ++level) {
-    Tessellation skin = surface.tessellate(level);
-    const std::vector<Vec3> points = blend_all(skin.stencils, skin.stencils.value, rest);
-    if (level == finest || widest_gap(points, skin.triangles) <= skin_spacing) return skin;
+  constexpr int finest = 24;
+  int parts = 4;
+  while (true) {
+    Tessellation skin = surface.tessellate(parts);
+    const double gap = widest_gap(blend_all(skin.stencils, skin.stencils.value, rest), skin.triangles);
+    if (parts == finest || gap <= skin_spacing) return skin;
+    parts = std::clamp(static_cast<int>(std::ceil(parts * gap / skin_spacing)), parts + 1, finest);
   }
 }
 
@@ -97,7 +100,7 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   body.cliques_ = body.shell_.cliques();
   if (setup.bile) {
     const double weight = setup.bile->density * units::standard_gravity;
-    Result<Bile> bile = Bile::create(surface->tessellate(bile_level), faces, weight, setup.up, box.center());
+    Result<Bile> bile = Bile::create(surface->tessellate(2), faces, weight, setup.up, box.center());
     if (!bile) return bile.failure();
     body.bile_ = std::move(bile).value();
     for (std::vector<int>& clique : body.bile_->cliques()) body.cliques_.push_back(std::move(clique));

@@ -15,10 +15,8 @@
 
 namespace calot {
 
-/// Tessellation level of the surface that encloses the bile.
-inline constexpr int bile_level = 1;
-/// The skin (drawn and touched) is split until its points stand this close at rest, m: a jaw's edge, 0.8 mm
-/// round, then finds a point wherever it presses. Levels 3 to 5.
+/// The skin (drawn and touched) is split so that its points stand this close at rest, m: a jaw's edge, 0.8 mm
+/// round, then finds a point wherever it presses.
 inline constexpr double skin_spacing = 1.0e-3;
 
 struct BodyState {

@@ -246,8 +246,8 @@ StencilTable LoopSurface::evaluate(std::span<const FacePoint> points, int order)
   return table;
 }
 
-Tessellation LoopSurface::tessellate(int level) const {
-  Tessellation result = split_faces(impl_->nodes, impl_->triangles, level);
+Tessellation LoopSurface::tessellate(int parts) const {
+  Tessellation result = split_faces(impl_->nodes, impl_->triangles, parts);
   result.stencils = evaluate(result.at, 1);
   return result;
 }
@@ -256,7 +256,7 @@ Result<std::vector<Vec3>> fit_to_limit(const LoopSurface& surface, std::span<con
   const int n = surface.nodes();
   if (static_cast<int>(targets.size()) != n)
     return fail(FailureKind::usage, fmt::format("{} targets for {} control points", targets.size(), n));
-  const StencilTable rows = surface.tessellate(0).stencils;
+  const StencilTable rows = surface.tessellate(1).stencils;
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixX3d right(n, 3);
   for (int r = 0; r < n; ++r) {

@@ -29,8 +29,8 @@ class LoopSurface {
   /// the normal only. A point that is on no face ends the process.
   StencilTable evaluate(std::span<const FacePoint> points, int order) const;
 
-  /// Each face split into 4^level triangles whose corners lie on the limit surface.
-  Tessellation tessellate(int level) const;
+  /// Each face split into parts^2 triangles whose corners lie on the limit surface.
+  Tessellation tessellate(int parts) const;
 
  private:
   struct Impl;

@@ -77,8 +77,8 @@ class Splitter {
 
 }  // namespace
 
-Tessellation split_faces(int nodes, const std::vector<Triangle>& triangles, int level) {
-  Splitter splitter(nodes, 1 << level);
+Tessellation split_faces(int nodes, const std::vector<Triangle>& triangles, int parts) {
+  Splitter splitter(nodes, parts);
   for (std::size_t f = 0; f < triangles.size(); ++f) splitter.add(static_cast<int>(f), triangles[f]);
   return splitter.take();
 }

@@ -5,9 +5,9 @@
 
 namespace calot {
 
-/// Each triangle split into 4^level, edges into 2^level. Points: the nodes 0 .. nodes - 1 first, then those
+/// Each triangle split into parts^2, edges into `parts`. Points: the nodes 0 .. nodes - 1 first, then those
 /// on edges and inside triangles in the order in which the triangles meet them. Stencils are left empty.
 /// Every node must belong to a triangle.
-Tessellation split_faces(int nodes, const std::vector<Triangle>& triangles, int level);
+Tessellation split_faces(int nodes, const std::vector<Triangle>& triangles, int parts);
 
 }  // namespace calot

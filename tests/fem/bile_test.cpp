@@ -23,7 +23,7 @@ struct Body {
 
 Body make_body(const TriMesh& mesh, const Vec3& datum) {
   const LoopSurface surface = LoopSurface::create(mesh).value();
-  Tessellation skin = surface.tessellate(1);
+  Tessellation skin = surface.tessellate(2);
   Bile bile = Bile::create(skin, surface.faces(), weight, up, datum).value();
   BlockMatrix matrix(surface.nodes(), bile.cliques());
   return {std::move(skin), to_coordinates(mesh.points), std::move(bile), std::move(matrix), datum};
@@ -89,8 +89,8 @@ TEST(Bile, VolumeOfASphereConvergesToTheClosedFormWithTheFourthPowerOfTheEdges) 
     return std::abs(body.bile.volume(body.rest) / exact - 1);
   };
   const double coarse = error(61), fine = error(238);
-  // Edges are halved: a sixteenth. The limit surface itself is no exact sphere (and errs by the same order), and the
-  // meshes are not nested, hence the slack.
+  // Edges are halved: a sixteenth. The limit surface itself is no exact sphere (and errs by the same order),
+  // and the meshes are not nested, hence the slack.
   EXPECT_LT(coarse, 5e-3);
   EXPECT_LT(fine, coarse / 8);
   EXPECT_GT(fine, 0);
@@ -231,7 +231,7 @@ TEST(Bile, RigidMotionTurnsThePressuresLoadAndLiftsTheWeight) {
 
 TEST(Bile, SurfaceWithoutMidpointsIsRefused) {
   const LoopSurface surface = LoopSurface::create(test::sphere(14)).value();
-  const Result<Bile> bile = Bile::create(surface.tessellate(0), surface.faces(), weight, up, Vec3::Zero());
+  const Result<Bile> bile = Bile::create(surface.tessellate(1), surface.faces(), weight, up, Vec3::Zero());
   ASSERT_FALSE(bile);
   EXPECT_EQ(bile.failure().kind, FailureKind::internal);
 }

@@ -18,7 +18,7 @@ struct Rig {
 Rig make_rig(Rng& rng) {
   const TriMesh mesh = test::sphere(14);
   const LoopSurface surface = LoopSurface::create(mesh).value();
-  StencilTable table = surface.tessellate(1).stencils;
+  StencilTable table = surface.tessellate(2).stencils;
   const int size = 3 * surface.nodes();
   const VecX x = to_coordinates(mesh.points) + test::random_coordinates(rng, size, 2e-3);
   Links links;

@@ -32,7 +32,8 @@ TEST(Grasp, PressureRisesAndForcePullsBackWhileLifted) {
   EXPECT_GT(path.world.report().organs[0].pressure, pressure);
   // Lifting along `out` does work on the organ: the tissue pulls the tool against it, more than before.
   EXPECT_LT((lifted.tip_force - held.tip_force).dot(path.out), -0.1);
-  // The fold lies between the pads, up to a jaw's length behind the tip: a lever shorter by at most a fifth here.
+  // The fold lies between the pads, up to a jaw's length behind the tip: a lever shorter by at most a fifth
+  // here.
   const Vec3 at_tip = handle_force(path.driver.trocar(), lifted.pose, {}, lifted.tip_force);
   EXPECT_LT(lifted.handle_force.norm(), at_tip.norm());
   EXPECT_LT((lifted.handle_force - at_tip).norm(), 0.2 * at_tip.norm());

@@ -124,8 +124,9 @@ TEST(World, StepWithTooFewPosesIsRefusedAndChangesNothing) {
 TEST(World, ToolThatStartsInsideAnOrganIsRefused) {
   SceneDefinition scene = test::grasper_scene(80);
   const World world = World::create(scene).value();
+  const std::vector<Vec3> skin = world.skin_positions(0);
   Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : world.skin_positions(0)) middle += p / world.skin_positions(0).size();
+  for (const Vec3& p : skin) middle += p / static_cast<double>(skin.size());
   scene.ports = {{"umbilical", Vec3::Zero()}, {"right_subcostal", middle}};
   const Result<World> refused = World::create(scene);
   ASSERT_FALSE(refused);

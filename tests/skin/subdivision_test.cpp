@@ -97,7 +97,7 @@ TEST(LoopSurface, CornersZeroOneTwoOfAFaceLieAtTheOriginOneZeroAndZeroOne) {
 
 TEST(LoopSurface, PassesThroughTheLimitPointsOfLoopsMask) {
   for (const auto& [name, mesh] : closed_meshes()) {
-    const StencilTable rows = surface_of(mesh).tessellate(0).stencils;
+    const StencilTable rows = surface_of(mesh).tessellate(1).stencils;
     const std::vector<Vec3> limit = blend_all(rows, rows.value, to_coordinates(mesh.points));
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
       Vec3 sum = Vec3::Zero();
@@ -229,7 +229,7 @@ TEST(LoopSurface, TheBoundaryIsTheCubicSplineOfItsOwnNodesAndKeepsItsCorners) {
   const LoopSurface surface = surface_of(mesh);
   const VecX x = to_coordinates(mesh.points);
   const std::vector<Vec3> limit = [&] {
-    const StencilTable rows = surface.tessellate(0).stencils;
+    const StencilTable rows = surface.tessellate(1).stencils;
     return blend_all(rows, rows.value, x);
   }();
   for (int corner : {0, 4, 15, 19}) EXPECT_LT((limit[corner] - mesh.points[corner]).norm(), 1e-13);

@@ -6,46 +6,46 @@
 namespace calot::test {
 namespace {
 
-TriMesh limit_mesh(const TriMesh& control, int level) {
-  const Tessellation t = LoopSurface::create(control).value().tessellate(level);
+TriMesh limit_mesh(const TriMesh& control, int parts) {
+  const Tessellation t = LoopSurface::create(control).value().tessellate(parts);
   return {blend_all(t.stencils, t.stencils.value, to_coordinates(control.points)), t.triangles};
 }
 
 TEST(Tessellation, OfAClosedSurfaceIsClosedAndTouchesItselfNowhere) {
   for (const auto& [name, mesh] : closed_meshes())
-    for (int level : {0, 1, 2, 3}) {
-      const std::vector<Problem> problems = check(limit_mesh(mesh, level));
-      EXPECT_TRUE(problems.empty()) << name << " level " << level << ": " << to_text(problems.front());
+    for (int parts : {1, 2, 3, 4, 8}) {
+      const std::vector<Problem> problems = check(limit_mesh(mesh, parts));
+      EXPECT_TRUE(problems.empty()) << name << " in " << parts << ": " << to_text(problems.front());
     }
 }
 
 TEST(Tessellation, OfASheetKeepsItsBoundary) {
-  const TriMesh mesh = limit_mesh(sheet(), 3);
+  const TriMesh mesh = limit_mesh(sheet(), 8);
   EXPECT_THAT(check(mesh, {.closed = false}), ::testing::IsEmpty());
   EXPECT_EQ(mesh.points.size(), (4 * 8 + 1) * (3 * 8 + 1));
 }
 
-TEST(Tessellation, CountsAreThoseOfSplittingEveryEdgeInTwo) {
+TEST(Tessellation, CountsAreThoseOfSplittingEveryEdgeInParts) {
   const TriMesh mesh = octahedron();  // V - E + F = 2 with E = 3/2 F: V = 2 + F / 2
   const LoopSurface surface = LoopSurface::create(mesh).value();
-  for (int level : {0, 1, 2, 3, 4, 5}) {
-    const Tessellation t = surface.tessellate(level);
-    EXPECT_EQ(t.triangles.size(), mesh.triangles.size() << (2 * level));
+  for (std::size_t parts : {1, 2, 3, 5, 8, 32}) {
+    const Tessellation t = surface.tessellate(static_cast<int>(parts));
+    EXPECT_EQ(t.triangles.size(), mesh.triangles.size() * parts * parts);
     EXPECT_EQ(t.at.size(), 2 + t.triangles.size() / 2);
     EXPECT_EQ(t.stencils.rows(), static_cast<int>(t.at.size()));
   }
 }
 
-TEST(Tessellation, LevelZeroIsTheControlConnectivity) {
+TEST(Tessellation, OfOnePartIsTheControlConnectivity) {
   const TriMesh mesh = closed_meshes()[1].mesh;
-  EXPECT_EQ(LoopSurface::create(mesh).value().tessellate(0).triangles, mesh.triangles);
+  EXPECT_EQ(LoopSurface::create(mesh).value().tessellate(1).triangles, mesh.triangles);
 }
 
 TEST(Tessellation, PointsLieWhereTheyAreSaidToLieAndFacesAgreeOnSharedPoints) {
   const TriMesh mesh = closed_meshes()[2].mesh;
   const LoopSurface surface = LoopSurface::create(mesh).value();
   const VecX x = to_coordinates(mesh.points);
-  const Tessellation t = surface.tessellate(2);
+  const Tessellation t = surface.tessellate(4);
   const std::vector<Vec3> points = blend_all(t.stencils, t.stencils.value, x);
   // The sixteen triangles of a face are consecutive: each corner, evaluated on that very face, is the same
   // point.
@@ -74,7 +74,7 @@ TEST(Tessellation, PointsLieWhereTheyAreSaidToLieAndFacesAgreeOnSharedPoints) {
 
 TEST(Tessellation, NormalsByTheFirstDerivativesPointOutward) {
   const TriMesh mesh = revolve(sphere_profile(1), 61).value();
-  const Tessellation t = LoopSurface::create(mesh).value().tessellate(2);
+  const Tessellation t = LoopSurface::create(mesh).value().tessellate(4);
   const VecX x = to_coordinates(mesh.points);
   const auto du = blend_all(t.stencils, t.stencils.du, x), dv = blend_all(t.stencils, t.stencils.dv, x);
   const auto points = blend_all(t.stencils, t.stencils.value, x);
@@ -86,7 +86,7 @@ TEST(Tessellation, NormalsByTheFirstDerivativesPointOutward) {
 TEST(Tessellation, ConvergesToTheVolumeOfTheLimitSurfaceWithTheSquareOfTheSpacing) {
   const TriMesh mesh = closed_meshes()[1].mesh;
   std::vector<double> volume;
-  for (int level : {1, 2, 3, 4}) volume.push_back(enclosed_volume(limit_mesh(mesh, level)));
+  for (int parts : {2, 4, 8, 16}) volume.push_back(enclosed_volume(limit_mesh(mesh, parts)));
   const double ratio = (volume[2] - volume[1]) / (volume[3] - volume[2]);
   EXPECT_NEAR(ratio, 4, 0.4);  // second order, and the next term a tenth of the first at this spacing
 }
@@ -96,7 +96,7 @@ TEST(FitToLimit, ASurfacePassesThroughEveryTarget) {
     const LoopSurface surface = LoopSurface::create(mesh).value();
     const auto control = fit_to_limit(surface, mesh.points);
     ASSERT_TRUE(control) << to_text(control.failure());
-    const StencilTable rows = surface.tessellate(0).stencils;
+    const StencilTable rows = surface.tessellate(1).stencils;
     const auto limit = blend_all(rows, rows.value, to_coordinates(control.value()));
     for (std::size_t i = 0; i < limit.size(); ++i)
       EXPECT_LT((limit[i] - mesh.points[i]).norm(), 1e-13) << name;
@@ -107,7 +107,7 @@ TEST(FitToLimit, AFittedSphereHoldsTheSpheresVolumeBetterWithEachRefinement) {
   const auto error = [](int nodes) {
     TriMesh mesh = revolve(sphere_profile(1), nodes).value();
     mesh.points = fit_to_limit(LoopSurface::create(mesh).value(), mesh.points).value();
-    const Tessellation t = LoopSurface::create(mesh).value().tessellate(4);
+    const Tessellation t = LoopSurface::create(mesh).value().tessellate(16);
     const TriMesh skin{blend_all(t.stencils, t.stencils.value, to_coordinates(mesh.points)), t.triangles};
     const double exact = 4 * std::numbers::pi / 3;
     return std::abs(enclosed_volume(skin) / exact - 1);

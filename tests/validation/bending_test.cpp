@@ -132,7 +132,7 @@ double plate_deflection(int columns) {
   const std::vector<double> areas = shell.point_areas();
   for (int r = 0; r < table.rows(); ++r) spread(table, r, pressure * areas[r] * Vec3::UnitZ(), load);
   // Edges are held along their length and in height, free to turn; stiff against the plate, D / side^2.
-  const StencilTable vertices = surface.tessellate(1).stencils;
+  const StencilTable vertices = surface.tessellate(2).stencils;
   const std::vector<Vec3> at = blend_all(vertices, vertices.value, rest);
   Links pins;
   int centre = 0;
