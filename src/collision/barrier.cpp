@@ -17,20 +17,17 @@ BarrierSample Barrier::sample(double distance) const {
           scale * (2 * log_ratio + 4 * share - share * share)};
 }
 
-// The shapes are convex, so the distance to the shape as it stands never falls below its tangent; the shape's
-// own motion takes away at most its speed bound. Each step goes as far as that lower bound stays above the
-// target; on a shape at rest these are Newton steps from the safe side.
-double safe_share(const Vec3& x, const Vec3& motion, const std::function<Shape(double share)>& shape_at,
-                  double shape_speed_bound, double keep) {
+// The shapes are convex, so the distance never falls below its tangent: Newton steps from the safe side.
+double safe_share(const Vec3& x, const Vec3& motion, const Shape& shape, double keep) {
   constexpr int max_steps = 256;
   constexpr double negligible = 1e-9;  // of the whole motion
   double share = 0, target = 0;
   for (int step = 0; step < max_steps; ++step) {
-    const DistanceSample now = sample_distance(shape_at(share), x + share * motion);
+    const DistanceSample now = sample_distance(shape, x + share * motion);
     if (step == 0) target = keep * now.distance;
     const double room = now.distance - target;
     if (!(room > 0)) return share;
-    const double approach = shape_speed_bound - now.gradient.dot(motion);
+    const double approach = -now.gradient.dot(motion);
     if (approach * (1.0 - share) <= room) return 1.0;
     const double advance = room / approach;
     if (!(advance > negligible)) return share;

@@ -2,8 +2,6 @@
 // The one contact potential: a smooth barrier on signed distance (Incremental Potential Contact, Li et al.
 // 2020, doi 10.1145/3386569.3392425, eq. 6, on distance itself).
 
-#include <functional>
-
 #include "collision/shapes.h"
 
 namespace calot {
@@ -24,15 +22,12 @@ struct Barrier {
   BarrierSample sample(double distance) const;
 };
 
-/// A share (0 to 1) of the straight motion from x to x + motion such that for every share s up to it
-///   distance(x + s * motion, shape_at(s)) >= keep * distance(x, shape_at(0)),  0 < keep < 1,
+/// The largest share (0 to 1, to 1e-9 of the motion) of the straight motion from x to x + motion such that for
+/// every share s up to it
+///   distance(x + s * motion) >= keep * distance(x),  0 < keep < 1,
 /// to the rounding of coordinates (1e-15 m at 1 m): conservative advancement on the signed distance (Li et
-/// al. 2021, additive CCD, doi 10.1145/3450626.3459767), so no point ever crosses. `shape_at(s)` is the shape
-/// after share s of its own motion; `shape_speed_bound` (m) bounds the speed by share of each of its points:
-/// the distance travelled, where it moves evenly. For a shape at rest (bound 0) the share is the largest one
-/// to 1e-9 and few evaluations are needed; for a moving one it may stop early (at most 256 evaluations),
-/// never late. A point that is already inside (distance <= 0) or not finite gets 0.
-double safe_share(const Vec3& x, const Vec3& motion, const std::function<Shape(double share)>& shape_at,
-                  double shape_speed_bound, double keep);
+/// al. 2021, additive CCD, doi 10.1145/3450626.3459767), so no point ever crosses. A point that is already
+/// inside (distance <= 0) or not finite gets 0.
+double safe_share(const Vec3& x, const Vec3& motion, const Shape& shape, double keep);
 
 }  // namespace calot

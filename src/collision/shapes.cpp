@@ -83,16 +83,6 @@ DistanceSample sample(const RoundedBox& box, const Vec3& x) {
   return {r - box.radius, rotation * normal, rotation * across * rotation.transpose() / r};
 }
 
-Shape moved_one(const Plane& plane, const Pose& motion) {
-  return Plane{motion * plane.point, motion.linear() * plane.normal};
-}
-Shape moved_one(const Capsule& capsule, const Pose& motion) {
-  return Capsule{motion * capsule.a, motion * capsule.b, capsule.radius};
-}
-Shape moved_one(const RoundedBox& box, const Pose& motion) {
-  return RoundedBox{motion * box.pose, box.half, box.radius};
-}
-
 Bounds bounds_of(const Plane&) {
   const double infinity = std::numeric_limits<double>::infinity();
   return {Vec3::Constant(-infinity), Vec3::Constant(infinity)};
@@ -119,10 +109,6 @@ double signed_distance(const Shape& shape, const Vec3& x) {
 
 DistanceSample sample_distance(const Shape& shape, const Vec3& x) {
   return std::visit([&](const auto& one) { return sample(one, x); }, shape);
-}
-
-Shape moved(const Shape& shape, const Pose& motion) {
-  return std::visit([&](const auto& one) { return moved_one(one, motion); }, shape);
 }
 
 Bounds bounds(const Shape& shape) {

@@ -41,9 +41,6 @@ double signed_distance(const Shape& shape, const Vec3& x);
 /// convex, and so is their signed distance.
 DistanceSample sample_distance(const Shape& shape, const Vec3& x);
 
-/// The shape moved rigidly by `motion` (world to world).
-Shape moved(const Shape& shape, const Pose& motion);
-
 /// Smallest axis-aligned box around the shape: lower and upper corner. A plane has infinite bounds.
 struct Bounds {
   Vec3 lower, upper;

@@ -16,6 +16,8 @@ using Poses = std::vector<InstrumentPose>;
 /// No predicted node moves further than this share of its shortest edge in one part.
 constexpr double edge_share = 0.5;
 constexpr int max_parts = 100;
+/// No step takes more: a motion that needs them is blocked, and says so within seconds.
+constexpr int step_iterations = 1000;
 /// A part that takes more than this is cheaper cut in two.
 constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
@@ -112,9 +114,7 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
     const Vec3 motion = blend(stencils, stencils.value, pair.row, dx);
     const int tool = pair.shape / shapes_per_tool;
     if (tool >= static_cast<int>(field.tools.size())) {
-      const Shape plane = *field.support;
-      share *= safe_share(
-          at, share * motion, [&](double) { return plane; }, 0.0, contact_keep);
+      share *= safe_share(at, share * motion, *field.support, contact_keep);
       continue;
     }
     const InstrumentPose until = interpolate(from[tool], to[tool], share);
@@ -211,7 +211,11 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
     const double left = 1.0 - done;
     bool accepted = false;
     while (!accepted) {
-      if (part >= max_parts) return cannot_follow(field, "the way is too long for one step", done);
+      if (part >= max_parts || statistics.newton_iterations > step_iterations)
+        return cannot_follow(
+            field,
+            fmt::format("not in {} parts and {} Newton iterations", part, statistics.newton_iterations),
+            done);
       if (share < smallest_share)
         return cannot_follow(field,
                              last.converged()

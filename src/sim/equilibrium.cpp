@@ -141,8 +141,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     const Vec3 motion = share * blend(body_.skin().stencils, body_.skin().stencils.value, pair.row, step);
     const Vec3 at = skin_point(body_, pair.row, x);
     if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
-    share *= calot::safe_share(
-        at, motion, [&shape](double) { return shape; }, 0.0, contact_keep);
+    share *= calot::safe_share(at, motion, shape, contact_keep);
   }
   return share;
 }

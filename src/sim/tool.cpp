@@ -64,9 +64,7 @@ double joint_share(const Tool& tool, int part, const Shape& shape, const Instrum
   const double bend = path_bend(tool, from, until, x, share * motion.norm());
   const Vec3 path = part_motion(tool, from, until, part).inverse() * (x + share * motion) - x;
   if (path.norm() + bend < (1.0 - keep) * gap) return share;
-  const Shape grown = inflated(shape, bend);
-  return share * safe_share(
-                     x, path, [&grown](double) { return grown; }, 0.0, keep);
+  return share * safe_share(x, path, inflated(shape, bend), keep);
 }
 
 std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid) {

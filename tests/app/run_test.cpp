@@ -144,6 +144,29 @@ TEST_F(Run, AKilledRunsRecordingReplaysUpToItsLastStep) {
   EXPECT_GE(replayed["timing"]["steps"].get<int>(), 18);
 }
 
+TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToChange) {
+  // A ball fixed to a table, and a tool that is sent through both.
+  std::string text = small_scenario("t:step('push', 'Push'); t:wait(10 * s)",
+                                    "t.left:move_to('ball.fundus', { speed = 100 * mm / s }); "
+                                    "t.left:move_by({ 0, 0, -60 * mm }, { speed = 100 * mm / s })");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("anatomy = {", "anatomy = { support = { point = { -60 * mm, 100 * mm, -120.6 * mm } },");
+  replace("name = \"ball\",",
+          "name = \"ball\", neck = { -60 * mm, 100 * mm, -120 * mm }, fundus = { -60 * mm, 100 * mm, -80 * "
+          "mm },");
+  replace("{ landmark = \"bed\" }", "{ landmark = \"neck\", radius = 30 * mm, stiffness = 1e7 }");
+  spill(folder_ / "through.lua", text);
+  const Outcome outcome = calot({"run", "through.lua", "--no-render", "-o", "here"});
+  EXPECT_EQ(outcome.code, 8) << outcome.out << outcome.err;
+  for (const char* part : {"'left'", ") mm ", " s (", "move more slowly", "Next: calot replay"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n" << outcome.err;
+  EXPECT_TRUE(Json::accept(slurp(folder_ / "here" / "report.json")));
+  EXPECT_EQ(calot({"replay", "here/recording.jsonl"}).code, 8) << "a replay fails where the run did";
+}
+
 TEST_F(Run, ReplayEqualsRun) {
   const Json run = report({"run", "small.lua", "--no-render", "-o", "here"});
   const Json replay = report({"replay", "here/recording.jsonl"});

@@ -37,4 +37,15 @@ inline std::vector<Shape> random_shapes(Rng& rng) {
   return {random_plane(rng), random_capsule(rng), random_box(rng)};
 }
 
+/// The shape moved rigidly by `motion` (world to world).
+inline Shape moved(const Shape& shape, const Pose& motion) {
+  if (const auto* plane = std::get_if<Plane>(&shape))
+    return Plane{motion * plane->point, motion.linear() * plane->normal};
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    return Capsule{motion * capsule->a, motion * capsule->b, capsule->radius};
+  RoundedBox box = std::get<RoundedBox>(shape);
+  box.pose = motion * box.pose;
+  return box;
+}
+
 }  // namespace calot::test

@@ -171,7 +171,7 @@ TEST(Shapes, MovingShapeAndPointTogetherChangesNothing) {
       const Pose motion = random_pose(rng, 50e-3);
       const Vec3 x = random_vector(rng, 15e-3);
       const DistanceSample before = sample_distance(shape, x);
-      const DistanceSample after = sample_distance(moved(shape, motion), motion * x);
+      const DistanceSample after = sample_distance(test::moved(shape, motion), motion * x);
       const Mat3 turned = motion.linear() * before.hessian * motion.linear().transpose();
       EXPECT_NEAR(after.distance, before.distance, 1e-15);
       // Rounding of 60 mm coordinates (1e-17 m) against an axis distance r turns the gradient by 1e-17 / r.

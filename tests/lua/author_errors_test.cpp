@@ -13,6 +13,9 @@ using test::Folder;
 using test::line_of;
 using test::load_text;
 using test::ScenarioText;
+using test::with_anatomy;
+using test::with_scene;
+using test::with_steps;
 
 Failure failure_of(const std::string& text, const LoadOptions& options = {}) {
   const Folder folder;
@@ -31,22 +34,8 @@ struct Mistake {
   std::string at, message, hint;
 };
 
-ScenarioText with_scene(const std::string& scene) {
-  ScenarioText text;
-  text.scene = scene;
-  return text;
-}
 ScenarioText with_instruments(const std::string& instruments) {
   return with_scene("return { anatomy = calot.anatomy('standard'),\n instruments = " + instruments + " }");
-}
-ScenarioText with_anatomy(const std::string& anatomy) {
-  return with_scene("return {\n anatomy = " + anatomy +
-                    ",\n instruments = { left = { port = 'right_subcostal' } } }");
-}
-ScenarioText with_steps(const std::string& steps) {
-  ScenarioText text;
-  text.steps = steps;
-  return text;
 }
 ScenarioText with_demo(const std::string& demo) {
   ScenarioText text;

@@ -11,21 +11,10 @@ namespace {
 using test::Folder;
 using test::load_text;
 using test::ScenarioText;
+using test::with_anatomy;
+using test::with_scene;
+using test::with_steps;
 
-ScenarioText with_scene(const std::string& scene) {
-  ScenarioText text;
-  text.scene = scene;
-  return text;
-}
-ScenarioText with_anatomy(const std::string& anatomy) {
-  return with_scene("return {\n anatomy = " + anatomy +
-                    ",\n instruments = { left = { port = 'right_subcostal' } } }");
-}
-ScenarioText with_steps(const std::string& steps) {
-  ScenarioText text;
-  text.steps = steps;
-  return text;
-}
 ScenarioText with_head(const std::string& head) {
   ScenarioText text;
   text.head = head;

@@ -59,6 +59,21 @@ struct ScenarioText {
   }
 };
 
+inline ScenarioText with_scene(const std::string& scene) {
+  ScenarioText text;
+  text.scene = scene;
+  return text;
+}
+inline ScenarioText with_anatomy(const std::string& anatomy) {
+  return with_scene("return {\n anatomy = " + anatomy +
+                    ",\n instruments = { left = { port = 'right_subcostal' } } }");
+}
+inline ScenarioText with_steps(const std::string& steps) {
+  ScenarioText text;
+  text.steps = steps;
+  return text;
+}
+
 inline Result<std::unique_ptr<ExerciseScript>> load_text(const Folder& folder, const std::string& text,
                                                          LoadOptions options = {}) {
   if (options.modules.empty()) options.modules = std::filesystem::path(CALOT_SOURCE_DIR) / "scripts/lua";

@@ -1,0 +1,149 @@
+// The organ's whole energy, contact included, and the measure of who is inside whom.
+
+#include "sim/equilibrium.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "field_rig.h"
+#include "support/bodies.h"
+#include "support/derivatives.h"
+
+namespace calot {
+namespace {
+
+OrganDefinition ball() {
+  OrganDefinition organ;
+  organ.shape = SphereShape{20e-3};
+  organ.nodes = 61;
+  organ.neck = {0, 0, 0};
+  organ.fundus = {0, 0, 40e-3};
+  organ.held = {{"base", "neck", 10e-3, 1e6}};
+  return organ;
+}
+
+/// `shape_at` the way out at which its distance to the nearest skin point is `gap`.
+Shape at_gap(const std::vector<Vec3>& skin, double gap, const std::function<Shape(double way)>& shape_at) {
+  double way = 0;
+  for (int round = 0; round < 60; ++round) {
+    double nearest = 1;
+    for (const Vec3& p : skin) nearest = std::min(nearest, signed_distance(shape_at(way), p));
+    way += gap - nearest;
+  }
+  return shape_at(way);
+}
+
+/// A ball deformed at random, with a plane, a shaft and a jaw 0.25 mm from its skin, and a gripped point.
+struct Touched {
+  Field field = test::make_field(ball(), 1e-6, Vec3::UnitZ());
+  Organ& organ = field.organs[0];
+  Surroundings around;
+  VecX x;
+
+  explicit Touched(std::uint64_t seed) {
+    Rng rng(seed);
+    x = organ.state.x;
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += rng.uniform(-0.3e-3, 0.3e-3);
+    const std::vector<Vec3> skin = organ.body.skin_positions(x), out = organ.body.skin_normals(x);
+    const auto highest = [&](const Vec3& along) {
+      int best = 0;
+      for (int i = 0; i < static_cast<int>(skin.size()); ++i)
+        if (skin[i].dot(along) > skin[best].dot(along)) best = i;
+      return best;
+    };
+    constexpr double gap = 0.25e-3;
+    const int a = highest(Vec3(1, 0.2, 0.3)), b = highest(Vec3(-0.3, 1, 0.2)),
+              c = highest(Vec3(0.1, -1, 0.4));
+    around.shapes.push_back(
+        Plane{skin[a] + gap * Vec3(1, 0.2, 0.3).normalized(), -Vec3(1, 0.2, 0.3).normalized()});
+    const Vec3 side = out[b].unitOrthogonal();
+    around.shapes.push_back(at_gap(skin, gap, [&](double way) -> Shape {
+      const Vec3 axis = skin[b] + way * out[b];
+      return Capsule{axis - 30e-3 * side, axis + 30e-3 * side, 2.5e-3};
+    }));
+    Pose jaw = Pose::Identity();
+    jaw.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), out[c]).toRotationMatrix();
+    around.shapes.push_back(at_gap(skin, gap, [&](double way) -> Shape {
+      jaw.translation() = skin[c] + way * out[c];
+      return RoundedBox{jaw, {2e-3, 6e-3, 1.2e-3}, 0.8e-3};
+    }));
+    around.grip.row = {highest(Vec3::UnitZ())};
+    around.grip.target = {skin[around.grip.row[0]] + Vec3(0.2e-3, -0.1e-3, 0.3e-3)};
+    around.grip.stiffness = {1e3};
+  }
+  BodyProblem problem() {
+    return {organ.body, around, gather_pairs(organ.body, x, around, 0.0), organ.state};
+  }
+};
+
+TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
+  for (std::uint64_t seed : {1, 2, 3}) {
+    Touched touched(seed);
+    ASSERT_GT(contact_forces(touched.organ.body, touched.x, touched.around,
+                             gather_pairs(touched.organ.body, touched.x, touched.around, 0.0))
+                  .size(),
+              5u);
+    const BodyProblem problem = touched.problem();
+    VecX gradient;
+    double internal = 0;
+    problem.gradient(touched.x, gradient, internal);
+    BlockMatrix hessian = touched.organ.body.pattern();
+    problem.hessian(touched.x, 0.0, hessian);
+    Rng rng(10 + seed);
+    VecX d(touched.x.size());
+    for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = rng.uniform(-1, 1);
+    const auto gradient_at = [&](double share) {
+      VecX g;
+      double scale = 0;
+      problem.gradient(touched.x + share * d, g, scale);
+      return g;
+    };
+    // A step of 4e-4 of the gap: central differences are off by its square; of the value, by its rounding
+    // too.
+    constexpr double h = 1e-7;
+    const double by_value =
+        (problem.value(touched.x + 10 * h * d) - problem.value(touched.x - 10 * h * d)) / (20 * h);
+    EXPECT_NE(by_value, 0.0);
+    EXPECT_NEAR(gradient.dot(d), by_value, 1e-6 * gradient.norm() * d.norm());
+    const VecX by_gradient = (gradient_at(h) - gradient_at(-h)) / (2 * h);
+    EXPECT_GT(by_gradient.norm(), 0.0);
+    EXPECT_LT((hessian.multiply(d) - by_gradient).norm(), 1e-7 * by_gradient.norm());
+  }
+}
+
+TEST(Equilibrium, EveryPointThatCanTouchIsGatheredWhereverTheSkinGoes) {
+  Touched touched(4);
+  const std::vector<ContactPair> pairs = gather_pairs(touched.organ.body, touched.x, touched.around, 0.0);
+  const std::vector<Vec3> skin = touched.organ.body.skin_positions(touched.x);
+  std::size_t near = 0;
+  for (const Shape& shape : touched.around.shapes)
+    for (const Vec3& p : skin)
+      near += signed_distance(shape, p) < touched.around.barrier.range + contact_margin;
+  EXPECT_GT(near, 100u);
+  EXPECT_EQ(pairs.size(), near);
+}
+
+TEST(Equilibrium, PenetrationIsSeenBetweenTheSkinsPointsToo) {
+  Touched touched(5);
+  Field& field = touched.field;
+  const std::vector<Vec3> skin = touched.organ.body.skin_positions(touched.organ.state.x);
+  const Triangle& t = touched.organ.body.skin().triangles[500];
+  const Vec3 middle = (skin[t[0]] + skin[t[1]] + skin[t[2]]) / 3.0;
+  const Vec3 out = (skin[t[1]] - skin[t[0]]).cross(skin[t[2]] - skin[t[0]]).normalized();
+  test::add_grasper(field, middle + 100e-3 * out);
+  Tool& tool = field.tools[0];
+  for (double depth : {-0.1e-3, 0.05e-3, 0.3e-3}) {
+    tool.pose = pose_reaching(tool.trocar, middle - depth * out, 0.0, 0.0);
+    const double found = deepest_penetration(field);
+    if (depth < 0) {
+      EXPECT_EQ(found, 0.0);
+    } else {
+      // The tip is the jaws' rounded end: what it leaves out at the nearest sample is below 0.02 mm.
+      EXPECT_NEAR(found, depth, 0.02e-3);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace calot
