@@ -1,0 +1,34 @@
+// Laws that hold all the way through the scenarios we ship.
+
+#include <gtest/gtest.h>
+
+#include "lua/load_exercise.h"
+#include "session/runner.h"
+
+namespace calot {
+namespace {
+
+TEST(MainScenario, NoPartOfTheGrasperIsDeeperInTheSkinThanAFifthOfAMillimetreAndTheBileStays) {
+  LoadOptions options;
+  options.modules = CALOT_SOURCE_DIR "/scripts/lua";
+  auto script = load_exercise(CALOT_SOURCE_DIR "/scenarios/grasp_and_traction.lua", options);
+  ASSERT_TRUE(script) << to_text(script.failure());
+  World world = World::create(script.value()->definition().scene).value();
+  const double volume = world.report().organs[0].volume;
+  double deepest = 0, swelling = 0, strongest = 0;
+  SessionOptions session;
+  session.observer = [&](const World& now, const Progress&, bool) {
+    deepest = std::max(deepest, now.deepest_penetration());
+    swelling = std::max(swelling, std::abs(now.report().organs[0].volume / volume - 1));
+    strongest = std::max(strongest, now.report().instruments[0].tip_force.norm());
+  };
+  const SessionResult played = run_session(world, *script.value(), script.value()->demo(), session);
+  EXPECT_EQ(played.end, SessionEnd::steps_done) << to_text(played.failure);
+  EXPECT_GT(strongest, 1.5) << "a scenario without traction tests nothing";
+  EXPECT_LT(deepest, 0.2e-3);
+  EXPECT_LT(swelling, 1e-9);
+  RecordProperty("deepest_um", static_cast<int>(1e6 * deepest));
+}
+
+}  // namespace
+}  // namespace calot
