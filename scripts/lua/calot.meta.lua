@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"release"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"release"|"slip"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
@@ -102,6 +102,8 @@
 ---@field type? "atraumatic_grasper" which instrument; default "atraumatic_grasper"
 ---@field port string the port it goes through
 ---@field force_limit? number tip force above which the event overforce is raised; default 8 * N; 0.05 to 100 N
+---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; default 6.8 * N; 0.05 to 100 N
+---@field pad_friction? number coefficient of friction of a pad; default 0.8; 0.01 to 5
 
 ---The camera and its light.
 ---@class calot.laparoscope

@@ -209,6 +209,10 @@ void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition
     ports.take(at + ".port", instrument.port, fmt::format("instrument \"{}\"", instrument.name));
     check.in_range(at + ".force_limit", instrument.force_limit, quantity::force, 0.05, 100,
                    "a limit of force on tissue");
+    check.in_range(at + ".pinch_force", instrument.pinch_force, quantity::force, 0.05, 100,
+                   "a force that a hand gives a jaw");
+    check.in_range(at + ".pad_friction", instrument.pad_friction, quantity::number, 0.01, 5,
+                   "a coefficient of friction");
   }
 }
 

@@ -131,7 +131,12 @@ std::vector<ApiTable> field_tables() {
           {choice("type", {"atraumatic_grasper"}, "\"atraumatic_grasper\"", "which instrument"),
            required(text("port", "", "the port it goes through")),
            number("force_limit", quantity::force, 0.05, 100, written(instrument.force_limit, quantity::force),
-                  "tip force above which the event overforce is raised")}),
+                  "tip force above which the event overforce is raised"),
+           number(
+               "pinch_force", quantity::force, 0.05, 100, written(instrument.pinch_force, quantity::force),
+               "force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips"),
+           number("pad_friction", quantity::number, 0.01, 5,
+                  written(instrument.pad_friction, quantity::number), "coefficient of friction of a pad")}),
       make("laparoscope", "The camera and its light.",
            {text("port", "\"" + scope.port + "\"", "the port it goes through"),
             number("angle", quantity::angle, 0, 70 * deg, written(scope.angle, quantity::angle),

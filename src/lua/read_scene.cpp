@@ -184,6 +184,8 @@ class SceneReader {
       const TableReader reader(check_, &value, path, api_table("instrument"));
       reader.take("port", instrument.port);
       reader.take("force_limit", instrument.force_limit);
+      reader.take("pinch_force", instrument.pinch_force);
+      reader.take("pad_friction", instrument.pad_friction);
       check_free(path, name);
       instruments.push_back(instrument);
     }

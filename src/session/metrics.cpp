@@ -24,7 +24,8 @@ const char* const instrument_metrics[] = {"path_length_mm",
                                           "mean_force_N",
                                           "peak_handle_force_N",
                                           "grasps",
-                                          "releases"};
+                                          "releases",
+                                          "slips"};
 const char* const organ_metrics[] = {"peak_pressure_Pa", "max_stretch"};
 
 using Metrics = std::map<std::string, double>;
@@ -113,14 +114,16 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
 }
 
 void count_grips(const Progress& progress, const std::string& instrument, Metrics& metrics) {
-  double grasps = 0, releases = 0;
+  double grasps = 0, releases = 0, slips = 0;
   for (const SessionEvent& event : progress.events()) {
     if (event.instrument != instrument) continue;
     if (event.kind == "grasp") ++grasps;
     if (event.kind == "release") ++releases;
+    if (event.kind == "slip") ++slips;
   }
   metrics[instrument + ".grasps"] = grasps;
   metrics[instrument + ".releases"] = releases;
+  metrics[instrument + ".slips"] = slips;
 }
 
 }  // namespace

@@ -6,9 +6,12 @@
 //   time_s                    from the first movement to the last (movement: not idle)
 //   idle_time_s               time at less than 5 mm/s, counted where it lasts 0.5 s or more
 //   economy                   sum of straight legs / path length, 0 to 1; a leg ends at each grasp, release
-//   and step depth_perception_mm       sum |dd| angular_path_deg          sum of the angle between u and the
-//   next u response_orientation_deg  sum |dpsi| peak_force_N, mean_force_N (of the samples above 1 mN),
-//   peak_handle_force_N: raw, not smoothed grasps, releases          counts of events
+//                             and step
+//   depth_perception_mm       sum |dd|
+//   angular_path_deg          sum of the angle between u and the next u
+//   response_orientation_deg  sum |dpsi|
+//   peak_force_N, mean_force_N (of the samples above 1 mN), peak_handle_force_N: raw, not smoothed
+//   grasps, releases, slips   counts of events
 // Per organ: peak_pressure_Pa, max_stretch (largest principal stretch of the wall).
 // Per hold: <step>.<hold>.time_in_s, set by the script. Per step: <step>.time_s. total.time_s.
 

@@ -38,8 +38,8 @@ void Progress::add_event(const WorldEvent& event) {
 void Progress::set_metric(const std::string& name, double value) { metrics_[name] = value; }
 
 const std::vector<std::string>& event_kinds() {
-  static const std::vector<std::string> kinds{"contact",     "grasp",     "release",     "overforce",
-                                              "overstretch", "step_done", "step_timeout"};
+  static const std::vector<std::string> kinds{"contact",   "grasp",       "release",   "slip",
+                                              "overforce", "overstretch", "step_done", "step_timeout"};
   return kinds;
 }
 

@@ -24,7 +24,7 @@ Json steps_json(const Progress& progress) {
 
 /// The key that says what an event's value is; null where the kind has none.
 const char* value_key(const std::string& kind) {
-  if (kind == "overforce") return "force_N";
+  if (kind == "overforce" || kind == "slip") return "force_N";
   if (kind == "overstretch") return "stretch";
   if (kind == "step_done" || kind == "step_timeout") return "duration_s";
   return nullptr;

@@ -22,6 +22,7 @@ std::vector<double> times_behind(const Progress& progress, const std::string& me
   std::string kind;
   if (what == "grasps") kind = "grasp";
   if (what == "releases") kind = "release";
+  if (what == "slips") kind = "slip";
   if (what == "peak_force_N" || what == "mean_force_N" || what == "peak_handle_force_N") kind = "overforce";
   if (what == "max_stretch") kind = "overstretch";
   std::vector<double> times;

@@ -7,6 +7,7 @@
 
 #include "base/timed.h"
 #include "sim/grip.h"
+#include "sim/hold.h"
 
 namespace calot {
 namespace {
@@ -22,36 +23,10 @@ constexpr int step_iterations = 1000;
 constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
 
-Poses present_poses(const Field& field) {
-  Poses poses;
-  for (const Tool& tool : field.tools) poses.push_back(tool.pose);
-  return poses;
-}
-
 Poses between(const Poses& a, const Poses& b, double share) {
   Poses out;
   for (std::size_t i = 0; i < a.size(); ++i) out.push_back(interpolate(a[i], b[i], share));
   return out;
-}
-
-/// Tools' shapes first, three each, then the support.
-Surroundings surroundings(const Field& field, const Organ& organ, const Poses& poses) {
-  Surroundings out;
-  out.barrier = field.barrier;
-  for (std::size_t i = 0; i < field.tools.size(); ++i)
-    for (Shape& shape : grasper_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
-      out.shapes.push_back(std::move(shape));
-  if (field.support) out.shapes.push_back(*field.support);
-  out.grip = grip_links(organ, field.tools, poses);
-  return out;
-}
-
-void count(const NewtonResult& result, SolveStatistics& statistics) {
-  statistics.newton_iterations += result.iterations;
-  statistics.assembly_s += result.assembly_s;
-  statistics.factorisation_s += result.factorisation_s;
-  statistics.solve_s += result.solve_s;
-  statistics.contact_s += result.safety_s;
 }
 
 /// One part of a motion for one organ: where the tools are, where they go, and what the organ answers.
@@ -161,15 +136,10 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   return out;
 }
 
-NewtonSettings newton_settings(const Field& field) {
-  NewtonSettings settings;
-  settings.tolerance = field.tolerance;
-  return settings;
-}
-
 NewtonResult correct(const Field& field, Organ& organ, const Poses& poses, SolveStatistics& statistics) {
   const Surroundings now = surroundings(field, organ, poses);
-  NewtonSettings settings = newton_settings(field);
+  NewtonSettings settings;
+  settings.tolerance = field.tolerance;
   settings.max_iterations = part_iterations;
   const NewtonResult result = settle(organ.body, now, settings, organ.work, organ.state);
   count(result, statistics);
@@ -253,43 +223,6 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
   return true;
 }
 
-/// What a failed release gives back.
-struct Held {
-  BodyState state;
-  std::vector<GripPoint> grips;
-};
-
-/// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish. On
-/// failure the grip holds as before.
-Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
-  constexpr double weaken = 0.2, last_stiffness = 0.05;  // N/m a point, far below the wall's
-  const auto settle_all = [&]() -> Result<bool> {
-    for (Organ& organ : field.organs) {
-      const NewtonResult result = settle(organ.body, surroundings(field, organ, present_poses(field)),
-                                         newton_settings(field), organ.work, organ.state);
-      count(result, statistics);
-      if (!result.converged()) return solve_failure(result, organ.definition.name, "as a grip let it go");
-    }
-    return true;
-  };
-  std::vector<Held> before;
-  for (const Organ& organ : field.organs) before.push_back({organ.state, organ.grips});
-  Result<bool> settled = true;
-  for (double stiffness = grip_stiffness; settled && stiffness > last_stiffness; stiffness *= weaken) {
-    loosen(field, instrument, weaken);
-    settled = settle_all();
-  }
-  if (settled) {
-    let_go(field, instrument);
-    settled = settle_all();
-  }
-  for (std::size_t k = 0; k < before.size() && !settled; ++k) {
-    field.organs[k].state = before[k].state;
-    field.organs[k].grips = before[k].grips;
-  }
-  return settled;
-}
-
 /// Where the tools really go: jaws that rest on a fold close no further.
 Poses reachable(const Field& field, const Poses& targets) {
   Poses poses = targets;
@@ -315,12 +248,29 @@ std::string held_organ(const Field& field, int instrument) {
   return {};
 }
 
-}  // namespace
-
-int grip_count(const Organ& organ, int instrument) {
-  return static_cast<int>(std::count_if(organ.grips.begin(), organ.grips.end(),
-                                        [&](const GripPoint& g) { return g.instrument == instrument; }));
+/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost.
+Result<bool> let_slip(Field& field, std::vector<WorldEvent>& events, SolveStatistics& statistics) {
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const int index = static_cast<int>(i);
+    const bool slipped_before = tool.slipping;
+    tool.slipping = false;
+    if (!tool.jaw_stopped) continue;
+    const std::string organ = held_organ(field, index);
+    const Result<double> pull = slip(field, index, statistics);
+    if (!pull) return pull.failure();
+    tool.slipping = pull.value() > 0;
+    if (tool.slipping && !slipped_before)
+      events.push_back({"slip", 0, tool.definition.name, organ, pull.value()});
+    if (both_pads_hold(field, index)) continue;
+    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
+    tool.jaw_stopped = false;
+    events.push_back({"release", 0, tool.definition.name, organ, 0});
+  }
+  return true;
 }
+
+}  // namespace
 
 Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
   std::vector<WorldEvent> events;
@@ -361,6 +311,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       events.push_back({"grasp", 0, tool.definition.name, held_organ(field, index), 0});
     }
   }
+  if (Result<bool> held = let_slip(field, events, statistics); !held) return held.failure();
   return events;
 }
 

@@ -6,32 +6,17 @@
 // a set share of its local edge, and ends in equilibrium. Nothing depends on how the motion was cut into
 // steps but where jaws take hold, and that happens at fixed jaw angles.
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/organ.h"
-#include "sim/tool.h"
-#include "sim/world.h"
+#include "sim/field.h"
 
 namespace calot {
 
-struct Field {
-  std::vector<Organ> organs;
-  std::vector<Tool> tools;
-  std::optional<Plane> support;
-  Barrier barrier;
-  double tolerance = 1e-6;
-};
-
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
-/// Stiffness of a held skin point, N/m: some thousand times the wall's, so that 5 N on a single point move it
-/// by 10 um.
-inline constexpr double grip_stiffness = 5e5;
-
 /// Moves every tool to its target. The field is left at the last converged part on failure (simulation).
-/// Returns grasp and release events (time to be set by the caller).
+/// Returns grasp, release and slip events (time to be set by the caller).
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,
                                         SolveStatistics& statistics);
 
@@ -43,9 +28,6 @@ struct ToolLoad {
   std::string organ;           ///< the first organ that touches it, or empty
 };
 std::vector<ToolLoad> tool_loads(const Field& field);
-
-/// Skin points of the organ that tool `instrument` grips.
-int grip_count(const Organ& organ, int instrument);
 
 /// Fails (scenario) when a tool starts inside an organ.
 Result<bool> check_clear(const Field& field);

@@ -11,12 +11,14 @@ namespace {
 constexpr double fold_squeeze = 0.6;
 
 bool faces_pad(const Vec3& local, const GrasperGeometry& g, double range) {
-  const double inset = g.jaw_rounding;
-  return local.x() < 0 && local.x() > -range && std::abs(local.y()) < 0.5 * g.jaw_width &&
-         local.z() > inset && local.z() < g.jaw_length;
+  return local.x() < 0 && local.x() > -range && before_pad(local, g);
 }
 
 }  // namespace
+
+bool before_pad(const Vec3& local, const GrasperGeometry& g) {
+  return std::abs(local.y()) < 0.5 * g.jaw_width && local.z() > g.jaw_rounding && local.z() < g.jaw_length;
+}
 
 void take_hold(Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
@@ -48,6 +50,21 @@ void loosen(Field& field, int instrument, double share) {
 void let_go(Field& field, int instrument) {
   for (Organ& organ : field.organs)
     std::erase_if(organ.grips, [&](const GripPoint& g) { return g.instrument == instrument; });
+}
+
+int grip_count(const Organ& organ, int instrument) {
+  return static_cast<int>(std::count_if(organ.grips.begin(), organ.grips.end(),
+                                        [&](const GripPoint& g) { return g.instrument == instrument; }));
+}
+
+bool both_pads_hold(const Field& field, int instrument) {
+  for (const Organ& organ : field.organs) {
+    bool holds[2] = {false, false};
+    for (const GripPoint& grip : organ.grips)
+      if (grip.instrument == instrument) holds[grip.jaw] = true;
+    if (holds[0] && holds[1]) return true;
+  }
+  return false;
 }
 
 bool fold_fills_jaws(const Field& field, int instrument) {

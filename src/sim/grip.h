@@ -1,10 +1,13 @@
 #pragma once
-// How jaws take hold of skin and let it go. Friction is not modelled yet: a closing pad holds what it
-// touches.
+// What jaws hold: skin points that keep their places on the pads until they slip or are let go.
 
-#include "sim/advance.h"
+#include "sim/field.h"
 
 namespace calot {
+
+/// Stiffness of a held skin point, N/m: some thousand times the wall's, so that 5 N on a single point move it
+/// by 10 um.
+inline constexpr double grip_stiffness = 5e5;
 
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);
@@ -17,6 +20,15 @@ void let_go(Field& field, int instrument);
 
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
 bool fold_fills_jaws(const Field& field, int instrument);
+
+/// Skin points of the organ that tool `instrument` grips.
+int grip_count(const Organ& organ, int instrument);
+
+/// True while skin of one organ is held by both pads.
+bool both_pads_hold(const Field& field, int instrument);
+
+/// Whether a point in a jaw's frame lies before its pad, however far away.
+bool before_pad(const Vec3& local, const GrasperGeometry& geometry);
 
 /// Springs of an organ's held points for the tools at `poses`.
 Links grip_links(const Organ& organ, const std::vector<Tool>& tools,

@@ -16,6 +16,7 @@ struct Tool {
   InstrumentPose pose;
   bool touched = false, over_limit = false;  ///< at the last step, for events
   bool jaw_stopped = false;                  ///< the jaws rest on the fold they hold
+  bool slipping = false;                     ///< the fold slid through the jaws at the last step, for events
 };
 
 inline constexpr int shapes_per_tool = 3;  ///< shaft, jaw 0, jaw 1

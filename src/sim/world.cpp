@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "sim/advance.h"
+#include "sim/grip.h"
 
 namespace calot {
 namespace {
@@ -50,7 +51,10 @@ std::uint64_t World::Impl::hash() const {
       hash.add(std::span<const double>(grip.local.data(), 3));
     }
   }
-  for (const Tool& tool : field.tools) hash.add(tool.jaw_stopped);
+  for (const Tool& tool : field.tools) {
+    hash.add(tool.jaw_stopped);
+    hash.add(tool.slipping);
+  }
   for (const Tool& tool : field.tools)
     for (double v : {tool.pose.pitch, tool.pose.yaw, tool.pose.insertion, tool.pose.roll, tool.pose.jaw})
       hash.add(v);

@@ -18,7 +18,7 @@ struct StepInput {
   std::vector<InstrumentPose> instruments;
 };
 
-/// Kinds: contact, grasp, release, overforce, overstretch.
+/// Kinds: contact, grasp, release, slip, overforce, overstretch.
 struct WorldEvent {
   std::string kind;
   double time = 0;         ///< s

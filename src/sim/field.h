@@ -1,0 +1,35 @@
+#pragma once
+// Organs, tools and what carries them, and the equilibrium of all organs where the tools stand.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/organ.h"
+#include "sim/tool.h"
+#include "sim/world.h"
+
+namespace calot {
+
+struct Field {
+  std::vector<Organ> organs;
+  std::vector<Tool> tools;
+  std::optional<Plane> support;
+  Barrier barrier;
+  double tolerance = 1e-6;
+};
+
+std::vector<InstrumentPose> present_poses(const Field& field);
+
+/// What acts on an organ when the tools stand at `poses`: the tools' shapes first, three each, then the
+/// support; and the springs of what they hold.
+Surroundings surroundings(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
+
+/// Adds a solve's counts and times.
+void count(const NewtonResult& result, SolveStatistics& statistics);
+
+/// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
+/// organs are then left as the solves left them.
+Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);
+
+}  // namespace calot

@@ -1,0 +1,97 @@
+// A grip holds by friction: two pads hold twice friction times the pinch, and a fold pulled harder slips
+// (Coulomb). Measured where it matters, at the tool.
+
+#include <gtest/gtest.h>
+
+#include "field_rig.h"
+#include "rig.h"
+#include "sim/hold.h"
+
+namespace calot {
+namespace {
+
+SceneDefinition scene_with(double pinch, double friction, int nodes = 120) {
+  SceneDefinition scene = test::grasper_scene(nodes);
+  scene.instruments[0].pinch_force = pinch;
+  scene.instruments[0].pad_friction = friction;
+  return scene;
+}
+
+/// What is seen at the tool while a grasped fundus is pulled out by 24 mm.
+struct Pull {
+  double first_slip = 0;  ///< N, 0: never
+  double largest = 0;     ///< N, along the way out, at the end of any step
+  int slips = 0, releases = 0;
+  std::string why;
+};
+
+Pull pull(const SceneDefinition& scene, int steps = 24) {
+  test::FundusPath path(scene);
+  Pull out;
+  EXPECT_TRUE(path.grasp()) << path.driver.why();
+  path.driver.watch = [&](const StepReport& report) {
+    out.largest = std::max(out.largest, -report.instruments[0].tip_force.dot(path.out));
+  };
+  if (!path.driver.go(path.fundus + 20e-3 * path.out, 0.0, steps)) out.why = path.driver.why();
+  for (const WorldEvent& event : path.driver.events)
+    if (event.kind == "slip" && out.first_slip == 0) out.first_slip = event.value;
+  out.slips = path.driver.count("slip");
+  out.releases = path.driver.count("release");
+  return out;
+}
+
+TEST(Slip, BeginsWhereThePullExceedsTwiceFrictionTimesPinch) {
+  const Pull firm = pull(scene_with(100, 0.8));
+  EXPECT_EQ(firm.slips, 0) << firm.why;
+  EXPECT_GT(firm.largest, 2.0) << "24 mm of traction";
+  for (const auto& [pinch, friction] : {std::pair{0.5, 0.8}, {1.0, 0.4}, {1.0, 0.7}}) {
+    const double limit = 2 * friction * pinch;
+    const Pull weak = pull(scene_with(pinch, friction));
+    EXPECT_EQ(weak.why, "");
+    EXPECT_GE(weak.slips, 1) << limit << " N";
+    EXPECT_GT(weak.first_slip, limit);
+    // The jaws stand within some 10 deg of the way out, and what presses on them from there is not held.
+    EXPECT_LT(weak.largest, 1.05 * limit) << limit << " N";
+  }
+}
+
+TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
+  const double limit = 2 * 0.8 * 0.5;
+  for (int nodes : {120, 180}) {
+    const SceneDefinition scene = scene_with(0.5, 0.8, nodes);
+    World world = World::create(scene).value();
+    Field field = test::make_field(scene.anatomy.organs[0], 1e-6, world.up());
+    test::add_grasper(field, world.port_position("right_subcostal"));
+    field.tools[0].definition = scene.instruments[0];
+    const Vec3 fundus = world.landmark("gallbladder.fundus");
+    const Vec3 out = (field.tools[0].trocar - fundus).normalized();
+    for (const auto& [depth, jaw] : {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}})
+      ASSERT_EQ(test::move_tip(field, fundus + depth * out, jaw), "");
+    ASSERT_TRUE(field.tools[0].jaw_stopped);
+    int sliding = 0;
+    for (int k = 1; k <= 60 && field.tools[0].jaw_stopped; ++k) {
+      ASSERT_EQ(test::move_tip(field, fundus + (0.2 * k - 4) * 1e-3 * out, 0.0, 1), "");
+      const double force = pad_pull(field, 0).norm();
+      EXPECT_LE(force, 1.001 * limit) << nodes << " nodes: the friction cone is never left";
+      if (!field.tools[0].slipping || !field.tools[0].jaw_stopped) continue;
+      ++sliding;
+      EXPECT_GT(force, 0.8 * limit) << nodes << " nodes: sliding friction holds on";
+    }
+    EXPECT_GT(sliding, 2) << nodes;
+  }
+}
+
+TEST(Slip, AFoldPulledOutOfTheJawsIsReleasedAndTheOrganReturnsToItsRest) {
+  test::FundusPath path(scene_with(0.3, 0.8));
+  const double energy = path.world.report().organs[0].energy;
+  ASSERT_TRUE(path.grasp()) << path.driver.why();
+  ASSERT_TRUE(path.driver.go(path.fundus + 35e-3 * path.out, 0.0, 30)) << path.driver.why();
+  EXPECT_GE(path.driver.count("slip"), 1);
+  EXPECT_EQ(path.driver.count("release"), 1);
+  EXPECT_EQ(path.world.report().instruments[0].holds, "");
+  EXPECT_EQ(path.world.report().instruments[0].tip_force, Vec3::Zero());
+  EXPECT_NEAR(path.world.report().organs[0].energy / energy, 1, 1e-5);
+}
+
+}  // namespace
+}  // namespace calot
