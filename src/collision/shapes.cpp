@@ -83,6 +83,23 @@ DistanceSample sample(const RoundedBox& box, const Vec3& x) {
   return {r - box.radius, rotation * normal, rotation * across * rotation.transpose() / r};
 }
 
+double change(const Plane& a, const Plane& b) {
+  const bool same = a.point == b.point && a.normal == b.normal;
+  return same ? 0.0 : std::numeric_limits<double>::infinity();
+}
+double change(const Capsule& a, const Capsule& b) {
+  return std::max((a.a - b.a).norm(), (a.b - b.b).norm()) + std::abs(a.radius - b.radius);
+}
+double change(const RoundedBox& a, const RoundedBox& b) {
+  double furthest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const Vec3 move = a.pose * sign.cwiseProduct(a.half) - b.pose * sign.cwiseProduct(b.half);
+    furthest = std::max(furthest, move.norm());
+  }
+  return furthest + std::abs(a.radius - b.radius);
+}
+
 Bounds bounds_of(const Plane&) {
   const double infinity = std::numeric_limits<double>::infinity();
   return {Vec3::Constant(-infinity), Vec3::Constant(infinity)};
@@ -109,6 +126,15 @@ double signed_distance(const Shape& shape, const Vec3& x) {
 
 DistanceSample sample_distance(const Shape& shape, const Vec3& x) {
   return std::visit([&](const auto& one) { return sample(one, x); }, shape);
+}
+
+double distance_change(const Shape& a, const Shape& b) {
+  return std::visit(
+      [](const auto& one, const auto& other) {
+        if constexpr (std::is_same_v<decltype(one), decltype(other)>) return change(one, other);
+        return std::numeric_limits<double>::infinity();
+      },
+      a, b);
 }
 
 Bounds bounds(const Shape& shape) {

@@ -41,6 +41,10 @@ double signed_distance(const Shape& shape, const Vec3& x);
 /// convex, and so is their signed distance.
 DistanceSample sample_distance(const Shape& shape, const Vec3& x);
 
+/// Bound on |signed_distance(a, x) - signed_distance(b, x)| over all x, m: how far the extreme points have
+/// moved and the radius changed (the shapes are convex). Infinite for different kinds or different planes.
+double distance_change(const Shape& a, const Shape& b);
+
 /// Smallest axis-aligned box around the shape: lower and upper corner. A plane has infinite bounds.
 struct Bounds {
   Vec3 lower, upper;

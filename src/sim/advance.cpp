@@ -111,7 +111,7 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   std::vector<ContactPair> pairs;
   {
     const Timed timed(statistics.contact_s);
-    pairs = gather_pairs(organ.body, organ.state.x, now, travel);
+    pairs = organ.search.pairs(organ.body, organ.state.x, now, travel);
   }
   bool loaded = false;
   const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
@@ -141,7 +141,7 @@ NewtonResult correct(const Field& field, Organ& organ, const Poses& poses, Solve
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = part_iterations;
-  const NewtonResult result = settle(organ.body, now, settings, organ.work, organ.state);
+  const NewtonResult result = settle(organ.body, now, settings, organ.work, organ.search, organ.state);
   count(result, statistics);
   return result;
 }
@@ -327,8 +327,8 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
   for (const Organ& organ : field.organs) {
     const Surroundings now = surroundings(field, organ, poses);
     const StencilTable& stencils = organ.body.skin().stencils;
-    for (const ContactForce& contact :
-         contact_forces(organ.body, organ.state.x, now, gather_pairs(organ.body, organ.state.x, now, 0.0))) {
+    const std::vector<ContactPair> touching = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
+    for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
       const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
       if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
     }

@@ -6,41 +6,6 @@
 #include "base/timed.h"
 
 namespace calot {
-namespace {
-
-Vec3 skin_point(const VirtualStructure& body, int row, const VecX& x) {
-  return blend(body.skin().stencils, body.skin().stencils.value, row, x);
-}
-
-}  // namespace
-
-std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
-                                      double extra) {
-  const double reach = field.barrier.range + contact_margin + extra;
-  std::vector<Eigen::AlignedBox3d> faces;
-  for (const VirtualStructure::SkinFace& face : body.skin_faces()) {
-    Eigen::AlignedBox3d box;
-    for (int node : face.nodes) box.extend(x.segment<3>(Eigen::Index{3} * node));
-    faces.push_back(box);
-  }
-  std::vector<ContactPair> pairs;
-  for (std::size_t k = 0; k < field.shapes.size(); ++k) {
-    const Bounds b = bounds(field.shapes[k]);
-    const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      const double far = reach + 0.5 * faces[f].diagonal().norm();
-      if (!near.intersects(faces[f]) || signed_distance(field.shapes[k], faces[f].center()) > far) continue;
-      for (int row : body.skin_faces()[f].rows) {
-        const Vec3 at = skin_point(body, row, x);
-        if (!near.contains(at)) continue;
-        const double distance = signed_distance(field.shapes[k], at);
-        if (distance < reach) pairs.push_back({row, static_cast<int>(k), distance});
-      }
-    }
-  }
-  return pairs;
-}
-
 BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field,
                          std::vector<ContactPair> pairs, const BodyState& start, bool fixed_pressure)
     : body_(body),
@@ -51,19 +16,14 @@ BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field
       multiplier_(start.multiplier),
       fixed_pressure_(fixed_pressure) {}
 
-double BodyProblem::moved(const VecX& x) const {
-  double squared = 0;
-  for (Eigen::Index i = 0; i < x.size(); i += 3)
-    squared = std::max(squared, (x.segment<3>(i) - start_.segment<3>(i)).squaredNorm());
-  return std::sqrt(squared);
-}
+double BodyProblem::moved(const VecX& x) const { return largest_node(x - start_); }
 
 template <class Use>
 void BodyProblem::for_touching(const VecX& x, const Use& use) const {
   const double far = field_.barrier.range + moved(x);
   for (const ContactPair& pair : pairs_) {
     if (pair.distance >= far) continue;
-    const Vec3 at = skin_point(body_, pair.row, x);
+    const Vec3 at = body_.skin_point(pair.row, x);
     if (signed_distance(field_.shapes[pair.shape], at) < field_.barrier.range) use(pair, at);
   }
 }
@@ -139,7 +99,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     if (share * longest < (1.0 - contact_keep) * (pair.distance - gone)) continue;
     const Shape& shape = field_.shapes[pair.shape];
     const Vec3 motion = share * blend(body_.skin().stencils, body_.skin().stencils.value, pair.row, step);
-    const Vec3 at = skin_point(body_, pair.row, x);
+    const Vec3 at = body_.skin_point(pair.row, x);
     if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
     share *= calot::safe_share(at, motion, shape, contact_keep);
   }
@@ -147,7 +107,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
 }
 
 NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
-                    NewtonWorkspace& work, BodyState& state, bool fixed_pressure) {
+                    NewtonWorkspace& work, ContactSearch& search, BodyState& state, bool fixed_pressure) {
   constexpr int max_rounds = 30;
   NewtonResult total;
   for (int round = 0; round < max_rounds; ++round) {
@@ -156,7 +116,7 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
     std::vector<ContactPair> pairs;
     {
       const Timed timed(gathering_s);
-      pairs = gather_pairs(body, state.x, field, 0.0);
+      pairs = search.pairs(body, state.x, field, 0.0);
     }
     const BodyProblem problem(body, field, std::move(pairs), state, fixed_pressure);
     const NewtonResult result = solve_equilibrium(problem, settings, work, state.x, state.multiplier);
@@ -172,7 +132,7 @@ std::vector<ContactForce> contact_forces(const VirtualStructure& body, const Vec
                                          const Surroundings& field, const std::vector<ContactPair>& pairs) {
   std::vector<ContactForce> out;
   for (const ContactPair& pair : pairs) {
-    const Vec3 at = skin_point(body, pair.row, x);
+    const Vec3 at = body.skin_point(pair.row, x);
     const DistanceSample d = sample_distance(field.shapes[pair.shape], at);
     if (d.distance >= field.barrier.range) continue;
     const double pressure = field.barrier.sample(d.distance).derivative;

@@ -5,35 +5,12 @@
 // Converged, everywhere: largest nodal residual / largest internal nodal force and last increment / organ's
 // size both at most `tolerance` (a scenario's solver.tolerance), volume kept to 1e-10 of itself.
 
-#include "collision/barrier.h"
-#include "collision/shapes.h"
-#include "sim/virtual_structure.h"
+#include "sim/contact_search.h"
 
 namespace calot {
 
-/// The field that acts on an organ during one solve; shapes do not move within it.
-struct Surroundings {
-  std::vector<Shape> shapes;
-  Barrier barrier;
-  Links grip;  ///< rows of the skin's stencils
-};
-
-/// A skin point near enough to a shape to meet it within a solve.
-struct ContactPair {
-  int row = 0;          ///< skin point
-  int shape = 0;        ///< index into Surroundings::shapes
-  double distance = 0;  ///< m, when it was gathered
-};
-
-/// How far outside the contact range pairs are gathered, m; no solve may move a node further than this.
-inline constexpr double contact_margin = 5e-3;
-
 /// No step takes a skin point nearer to a shape than this share of its distance before it.
 inline constexpr double contact_keep = 0.2;
-
-/// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then face, then point.
-std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
-                                      double extra);
 
 class BodyProblem : public ConstrainedEnergy {
  public:
@@ -70,7 +47,8 @@ class BodyProblem : public ConstrainedEnergy {
 /// goes on from there with fresh pairs, always downhill. On failure `state` holds the last iterate. Counts of
 /// all rounds.
 NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
-                    NewtonWorkspace& work, BodyState& state, bool fixed_pressure = false);
+                    NewtonWorkspace& work, ContactSearch& search, BodyState& state,
+                    bool fixed_pressure = false);
 
 struct ContactForce {
   int shape = 0;

@@ -34,7 +34,7 @@ Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics
   settings.tolerance = field.tolerance;
   for (Organ& organ : field.organs) {
     const NewtonResult result = settle(organ.body, surroundings(field, organ, present_poses(field)), settings,
-                                       organ.work, organ.state);
+                                       organ.work, organ.search, organ.state);
     count(result, statistics);
     if (!result.converged()) return solve_failure(result, organ.definition.name, when);
   }

@@ -123,7 +123,8 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
       const double offset = liquid.pressure_at_top(organ.state.x, 0.0);
       const double next = ramp * *bile.fill_pressure - offset;
       organ.state.multiplier = next;
-      const NewtonResult result = settle(organ.body, field, settings, organ.work, organ.state, true);
+      const NewtonResult result =
+          settle(organ.body, field, settings, organ.work, organ.search, organ.state, true);
       if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
       settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
       aim = next;
@@ -143,7 +144,8 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
     const int steps = 1 + static_cast<int>(std::ceil(std::abs(target - unstressed) / (0.05 * unstressed)));
     for (int k = 1; k <= steps; ++k) {
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
-      const NewtonResult result = settle(organ.body, field, settings, organ.work, organ.state, false);
+      const NewtonResult result =
+          settle(organ.body, field, settings, organ.work, organ.search, organ.state, false);
       if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
     }
   }
@@ -218,7 +220,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
                   "give it a larger radius, or the organ more nodes");
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
-  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}};
+  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}};
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))

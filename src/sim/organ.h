@@ -21,6 +21,7 @@ struct Organ {
   VirtualStructure body;
   BodyState state;
   NewtonWorkspace work;
+  ContactSearch search;
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
 };

@@ -69,7 +69,10 @@ class VirtualStructure {
   const StencilTable& quadrature() const { return quadrature_; }
 
   std::vector<Vec3> skin_positions(const VecX& x) const;  ///< m
-  std::vector<Vec3> skin_normals(const VecX& x) const;    ///< unit, outward
+  Vec3 skin_point(int row, const VecX& x) const {
+    return blend(skin_.stencils, skin_.stencils.value, row, x);
+  }
+  std::vector<Vec3> skin_normals(const VecX& x) const;  ///< unit, outward
 
  private:
   std::string name_;

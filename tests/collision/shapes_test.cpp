@@ -181,6 +181,29 @@ TEST(Shapes, MovingShapeAndPointTogetherChangesNothing) {
     }
 }
 
+TEST(Shapes, NoDistanceChangesMoreThanTheBoundWhenAShapeMovesAndSomeNearlySo) {
+  Rng rng(17);
+  double tightest = 0;
+  for (int trial = 0; trial < 300; ++trial)
+    for (const Shape& shape : random_shapes(rng)) {
+      if (std::holds_alternative<Plane>(shape)) continue;
+      const Shape after = test::moved(shape, random_pose(rng, 3e-3));
+      const double bound = distance_change(shape, after);
+      for (int k = 0; k < 30; ++k) {
+        const Vec3 x = random_vector(rng, 30e-3);
+        const double change = std::abs(signed_distance(after, x) - signed_distance(shape, x));
+        EXPECT_LE(change, bound + 1e-15);
+        tightest = std::max(tightest, change / bound);
+      }
+    }
+  EXPECT_GT(tightest, 0.95);
+  const Plane plane{Vec3::Zero(), Vec3::UnitZ()};
+  EXPECT_EQ(distance_change(plane, plane), 0.0);
+  EXPECT_EQ(distance_change(plane, Plane{Vec3::UnitZ(), Vec3::UnitZ()}),
+            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(distance_change(plane, Capsule{}), std::numeric_limits<double>::infinity());
+}
+
 TEST(Shapes, BoundsEncloseTheShapeAndTouchItOnEverySide) {
   Rng rng(8);
   for (int trial = 0; trial < 50; ++trial)

@@ -124,6 +124,31 @@ TEST(Equilibrium, EveryPointThatCanTouchIsGatheredWhereverTheSkinGoes) {
   EXPECT_EQ(pairs.size(), near);
 }
 
+TEST(Equilibrium, TheSearchThatRemembersFindsTheSamePairsAsOneThatDoesNot) {
+  Touched touched(6);
+  ContactSearch search;
+  Rng rng(7);
+  std::size_t found = 0;
+  for (int step = 0; step < 60; ++step) {
+    // Skin and shapes drift by up to 1 mm a step, far beyond what is remembered.
+    for (Eigen::Index i = 0; i < touched.x.size(); ++i) touched.x[i] += rng.uniform(-0.2e-3, 0.2e-3);
+    const Vec3 drift = test::random_vector(rng, 1e-3);
+    std::get<Capsule>(touched.around.shapes[1]).a += drift;
+    std::get<RoundedBox>(touched.around.shapes[2]).pose.translation() += drift;
+    const double extra = step % 3 * 1e-3;
+    const std::vector<ContactPair> all = gather_pairs(touched.organ.body, touched.x, touched.around, extra);
+    const std::vector<ContactPair> some = search.pairs(touched.organ.body, touched.x, touched.around, extra);
+    ASSERT_EQ(some.size(), all.size()) << "step " << step;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_EQ(some[i].row, all[i].row);
+      EXPECT_EQ(some[i].shape, all[i].shape);
+      EXPECT_EQ(some[i].distance, all[i].distance);
+    }
+    found += all.size();
+  }
+  EXPECT_GT(found, 10000u);
+}
+
 TEST(Equilibrium, PenetrationIsSeenBetweenTheSkinsPointsToo) {
   Touched touched(5);
   Field& field = touched.field;

@@ -1,0 +1,73 @@
+#include "sim/contact_search.h"
+
+namespace calot {
+namespace {
+
+/// Pairs nearer than `reach`.
+std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+                                      double reach) {
+  std::vector<Eigen::AlignedBox3d> faces;
+  for (const VirtualStructure::SkinFace& face : body.skin_faces()) {
+    Eigen::AlignedBox3d box;
+    for (int node : face.nodes) box.extend(x.segment<3>(Eigen::Index{3} * node));
+    faces.push_back(box);
+  }
+  std::vector<ContactPair> pairs;
+  for (std::size_t k = 0; k < field.shapes.size(); ++k) {
+    const Bounds b = bounds(field.shapes[k]);
+    const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const double far = reach + 0.5 * faces[f].diagonal().norm();
+      if (!near.intersects(faces[f]) || signed_distance(field.shapes[k], faces[f].center()) > far) continue;
+      for (int row : body.skin_faces()[f].rows) {
+        const Vec3 at = body.skin_point(row, x);
+        if (!near.contains(at)) continue;
+        const double distance = signed_distance(field.shapes[k], at);
+        if (distance < reach) pairs.push_back({row, static_cast<int>(k), distance});
+      }
+    }
+  }
+  return pairs;
+}
+
+double reach_of(const Surroundings& field, double extra) {
+  return field.barrier.range + contact_margin + extra;
+}
+
+}  // namespace
+
+std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+                                      double extra) {
+  return pairs_within(body, x, field, reach_of(field, extra));
+}
+
+std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, const VecX& x,
+                                              const Surroundings& field, double extra) {
+  constexpr double ahead = 4e-3;  // m remembered beyond what is asked for
+  const double reach = reach_of(field, extra);
+  bool fresh = reach_ > 0 && x_.size() == x.size() && shapes_.size() == field.shapes.size();
+  std::vector<double> approach(field.shapes.size());  // how much nearer a pair of the shape may have come
+  if (fresh) {
+    const double moved = largest_node(x - x_);
+    for (std::size_t k = 0; k < approach.size(); ++k) {
+      approach[k] = moved + distance_change(field.shapes[k], shapes_[k]);
+      fresh &= reach + approach[k] <= reach_;
+    }
+  }
+  if (!fresh) {
+    reach_ = reach + ahead;
+    near_ = pairs_within(body, x, field, reach_);
+    shapes_ = field.shapes;
+    x_ = x;
+    approach.assign(approach.size(), 0.0);
+  }
+  std::vector<ContactPair> out;
+  for (const ContactPair& pair : near_) {
+    if (pair.distance - approach[pair.shape] >= reach) continue;
+    const double distance = signed_distance(field.shapes[pair.shape], body.skin_point(pair.row, x));
+    if (distance < reach) out.push_back({pair.row, pair.shape, distance});
+  }
+  return out;
+}
+
+}  // namespace calot
