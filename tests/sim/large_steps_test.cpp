@@ -1,0 +1,75 @@
+// Fast instruments: the motion is cut into parts the elements allow, so speed changes neither where the organ
+// ends up nor who is outside of whom.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "base/rng.h"
+#include "rig.h"
+#include "support/bodies.h"
+
+namespace calot {
+namespace {
+
+/// How often the closed skin goes round a point: 1 inside, 0 outside (van Oosterom and Strackee 1983).
+double winding_number(const std::vector<Vec3>& skin, const std::vector<Triangle>& triangles, const Vec3& at) {
+  double solid_angle = 0;
+  for (const Triangle& t : triangles) {
+    const Vec3 a = skin[t[0]] - at, b = skin[t[1]] - at, c = skin[t[2]] - at;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    solid_angle +=
+        2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return solid_angle / (4 * std::numbers::pi);
+}
+
+TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
+  const auto pulled = [](int steps) {
+    test::FundusPath path(test::grasper_scene());
+    EXPECT_TRUE(path.grasp() && path.lift(steps)) << path.driver.why();
+    EXPECT_EQ(path.driver.count("slip"), 0);
+    return path.world.skin_positions(0);
+  };
+  // 8 mm: 400 mm/s in one step, 20 mm/s in twenty.
+  const std::vector<Vec3> yanked = pulled(1), slow = pulled(20);
+  double furthest = 0;
+  for (std::size_t i = 0; i < slow.size(); ++i) furthest = std::max(furthest, (yanked[i] - slow[i]).norm());
+  EXPECT_LT(furthest, 1e-6) << "m; equilibrium is met to 1e-6 of the nodal forces";
+}
+
+TEST(LargeSteps, ATipAt500MillimetresASecondNeverGoesThroughTheWall) {
+  SceneDefinition scene = test::grasper_scene();
+  const World rest = World::create(scene).value();
+  const std::vector<Vec3> skin = rest.skin_positions(0), normals = rest.skin_normals(0);
+  Rng rng(5);
+  int dented = 0;
+  for (int poke = 0; poke < 6; ++poke) {
+    const auto p = static_cast<std::size_t>(rng.uniform(0, static_cast<double>(skin.size())));
+    const Vec3 place = skin[p], out = (normals[p] + 0.5 * test::random_vector(rng, 1.0)).normalized();
+    scene.ports = {{"umbilical", Vec3::Zero()}, {"right_subcostal", place + 150e-3 * out}};
+    World world = World::create(scene).value();
+    test::Driver driver(world, rng.uniform(-3, 3));
+    driver.watch = [&](const StepReport& report) {
+      const InstrumentState& tool = report.instruments[0];
+      const Vec3 back = (driver.trocar() - tool.tip).normalized();
+      for (double along : {0.5e-3, 5e-3, 15e-3, 30e-3})
+        EXPECT_LT(std::abs(winding_number(world.skin_positions(0), world.skin(0).triangles,
+                                          tool.tip + along * back)),
+                  0.01)
+            << "poke " << poke << ", " << 1e3 * along << " mm behind the tip";
+      EXPECT_LT(world.deepest_penetration(), 0.2e-3);
+    };
+    ASSERT_TRUE(driver.go(place + 8e-3 * out, 0.0, 12)) << driver.why();
+    // 10 mm a step at 50 Hz, until the tip stands 12 mm deeper than the wall was.
+    const bool followed = driver.go(place - 12e-3 * out, 0.0, 2);
+    if (!followed) {
+      EXPECT_EQ(driver.failure->kind, FailureKind::simulation) << driver.why();
+    }
+    dented += followed && world.report().instruments[0].touching;
+  }
+  EXPECT_GE(dented, 4);
+}
+
+}  // namespace
+}  // namespace calot
