@@ -26,7 +26,7 @@ const char* const instrument_metrics[] = {"path_length_mm",
                                           "grasps",
                                           "releases",
                                           "slips"};
-const char* const organ_metrics[] = {"peak_pressure_Pa", "max_stretch"};
+const char* const organ_metrics[] = {"peak_pressure_Pa", "max_stretch", "lowest_frequency_Hz"};
 
 using Metrics = std::map<std::string, double>;
 

@@ -26,6 +26,7 @@ class Session {
   SessionResult run() {
     const Clock::time_point start = Clock::now();
     note_report();
+    note_frequencies();
     for (const WorldEvent& event : world_.report().events) result_.progress.add_event(event);
     while (!ended_) {
       observe(false);
@@ -109,6 +110,14 @@ class Session {
     if (!written)
       end(fail(FailureKind::usage, "the output folder cannot take more: is the disk full?",
                "free space or choose another folder with -o DIR"));
+  }
+
+  /// The licence for statics, of each organ at rest; an organ without one gets no figure.
+  void note_frequencies() {
+    const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
+    for (std::size_t i = 0; i < organs.size(); ++i)
+      if (const Result<double> found = world_.lowest_frequency(static_cast<int>(i)))
+        result_.progress.set_metric(organs[i].name + ".lowest_frequency_Hz", found.value());
   }
 
   void close_steps() {

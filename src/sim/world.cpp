@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "sim/advance.h"
 #include "sim/grip.h"
+#include "sim/vibration.h"
 
 namespace calot {
 namespace {
@@ -257,6 +258,14 @@ std::vector<Vec3> World::skin_normals(int organ) const {
 }
 const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
   return impl_->field.organs[organ].body.skin_rest();
+}
+
+Result<double> World::lowest_frequency(int index) const {
+  const Organ& organ = impl_->field.organs[index];
+  const BodyMass mass(organ.body, organ.state.x, organ.definition.wall.thickness,
+                      organ.definition.bile.density);
+  return calot::lowest_frequency(organ.body, surroundings(impl_->field, organ, present_poses(impl_->field)),
+                                 organ.state, mass);
 }
 
 double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }

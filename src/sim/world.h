@@ -92,6 +92,10 @@ class World {
   std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
   std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
   const std::vector<Vec3>& skin_rest_positions(int organ) const;
+  /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
+  /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
+  /// equilibrium is not stable.
+  Result<double> lowest_frequency(int organ) const;
   /// Deepest penetration of any instrument part into the skin (m, 0 when none), tested on a finer
   /// tessellation than contact uses: for tests and reports.
   double deepest_penetration() const;

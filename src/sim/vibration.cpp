@@ -1,0 +1,135 @@
+#include "sim/vibration.h"
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/rng.h"
+
+namespace calot {
+namespace {
+
+constexpr int harmonics = 15;  // of degree 1 (3), 2 (5) and 3 (7)
+
+/// Values and gradients of the solid harmonics at p.
+void sample_harmonics(const Vec3& p, std::array<double, harmonics>& h, std::array<Vec3, harmonics>& g) {
+  const double x = p.x(), y = p.y(), z = p.z();
+  h = {x,
+       y,
+       z,
+       x * y,
+       y * z,
+       z * x,
+       x * x - y * y,
+       2 * z * z - x * x - y * y,
+       z * (2 * z * z - 3 * x * x - 3 * y * y),
+       x * (4 * z * z - x * x - y * y),
+       y * (4 * z * z - x * x - y * y),
+       z * (x * x - y * y),
+       x * y * z,
+       x * (x * x - 3 * y * y),
+       y * (3 * x * x - y * y)};
+  g = {Vec3(1, 0, 0),
+       Vec3(0, 1, 0),
+       Vec3(0, 0, 1),
+       Vec3(y, x, 0),
+       Vec3(0, z, y),
+       Vec3(z, 0, x),
+       Vec3(2 * x, -2 * y, 0),
+       Vec3(-2 * x, -2 * y, 4 * z),
+       Vec3(-6 * x * z, -6 * y * z, 6 * z * z - 3 * x * x - 3 * y * y),
+       Vec3(4 * z * z - 3 * x * x - y * y, -2 * x * y, 8 * x * z),
+       Vec3(-2 * x * y, 4 * z * z - x * x - 3 * y * y, 8 * y * z),
+       Vec3(2 * x * z, -2 * y * z, x * x - y * y),
+       Vec3(y * z, z * x, x * y),
+       Vec3(3 * x * x - 3 * y * y, -6 * x * y, 0),
+       Vec3(6 * x * y, 3 * x * x - 3 * y * y, 0)};
+}
+
+/// Third of the area vectors of the triangles around each point: they sum to zero on a closed surface.
+std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> out(points.size(), Vec3::Zero());
+  for (const Triangle& t : triangles) {
+    const Vec3 area = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]) / 6.0;
+    for (int p : t) out[p] += area;
+  }
+  return out;
+}
+
+}  // namespace
+
+BodyMass::BodyMass(const VirtualStructure& body, const VecX& x, double wall_thickness, double bile_density)
+    : body_(body), bile_density_(bile_density) {
+  for (double area : body.shell().point_areas()) {
+    row_mass_.push_back(area * wall_thickness * wall_density);
+    wall_ += row_mass_.back();
+  }
+  const std::vector<Vec3> skin = body.skin_positions(x);
+  const std::vector<Vec3> areas = area_vectors(skin, body.skin().triangles);
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : skin) centre += p / static_cast<double>(skin.size());
+  const double scale = 2.0 / body.size();  // keeps the degrees comparable
+  flow_ = Eigen::MatrixXd::Zero(x.size(), harmonics);
+  Eigen::MatrixXd kinetic = Eigen::MatrixXd::Zero(harmonics, harmonics);
+  std::array<double, harmonics> h;
+  std::array<Vec3, harmonics> g;
+  const StencilTable& table = body.skin().stencils;
+  for (int p = 0; p < table.rows(); ++p) {
+    sample_harmonics(scale * (skin[p] - centre), h, g);
+    for (int k = 0; k < harmonics; ++k) {
+      for (int e = table.begin[p]; e < table.begin[p + 1]; ++e)
+        flow_.col(k).segment<3>(Eigen::Index{3} * table.node[e]) += table.value[e] * h[k] * areas[p];
+      for (int l = 0; l < harmonics; ++l) kinetic(k, l) += h[k] * scale * g[l].dot(areas[p]);
+    }
+  }
+  kinetic_.compute(0.5 * (kinetic + kinetic.transpose()));
+}
+
+VecX BodyMass::multiply(const VecX& motion) const {
+  VecX out = VecX::Zero(motion.size());
+  const StencilTable& table = body_.quadrature();
+  for (int r = 0; r < table.rows(); ++r)
+    spread(table, r, row_mass_[r] * blend(table, table.value, r, motion), out);
+  out += bile_density_ * (flow_ * kinetic_.solve(flow_.transpose() * motion));
+  return out;
+}
+
+Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
+                                const BodyState& state, const BodyMass& mass) {
+  constexpr int vectors = 6, max_rounds = 300;
+  constexpr double tolerance = 1e-8;  // of the squared frequency
+  NewtonWorkspace work(body.pattern());
+  const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
+  const NewtonResult factored = factorise_tangent(problem, work, state.x, state.multiplier, true);
+  if (!factored.converged() || work.shifted)
+    return fail(FailureKind::simulation, "the organ has no natural frequency: its equilibrium is not stable",
+                "hold the organ, or fill it less");
+  Rng rng(1);
+  Eigen::MatrixXd shapes(state.x.size(), vectors);
+  for (Eigen::Index i = 0; i < shapes.size(); ++i) shapes.data()[i] = rng.uniform(-1, 1);
+  double lowest = 0;
+  for (int round = 0; round < max_rounds; ++round) {
+    // One step of K^-1 M on the whole space, then the best combinations in it (Rayleigh and Ritz).
+    Eigen::MatrixXd loads(shapes.rows(), vectors), next(shapes.rows(), vectors),
+        masses(shapes.rows(), vectors);
+    for (int k = 0; k < vectors; ++k) {
+      loads.col(k) = mass.multiply(shapes.col(k));
+      double ignored = 0;
+      next.col(k) = linear_response(work, loads.col(k), ignored);
+    }
+    for (int k = 0; k < vectors; ++k) masses.col(k) = mass.multiply(next.col(k));
+    // With K next = loads + a pressure that does no work on motions that keep the volume.
+    const Eigen::MatrixXd stiffness = next.transpose() * loads, inertia = next.transpose() * masses;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(
+        0.5 * (stiffness + stiffness.transpose()), 0.5 * (inertia + inertia.transpose()));
+    if (ritz.info() != Eigen::Success || !(ritz.eigenvalues()[0] > 0)) break;
+    shapes = next * ritz.eigenvectors();
+    const double before = std::exchange(lowest, ritz.eigenvalues()[0]);
+    if (std::abs(lowest - before) <= tolerance * lowest) return std::sqrt(lowest) / (2 * std::numbers::pi);
+  }
+  return fail(FailureKind::simulation, "the organ's lowest natural frequency was not found",
+              "give the organ more nodes");
+}
+
+}  // namespace calot

@@ -1,0 +1,43 @@
+#pragma once
+// Small vibrations of an organ about its equilibrium: the licence for statics (the paper, section 4: shaken
+// below a third of its lowest natural frequency, a structure may be treated as static).
+
+#include <Eigen/Cholesky>
+
+#include "sim/equilibrium.h"
+
+namespace calot {
+
+/// Share of the lowest natural frequency below which shaking may be treated as static (the paper, section 4).
+inline constexpr double static_share = 1.0 / 3.0;
+/// Density of the wall, kg/m^3: that of soft tissue (liver: 1050 to 1060).
+inline constexpr double wall_density = 1050;
+
+/// Mass of an organ's wall and bile at a state, as it resists accelerations of the control nodes.
+///
+/// The bile is ideal (incompressible, without friction): it answers the wall's normal velocity q by a potential
+/// flow, whose kinetic energy is 1/2 density b' A^-1 b with b_k = integral of h_k q and A_kl = integral of
+/// h_k dh_l/dn over the wall, for harmonic polynomials h_k of degree 1 to 3 (Trefftz's method). It moves
+/// exactly as a rigid body with a wall that does; what ripples more finely than degree 3 feels no bile.
+class BodyMass {
+ public:
+  /// `bile_density` in kg/m^3; the wall has wall_density.
+  BodyMass(const VirtualStructure& body, const VecX& x, double wall_thickness, double bile_density);
+  /// Mass times a nodal motion: N at 1 m/s^2, 3 a node.
+  VecX multiply(const VecX& motion) const;
+  double wall() const { return wall_; }  ///< kg
+
+ private:
+  const VirtualStructure& body_;
+  std::vector<double> row_mass_;  ///< kg, of each quadrature point
+  double wall_ = 0, bile_density_ = 0;
+  Eigen::MatrixXd flow_;  ///< column k: h_k integrated with each node's normal motion, m^3 or more
+  Eigen::LDLT<Eigen::MatrixXd> kinetic_;
+};
+
+/// Lowest natural frequency, Hz, of the organ in `field` at its present state, its volume kept: the smallest
+/// w of K v = w^2 M v by inverse iteration on a few vectors. Fails (simulation) where the state is not stable.
+Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
+                                const BodyState& state, const BodyMass& mass);
+
+}  // namespace calot
