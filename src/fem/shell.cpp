@@ -102,7 +102,7 @@ void Shell::lay_fibres(const FibreLayout& layout, const Local& at, Point& point)
   const Vec3 along = axis - at.normal * at.normal.dot(axis);
   Fibres fibres;
   fibres.share = along.squaredNorm();
-  if (!(fibres.share > 0)) return;  // a pole: no direction and no stiffness
+  // At a pole, where `along` is zero, it stays zero when normalised: then I4 is 0 and the fibres are slack.
   const Vec3 u = along.normalized(), v = at.normal.cross(u);
   for (int k = 0; k < 2; ++k) {
     const Vec3 m = std::cos(layout.angle) * u + (k == 0 ? 1 : -1) * std::sin(layout.angle) * v;

@@ -254,6 +254,8 @@ TEST(Demiray, EnergyIsInfiniteAndNothingIsNanWhereItCannotBeComputed) {
   const MembraneSample last = fung.sample({1, 0, 1}, 1, {stretch_squared, 0, stretch_squared});
   EXPECT_TRUE(std::isfinite(last.energy) && last.gradient.allFinite() && last.hessian.allFinite());
   EXPECT_GT(last.energy, 1e120);
+  const double beyond = 0.5 * (301 / fung.stiffening + 3);  // exp(301) itself would be finite
+  infinite({beyond, 0, beyond});
 }
 
 const FibreFamily family{50e3, 2.0, 2e-3};
@@ -370,9 +372,17 @@ TEST(FibreFamily, WithoutStiffeningIsQuadraticAndTheLimitOfSmallStiffening) {
 }
 
 TEST(FibreFamily, EnergyIsInfiniteAndNothingIsNanBeyondTheLargestExponent) {
-  const MembraneSample at = family.sample(at_angle(0), {1e4, 0, 1});
-  EXPECT_EQ(at.energy, std::numeric_limits<double>::infinity());
-  EXPECT_TRUE(at.gradient.isZero(0) && at.hessian.isZero(0));
+  const auto at_exponent = [](double exponent) {
+    return SurfaceTensor(1 + std::sqrt(exponent / family.stiffening), 0, 1);
+  };
+  for (double exponent : {301.0, 1e6}) {
+    const MembraneSample at = family.sample(at_angle(0), at_exponent(exponent));
+    EXPECT_EQ(at.energy, std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(at.gradient.isZero(0) && at.hessian.isZero(0));
+  }
+  const MembraneSample last = family.sample(at_angle(0), at_exponent(299));
+  EXPECT_TRUE(std::isfinite(last.energy) && last.gradient.allFinite() && last.hessian.allFinite());
+  EXPECT_GT(last.energy, 1e120);
 }
 
 TEST(KoiterBending, EnergyFollowsThePlateFormulas) {
