@@ -226,15 +226,18 @@ TEST(Demiray, SheetUnderUniaxialAndBiaxialTensionFollowsTheClosedForms) {
 
 TEST(Demiray, EnergyDoesNotDependOnTheFacesParameters) {
   Rng rng(15);
+  int finite = 0;
   for (int trial = 0; trial < 20; ++trial) {
     const Element e = random_element(rng);
     const Element other{e.tangents * (Mat2::Identity() + random_matrix(rng, 0.4)), e.deformation};
     const double here = fung.energy(e.inverse(), e.rest().determinant(), e.metric());
     const double there = fung.energy(other.inverse(), other.rest().determinant(), other.metric());
     if (std::isinf(here)) continue;
-    // Rounding of the exponent, 1e-13 of it, is relative to the energy.
+    ++finite;
+    // Rounding of the exponent, 1e-15 of at most 300 times a few operations, is relative to the energy.
     EXPECT_NEAR(there, here, 1e-10 * here);
   }
+  EXPECT_GT(finite, 10);
 }
 
 TEST(Demiray, EnergyIsInfiniteAndNothingIsNanWhereItCannotBeComputed) {
