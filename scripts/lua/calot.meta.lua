@@ -134,8 +134,16 @@
 ---The organ's wall.
 ---@class calot.wall
 ---@field thickness? number 2 to 3 mm is usual; default 2 * mm; 0.1 to 10 mm
----@field shear_modulus? number shear modulus mu of the neo-Hookean wall; default 100 * kPa; 1 to 100000 kPa
+---@field shear_modulus? number shear modulus mu of the isotropic wall at rest; default 100 * kPa; 1 to 100000 kPa
+---@field stiffening? number b of the exponential Fung (Demiray) law; 0: neo-Hookean; default 0; 0 to 100
+---@field fibres? calot.fibres makes the wall anisotropic; {}: as measured in human gallbladders, whose shear_modulus is 85 * kPa
 ---@field overstretch? number principal stretch above which the event overstretch is raised; default 2.2; 1.01 to 10
+
+---Two families of fibres (Holzapfel, Gasser, Ogden) on either side of the axis; they bear tension only.
+---@class calot.fibres
+---@field stiffness? number k1 of each family; each adds 4 k1 to Young's modulus along itself; default 48 * kPa; 0 to 100000 kPa
+---@field stiffening? number exponent k2; 0: they do not stiffen; default 1; 0 to 1000
+---@field angle? number from the axis, neck to fundus: 0 longitudinal, 90 * deg circumferential; default 0 * deg; 0 to 90 deg
 
 ---The filling. Give the volume or the pressure, the other follows; neither: the unstressed volume.
 ---@class calot.bile

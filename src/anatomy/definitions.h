@@ -32,10 +32,25 @@ struct MeshFile {
 
 using OrganShape = std::variant<PearShape, SphereShape, MeshFile>;
 
+/// Two families of fibres at `angle` to either side of the organ's axis (neck to fundus), tight only when
+/// stretched, fading towards the poles: fem/shell.h, FibreLayout. The defaults are the human gallbladder's: E
+/// is 641 kPa along the axis and 255 kPa around it (c: Karimi, Shojaei and Tehrani 2017,
+/// doi 10.1080/03091902.2017.1366561). Each family adds 4 k1 along itself, so k1 = (641 - 255) / 8 kPa in a
+/// wall of shear modulus 255 / 3 = 85 kPa.
+struct FibreDefinition {
+  double stiffness = 48e3;  ///< k1 of each family, Pa
+  double stiffening = 1.0;  ///< k2, dimensionless; 0: does not stiffen (d)
+  double angle = 0;         ///< rad from the axis, 0 to pi / 2: 0 longitudinal, pi / 2 circumferential
+};
+
 struct WallDefinition {
   double thickness = 2e-3;       ///< m; 2 to 3 mm (c)
-  double shear_modulus = 100e3;  ///< Pa; a third of E = 300 kPa, incompressible (c, spread tenfold)
-  double overstretch = 2.2;      ///< principal stretch above which `overstretch` is raised (d)
+  double shear_modulus = 100e3;  ///< Pa at rest; a third of E = 300 kPa, incompressible (c, spread tenfold)
+  /// b of the exponential (Fung, Demiray) law, dimensionless; 0 is the neo-Hookean wall (d: no figure for the
+  /// gallbladder is known to us).
+  double stiffening = 0;
+  std::optional<FibreDefinition> fibres;  ///< none: isotropic
+  double overstretch = 2.2;               ///< principal stretch above which `overstretch` is raised (d)
 };
 
 /// Give one of the two; with neither the organ is filled to its unstressed volume.

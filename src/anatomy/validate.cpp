@@ -77,6 +77,15 @@ double radius_of(const OrganShape& shape) {
   return std::numeric_limits<double>::infinity();
 }
 
+void check_fibres(FieldCheck& check, const std::string& path, const FibreDefinition& fibres) {
+  check.in_range(path + ".stiffness", fibres.stiffness, quantity::pressure, 0, 100e3 * kPa,
+                 "a stiffness of fibres");
+  check.in_range(path + ".stiffening", fibres.stiffening, quantity::number, 0, 1000,
+                 "an exponent of fibres' stiffening");
+  check.in_range(path + ".angle", fibres.angle, quantity::angle, 0, 90 * deg,
+                 "an angle of fibres from the organ's axis");
+}
+
 void check_wall(FieldCheck& check, const std::string& path, const WallDefinition& wall, double radius) {
   const bool good = check.in_range(path + ".thickness", wall.thickness, quantity::length, 0.1 * mm, 10 * mm,
                                    "a wall's thickness");
@@ -87,6 +96,9 @@ void check_wall(FieldCheck& check, const std::string& path, const WallDefinition
                   fmt::format("give at most {:g} mm", radius / 2 / mm));
   check.in_range(path + ".shear_modulus", wall.shear_modulus, quantity::pressure, 1 * kPa, 100e3 * kPa,
                  "a soft tissue's shear modulus");
+  check.in_range(path + ".stiffening", wall.stiffening, quantity::number, 0, 100,
+                 "an exponent of a wall's stiffening");
+  if (wall.fibres) check_fibres(check, path + ".fibres", *wall.fibres);
   check.in_range(path + ".overstretch", wall.overstretch, quantity::number, 1.01, 10, "a limit of stretch");
 }
 

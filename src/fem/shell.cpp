@@ -6,7 +6,6 @@
 #include <limits>
 
 namespace calot {
-namespace {}  // namespace
 
 std::vector<QuadraturePoint> three_point_rule() {
   const double a = 1.0 / 6.0, b = 2.0 / 3.0;
@@ -98,8 +97,50 @@ Shell::Local Shell::local(const Point& point, const VecX& x) const {
   return out;
 }
 
+void Shell::lay_fibres(const FibreLayout& layout, const Local& at, Point& point) {
+  const Vec3 axis = layout.axis.normalized();
+  const Vec3 along = axis - at.normal * at.normal.dot(axis);
+  Fibres fibres;
+  fibres.share = along.squaredNorm();
+  // At a pole, where `along` is zero, it stays zero when normalised: then I4 is 0 and the fibres are slack.
+  const Vec3 u = along.normalized(), v = at.normal.cross(u);
+  for (int k = 0; k < 2; ++k) {
+    const Vec3 m = std::cos(layout.angle) * u + (k == 0 ? 1 : -1) * std::sin(layout.angle) * v;
+    const double by_u = m.dot(at.d[0]), by_v = m.dot(at.d[1]);
+    const SurfaceTensor& inverse = point.rest_inverse;
+    fibres.directions[k] =
+        fibre_direction(inverse[0] * by_u + inverse[1] * by_v, inverse[1] * by_u + inverse[2] * by_v);
+  }
+  point.fibres = static_cast<int>(fibres_.size());
+  fibres_.push_back(fibres);
+}
+
+double Shell::membrane_energy(const Point& point, const SurfaceTensor& metric) const {
+  double energy = material_.membrane.energy(point.rest_inverse, point.rest_determinant, metric);
+  if (point.fibres < 0) return energy;
+  const Fibres& fibres = fibres_[point.fibres];
+  for (const SurfaceTensor& direction : fibres.directions)
+    energy += fibres.share * material_.fibres->family.energy(direction, metric);
+  return energy;
+}
+
+MembraneSample Shell::membrane(const Point& point, const SurfaceTensor& metric) const {
+  MembraneSample sum = material_.membrane.sample(point.rest_inverse, point.rest_determinant, metric);
+  if (point.fibres < 0) return sum;
+  const Fibres& fibres = fibres_[point.fibres];
+  for (const SurfaceTensor& direction : fibres.directions) {
+    const MembraneSample family = material_.fibres->family.sample(direction, metric);
+    sum.energy += fibres.share * family.energy;
+    sum.gradient += fibres.share * family.gradient;
+    sum.hessian += fibres.share * family.hessian;
+  }
+  return sum;
+}
+
 Result<Shell> Shell::create(const StencilTable& table, const std::vector<QuadraturePoint>& rule,
                             const VecX& rest, const ShellMaterial& material) {
+  if (material.fibres && !(material.fibres->axis.norm() > 0))
+    return fail(FailureKind::scenario, "the wall's fibres have no axis", "give a direction that is not zero");
   Shell shell;
   shell.material_ = material;
   const int per_face = static_cast<int>(rule.size());
@@ -130,6 +171,7 @@ Result<Shell> Shell::create(const StencilTable& table, const std::vector<Quadrat
     point.rest_inverse = Vec3(at.metric[2], -at.metric[1], at.metric[0]) / det;
     point.rest_curvature = at.curvature;
     if (material.bends) point.bending = material.bending.hessian(point.rest_inverse);
+    if (material.fibres) shell.lay_fibres(*material.fibres, at, point);
     shell.points_.push_back(point);
   }
   return shell;
@@ -139,7 +181,7 @@ double Shell::value(const VecX& x) const {
   double sum = 0;
   for (const Point& point : points_) {
     const Local at = local(point, x);
-    double energy = material_.membrane.energy(point.rest_inverse, point.rest_determinant, at.metric);
+    double energy = membrane_energy(point, at.metric);
     if (!std::isfinite(energy)) return std::numeric_limits<double>::infinity();
     if (material_.bends) {
       const Vec3 k = at.curvature - point.rest_curvature;
@@ -153,7 +195,7 @@ double Shell::value(const VecX& x) const {
 void Shell::add_gradient(const VecX& x, VecX& gradient) const {
   for (const Point& point : points_) {
     const Local at = local(point, x);
-    const MembraneSample s = material_.membrane.sample(point.rest_inverse, point.rest_determinant, at.metric);
+    const MembraneSample s = membrane(point, at.metric);
     Vec3 g[5];
     g[0] = 2 * s.gradient[0] * at.d[0] + s.gradient[1] * at.d[1];
     g[1] = 2 * s.gradient[2] * at.d[1] + s.gradient[1] * at.d[0];
@@ -189,7 +231,7 @@ void Shell::add_hessian(const VecX& x, BlockMatrix& matrix) const {
       element.reset(faces_[current].padded);
     }
     const Local at = local(point, x);
-    const MembraneSample s = material_.membrane.sample(point.rest_inverse, point.rest_determinant, at.metric);
+    const MembraneSample s = membrane(point, at.metric);
     h.setZero();
     add_membrane(at.d, s, point.area, h);
     const double* weights = weights_.data() + point.weights;

@@ -4,6 +4,7 @@
 // fundamental form, Koiter bending from the second. It knows stencils only: linear triangles, Loop faces and
 // refined faces differ in nothing else.
 
+#include <optional>
 #include <vector>
 
 #include "base/status.h"
@@ -12,10 +13,21 @@
 
 namespace calot {
 
+/// Two equal families of fibres in the middle surface, at `angle` to either side of the axis' projection p
+/// into the rest tangent plane (0: along the axis, pi / 2: around it). Where the axis meets the surface at
+/// right angles, at the poles, there is no such direction: the fibres' energy is scaled by |p|^2 (1 where the
+/// axis lies in the surface, 0 at the poles), which makes |p|^2 m m', and so the wall, smooth there.
+struct FibreLayout {
+  FibreFamily family;
+  double angle = 0;           ///< rad
+  Vec3 axis = Vec3::UnitZ();  ///< world at rest, of any length but 0
+};
+
 struct ShellMaterial {
-  NeoHookean membrane;
-  KoiterBending bending;
+  Demiray membrane;
+  KoiterBending bending;  ///< of the isotropic wall at rest: fibres and stiffening do not take part
   bool bends = true;
+  std::optional<FibreLayout> fibres = {};
 };
 
 /// A point of a quadrature rule on the triangle (0,0), (1,0), (0,1).
@@ -33,7 +45,7 @@ class Shell {
  public:
   /// `table` has the rule's points of face 0, then of face 1, ..., with derivatives to order 2 (order 1 is
   /// enough without bending); `rest` are 3 * nodes coordinates, m. Fails (scenario) where the rest surface is
-  /// degenerate.
+  /// degenerate, and when fibres have no axis.
   static Result<Shell> create(const StencilTable& table, const std::vector<QuadraturePoint>& rule,
                               const VecX& rest, const ShellMaterial& material);
 
@@ -58,14 +70,24 @@ class Shell {
     double area = 0;  ///< rest area of the point, m^2
     SurfaceTensor rest_inverse = Vec3::Zero(), rest_curvature = Vec3::Zero();
     double rest_determinant = 1;
+    int fibres = -1;  ///< index in fibres_, -1: none
     Mat3 bending = Mat3::Zero();
+  };
+  /// The fibres at a point: their families' directions and |p|^2.
+  struct Fibres {
+    SurfaceTensor directions[2];
+    double share = 0;
   };
   struct Local;
   Local local(const Point& point, const VecX& x) const;
+  void lay_fibres(const FibreLayout& layout, const Local& at, Point& point);
+  double membrane_energy(const Point& point, const SurfaceTensor& metric) const;
+  MembraneSample membrane(const Point& point, const SurfaceTensor& metric) const;
 
   ShellMaterial material_;
   std::vector<FaceNodes> faces_;
   std::vector<Point> points_;
+  std::vector<Fibres> fibres_;
   std::vector<double> weights_;
 };
 

@@ -60,6 +60,7 @@ std::vector<ApiTable> shape_tables() {
 std::vector<ApiTable> organ_tables() {
   const OrganDefinition organ;
   const WallDefinition wall;
+  const FibreDefinition fibres;
   const BileDefinition bile;
   const HeldRegion held;
   return {
@@ -79,9 +80,24 @@ std::vector<ApiTable> organ_tables() {
            {length("thickness", 0.1 * mm, 10 * mm, wall.thickness, "2 to 3 mm is usual"),
             number("shear_modulus", quantity::pressure, 1 * kPa, 100e3 * kPa,
                    written(wall.shear_modulus, quantity::pressure),
-                   "shear modulus mu of the neo-Hookean wall"),
+                   "shear modulus mu of the isotropic wall at rest"),
+            number("stiffening", quantity::number, 0, 100, written(wall.stiffening, quantity::number),
+                   "b of the exponential Fung (Demiray) law; 0: neo-Hookean"),
+            table("fibres", "fibres",
+                  "makes the wall anisotropic; {}: as measured in human gallbladders, whose shear_modulus is "
+                  "85 * kPa"),
             number("overstretch", quantity::number, 1.01, 10, written(wall.overstretch, quantity::number),
                    "principal stretch above which the event overstretch is raised")}),
+      make("fibres",
+           "Two families of fibres (Holzapfel, Gasser, Ogden) on either side of the axis; they bear tension "
+           "only.",
+           {number("stiffness", quantity::pressure, 0, 100e3 * kPa,
+                   written(fibres.stiffness, quantity::pressure),
+                   "k1 of each family; each adds 4 k1 to Young's modulus along itself"),
+            number("stiffening", quantity::number, 0, 1000, written(fibres.stiffening, quantity::number),
+                   "exponent k2; 0: they do not stiffen"),
+            number("angle", quantity::angle, 0, 90 * deg, written(fibres.angle, quantity::angle),
+                   "from the axis, neck to fundus: 0 longitudinal, 90 * deg circumferential")}),
       make("bile",
            "The filling. Give the volume or the pressure, the other follows; neither: the unstressed volume.",
            {number("density", quantity::density, 500, 2000, written(bile.density, quantity::density),

@@ -83,7 +83,18 @@ class SceneReader {
     const TableReader reader(check_, value, path, api_table("wall"));
     reader.take("thickness", wall.thickness);
     reader.take("shear_modulus", wall.shear_modulus);
+    reader.take("stiffening", wall.stiffening);
+    if (const Value* fibres = reader.take("fibres")) read_fibres(wall.fibres, *fibres, path + ".fibres");
     reader.take("overstretch", wall.overstretch);
+  }
+
+  /// Fibres that the anatomy had keep what is not given here.
+  void read_fibres(std::optional<FibreDefinition>& fibres, const Value& value, const std::string& path) {
+    if (!fibres) fibres.emplace();
+    const TableReader reader(check_, &value, path, api_table("fibres"));
+    reader.take("stiffness", fibres->stiffness);
+    reader.take("stiffening", fibres->stiffening);
+    reader.take("angle", fibres->angle);
   }
 
   /// One of volume and pressure given here replaces whichever the anatomy had.

@@ -87,6 +87,18 @@ Result<TriMesh> control_mesh(const OrganDefinition& definition) {
   return mesh;
 }
 
+ShellMaterial wall_material(const OrganDefinition& definition) {
+  const WallDefinition& wall = definition.wall;
+  ShellMaterial material;
+  material.membrane = {wall.shear_modulus, wall.thickness, wall.stiffening};
+  material.bending = {wall.shear_modulus, wall.thickness};
+  if (wall.fibres) {
+    const FibreFamily family{wall.fibres->stiffness, wall.fibres->stiffening, wall.thickness};
+    material.fibres = FibreLayout{family, wall.fibres->angle, definition.fundus - definition.neck};
+  }
+  return material;
+}
+
 /// Where the analytic landmarks lie, m, world.
 std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
                                             const std::vector<Vec3>& skin) {
@@ -189,8 +201,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   VirtualStructure::Setup setup;
   setup.name = definition.name;
   setup.control = control.value();
-  setup.material.membrane = {definition.wall.shear_modulus, definition.wall.thickness};
-  setup.material.bending = {definition.wall.shear_modulus, definition.wall.thickness};
+  setup.material = wall_material(definition);
   setup.bile = definition.bile;
   setup.up = up;
   Result<LoopSurface> surface = LoopSurface::create(control.value());

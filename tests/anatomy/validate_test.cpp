@@ -27,6 +27,10 @@ std::vector<Problem> problems_after(const Change& change) {
 
 OrganDefinition& organ(SceneDefinition& scene) { return scene.anatomy.organs[0]; }
 PearShape& pear(SceneDefinition& scene) { return std::get<PearShape>(organ(scene).shape); }
+FibreDefinition& fibres(SceneDefinition& scene) {
+  std::optional<FibreDefinition>& fibres = organ(scene).wall.fibres;
+  return fibres ? *fibres : fibres.emplace();
+}
 HeldRegion& held(SceneDefinition& scene) { return organ(scene).held[1]; }
 
 /// One thing made wrong, and what must be said about it: exactly one problem, at this path.
@@ -76,6 +80,14 @@ const std::vector<Refusal>& refusals() {
        organ_path + ".wall.thickness", "5 mm is no thin shell", "at most 4 mm"},
       {"ShearModulus", [](auto& s) { organ(s).wall.shear_modulus = 100; }, organ_path + ".wall.shear_modulus",
        "100 Pa", "100 * kPa"},
+      {"Stiffening", [](auto& s) { organ(s).wall.stiffening = -1; }, organ_path + ".wall.stiffening",
+       "-1 is not an exponent", "give 0 to 100"},
+      {"FibreStiffness", [](auto& s) { fibres(s).stiffness = -5e3; }, organ_path + ".wall.fibres.stiffness",
+       "-5000 Pa", "give 0 to"},
+      {"FibreStiffening", [](auto& s) { fibres(s).stiffening = 1001; },
+       organ_path + ".wall.fibres.stiffening", "1001 is not an exponent", "give 0 to 1000"},
+      {"FibreAngle", [](auto& s) { fibres(s).angle = 45; }, organ_path + ".wall.fibres.angle", "45 rad",
+       "did you mean 45 * deg? give 0 to 90 deg"},
       {"Overstretch", [](auto& s) { organ(s).wall.overstretch = 0.6; }, organ_path + ".wall.overstretch",
        "0.6", "1.01"},
       {"BileDensity", [](auto& s) { organ(s).bile.density = 1.02; }, organ_path + ".bile.density",
@@ -260,6 +272,10 @@ TEST(Validate, EveryNumberMustBeFinite) {
       },
       [](auto& s) -> double& { return organ(s).wall.thickness; },
       [](auto& s) -> double& { return organ(s).wall.shear_modulus; },
+      [](auto& s) -> double& { return organ(s).wall.stiffening; },
+      [](auto& s) -> double& { return fibres(s).stiffness; },
+      [](auto& s) -> double& { return fibres(s).stiffening; },
+      [](auto& s) -> double& { return fibres(s).angle; },
       [](auto& s) -> double& { return organ(s).wall.overstretch; },
       [](auto& s) -> double& { return organ(s).bile.density; },
       [](auto& s) -> double& { return *organ(s).bile.fill_pressure; },

@@ -154,6 +154,7 @@ std::optional<Value> scene_with(const std::string& table, const std::string& key
   }
   if (table == "organ") return in_scene("anatomy", entry("organs", listed(holder)));
   if (table == "wall" || table == "bile") return in_organ(table, holder);
+  if (table == "fibres") return in_organ("wall", entry(table, holder));
   if (table == "held") {
     holder.fields.push_back({"landmark", text("bed")});
     return in_organ("held", listed(holder));
@@ -213,13 +214,14 @@ TEST(Api, DefaultsAreThoseOfTheDefinitions) {
   test::ScenarioText text;
   text.head = "local kPa = calot.units.kPa";
   text.scene = "return { anatomy = { organs = { { " + written("organ") + "shape = { " +
-               written("shape_pear") + "},\nwall = { " + written("wall") + "}, bile = { " + written("bile") +
-               "}, held = { { landmark = 'bed', " + written("held") + "} } } },\n" + written("anatomy") +
-               "}, laparoscope = { " + written("laparoscope") + "},\nsolver = { " + written("solver") +
-               "}, instruments = { left = { port = 'right_flank', " + written("instrument") + "} } }";
+               written("shape_pear") + "},\nwall = { " + written("wall") + "fibres = { " + written("fibres") +
+               "} }, bile = { " + written("bile") + "}, held = { { landmark = 'bed', " + written("held") +
+               "} } } },\n" + written("anatomy") + "}, laparoscope = { " + written("laparoscope") +
+               "},\nsolver = { " + written("solver") + "}, instruments = { left = { port = 'right_flank', " +
+               written("instrument") + "} } }";
   test::ScenarioText plain;
   plain.scene =
-      "return { anatomy = { organs = { { held = { { landmark = 'bed' } } } } },\n"
+      "return { anatomy = { organs = { { wall = { fibres = {} }, held = { { landmark = 'bed' } } } } },\n"
       "instruments = { left = { port = 'right_flank' } } }";
   const Folder folder;
   const auto a = test::load_text(folder, text.text()), b = test::load_text(folder, plain.text());
@@ -238,7 +240,12 @@ TEST(Api, DefaultsAreThoseOfTheDefinitions) {
               near(pear.refine, like.refine) && near(pear.refine_radius, like.refine_radius));
   EXPECT_TRUE(near(organ.wall.thickness, same.wall.thickness) &&
               near(organ.wall.shear_modulus, same.wall.shear_modulus) &&
-              near(organ.wall.overstretch, same.wall.overstretch));
+              near(organ.wall.overstretch, same.wall.overstretch) &&
+              near(organ.wall.stiffening, same.wall.stiffening));
+  ASSERT_TRUE(organ.wall.fibres && same.wall.fibres);
+  EXPECT_TRUE(near(organ.wall.fibres->stiffness, same.wall.fibres->stiffness) &&
+              near(organ.wall.fibres->stiffening, same.wall.fibres->stiffening) &&
+              near(organ.wall.fibres->angle, same.wall.fibres->angle));
   EXPECT_TRUE(near(organ.bile.density, same.bile.density));
   EXPECT_TRUE(near(organ.held[0].radius, same.held[0].radius) &&
               near(organ.held[0].stiffness, same.held[0].stiffness));
