@@ -69,6 +69,7 @@ MembraneSample Demiray::sample(const SurfaceTensor& inverse, double rest_determi
 }
 
 double FibreFamily::energy(const SurfaceTensor& direction, const SurfaceTensor& a) const {
+  if (stiffness == 0) return 0;  // no fibres, however stretched
   const double y = std::max(0.0, direction.dot(a) - 1.0);
   return 0.5 * thickness * stiffness * exponential(stiffening, y * y);
 }
@@ -77,7 +78,7 @@ MembraneSample FibreFamily::sample(const SurfaceTensor& direction, const Surface
   MembraneSample out;
   out.energy = energy(direction, a);
   const double y = direction.dot(a) - 1.0;
-  if (!(y > 0) || out.energy == infinity) return out;
+  if (!(y > 0) || stiffness == 0 || out.energy == infinity) return out;
   const double exponent = stiffening * y * y;
   const double scale = thickness * stiffness * std::exp(exponent);
   out.gradient = scale * y * direction;

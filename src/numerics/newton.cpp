@@ -139,7 +139,11 @@ double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& 
 double largest_node(const VecX& v) {
   double largest_squared = 0;
   for (int i = 0; i + 2 < v.size(); i += 3)
-    largest_squared = std::max(largest_squared, v.segment<3>(i).squaredNorm());
+    // Not std::max, which would swallow a NaN.
+    if (const double squared = v.segment<3>(i).squaredNorm(); !(squared <= largest_squared)) {
+      largest_squared = squared;
+      if (std::isnan(squared)) break;
+    }
   return std::sqrt(largest_squared);
 }
 

@@ -17,9 +17,10 @@ using Poses = std::vector<InstrumentPose>;
 /// No predicted node moves further than this share of its shortest edge in one part.
 constexpr double edge_share = 0.5;
 constexpr int max_parts = 100;
-/// No step takes more: a motion that needs them is blocked, and says so within seconds.
+/// No motion between two stops takes more: one that needs them is blocked, and says so within seconds.
 constexpr int step_iterations = 1000;
-/// A part that takes more than this is cheaper cut in two.
+/// A solve that takes more than this is broken off; where it got somewhere it goes on with fresh pairs, else the
+/// part is cut in two.
 constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
 
@@ -124,6 +125,11 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
     if (!factored.converged()) return solve_failure(factored, organ.definition.name, "under its instruments");
     const Timed timed(statistics.solve_s);
     out.dx = linear_response(organ.work, load, out.dmultiplier);
+    if (!out.dx.allFinite()) {
+      NewtonResult failed;
+      failed.status = NewtonStatus::not_finite;
+      return solve_failure(failed, organ.definition.name, "under its instruments");
+    }
     for (int i = 0; i < organ.body.nodes(); ++i) {
       const double move = out.dx.segment<3>(3 * i).norm();
       if (move * out.share > edge_share * organ.body.edge_lengths()[i])
@@ -163,6 +169,7 @@ Failure cannot_follow(const Field& field, const std::string& why, double done) {
 
 /// Moves all tools from their poses to `to`, organs in equilibrium at the end of each part.
 Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) {
+  const int iterations_before = statistics.newton_iterations;
   double done = 0;
   NewtonResult last;  // of the solve that failed last, if any did in this part
   bool fresh =
@@ -181,11 +188,10 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
     const double left = 1.0 - done;
     bool accepted = false;
     while (!accepted) {
-      if (part >= max_parts || statistics.newton_iterations > step_iterations)
-        return cannot_follow(
-            field,
-            fmt::format("not in {} parts and {} Newton iterations", part, statistics.newton_iterations),
-            done);
+      const int iterations = statistics.newton_iterations - iterations_before;
+      if (part >= max_parts || iterations > step_iterations)
+        return cannot_follow(field, fmt::format("not in {} parts and {} Newton iterations", part, iterations),
+                             done);
       if (share < smallest_share)
         return cannot_follow(field,
                              last.converged()
@@ -342,11 +348,11 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
 }
 
 Result<bool> check_clear(const Field& field) {
-  for (const ToolLoad& load : tool_loads(field))
-    if (load.touches > 0 || deepest_penetration(field) > 0)
-      return fail(FailureKind::scenario,
-                  "an instrument that waits in its trocar, 30 mm deep, touches an organ",
-                  "choose another port, or move the organ");
+  bool touches = deepest_penetration(field) > 0;
+  for (const ToolLoad& load : tool_loads(field)) touches |= load.touches > 0;
+  if (touches)
+    return fail(FailureKind::scenario, "an instrument that waits in its trocar, 30 mm deep, touches an organ",
+                "choose another port, or move the organ");
   return true;
 }
 

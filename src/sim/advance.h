@@ -4,7 +4,8 @@
 // Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
 // wall moves along), is cut where a skin point would come too near a shape or a node would move further than
 // a set share of its local edge, and ends in equilibrium. Nothing depends on how the motion was cut into
-// steps but where jaws take hold, and that happens at fixed jaw angles.
+// steps but where jaws take hold, which happens at fixed jaw angles, and slipping, which is settled at the end
+// of each step.
 
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ namespace calot {
 
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
+
 /// Moves every tool to its target. The field is left at the last converged part on failure (simulation).
 /// Returns grasp, release and slip events (time to be set by the caller).
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,

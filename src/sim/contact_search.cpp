@@ -45,18 +45,19 @@ std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, cons
                                               const Surroundings& field, double extra) {
   constexpr double ahead = 4e-3;  // m remembered beyond what is asked for
   const double reach = reach_of(field, extra);
-  bool fresh = reach_ > 0 && x_.size() == x.size() && shapes_.size() == field.shapes.size();
+  bool usable = reach_ > 0 && x_.size() == x.size() && shapes_.size() == field.shapes.size();
   std::vector<double> approach(field.shapes.size());  // how much nearer a pair of the shape may have come
-  if (fresh) {
+  if (usable) {
     const double moved = largest_node(x - x_);
     for (std::size_t k = 0; k < approach.size(); ++k) {
       approach[k] = moved + distance_change(field.shapes[k], shapes_[k]);
-      fresh &= reach + approach[k] <= reach_;
+      usable &= reach + approach[k] <= reach_;  // false for a NaN
     }
   }
-  if (!fresh) {
-    reach_ = reach + ahead;
-    near_ = pairs_within(body, x, field, reach_);
+  if (!usable) {
+    // What is found near a place that is no place is not to be remembered.
+    reach_ = x.allFinite() ? reach + ahead : -1;
+    near_ = pairs_within(body, x, field, reach + ahead);
     shapes_ = field.shapes;
     x_ = x;
     approach.assign(approach.size(), 0.0);

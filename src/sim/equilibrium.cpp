@@ -123,7 +123,9 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
     total.add(result);
     total.safety_s += gathering_s;
     const bool moved = (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;
-    if (result.converged() || result.status == NewtonStatus::mechanism || !moved) break;
+    const bool cut_short =
+        result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
+    if (!cut_short || !moved) break;
   }
   return total;
 }

@@ -99,6 +99,7 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
     if (!both_pads_hold(field, instrument)) return at_start;
     const double force = pull.norm();
     pull = pad_pull(field, instrument);
+    // Slid too far, it is drawn back once, by no more than it slid.
     if (pull.norm() <= above * limit && (pull.norm() >= below * limit || way <= 0)) return at_start;
     // By the secant; a fold that gives no more resistance is followed at the longest pace.
     const double stiffness = (force - pull.norm()) / way;

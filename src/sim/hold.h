@@ -18,7 +18,7 @@ double holding_limit(const Tool& tool);
 
 /// Lets the held fold slide along the pads, in the direction of the pull, until they can hold it; skin that
 /// slides off the pads is let go. Does nothing below holding_limit. The pull that started it is returned, N,
-/// 0 when nothing slipped; afterwards the pull is between 98% and 100.1% of the limit, or less once part of
+/// 0 when nothing slipped; afterwards the pull is at most 100.1% of the limit, and near it unless part of
 /// the fold has left the pads. On failure (simulation) the grip holds as before.
 Result<double> slip(Field& field, int instrument, SolveStatistics& statistics);
 

@@ -8,7 +8,7 @@
 
 namespace calot {
 
-/// A skin point that a pad holds: it keeps its place in the jaw's frame until the jaw opens.
+/// A skin point that a pad holds: it keeps its place in the jaw's frame until it slips or the jaw opens.
 struct GripPoint {
   int instrument = 0, jaw = 0;
   int row = 0;                ///< skin point

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/rng.h"
 
@@ -102,7 +103,10 @@ Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings
   NewtonWorkspace work(body.pattern());
   const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
   const NewtonResult factored = factorise_tangent(problem, work, state.x, state.multiplier, true);
-  if (!factored.converged() || work.shifted)
+  if (!factored.converged())
+    return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
+                "hold the organ, or give it fewer nodes");
+  if (work.shifted)
     return fail(FailureKind::simulation, "the organ has no natural frequency: its equilibrium is not stable",
                 "hold the organ, or fill it less");
   Rng rng(1);

@@ -18,7 +18,8 @@ inline constexpr double wall_density = 1050;
 /// The bile is ideal (incompressible, without friction): it answers the wall's normal velocity q by a potential
 /// flow, whose kinetic energy is 1/2 density b' A^-1 b with b_k = integral of h_k q and A_kl = integral of
 /// h_k dh_l/dn over the wall, for harmonic polynomials h_k of degree 1 to 3 (Trefftz's method). It moves
-/// exactly as a rigid body with a wall that does; what ripples more finely than degree 3 feels no bile.
+/// as a rigid body with a wall that translates, and does not turn with one that turns; motions finer than degree
+/// 3 feel too little bile, so a frequency found with it is an upper bound, close where the motion is a sway.
 class BodyMass {
  public:
   /// `bile_density` in kg/m^3; the wall has wall_density.
@@ -36,7 +37,8 @@ class BodyMass {
 };
 
 /// Lowest natural frequency, Hz, of the organ in `field` at its present state, its volume kept: the smallest
-/// w of K v = w^2 M v by inverse iteration on a few vectors. Fails (simulation) where the state is not stable.
+/// w of K v = w^2 M v by inverse iteration on a few vectors. Fails (simulation) where the tangent is not
+/// positive definite, even if the kept volume alone makes the state stable.
 Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
                                 const BodyState& state, const BodyMass& mass);
 

@@ -431,5 +431,18 @@ TEST(LargestStretch, FollowsTheClosedForms) {
   EXPECT_NEAR(largest_stretch({1 / 4.0, 0, 1 / 16.0}, {9, 0, 16}), 1.5, 1e-14);
 }
 
+TEST(FibreFamily, OfNoStiffnessBearsNothingHoweverStretched) {
+  FibreFamily none;
+  none.stiffness = 0;
+  none.stiffening = 1000;
+  const SurfaceTensor along(1, 0, 0);
+  for (double stretch : {1.0, 1.5, 3.0}) {
+    const MembraneSample s = none.sample(along, SurfaceTensor(stretch * stretch, 0, 1));
+    EXPECT_EQ(s.energy, 0.0);
+    EXPECT_EQ(s.gradient, Vec3::Zero());
+    EXPECT_EQ(s.hessian, Mat3::Zero());
+  }
+}
+
 }  // namespace
 }  // namespace calot

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
 #include "field_rig.h"
 #include "support/bodies.h"
@@ -147,6 +148,18 @@ TEST(Equilibrium, TheSearchThatRemembersFindsTheSamePairsAsOneThatDoesNot) {
     found += all.size();
   }
   EXPECT_GT(found, 10000u);
+}
+
+TEST(Equilibrium, TheSearchDoesNotRememberWhatItSawOfAStateThatIsNoNumber) {
+  Touched touched(8);
+  const std::size_t all = gather_pairs(touched.organ.body, touched.x, touched.around, 0.0).size();
+  ASSERT_GT(all, 100u);
+  ContactSearch search;
+  const VecX broken = VecX::Constant(touched.x.size(), std::numeric_limits<double>::quiet_NaN());
+  search.pairs(touched.organ.body, broken, touched.around, 0.0);
+  EXPECT_EQ(search.pairs(touched.organ.body, touched.x, touched.around, 0.0).size(), all);
+  search.pairs(touched.organ.body, broken, touched.around, 0.0);
+  EXPECT_EQ(search.pairs(touched.organ.body, touched.x, touched.around, 0.0).size(), all);
 }
 
 TEST(Equilibrium, PenetrationIsSeenBetweenTheSkinsPointsToo) {

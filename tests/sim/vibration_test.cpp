@@ -59,7 +59,7 @@ TEST(Vibration, BileInASphereHasTheMassOfItsHarmonicOverItsDegree) {
   EXPECT_NEAR(three / per_degree(3, 4.0 / 7), 1, 5e-3);
 }
 
-TEST(Vibration, BileMovesAsARigidBodyWithItsWall) {
+TEST(Vibration, BileMovesAsARigidBodyWithAWallThatTranslates) {
   const SceneDefinition scene = test::grasper_scene();
   const Field field = test::make_field(scene.anatomy.organs[0], 1e-6, Vec3::UnitZ());
   const Organ& organ = field.organs[0];
