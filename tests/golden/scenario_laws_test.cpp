@@ -8,10 +8,13 @@
 namespace calot {
 namespace {
 
-TEST(MainScenario, NoPartOfTheGrasperIsDeeperInTheSkinThanAFifthOfAMillimetreAndTheBileStays) {
+class Scenario : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Shipped, Scenario, ::testing::Values("grasp_and_traction", "paper/figure_4"));
+
+TEST_P(Scenario, KeepsTheGrasperOutOfTheSkinAndTheBileIn) {
   LoadOptions options;
   options.modules = CALOT_SOURCE_DIR "/scripts/lua";
-  auto script = load_exercise(CALOT_SOURCE_DIR "/scenarios/grasp_and_traction.lua", options);
+  auto script = load_exercise(CALOT_SOURCE_DIR "/scenarios/" + std::string(GetParam()) + ".lua", options);
   ASSERT_TRUE(script) << to_text(script.failure());
   World world = World::create(script.value()->definition().scene).value();
   const double volume = world.report().organs[0].volume;
