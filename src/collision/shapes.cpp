@@ -1,6 +1,7 @@
 #include "collision/shapes.h"
 
 #include <limits>
+#include <type_traits>
 
 namespace calot {
 namespace {

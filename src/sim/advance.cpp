@@ -52,7 +52,7 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
     const int tool = pair.shape / shapes_per_tool;
     if (tool >= static_cast<int>(field.tools.size())) continue;  // the support stays
     if (from[tool] == to[tool]) continue;
-    const Vec3 at = blend(stencils, stencils.value, pair.row, organ.state.x);
+    const Vec3 at = organ.body.skin_point(pair.row, organ.state.x);
     const DistanceSample d = sample_distance(field_now.shapes[pair.shape], at);
     const BarrierSample b = field.barrier.sample(d.distance);
     const Mat3 h = organ.body.skin_areas()[pair.row] *
@@ -76,20 +76,19 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
 double share_kept_apart(const Field& field, const Organ& organ, const Surroundings& now,
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
-  const StencilTable& stencils = organ.body.skin().stencils;
   const double longest = largest_node(dx);
   std::vector<double> travel;
   for (std::size_t i = 0; i < from.size(); ++i)
     travel.push_back(travel_bound(field.tools[i], from[i], to[i]));
   double share = 1.0;
   for (const ContactPair& pair : pairs) {
-    const std::size_t of = static_cast<std::size_t>(pair.shape) / shapes_per_tool;
-    const double approach = longest + (of < travel.size() ? travel[of] : 0.0);
-    if (share * approach < (1.0 - contact_keep) * pair.distance) continue;
-    const Vec3 at = blend(stencils, stencils.value, pair.row, organ.state.x);
-    const Vec3 motion = blend(stencils, stencils.value, pair.row, dx);
     const int tool = pair.shape / shapes_per_tool;
-    if (tool >= static_cast<int>(field.tools.size())) {
+    const bool stays = tool >= static_cast<int>(field.tools.size());  // the support
+    const double approach = longest + (stays ? 0.0 : travel[tool]);
+    if (share * approach < (1.0 - contact_keep) * pair.distance) continue;
+    const Vec3 at = organ.body.skin_point(pair.row, organ.state.x);
+    const Vec3 motion = organ.body.skin_point(pair.row, dx);
+    if (stays) {
       share *= safe_share(at, share * motion, *field.support, contact_keep);
       continue;
     }
@@ -140,16 +139,6 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   const Poses partly = between(from, to, out.share);
   out.share *= share_kept_apart(field, organ, now, pairs, out.share * out.dx, from, partly);
   return out;
-}
-
-NewtonResult correct(const Field& field, Organ& organ, const Poses& poses, SolveStatistics& statistics) {
-  const Surroundings now = surroundings(field, organ, poses);
-  NewtonSettings settings;
-  settings.tolerance = field.tolerance;
-  settings.max_iterations = part_iterations;
-  const NewtonResult result = settle(organ.body, now, settings, organ.work, organ.search, organ.state);
-  count(result, statistics);
-  return result;
 }
 
 Failure cannot_follow(const Field& field, const std::string& why, double done) {
@@ -207,7 +196,7 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
         before.push_back(organ.state);
         organ.state.x += share * predictions[k].dx;
         organ.state.multiplier += share * predictions[k].dmultiplier;
-        last = correct(field, organ, poses, statistics);
+        last = settle_organ(field, organ, poses, part_iterations, statistics);
         accepted = last.converged();
       }
       if (accepted) {
@@ -332,14 +321,13 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
   };
   for (const Organ& organ : field.organs) {
     const Surroundings now = surroundings(field, organ, poses);
-    const StencilTable& stencils = organ.body.skin().stencils;
     const std::vector<ContactPair> touching = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
       const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
       if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
-      const Vec3 at = blend(stencils, stencils.value, organ.grips[g].row, organ.state.x);
+      const Vec3 at = organ.body.skin_point(organ.grips[g].row, organ.state.x);
       add(static_cast<std::size_t>(organ.grips[g].instrument), at,
           now.grip.stiffness[g] * (at - now.grip.target[g]), organ);
     }

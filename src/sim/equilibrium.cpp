@@ -98,7 +98,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   for (const ContactPair& pair : pairs_) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance - gone)) continue;
     const Shape& shape = field_.shapes[pair.shape];
-    const Vec3 motion = share * blend(body_.skin().stencils, body_.skin().stencils.value, pair.row, step);
+    const Vec3 motion = share * body_.skin_point(pair.row, step);
     const Vec3 at = body_.skin_point(pair.row, x);
     if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
     share *= calot::safe_share(at, motion, shape, contact_keep);

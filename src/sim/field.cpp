@@ -29,13 +29,21 @@ void count(const NewtonResult& result, SolveStatistics& statistics) {
   statistics.contact_s += result.safety_s;
 }
 
-Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
+NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
+                          int max_iterations, SolveStatistics& statistics) {
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
+  settings.max_iterations = max_iterations;
+  const NewtonResult result =
+      settle(organ.body, surroundings(field, organ, poses), settings, organ.work, organ.search, organ.state);
+  count(result, statistics);
+  return result;
+}
+
+Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
   for (Organ& organ : field.organs) {
-    const NewtonResult result = settle(organ.body, surroundings(field, organ, present_poses(field)), settings,
-                                       organ.work, organ.search, organ.state);
-    count(result, statistics);
+    const NewtonResult result =
+        settle_organ(field, organ, present_poses(field), NewtonSettings{}.max_iterations, statistics);
     if (!result.converged()) return solve_failure(result, organ.definition.name, when);
   }
   return true;

@@ -28,6 +28,10 @@ Surroundings surroundings(const Field& field, const Organ& organ, const std::vec
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);
 
+/// Brings one organ to rest with the tools at `poses`; on failure it is left at the last iterate.
+NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
+                          int max_iterations, SolveStatistics& statistics);
+
 /// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);

@@ -67,10 +67,9 @@ Vec3 pad_pull(const Field& field, int instrument) {
   Vec3 pull = Vec3::Zero();
   for (const Organ& organ : field.organs) {
     const Links links = grip_links(organ, field.tools, present_poses(field));
-    const StencilTable& skin = organ.body.skin().stencils;
     for (std::size_t g = 0; g < links.row.size(); ++g)
       if (organ.grips[g].instrument == instrument)
-        pull += links.stiffness[g] * (blend(skin, skin.value, links.row[g], organ.state.x) - links.target[g]);
+        pull += links.stiffness[g] * (organ.body.skin_point(links.row[g], organ.state.x) - links.target[g]);
   }
   const Vec3 across = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(0);
   return pull - across * across.dot(pull);

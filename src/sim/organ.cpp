@@ -168,10 +168,7 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
 /// between.
 std::optional<Failure> check_skin_spacing(const VirtualStructure& body) {
   const double limit = 0.5 * GrasperGeometry{}.jaw_width;
-  double widest = 0;
-  const std::vector<Vec3>& skin = body.skin_rest();
-  for (const Triangle& t : body.skin().triangles)
-    for (int k = 0; k < 3; ++k) widest = std::max(widest, (skin[t[k]] - skin[t[(k + 1) % 3]]).norm());
+  const double widest = body.widest_skin_gap();
   if (widest <= limit) return std::nullopt;
   return fail(
       FailureKind::scenario,

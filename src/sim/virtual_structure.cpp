@@ -125,6 +125,8 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
 
 BlockMatrix VirtualStructure::pattern() const { return BlockMatrix(nodes(), cliques_); }
 
+double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest_, skin_.triangles); }
+
 std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
   return blend_all(skin_.stencils, skin_.stencils.value, x);
 }

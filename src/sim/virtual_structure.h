@@ -50,6 +50,8 @@ class VirtualStructure {
   /// Rest area that each skin point stands for, m^2.
   const std::vector<double>& skin_areas() const { return skin_areas_; }
   const std::vector<Vec3>& skin_rest() const { return skin_rest_; }
+  /// Longest edge of the skin's triangles at rest, m.
+  double widest_skin_gap() const;
   /// Shortest control edge at each node at rest, m: the scale of a safe step there.
   const std::vector<double>& edge_lengths() const { return edge_lengths_; }
   double size() const { return size_; }  ///< m, diagonal of the rest shape's box

@@ -240,7 +240,7 @@ Vec3 World::landmark(const std::string& name) const {
   const auto [organ, row] = find_landmark(impl_->field.organs, name);
   if (row < 0) return Vec3::Zero();
   const Organ& at = impl_->field.organs[organ];
-  return blend(at.body.skin().stencils, at.body.skin().stencils.value, row, at.state.x);
+  return at.body.skin_point(row, at.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
