@@ -3,81 +3,95 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace calot {
 namespace {
 
-constexpr int points_per_face = 6;
-constexpr std::size_t parts_per_face = 5;
+constexpr int few_points = 6, most_points = 12;  // of a cell: an element matrix is made for either
 
 double tetra_volume(const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)) / 6.0; }
 
 }  // namespace
 
-Result<Bile> Bile::create(const Tessellation& surface, int faces, double specific_weight, const Vec3& up,
-                          const Vec3& datum) {
-  Bile bile;
+Result<BileSurface> extrapolated(const Tessellation& surface, int faces) {
+  BileSurface out;
   if (static_cast<int>(surface.triangles.size()) != 4 * faces)
     return fail(FailureKind::internal, fmt::format("bile needs 4 triangles a face, not {} for {} faces",
                                                    surface.triangles.size(), faces));
-  bile.surface_ = surface;
+  out.points = surface.stencils;
+  for (int f = 0; f < faces; ++f) {
+    std::vector<BileSurface::Part> cell;
+    std::map<int, int> uses;
+    for (int t = 4 * f; t < 4 * f + 4; ++t) {
+      cell.push_back({surface.triangles[t], 4.0 / 3.0});
+      for (int p : surface.triangles[t]) ++uses[p];
+    }
+    // The whole face: each of its corners belongs to one of the four only, which lists it in the face's sense.
+    BileSurface::Part whole{{}, -1.0 / 3.0};
+    int corner = 0;
+    for (int t = 4 * f; t < 4 * f + 4; ++t)
+      for (int p : surface.triangles[t])
+        if (uses[p] == 1 && corner < 3) whole.corners[corner++] = p;
+    if (uses.size() != few_points || corner != 3)
+      return fail(FailureKind::internal,
+                  fmt::format("face {} of the bile's surface is not a split triangle", f));
+    cell.push_back(whole);
+    out.cells.push_back(std::move(cell));
+  }
+  return out;
+}
+
+Result<Bile> Bile::create(const BileSurface& surface, double specific_weight, const Vec3& up,
+                          const Vec3& datum) {
+  Bile bile;
+  bile.points_ = surface.points;
   bile.specific_weight_ = specific_weight;
   bile.up_ = up;
   bile.datum_ = datum;
-  bile.faces_.resize(faces);
-  const StencilTable& table = surface.stencils;
-  for (int f = 0; f < faces; ++f) {
-    const std::vector<int> points = bile.add_parts(f);
-    if (static_cast<int>(points.size()) != points_per_face)
-      return fail(FailureKind::internal,
-                  fmt::format("face {} of the bile's surface is not a split triangle", f));
-    FaceNodes& face = bile.faces_[f];
+  const StencilTable& table = bile.points_;
+  for (std::size_t c = 0; c < surface.cells.size(); ++c) {
+    Cell cell;
+    cell.first_part = static_cast<int>(bile.parts_.size());
+    const std::vector<int> points = bile.add_parts(surface.cells[c]);
+    if (points.size() > most_points)
+      return fail(FailureKind::internal, fmt::format("cell {} of the bile has {} points", c, points.size()));
+    cell.points = points.size() > few_points ? most_points : few_points;
     for (int p : points)
-      face.nodes.insert(face.nodes.end(), table.node.begin() + table.begin[p],
-                        table.node.begin() + table.begin[p + 1]);
-    face.finish();
-    if (face.padded > max_face_nodes)
-      return fail(FailureKind::scenario, fmt::format("face {} depends on {} nodes", f, face.nodes.size()),
+      cell.nodes.nodes.insert(cell.nodes.nodes.end(), table.node.begin() + table.begin[p],
+                              table.node.begin() + table.begin[p + 1]);
+    cell.nodes.finish();
+    if (cell.nodes.padded > max_face_nodes)
+      return fail(FailureKind::scenario,
+                  fmt::format("cell {} of the bile depends on {} nodes", c, cell.nodes.nodes.size()),
                   "remesh: a vertex has too many neighbours");
-    bile.weight_start_.push_back(static_cast<int>(bile.weights_.size()));
-    for (int p : points) {
-      bile.weights_.resize(bile.weights_.size() + face.padded);
-      dense_weights(table, table.value, p, face, &bile.weights_[bile.weights_.size() - face.padded]);
-    }
+    cell.weights = static_cast<int>(bile.weights_.size());
+    bile.weights_.resize(bile.weights_.size() + static_cast<std::size_t>(cell.points) * cell.nodes.padded,
+                         0.0);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      dense_weights(table, table.value, points[k], cell.nodes,
+                    &bile.weights_[cell.weights + k * cell.nodes.padded]);
+    bile.cells_.push_back(std::move(cell));
   }
   return bile;
 }
 
-std::vector<int> Bile::add_parts(int face) {
-  std::vector<int> points, uses;
-  for (int t = 4 * face; t < 4 * face + 4; ++t) {
-    Part part{surface_.triangles[t], {}, 4.0 / 3.0};
+std::vector<int> Bile::add_parts(const std::vector<BileSurface::Part>& parts) {
+  std::vector<int> points;
+  for (const BileSurface::Part& from : parts) {
+    Part part{from.corners, {}, from.weight};
     for (int k = 0; k < 3; ++k) {
       const auto found = std::find(points.begin(), points.end(), part.corners[k]);
       part.local[k] = static_cast<int>(found - points.begin());
-      if (found == points.end()) {
-        points.push_back(part.corners[k]);
-        uses.push_back(0);
-      }
-      ++uses[part.local[k]];
+      if (found == points.end()) points.push_back(part.corners[k]);
     }
     parts_.push_back(part);
   }
-  // The whole face: each of its corners belongs to one of the four only, which lists it in the face's sense.
-  Part whole{{}, {}, -1.0 / 3.0};
-  int corner = 0;
-  for (std::size_t t = parts_.size() - 4; t < parts_.size(); ++t)
-    for (int k = 0; k < 3 && corner < 3; ++k)
-      if (uses[parts_[t].local[k]] == 1) {
-        whole.corners[corner] = parts_[t].corners[k];
-        whole.local[corner++] = parts_[t].local[k];
-      }
-  parts_.push_back(whole);
   return points;
 }
 
 std::vector<Vec3> Bile::positions(const VecX& x) const {
-  std::vector<Vec3> out = blend_all(surface_.stencils, surface_.stencils.value, x);
+  std::vector<Vec3> out = blend_all(points_, points_.value, x);
   for (Vec3& p : out) p -= datum_;
   return out;
 }
@@ -108,7 +122,7 @@ double Bile::add_volume_gradient(const VecX& x, VecX& gradient) const {
     by_point[t[1]] += w / 6.0 * c.cross(a);
     by_point[t[2]] += w / 6.0 * a.cross(b);
   }
-  spread(surface_.stencils, by_point, gradient);
+  spread(points_, by_point, gradient);
   return sum;
 }
 
@@ -124,17 +138,16 @@ void Bile::add_load(const VecX& x, double multiplier, VecX& gradient) const {
     by_point[t[1]] += s * c.cross(a) + same;
     by_point[t[2]] += s * a.cross(b) + same;
   }
-  spread(surface_.stencils, by_point, gradient);
+  spread(points_, by_point, gradient);
 }
 
 namespace {
 
-using FaceHessian = Eigen::Matrix<double, 3 * points_per_face, 3 * points_per_face>;
-
 /// Second derivatives of weight V (g4 up . (a + b + c) - m) by the corners, added to `h` at local points
 /// `local`.
+template <class CellHessian>
 void add_triangle_hessian(const Vec3* corner, const int* local, double weight, double g4, const Vec3& up,
-                          double multiplier, FaceHessian& h) {
+                          double multiplier, CellHessian& h) {
   const double s = weight * (g4 * up.dot(corner[0] + corner[1] + corner[2]) - multiplier) / 6.0;
   Vec3 by[3];  // gradient of V, weighed
   for (int i = 0; i < 3; ++i) by[i] = weight / 6.0 * corner[(i + 1) % 3].cross(corner[(i + 2) % 3]);
@@ -144,28 +157,39 @@ void add_triangle_hessian(const Vec3* corner, const int* local, double weight, d
       // d2V by (i, i + 1) = -[third corner] / 6, by (i + 1, i) its transpose.
       if (j == (i + 1) % 3) block -= s * cross_matrix(corner[(i + 2) % 3]);
       if (i == (j + 1) % 3) block += s * cross_matrix(corner[(j + 2) % 3]);
-      h.block<3, 3>(3 * local[i], 3 * local[j]) += block;
+      h.template block<3, 3>(3 * local[i], 3 * local[j]) += block;
     }
   }
 }
 
 }  // namespace
 
+template <int Points>
+void Bile::add_cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double multiplier,
+                            BlockMatrix& matrix) const {
+  const double g4 = 0.25 * specific_weight_;
+  Eigen::Matrix<double, 3 * Points, 3 * Points> h;
+  h.setZero();
+  const std::size_t end =
+      cell + 1 < cells_.size() ? static_cast<std::size_t>(cells_[cell + 1].first_part) : parts_.size();
+  for (std::size_t k = cells_[cell].first_part; k < end; ++k) {
+    const Part& part = parts_[k];
+    const Vec3 corner[3] = {at[part.corners[0]], at[part.corners[1]], at[part.corners[2]]};
+    add_triangle_hessian(corner, part.local, part.weight, g4, up_, multiplier, h);
+  }
+  ElementMatrix element;
+  element.reset(cells_[cell].nodes.padded);
+  element.add<Points>(weights_.data() + cells_[cell].weights, h);
+  element.scatter(cells_[cell].nodes, matrix);
+}
+
 void Bile::add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
   const std::vector<Vec3> at = positions(x);
-  const double g4 = 0.25 * specific_weight_;
-  ElementMatrix element;
-  FaceHessian h;
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    h.setZero();
-    for (std::size_t k = f * parts_per_face; k < (f + 1) * parts_per_face; ++k) {
-      const Part& part = parts_[k];
-      const Vec3 corner[3] = {at[part.corners[0]], at[part.corners[1]], at[part.corners[2]]};
-      add_triangle_hessian(corner, part.local, part.weight, g4, up_, multiplier, h);
-    }
-    element.reset(faces_[f].padded);
-    element.add<points_per_face>(weights_.data() + weight_start_[f], h);
-    element.scatter(faces_[f], matrix);
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    if (cells_[c].points == few_points)
+      add_cell_hessian<few_points>(c, at, multiplier, matrix);
+    else
+      add_cell_hessian<most_points>(c, at, multiplier, matrix);
   }
 }
 
@@ -181,7 +205,7 @@ double Bile::pressure_at_top(const VecX& x, double multiplier) const {
 
 std::vector<std::vector<int>> Bile::cliques() const {
   std::vector<std::vector<int>> out;
-  for (const FaceNodes& face : faces_) out.push_back(face.nodes);
+  for (const Cell& cell : cells_) out.push_back(cell.nodes.nodes);
   return out;
 }
 

@@ -8,15 +8,28 @@
 
 namespace calot {
 
-/// Inscribed triangulations lose volume with the square of their edges, so 4/3 of the one with four triangles
-/// a face less 1/3 of the one with the faces' corners is a fourth-order rule (Richardson's extrapolation),
-/// and as a sum of closed surfaces still exactly balanced: 0.05% of the volume is lost where four triangles a
-/// face lose 2%.
+/// Closed triangulations of one surface, summed with weights. Inscribed triangulations lose volume with the square
+/// of their edges, so 4/3 of one with four triangles a face less 1/3 of the one with the faces' corners is a
+/// fourth-order rule (Richardson's extrapolation), and as a sum of closed surfaces still exactly balanced: 0.05%
+/// of the volume is lost where four triangles a face lose 2%.
+struct BileSurface {
+  struct Part {
+    Triangle corners;   ///< rows of `points`, outward
+    double weight = 1;  ///< parts of one weight form a closed surface
+  };
+  StencilTable points;                   ///< positions only
+  std::vector<std::vector<Part>> cells;  ///< parts that share points, at most 12 different ones a cell
+};
+
+/// The extrapolated rule on a closed tessellation with 4 consecutive triangles a face (tessellate(2)). Fails
+/// (internal) on any other.
+Result<BileSurface> extrapolated(const Tessellation& surface, int faces);
+
 class Bile {
  public:
-  /// `surface` is closed and outward with 4 consecutive triangles a face (tessellate(2)). `specific_weight`
-  /// in N/m^3; `up` is unit; heights count from `datum` (m, a point; near the organ keeps rounding small).
-  static Result<Bile> create(const Tessellation& surface, int faces, double specific_weight, const Vec3& up,
+  /// `specific_weight` in N/m^3; `up` is unit; heights count from `datum` (m, a point; near the organ keeps
+  /// rounding small). Fails (scenario) where a cell depends on too many nodes.
+  static Result<Bile> create(const BileSurface& surface, double specific_weight, const Vec3& up,
                              const Vec3& datum);
 
   /// Enclosed volume, m^3.
@@ -36,10 +49,10 @@ class Bile {
   /// Gauge pressure at the surface's highest point.
   double pressure_at_top(const VecX& x, double multiplier) const;
 
-  /// The triangles that are summed, indices into the surface's points, and the weight of each in the sum.
+  /// A triangle of the sum.
   struct Part {
-    Triangle corners;
-    int local[3];  ///< the corners among their face's points
+    Triangle corners;  ///< rows of the surface's points
+    int local[3];      ///< the corners among their cell's points
     double weight;
   };
   const std::vector<Part>& parts() const { return parts_; }
@@ -49,16 +62,24 @@ class Bile {
 
  private:
   std::vector<Vec3> positions(const VecX& x) const;
-  /// Adds the parts of a face; returns its points.
-  std::vector<int> add_parts(int face);
+  /// Adds the parts of a cell; returns its points.
+  std::vector<int> add_parts(const std::vector<BileSurface::Part>& parts);
+  template <int Points>
+  void add_cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double multiplier,
+                        BlockMatrix& matrix) const;
 
-  Tessellation surface_;
+  StencilTable points_;
   double specific_weight_ = 0;
   Vec3 up_ = Vec3::UnitZ(), datum_ = Vec3::Zero();
-  std::vector<FaceNodes> faces_;
-  std::vector<Part> parts_;        ///< parts_per_face a face
-  std::vector<double> weights_;    ///< points_per_face rows of padded weights a face
-  std::vector<int> weight_start_;  ///< of each face
+  struct Cell {
+    FaceNodes nodes;
+    int points = 0;      ///< rows of weights, some of them empty: 6 or 12
+    int first_part = 0;  ///< in parts_, up to that of the next cell
+    int weights = 0;     ///< offset in weights_ of the rows of padded weights
+  };
+  std::vector<Cell> cells_;
+  std::vector<Part> parts_;
+  std::vector<double> weights_;
 };
 
 }  // namespace calot

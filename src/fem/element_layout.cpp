@@ -7,8 +7,13 @@ namespace calot {
 void FaceNodes::finish() {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  padded = (static_cast<int>(nodes.size()) + 3) / 4 * 4;
-  if (padded > 24) padded = std::max(padded, max_face_nodes);
+  const int count = static_cast<int>(nodes.size());
+  padded = count;
+  for (int size : {4, 8, 12, 16, 20, 24, 32, 40, 64, max_face_nodes}) {
+    if (count > size) continue;
+    padded = size;
+    break;
+  }
 }
 
 std::vector<FaceNodes> gather_faces(const StencilTable& table, const std::vector<int>& face_of_row,

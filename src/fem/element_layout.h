@@ -10,15 +10,16 @@
 namespace calot {
 
 /// The nodes that the rows of one face (quadrature or skin points) blend, and dense weights for them.
-/// Nodes that one face may blend: a vertex of valence 20 still fits.
-inline constexpr int max_face_nodes = 40;
+/// Nodes that one face may blend: 12, some more beside a vertex of high valence, and those of the finer levels
+/// that reach it.
+inline constexpr int max_face_nodes = 96;
 
 struct FaceNodes {
   std::vector<int> nodes;  ///< increasing
   int padded = 0;          ///< length of a row of weights over them, zero filled
 
-  /// Sorts the nodes, drops repeats and sets padded: the number of nodes rounded up to 4, above 24
-  /// max_face_nodes.
+  /// Sorts the nodes, drops repeats and sets padded: the next of 4, 8, 12, 16, 20, 24, 32, 40, 64, 96; above
+  /// these the number of nodes itself, which no element takes.
   void finish();
 };
 
@@ -92,8 +93,14 @@ void ElementMatrix::add(const double* weights, const Eigen::Matrix<double, 3 * R
       return add_sized<Rows, 20>(weights, h);
     case 24:
       return add_sized<Rows, 24>(weights, h);
+    case 32:
+      return add_sized<Rows, 32>(weights, h);
+    case 40:
+      return add_sized<Rows, 40>(weights, h);
+    case 64:
+      return add_sized<Rows, 64>(weights, h);
     default:
-      return add_sized<Rows, max_face_nodes>(weights, h);  // faces beyond 24 nodes are padded to this
+      return add_sized<Rows, max_face_nodes>(weights, h);
   }
 }
 

@@ -137,21 +137,28 @@ MembraneSample Shell::membrane(const Point& point, const SurfaceTensor& metric) 
   return sum;
 }
 
-Result<Shell> Shell::create(const StencilTable& table, const std::vector<QuadraturePoint>& rule,
-                            const VecX& rest, const ShellMaterial& material) {
+Quadrature face_by_face(StencilTable table, const std::vector<QuadraturePoint>& rule) {
+  Quadrature out;
+  const int per_face = static_cast<int>(rule.size());
+  for (int r = 0; r < table.rows(); ++r) {
+    out.element.push_back(r / per_face);
+    out.weights.push_back(rule[r % per_face].weight);
+  }
+  out.stencils = std::move(table);
+  return out;
+}
+
+Result<Shell> Shell::create(const Quadrature& quadrature, const VecX& rest, const ShellMaterial& material) {
   if (material.fibres && !(material.fibres->axis.norm() > 0))
     return fail(FailureKind::scenario, "the wall's fibres have no axis", "give a direction that is not zero");
   Shell shell;
   shell.material_ = material;
-  const int per_face = static_cast<int>(rule.size());
-  const int faces = table.rows() / per_face;
-  std::vector<int> face_of_row(table.rows());
-  for (int r = 0; r < table.rows(); ++r) face_of_row[r] = r / per_face;
-  shell.faces_ = gather_faces(table, face_of_row, faces);
+  const StencilTable& table = quadrature.stencils;
+  shell.faces_ = gather_faces(table, quadrature.element, quadrature.elements());
   const std::vector<double>* orders[5] = {&table.du, &table.dv, &table.duu, &table.duv, &table.dvv};
   for (int r = 0; r < table.rows(); ++r) {
     Point point;
-    point.face = face_of_row[r];
+    point.face = quadrature.element[r];
     const FaceNodes& face = shell.faces_[point.face];
     if (face.padded > max_face_nodes)
       return fail(FailureKind::scenario,
@@ -166,7 +173,7 @@ Result<Shell> Shell::create(const StencilTable& table, const std::vector<Quadrat
     if (!(det > 0) || !std::isfinite(det))
       return fail(FailureKind::scenario, fmt::format("the rest surface is degenerate in face {}", point.face),
                   "check the control mesh for flat or repeated triangles");
-    point.area = rule[r % per_face].weight * at.jacobian;
+    point.area = quadrature.weights[r] * at.jacobian;
     point.rest_determinant = det;
     point.rest_inverse = Vec3(at.metric[2], -at.metric[1], at.metric[0]) / det;
     point.rest_curvature = at.curvature;

@@ -41,13 +41,23 @@ std::vector<QuadraturePoint> three_point_rule();
 /// Six points, exact to degree 4 (Dunavant 1985).
 std::vector<QuadraturePoint> six_point_rule();
 
+/// Where a surface's energy is sampled. Rows of one element follow each other, elements count from 0.
+struct Quadrature {
+  StencilTable stencils;        ///< a row a point, derivatives to order 2 (order 1 without bending)
+  std::vector<int> element;     ///< of each row
+  std::vector<double> weights;  ///< parametric area of each row, in the parameters of its derivatives
+
+  int elements() const { return element.empty() ? 0 : element.back() + 1; }
+};
+
+/// `table` has the rule's points of face 0, then of face 1, ...
+Quadrature face_by_face(StencilTable table, const std::vector<QuadraturePoint>& rule);
+
 class Shell {
  public:
-  /// `table` has the rule's points of face 0, then of face 1, ..., with derivatives to order 2 (order 1 is
-  /// enough without bending); `rest` are 3 * nodes coordinates, m. Fails (scenario) where the rest surface is
-  /// degenerate, and when fibres have no axis.
-  static Result<Shell> create(const StencilTable& table, const std::vector<QuadraturePoint>& rule,
-                              const VecX& rest, const ShellMaterial& material);
+  /// `rest` are 3 * nodes coordinates, m. Fails (scenario) where the rest surface is degenerate, where an
+  /// element depends on too many nodes, and when fibres have no axis.
+  static Result<Shell> create(const Quadrature& quadrature, const VecX& rest, const ShellMaterial& material);
 
   /// Wall energy, J; infinite where the surface is degenerate.
   double value(const VecX& x) const;
@@ -60,7 +70,7 @@ class Shell {
   std::vector<double> point_areas() const;  ///< rest area of each row of the table, m^2
   /// Largest principal stretch over the quadrature points.
   double max_stretch(const VecX& x) const;
-  /// Nodes of each face: the cliques of the matrix pattern.
+  /// Nodes of each element: the cliques of the matrix pattern.
   std::vector<std::vector<int>> cliques() const;
 
  private:

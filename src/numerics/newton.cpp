@@ -8,16 +8,19 @@
 namespace calot {
 namespace {
 
-/// The six rigid motions of a body at x, orthonormal columns.
-Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x) {
+/// The six rigid motions of a body at x, orthonormal columns. Displacements, which follow the places, turn but do
+/// not shift.
+Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x, int places) {
   const int nodes = static_cast<int>(x.size()) / 3;
+  places = std::min(places, nodes);
   Vec3 centre = Vec3::Zero();
-  for (int i = 0; i < nodes; ++i) centre += x.segment<3>(3 * i) / nodes;
+  for (int i = 0; i < places; ++i) centre += x.segment<3>(3 * i) / places;
   Eigen::Matrix<double, Eigen::Dynamic, 6> motions(x.size(), 6);
   for (int i = 0; i < nodes; ++i) {
-    const Vec3 arm = x.segment<3>(3 * i) - centre;
+    const bool place = i < places;
+    const Vec3 arm = place ? Vec3(x.segment<3>(3 * i) - centre) : Vec3(x.segment<3>(3 * i));
     for (int axis = 0; axis < 3; ++axis) {
-      motions.col(axis).segment<3>(3 * i) = Vec3::Unit(axis);
+      motions.col(axis).segment<3>(3 * i) = place ? Vec3(Vec3::Unit(axis)) : Vec3(Vec3::Zero());
       motions.col(3 + axis).segment<3>(3 * i) = Vec3::Unit(axis).cross(arm);
     }
   }
@@ -30,8 +33,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x) {
 
 /// A rigid motion that meets no resistance: its stiffness is rounding beside the matrix. Rigid motions keep
 /// the volume, so the border cannot hold them either.
-bool has_mechanism(const BlockMatrix& matrix, const VecX& x) {
-  const auto motions = rigid_motions(x);
+bool has_mechanism(const BlockMatrix& matrix, const VecX& x, int places) {
+  const auto motions = rigid_motions(x, places);
   Eigen::Matrix<double, 6, 6> stiffness;
   for (int c = 0; c < 6; ++c) stiffness.col(c) = motions.transpose() * matrix.multiply(motions.col(c));
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(stiffness, Eigen::EigenvaluesOnly);
@@ -70,7 +73,7 @@ double imbalance(const State& state, const NewtonSettings& settings) {
 
 /// Factorises, raising a diagonal shift until the matrix is positive definite (an instability is passed by
 /// descent on the energy); a mechanism is reported instead.
-NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, NewtonResult& result) {
+NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, int places, NewtonResult& result) {
   const Timed timed(result.factorisation_s);
   int& shifts = result.shifts;
   const int shifts_before = shifts;
@@ -78,7 +81,7 @@ NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, NewtonResult& resul
   FactorStatus status = work.factor.factorise(work.matrix);
   const bool doubtful = status == FactorStatus::not_positive_definite ||
                         (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12);
-  if (doubtful && has_mechanism(work.matrix, x)) return NewtonStatus::mechanism;
+  if (doubtful && has_mechanism(work.matrix, x, places)) return NewtonStatus::mechanism;
   double shift = 1e-4 * work.matrix.diagonal_mean();
   while (status == FactorStatus::not_positive_definite) {
     work.matrix.add_to_diagonal(shift);
@@ -136,7 +139,7 @@ double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& 
 
 }  // namespace
 
-double largest_node(const VecX& v) {
+double largest_node(const Eigen::Ref<const VecX>& v) {
   double largest_squared = 0;
   for (int i = 0; i + 2 < v.size(); i += 3)
     // Not std::max, which would swallow a NaN.
@@ -240,7 +243,7 @@ struct Iteration {
   bool newton() {
     assemble(problem, x, multiplier, work, result);
     work.constraint_gradient = state.constraint_gradient;  // empty when there is no constraint
-    result.status = factorise(work, x, result);
+    result.status = factorise(work, x, problem.places(), result);
     if (result.status != NewtonStatus::converged) return false;
     double dmultiplier = 0;
     const VecX step = bordered_step(dmultiplier);
@@ -293,7 +296,7 @@ NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace
   work.constraint_gradient.resize(0);
   if (problem.constrained()) problem.constraint(x, work.constraint_gradient);
   assemble(problem, x, multiplier, work, result);
-  result.status = factorise(work, x, result);
+  result.status = factorise(work, x, problem.places(), result);
   return result;
 }
 

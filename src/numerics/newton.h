@@ -3,6 +3,7 @@
 // a line search on the augmented Lagrangian (Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 17 and
 // 18).
 
+#include <limits>
 #include <string>
 
 #include "numerics/block_matrix.h"
@@ -11,7 +12,7 @@
 namespace calot {
 
 /// Length of the largest of the 3-vectors, one a node, that v is made of.
-double largest_node(const VecX& v);
+double largest_node(const Eigen::Ref<const VecX>& v);
 
 /// L(x, m) = energy(x) - m * constraint(x), to be made stationary in x with constraint(x) = 0.
 class ConstrainedEnergy {
@@ -30,6 +31,8 @@ class ConstrainedEnergy {
   virtual double constraint_value(const VecX& x) const = 0;
   /// Scale of the constraint (the kept volume), > 0.
   virtual double constraint_scale() const = 0;
+  /// How many of the first nodes of x are places, if not all; the others are displacements added to them.
+  virtual int places() const { return std::numeric_limits<int>::max(); }
   /// Size of the body, m: the scale of an increment.
   virtual double length_scale() const = 0;
   /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).

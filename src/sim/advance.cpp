@@ -76,7 +76,7 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
 double share_kept_apart(const Field& field, const Organ& organ, const Surroundings& now,
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
-  const double longest = largest_node(dx);
+  const double longest = organ.body.largest_motion(dx);
   std::vector<double> travel;
   for (std::size_t i = 0; i < from.size(); ++i)
     travel.push_back(travel_bound(field.tools[i], from[i], to[i]));

@@ -9,8 +9,16 @@ std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& 
   std::vector<Eigen::AlignedBox3d> faces;
   for (const VirtualStructure::SkinFace& face : body.skin_faces()) {
     Eigen::AlignedBox3d box;
-    for (int node : face.nodes) box.extend(x.segment<3>(Eigen::Index{3} * node));
-    faces.push_back(box);
+    double details = 0;
+    for (int node : face.nodes) {
+      const Vec3 at = x.segment<3>(Eigen::Index{3} * node);
+      if (node < body.coarse_nodes())
+        box.extend(at);
+      else
+        details += 0.5 * at.norm();
+    }
+    const Vec3 wider = Vec3::Constant(details);
+    faces.emplace_back(box.min() - wider, box.max() + wider);
   }
   std::vector<ContactPair> pairs;
   for (std::size_t k = 0; k < field.shapes.size(); ++k) {
@@ -48,7 +56,7 @@ std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, cons
   bool usable = reach_ > 0 && x_.size() == x.size() && shapes_.size() == field.shapes.size();
   std::vector<double> approach(field.shapes.size());  // how much nearer a pair of the shape may have come
   if (usable) {
-    const double moved = largest_node(x - x_);
+    const double moved = body.largest_motion(x - x_);
     for (std::size_t k = 0; k < approach.size(); ++k) {
       approach[k] = moved + distance_change(field.shapes[k], shapes_[k]);
       usable &= reach + approach[k] <= reach_;  // false for a NaN

@@ -16,7 +16,7 @@ BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field
       multiplier_(start.multiplier),
       fixed_pressure_(fixed_pressure) {}
 
-double BodyProblem::moved(const VecX& x) const { return largest_node(x - start_); }
+double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
 
 template <class Use>
 void BodyProblem::for_touching(const VecX& x, const Use& use) const {
@@ -31,7 +31,7 @@ void BodyProblem::for_touching(const VecX& x, const Use& use) const {
 double BodyProblem::value(const VecX& x) const {
   double sum = body_.shell().value(x);
   if (!std::isfinite(sum)) return sum;
-  sum += body_.foundation().value(body_.quadrature(), x);
+  sum += body_.foundation().value(body_.bed_points(), x);
   sum += field_.grip.value(body_.skin().stencils, x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
@@ -48,7 +48,7 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_intern
   gradient.setZero(x.size());
   body_.shell().add_gradient(x, gradient);
   largest_internal = largest_node(gradient);
-  body_.foundation().add_gradient(body_.quadrature(), x, gradient);
+  body_.foundation().add_gradient(body_.bed_points(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
   if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
@@ -83,18 +83,20 @@ double BodyProblem::constraint_value(const VecX& x) const { return body_.bile()-
 
 double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   double share = 1.0;
+  // A surface point moves with the coarse nodes and with the details of each level: each has its part.
+  const double margin = contact_margin / (1 + body_.levels_used());
   for (int i = 0; i < body_.nodes(); ++i) {
     const Vec3 move = step.segment<3>(3 * i);
     const double length = move.norm();
     if (length * share > body_.edge_lengths()[i]) share = body_.edge_lengths()[i] / length;
     // Pairs were gathered for nodes that stay within the margin of where the solve began.
     const Vec3 gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
-    if (!field_.shapes.empty() && (gone + share * move).norm() > contact_margin) {
-      const double left = contact_margin - gone.norm();
+    if (!field_.shapes.empty() && (gone + share * move).norm() > margin) {
+      const double left = margin - gone.norm();
       share = std::min(share, std::max(0.0, left) / length);
     }
   }
-  const double gone = moved(x), longest = largest_node(step);
+  const double gone = moved(x), longest = body_.largest_motion(step);
   for (const ContactPair& pair : pairs_) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance - gone)) continue;
     const Shape& shape = field_.shapes[pair.shape];

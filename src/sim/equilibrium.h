@@ -26,6 +26,7 @@ class BodyProblem : public ConstrainedEnergy {
   double constraint_value(const VecX& x) const override;
   double constraint_scale() const override { return volume_; }
   double length_scale() const override { return body_.size(); }
+  int places() const override { return body_.coarse_nodes(); }
   double safe_share(const VecX& x, const VecX& step) const override;
 
  private:

@@ -10,12 +10,22 @@
 namespace calot {
 namespace {
 
-std::vector<FacePoint> quadrature_points(int faces, const std::vector<QuadraturePoint>& rule) {
-  std::vector<FacePoint> points;
-  for (int f = 0; f < faces; ++f)
-    for (const QuadraturePoint& q : rule) points.push_back({f, q.u, q.v});
-  return points;
-}
+/// The rule's points on each leaf, in the parameters of the coarse faces, and their weights.
+struct RulePoints {
+  std::vector<FacePoint> at;
+  Quadrature quadrature;  ///< without stencils
+
+  RulePoints(const SurfaceLevels& levels, const FaceTree& tree, const std::vector<QuadraturePoint>& rule) {
+    for (std::size_t k = 0; k < tree.leaves.size(); ++k) {
+      const FaceTree::Leaf& leaf = tree.leaves[k];
+      for (const QuadraturePoint& q : rule) {
+        at.push_back(levels.on_coarse(leaf.level, {leaf.face, q.u, q.v}));
+        quadrature.element.push_back(static_cast<int>(k));
+        quadrature.weights.push_back(std::ldexp(q.weight, -2 * leaf.level));
+      }
+    }
+  }
+};
 
 std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
   std::vector<double> areas(points.size(), 0.0);
@@ -76,56 +86,144 @@ std::vector<VirtualStructure::SkinFace> faces_of(const Tessellation& skin, int f
 }  // namespace
 
 Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
-  Result<LoopSurface> surface = LoopSurface::create(setup.control);
-  if (!surface) return surface.failure();
-  VirtualStructure body;
-  body.name_ = setup.name;
-  body.control_ = setup.control;
-  body.rest_ = to_coordinates(setup.control.points);
-  const int faces = surface->faces();
-  body.quadrature_ = surface->evaluate(quadrature_points(faces, setup.rule), 2);
-  Result<Shell> shell = Shell::create(body.quadrature_, setup.rule, body.rest_, setup.material);
-  if (!shell) return shell.failure();
-  body.shell_ = std::move(shell).value();
-
-  body.skin_ = close_skin(surface.value(), body.rest_);
-  body.skin_faces_ = faces_of(body.skin_, faces);
-  body.skin_rest_ = body.skin_positions(body.rest_);
-  body.skin_areas_ = lumped_areas(body.skin_rest_, body.skin_.triangles);
-  body.edge_lengths_ = shortest_edges(setup.control);
+  Result<SurfaceLevels> levels = SurfaceLevels::create(setup.control, setup.levels);
+  if (!levels) return levels.failure();
+  const VecX rest = to_coordinates(setup.control.points);
+  Base base{setup, std::move(levels).value(), {}, {}, {}, {}, {}, 0, Vec3::Zero()};
+  base.skin = close_skin(base.levels.surface(), rest);
+  base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
+  base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
   Eigen::AlignedBox3d box;
-  for (const Vec3& p : body.skin_rest_) box.extend(p);
-  body.size_ = box.diagonal().norm();
-
-  body.cliques_ = body.shell_.cliques();
-  if (setup.bile) {
-    const double weight = setup.bile->density * units::standard_gravity;
-    Result<Bile> bile = Bile::create(surface->tessellate(2), faces, weight, setup.up, box.center());
-    if (!bile) return bile.failure();
-    body.bile_ = std::move(bile).value();
-    for (std::vector<int>& clique : body.bile_->cliques()) body.cliques_.push_back(std::move(clique));
-  }
-  for (const SkinFace& face : body.skin_faces_) body.cliques_.push_back(face.nodes);
-  if (setup.foundation) {
-    const std::vector<double> areas = body.shell_.point_areas();
-    for (int r = 0; r < body.quadrature_.rows(); ++r) {
-      const Vec3 at = blend(body.quadrature_, body.quadrature_.value, r, body.rest_);
-      const double stiffness = setup.foundation(at) * areas[r];
-      if (stiffness <= 0) continue;
-      body.foundation_.row.push_back(r);
-      body.foundation_.target.push_back(at);
-      body.foundation_.stiffness.push_back(stiffness);
-    }
-  }
-  BlockMatrix constant = body.pattern();
-  body.foundation_.add_hessian(body.quadrature_, constant);
-  body.constant_hessian_ = constant.entries();
+  for (const Vec3& p : base.skin_rest) box.extend(p);
+  base.size = box.diagonal().norm();
+  base.middle = box.center();
+  if (setup.foundation) lay_bed(rest, base);
+  VirtualStructure body(std::make_shared<const Base>(std::move(base)), {});
+  if (std::optional<Failure> failure = body.build()) return *failure;
   return body;
+}
+
+void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
+  const RulePoints points(base.levels, FaceTree(base.levels, {}), base.setup.rule);
+  const StencilTable table = base.levels.evaluate(0, points.at, 1);
+  for (int r = 0; r < table.rows(); ++r) {
+    const Vec3 at = blend(table, table.value, r, rest);
+    const double jacobian = blend(table, table.du, r, rest).cross(blend(table, table.dv, r, rest)).norm();
+    const double stiffness = base.setup.foundation(at) * points.quadrature.weights[r] * jacobian;
+    if (stiffness <= 0) continue;
+    base.bed.row.push_back(static_cast<int>(base.bed_places.size()));
+    base.bed.target.push_back(at);
+    base.bed.stiffness.push_back(stiffness);
+    base.bed_places.push_back(points.at[r]);
+  }
+}
+
+Result<VirtualStructure> VirtualStructure::with_details(std::vector<int> details) const {
+  VirtualStructure out(base_, std::move(details));
+  if (std::optional<Failure> failure = out.build()) return *failure;
+  return out;
+}
+
+std::optional<Failure> VirtualStructure::build() {
+  const FaceTree tree(base_->levels, basis_.details());
+  rest_ = VecX::Zero(3 * Eigen::Index{basis_.nodes()});
+  rest_.head(3 * Eigen::Index{coarse_nodes()}) = to_coordinates(control().points);
+  RulePoints points(base_->levels, tree, base_->setup.rule);
+  points.quadrature.stencils = basis_.evaluate(points.at, 2);
+  Result<Shell> shell = Shell::create(points.quadrature, rest_, base_->setup.material);
+  if (!shell) return shell.failure();
+  shell_ = std::move(shell).value();
+  quadrature_ = std::move(points.quadrature.stencils);
+
+  skin_ = base_->skin;
+  if (!details().empty()) skin_.stencils = basis_.extend(base_->skin.stencils, skin_.at, 1);
+  skin_faces_ = faces_of(skin_, static_cast<int>(control().triangles.size()));
+  edge_lengths_ = shortest_edges(control());
+  for (int detail : details()) {
+    double shortest = base_->size;
+    for (int node : base_->levels.faces(0)[base_->levels.place(detail).face])
+      shortest = std::min(shortest, edge_lengths_[node]);
+    edge_lengths_.push_back(std::ldexp(shortest, -base_->levels.level_of(detail)));
+  }
+
+  cliques_ = shell_.cliques();
+  if (base_->setup.bile) {
+    if (Result<bool> built = build_bile(tree); !built) return built.failure();
+    for (std::vector<int>& clique : bile_->cliques()) cliques_.push_back(std::move(clique));
+  }
+  for (const SkinFace& face : skin_faces_) cliques_.push_back(face.nodes);
+  bed_points_ = basis_.evaluate(base_->bed_places, 0);
+  BlockMatrix constant = pattern();
+  foundation().add_hessian(bed_points_, constant);
+  constant_hessian_ = constant.entries();
+  return std::nullopt;
+}
+
+Result<bool> VirtualStructure::build_bile(const FaceTree& tree) {
+  const SurfaceLevels& levels = base_->levels;
+  BileSurface surface;
+  std::vector<int> nodes;
+  for (const FaceTree::Leaf& leaf : tree.leaves) {
+    std::vector<BileSurface::Part> cell;
+    for (const Triangle& t : cover(levels, leaf, true)) cell.push_back({t, 4.0 / 3.0});
+    for (const Triangle& t : cover(levels, leaf, false)) cell.push_back({t, -1.0 / 3.0});
+    for (const BileSurface::Part& part : cell)
+      nodes.insert(nodes.end(), part.corners.begin(), part.corners.end());
+    surface.cells.push_back(std::move(cell));
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::vector<FacePoint> places;
+  for (int node : nodes) places.push_back(levels.place(node));
+  surface.points = basis_.evaluate(places, 0);
+  for (std::vector<BileSurface::Part>& cell : surface.cells)
+    for (BileSurface::Part& part : cell)
+      for (int& corner : part.corners)
+        corner = static_cast<int>(std::lower_bound(nodes.begin(), nodes.end(), corner) - nodes.begin());
+  const double weight = base_->setup.bile->density * units::standard_gravity;
+  Result<Bile> bile = Bile::create(surface, weight, base_->setup.up, base_->middle);
+  if (!bile) return bile.failure();
+  bile_ = std::move(bile).value();
+  return true;
+}
+
+VecX VirtualStructure::coordinates_in(const VirtualStructure& other, const VecX& x) const {
+  const Eigen::Index coarse = 3 * Eigen::Index{coarse_nodes()};
+  VecX out = VecX::Zero(other.rest_.size());
+  out.head(coarse) = x.head(coarse);
+  for (std::size_t i = 0; i < other.details().size(); ++i) {
+    const auto found = std::lower_bound(details().begin(), details().end(), other.details()[i]);
+    if (found == details().end() || *found != other.details()[i]) continue;
+    const Eigen::Index from = coarse + 3 * (found - details().begin());
+    out.segment<3>(coarse + 3 * static_cast<Eigen::Index>(i)) = x.segment<3>(from);
+  }
+  return out;
+}
+
+int VirtualStructure::levels_used() const {
+  return details().empty() ? 0 : levels().level_of(details().back());
+}
+
+double VirtualStructure::largest_motion(const VecX& dx) const {
+  const Eigen::Index coarse = 3 * Eigen::Index{coarse_nodes()};
+  if (dx.size() == coarse) return largest_node(dx);
+  // The weights of the coarse nodes sum to 1, those of one level's details to less.
+  double sum = largest_node(dx.head(coarse));
+  std::size_t begin = 0;
+  while (begin < details().size()) {
+    std::size_t end = begin;
+    const int level = levels().level_of(details()[begin]);
+    while (end < details().size() && details()[end] < levels().nodes(level)) ++end;
+    sum += largest_node(dx.segment(coarse + 3 * static_cast<Eigen::Index>(begin),
+                                   3 * static_cast<Eigen::Index>(end - begin)));
+    begin = end;
+  }
+  return sum;
 }
 
 BlockMatrix VirtualStructure::pattern() const { return BlockMatrix(nodes(), cliques_); }
 
-double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest_, skin_.triangles); }
+double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }
 
 std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
   return blend_all(skin_.stencils, skin_.stencils.value, x);

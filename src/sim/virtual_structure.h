@@ -4,6 +4,7 @@
 // BodyState.
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "anatomy/definitions.h"
@@ -12,6 +13,7 @@
 #include "fem/shell.h"
 #include "geometry/tri_mesh.h"
 #include "numerics/newton.h"
+#include "skin/detail_basis.h"
 
 namespace calot {
 
@@ -20,7 +22,7 @@ namespace calot {
 inline constexpr double skin_spacing = 1.0e-3;
 
 struct BodyState {
-  VecX x;                 ///< control nodes, 3 each, m
+  VecX x;                 ///< 3 a node, m: places of the control nodes, then displacements of the details
   double multiplier = 0;  ///< pressure at the datum's height, Pa
   double volume = 0;      ///< m^3, what the constraint keeps
 };
@@ -37,27 +39,45 @@ class VirtualStructure {
     /// Elastic foundation at a quadrature point at rest position x, N/m per m^2 (0: none).
     std::function<double(const Vec3& x)> foundation;
     std::vector<QuadraturePoint> rule = three_point_rule();
+    int levels = 0;  ///< of details that it can be extended by
   };
   static Result<VirtualStructure> create(const Setup& setup);
 
-  const std::string& name() const { return name_; }
+  /// The same structure with other details active (odd nodes of levels().nodes, increasing): the paper's
+  /// structural extensions. The faces that they split have quadrature and bile of their own; the bed stays where
+  /// it was. Fails (scenario) where too many details reach one face.
+  Result<VirtualStructure> with_details(std::vector<int> details) const;
+  const std::vector<int>& details() const { return basis_.details(); }
+  const SurfaceLevels& levels() const { return base_->levels; }
+  /// Coordinates `x` of this structure as those of `other`, which differs in its details only: those that are new
+  /// there begin at zero.
+  VecX coordinates_in(const VirtualStructure& other, const VecX& x) const;
+  /// Levels that have active details.
+  int levels_used() const;
+  /// Bound on how far any surface point moves when the nodes move by `dx`, m.
+  double largest_motion(const VecX& dx) const;
+
+  const std::string& name() const { return base_->setup.name; }
   int nodes() const { return static_cast<int>(rest_.size()) / 3; }
+  int coarse_nodes() const { return basis_.coarse_nodes(); }
   const VecX& rest() const { return rest_; }
-  const TriMesh& control() const { return control_; }
+  const TriMesh& control() const { return base_->setup.control; }
   const Shell& shell() const { return shell_; }
   const std::optional<Bile>& bile() const { return bile_; }
   const Tessellation& skin() const { return skin_; }
   /// Rest area that each skin point stands for, m^2.
-  const std::vector<double>& skin_areas() const { return skin_areas_; }
-  const std::vector<Vec3>& skin_rest() const { return skin_rest_; }
+  const std::vector<double>& skin_areas() const { return base_->skin_areas; }
+  const std::vector<Vec3>& skin_rest() const { return base_->skin_rest; }
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const;
-  /// Shortest control edge at each node at rest, m: the scale of a safe step there.
+  /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe
+  /// step there.
   const std::vector<double>& edge_lengths() const { return edge_lengths_; }
-  double size() const { return size_; }  ///< m, diagonal of the rest shape's box
+  double size() const { return base_->size; }  ///< m, diagonal of the rest shape's box
 
   /// Skin points of one control face (each point belongs to one face) and the nodes they depend on. As the
-  /// weights are not negative the points lie in the box of these nodes, whatever the state.
+  /// weights are not negative the points lie in the box of the coarse ones among these nodes, widened by half
+  /// of each detail's length, whatever the state.
   struct SkinFace {
     std::vector<int> rows, nodes;
   };
@@ -67,7 +87,9 @@ class VirtualStructure {
   BlockMatrix pattern() const;
   const std::vector<double>& constant_hessian() const { return constant_hessian_; }
 
-  const Links& foundation() const { return foundation_; }
+  /// The bed's springs and the surface points that they hold, the same at rest whatever the details.
+  const Links& foundation() const { return base_->bed; }
+  const StencilTable& bed_points() const { return bed_points_; }
   const StencilTable& quadrature() const { return quadrature_; }
 
   std::vector<Vec3> skin_positions(const VecX& x) const;  ///< m
@@ -77,19 +99,35 @@ class VirtualStructure {
   std::vector<Vec3> skin_normals(const VecX& x) const;  ///< unit, outward
 
  private:
-  std::string name_;
-  TriMesh control_;
+  /// What does not depend on the details.
+  struct Base {
+    Setup setup;
+    SurfaceLevels levels;
+    Tessellation skin;
+    std::vector<Vec3> skin_rest;
+    std::vector<double> skin_areas;
+    Links bed;
+    std::vector<FacePoint> bed_places;
+    double size = 0;
+    Vec3 middle = Vec3::Zero();
+  };
+  VirtualStructure(std::shared_ptr<const Base> base, std::vector<int> details)
+      : base_(std::move(base)), basis_(base_->levels, std::move(details)) {}
+  /// The bed holds on to the coarse rule's points.
+  static void lay_bed(const VecX& rest, Base& base);
+  std::optional<Failure> build();
+  Result<bool> build_bile(const FaceTree& tree);
+
+  std::shared_ptr<const Base> base_;
+  DetailBasis basis_;
   VecX rest_;
   Shell shell_;
   std::optional<Bile> bile_;
   Tessellation skin_;
-  std::vector<Vec3> skin_rest_;
-  std::vector<double> skin_areas_, edge_lengths_, constant_hessian_;
-  StencilTable quadrature_;
-  Links foundation_;
+  std::vector<double> edge_lengths_, constant_hessian_;
+  StencilTable quadrature_, bed_points_;
   std::vector<std::vector<int>> cliques_;
   std::vector<SkinFace> skin_faces_;
-  double size_ = 0;
 };
 
 }  // namespace calot

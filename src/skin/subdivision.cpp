@@ -9,6 +9,7 @@
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -26,8 +27,6 @@ namespace Sdc = OpenSubdiv::Sdc;
 using Refiner = std::unique_ptr<Far::TopologyRefiner>;
 using Stencils = std::unique_ptr<const Far::StencilTableReal<double>>;
 using Patches = std::unique_ptr<const Far::PatchTable>;
-using LimitFactory = Far::LimitStencilTableFactoryReal<double>;
-using LimitTable = Far::LimitStencilTableReal<double>;
 
 /// Each level halves the cap around an extraordinary node that is not the exact limit surface. At six the
 /// cap ends 1/64 of an edge from the node, well inside any quadrature point; the tests hold it against
@@ -98,105 +97,74 @@ Stencils control_stencils(const Far::TopologyRefiner& refiner, const Far::PatchT
   return Stencils(Factory::AppendLocalPointStencilTable(refiner, refined.get(), local));
 }
 
-/// The points as the factory wants them: runs that share a face, in the order asked for.
-struct Locations {
-  std::vector<double> u, v;
-  LimitFactory::LocationArrayVec runs;
-
-  explicit Locations(std::span<const FacePoint> points) : u(points.size()), v(points.size()) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      u[i] = points[i].u;
-      v[i] = points[i].v;
-      if (i == 0 || points[i].face != points[i - 1].face) {
-        LimitFactory::LocationArray run;
-        run.ptexIdx = points[i].face;
-        run.s = &u[i];
-        run.t = &v[i];
-        runs.push_back(run);
-      }
-      ++runs.back().numLocations;
-    }
-  }
-};
-
-/// Appends one row, with duplicate nodes merged, nodes increasing and entries dropped that are zero
-/// throughout.
+/// One row at a time: sums over the nodes, kept apart by derivative.
 class RowWriter {
  public:
-  RowWriter(StencilTable& table, std::vector<const std::vector<double>*> from,
-            std::vector<std::vector<double>*> to, int nodes)
+  RowWriter(StencilTable& table, int order, int nodes)
       : table_(table),
-        from_(std::move(from)),
-        to_(std::move(to)),
-        sums_(nodes * from_.size(), 0.0),
+        columns_(order == 0   ? 1
+                 : order == 1 ? 3
+                              : 6),
+        sums_(nodes),
         touched_(nodes, false) {}
 
-  void append(const int* nodes, int offset, int size) {
-    used_.clear();
-    for (int e = 0; e < size; ++e) {
+  /// Adds the columns' weights of a patch's point, itself a stencil of nodes.
+  void add(std::span<const int> nodes, std::span<const double> share, const double* weights) {
+    for (std::size_t e = 0; e < nodes.size(); ++e) {
       if (!touched_[nodes[e]]) used_.push_back(nodes[e]);
       touched_[nodes[e]] = true;
-      for (std::size_t k = 0; k < from_.size(); ++k)
-        sums_[nodes[e] * from_.size() + k] += (*from_[k])[offset + e];
+      for (int k = 0; k < columns_; ++k) sums_[nodes[e]][k] += share[e] * weights[k];
     }
+  }
+
+  /// Ends the row: nodes increasing, entries dropped that are zero throughout.
+  void finish() {
     std::sort(used_.begin(), used_.end());
     for (int node : used_) flush(node);
+    used_.clear();
     table_.begin.push_back(static_cast<int>(table_.node.size()));
   }
 
  private:
   void flush(int node) {
-    const auto first = sums_.begin() + static_cast<std::ptrdiff_t>(node * from_.size());
-    const auto last = first + static_cast<std::ptrdiff_t>(from_.size());
-    if (std::any_of(first, last, [](double w) { return w != 0; })) {
+    std::vector<double>* const to[6] = {&table_.value, &table_.du,  &table_.dv,
+                                        &table_.duu,   &table_.duv, &table_.dvv};
+    std::array<double, 6>& sum = sums_[node];
+    if (std::any_of(sum.begin(), sum.end(), [](double w) { return w != 0; })) {
       table_.node.push_back(node);
-      for (std::size_t k = 0; k < to_.size(); ++k)
-        to_[k]->push_back(*(first + static_cast<std::ptrdiff_t>(k)));
+      for (int k = 0; k < columns_; ++k) to[k]->push_back(sum[k]);
     }
-    std::fill(first, last, 0.0);
+    sum.fill(0.0);
     touched_[node] = false;
   }
 
   StencilTable& table_;
-  std::vector<const std::vector<double>*> from_;
-  std::vector<std::vector<double>*> to_;
-  std::vector<double> sums_;
+  int columns_;
+  std::vector<std::array<double, 6>> sums_;
   std::vector<bool> touched_;
   std::vector<int> used_;
 };
 
-/// OpenSubdiv 3.5 turns the sign of second derivatives in triangles that refinement leaves upside down (it
-/// scales by the sign as well as by the square of the size). Their rows are turned back here.
-void turn_back(StencilTable& table, std::span<const FacePoint> points, const Far::PatchTable& patches,
-               const Far::PatchMap& map) {
-  for (int r = 0; r < table.rows(); ++r) {
-    const auto* patch = map.FindPatch(points[r].face, points[r].u, points[r].v);
-    if (!patches.GetPatchParam(*patch).IsTriangleRotated()) continue;
-    for (auto* weights : {&table.duu, &table.duv, &table.dvv})
-      for (int e = table.begin[r]; e < table.begin[r + 1]; ++e) (*weights)[e] = -(*weights)[e];
-  }
-}
+/// Most points that a patch blends: 12 of a regular one, 18 of an end cap.
+constexpr int patch_points = 20;
 
-StencilTable copy_rows(const LimitTable& limit, int order, int nodes) {
-  StencilTable table;
-  std::vector<const std::vector<double>*> from = {&limit.GetWeights()};
-  std::vector<std::vector<double>*> to = {&table.value};
-  if (order >= 1) {
-    from.insert(from.end(), {&limit.GetDuWeights(), &limit.GetDvWeights()});
-    to.insert(to.end(), {&table.du, &table.dv});
+/// Weights of a patch's points: position, du, dv, duu, duv, dvv.
+struct PatchBasis {
+  double by_column[6][patch_points];
+
+  void evaluate(const Far::PatchTable& patches, const Far::PatchTable::PatchHandle& patch, double u, double v,
+                int order) {
+    double* first = order >= 1 ? by_column[1] : nullptr;
+    double* second = order >= 2 ? by_column[3] : nullptr;
+    patches.EvaluateBasis(patch, u, v, by_column[0], first, first ? by_column[2] : nullptr, second,
+                          second ? by_column[4] : nullptr, second ? by_column[5] : nullptr);
+    // OpenSubdiv 3.5 turns the sign of second derivatives in triangles that refinement leaves upside down (it
+    // scales by the sign as well as by the square of the size). They are turned back here.
+    if (order < 2 || !patches.GetPatchParam(patch).IsTriangleRotated()) return;
+    for (int k = 3; k < 6; ++k)
+      for (double& w : by_column[k]) w = -w;
   }
-  if (order >= 2) {
-    from.insert(from.end(), {&limit.GetDuuWeights(), &limit.GetDuvWeights(), &limit.GetDvvWeights()});
-    to.insert(to.end(), {&table.duu, &table.duv, &table.dvv});
-  }
-  RowWriter writer(table, std::move(from), std::move(to), nodes);
-  int offset = 0;
-  for (int size : limit.GetSizes()) {
-    writer.append(limit.GetControlIndices().data() + offset, offset, size);
-    offset += size;
-  }
-  return table;
-}
+};
 
 }  // namespace
 
@@ -233,16 +201,24 @@ int LoopSurface::nodes() const { return impl_->nodes; }
 int LoopSurface::faces() const { return static_cast<int>(impl_->triangles.size()); }
 
 StencilTable LoopSurface::evaluate(std::span<const FacePoint> points, int order) const {
-  if (points.empty()) return {};
-  const Locations locations(points);
-  LimitFactory::Options options;
-  options.generate1stDerivatives = order >= 1;
-  options.generate2ndDerivatives = order >= 2;
-  const std::unique_ptr<const LimitTable> limit(LimitFactory::Create(
-      *impl_->refiner, locations.runs, impl_->stencils.get(), impl_->patches.get(), options));
-  if (!limit || limit->GetNumStencils() != static_cast<int>(points.size())) std::abort();
-  StencilTable table = copy_rows(*limit, order, impl_->nodes);
-  if (order >= 2) turn_back(table, points, *impl_->patches, *impl_->map);
+  StencilTable table;
+  RowWriter writer(table, order, impl_->nodes);
+  PatchBasis basis{};
+  for (const FacePoint& at : points) {
+    const auto* patch = impl_->map->FindPatch(at.face, at.u, at.v);
+    if (!patch) std::abort();
+    basis.evaluate(*impl_->patches, *patch, at.u, at.v, order);
+    const Far::ConstIndexArray corners = impl_->patches->GetPatchVertices(*patch);
+    for (int c = 0; c < corners.size(); ++c) {
+      double weights[6];
+      for (int k = 0; k < 6; ++k) weights[k] = basis.by_column[k][c];
+      const int start = impl_->stencils->GetOffsets()[corners[c]];
+      const int size = impl_->stencils->GetSizes()[corners[c]];
+      writer.add(std::span(impl_->stencils->GetControlIndices()).subspan(start, size),
+                 std::span(impl_->stencils->GetWeights()).subspan(start, size), weights);
+    }
+    writer.finish();
+  }
   return table;
 }
 

@@ -24,7 +24,7 @@ struct Body {
 Body make_body(const TriMesh& mesh, const Vec3& datum) {
   const LoopSurface surface = LoopSurface::create(mesh).value();
   Tessellation skin = surface.tessellate(2);
-  Bile bile = Bile::create(skin, surface.faces(), weight, up, datum).value();
+  Bile bile = Bile::create(extrapolated(skin, surface.faces()).value(), weight, up, datum).value();
   BlockMatrix matrix(surface.nodes(), bile.cliques());
   return {std::move(skin), to_coordinates(mesh.points), std::move(bile), std::move(matrix), datum};
 }
@@ -231,7 +231,7 @@ TEST(Bile, RigidMotionTurnsThePressuresLoadAndLiftsTheWeight) {
 
 TEST(Bile, SurfaceWithoutMidpointsIsRefused) {
   const LoopSurface surface = LoopSurface::create(test::sphere(14)).value();
-  const Result<Bile> bile = Bile::create(surface.tessellate(1), surface.faces(), weight, up, Vec3::Zero());
+  const Result<BileSurface> bile = extrapolated(surface.tessellate(1), surface.faces());
   ASSERT_FALSE(bile);
   EXPECT_EQ(bile.failure().kind, FailureKind::internal);
 }

@@ -25,7 +25,7 @@ Body make_body(const TriMesh& mesh, const ShellMaterial& material, const std::ve
   const StencilTable table =
       surface.evaluate(test::at_all_faces(surface.faces(), places), material.bends ? 2 : 1);
   const VecX rest = to_coordinates(mesh.points);
-  Shell shell = Shell::create(table, rule, rest, material).value();
+  Shell shell = Shell::create(face_by_face(table, rule), rest, material).value();
   BlockMatrix matrix(surface.nodes(), shell.cliques());
   return {mesh, rest, std::move(shell), std::move(matrix)};
 }
@@ -320,8 +320,8 @@ TEST(Shell, FibresWithoutAnAxisAreRefused) {
   const TriMesh sheet = rectangle(30e-3, 20e-3, 3, 2);
   const LoopSurface surface = LoopSurface::create(sheet).value();
   const StencilTable table = surface.evaluate(test::at_all_faces(surface.faces(), {{0.3, 0.3}}), 2);
-  const Result<Shell> shell =
-      Shell::create(table, {{0.3, 0.3, 0.5}}, to_coordinates(sheet.points), fibrous(true, 0.6, Vec3::Zero()));
+  const Result<Shell> shell = Shell::create(face_by_face(table, {{0.3, 0.3, 0.5}}),
+                                            to_coordinates(sheet.points), fibrous(true, 0.6, Vec3::Zero()));
   ASSERT_FALSE(shell);
   EXPECT_EQ(shell.failure().kind, FailureKind::scenario);
 }
@@ -331,7 +331,8 @@ TEST(Shell, DegenerateRestIsRefused) {
   const LoopSurface surface = LoopSurface::create(sheet).value();
   const StencilTable table = surface.evaluate(test::at_all_faces(surface.faces(), {{0.3, 0.3}}), 2);
   for (Vec3& p : sheet.points) p.y() = 0;
-  const Result<Shell> shell = Shell::create(table, {{0.3, 0.3, 0.5}}, to_coordinates(sheet.points), {});
+  const Result<Shell> shell =
+      Shell::create(face_by_face(table, {{0.3, 0.3, 0.5}}), to_coordinates(sheet.points), {});
   ASSERT_FALSE(shell);
   EXPECT_EQ(shell.failure().kind, FailureKind::scenario);
 }

@@ -40,7 +40,8 @@ double cylinder_error(int columns) {
   }
   const StencilTable table = surface.evaluate(points, 2);
   const VecX rest = to_coordinates(fit_to_limit(surface, flat.points).value());
-  const Shell shell = Shell::create(table, three_point_rule(), rest, {{0, thickness}, bending, true}).value();
+  const Shell shell =
+      Shell::create(face_by_face(table, three_point_rule()), rest, {{0, thickness}, bending, true}).value();
   const double energy = shell.value(to_coordinates(fit_to_limit(surface, rolled).value()));
   EXPECT_NEAR(shell.rest_area(), side * side, 1e-9 * side * side);
   return std::abs(energy / (0.5 * bending.rigidity() * curvature * curvature * side * side) - 1);
@@ -69,7 +70,7 @@ TEST(Validation, SphereGrownAtConstantShapeHoldsTheClosedFormsBendingEnergy) {
         surface.evaluate(test::at_all_faces(surface.faces(), places_of(three_point_rule())), 2);
     const VecX rest = to_coordinates(mesh.points);
     const Shell shell =
-        Shell::create(table, three_point_rule(), rest, {{0, thickness}, bending, true}).value();
+        Shell::create(face_by_face(table, three_point_rule()), rest, {{0, thickness}, bending, true}).value();
     errors.push_back(std::abs(shell.value(stretch * rest) / exact - 1));
     fmt::print("sphere, {} nodes: {:.2e}\n", mesh.points.size(), errors.back());
   }
@@ -127,7 +128,8 @@ double plate_deflection(int columns) {
   const auto rule = six_point_rule();
   const StencilTable table = surface.evaluate(test::at_all_faces(surface.faces(), places_of(rule)), 2);
   const VecX rest = to_coordinates(fit_to_limit(surface, flat.points).value());
-  const Shell shell = Shell::create(table, rule, rest, {{shear_modulus, thickness}, bending, true}).value();
+  const Shell shell =
+      Shell::create(face_by_face(table, rule), rest, {{shear_modulus, thickness}, bending, true}).value();
   VecX load = VecX::Zero(rest.size());
   const std::vector<double> areas = shell.point_areas();
   for (int r = 0; r < table.rows(); ++r) spread(table, r, pressure * areas[r] * Vec3::UnitZ(), load);

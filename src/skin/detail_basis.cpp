@@ -1,0 +1,170 @@
+#include "skin/detail_basis.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace calot {
+
+DetailBasis::DetailBasis(const SurfaceLevels& levels, std::vector<int> details)
+    : levels_(&levels), details_(std::move(details)) {
+  for (std::size_t i = 0; i < details_.size(); ++i) {
+    const int level = levels.level_of(details_[i]);
+    if (active_.empty() || active_.back().level != level) {
+      active_.push_back(
+          {level, std::vector<int>(levels.nodes(level), -1), std::vector<char>(levels.faces(0).size(), 0)});
+    }
+    active_.back().column[details_[i]] = coarse_nodes() + static_cast<int>(i);
+    for (int face : levels.support(level, details_[i])) active_.back().touched[face] = 1;
+  }
+}
+
+StencilTable DetailBasis::evaluate(std::span<const FacePoint> points, int order) const {
+  StencilTable coarse = levels_->evaluate(0, points, order);
+  return active_.empty() ? coarse : extend(coarse, points, order);
+}
+
+namespace {
+
+/// Appends entry e of `from` as `column`.
+void copy_entry(const StencilTable& from, int e, int column, int order, StencilTable& to) {
+  to.node.push_back(column);
+  to.value.push_back(from.value[e]);
+  if (order >= 1) to.du.push_back(from.du[e]), to.dv.push_back(from.dv[e]);
+  if (order < 2) return;
+  to.duu.push_back(from.duu[e]);
+  to.duv.push_back(from.duv[e]);
+  to.dvv.push_back(from.dvv[e]);
+}
+
+}  // namespace
+
+StencilTable DetailBasis::extend(const StencilTable& coarse, std::span<const FacePoint> points,
+                                 int order) const {
+  std::vector<StencilTable> fine;
+  std::vector<std::vector<int>> row_of(active_.size());  // of each point, -1: none
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    std::vector<FacePoint> at;
+    for (const FacePoint& point : points) {
+      const bool touched = active_[k].touched[point.face];
+      row_of[k].push_back(touched ? static_cast<int>(at.size()) : -1);
+      if (touched) at.push_back(point);
+    }
+    fine.push_back(levels_->evaluate(active_[k].level, at, order));
+  }
+  StencilTable out;
+  for (int r = 0; r < coarse.rows(); ++r) {
+    for (int e = coarse.begin[r]; e < coarse.begin[r + 1]; ++e)
+      copy_entry(coarse, e, coarse.node[e], order, out);
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      const int row = row_of[k][r];
+      if (row < 0) continue;
+      for (int e = fine[k].begin[row]; e < fine[k].begin[row + 1]; ++e)
+        if (const int column = active_[k].column[fine[k].node[e]]; column >= 0)
+          copy_entry(fine[k], e, column, order, out);
+    }
+    out.begin.push_back(static_cast<int>(out.node.size()));
+  }
+  return out;
+}
+
+namespace {
+
+/// Split faces of each level, children of split faces only.
+using Splits = std::vector<std::vector<char>>;
+
+Splits balanced_splits(const SurfaceLevels& levels, std::span<const int> details) {
+  Splits split;
+  int deepest = 0;
+  for (int detail : details) deepest = std::max(deepest, levels.level_of(detail));
+  for (int k = 0; k < deepest; ++k) split.emplace_back(levels.faces(k).size(), 0);
+  for (int detail : details) {
+    const int level = levels.level_of(detail) - 1;
+    for (int face : levels.faces_at_edge(level, detail))
+      if (face >= 0) split[level][face] = 1;
+  }
+  for (int level = deepest - 1; level > 0; --level) {
+    for (std::size_t f = 0; f < split[level].size(); ++f) {
+      if (!split[level][f]) continue;
+      split[level - 1][f / 4] = 1;
+      for (int edge = 0; edge < 3; ++edge)
+        for (int near : levels.faces_at_edge(level, levels.edge_node(level, static_cast<int>(f), edge)))
+          if (near >= 0) split[level - 1][near / 4] = 1;
+    }
+  }
+  return split;
+}
+
+bool is_split(const Splits& split, int level, int face) {
+  return level < static_cast<int>(split.size()) && split[level][face];
+}
+
+void add_leaves(const SurfaceLevels& levels, const Splits& split, int level, int face,
+                std::vector<FaceTree::Leaf>& out) {
+  if (is_split(split, level, face)) {
+    for (int child = 0; child < 4; ++child) add_leaves(levels, split, level + 1, 4 * face + child, out);
+    return;
+  }
+  FaceTree::Leaf leaf{level, face, {}};
+  if (level < static_cast<int>(split.size()))
+    for (int edge = 0; edge < 3; ++edge)
+      for (int near : levels.faces_at_edge(level, levels.edge_node(level, face, edge)))
+        if (near >= 0 && split[level][near]) leaf.hanging[edge] = true;
+  out.push_back(leaf);
+}
+
+}  // namespace
+
+FaceTree::FaceTree(const SurfaceLevels& levels, std::span<const int> details) {
+  const Splits split = balanced_splits(levels, details);
+  for (std::size_t f = 0; f < levels.faces(0).size(); ++f)
+    add_leaves(levels, split, 0, static_cast<int>(f), leaves);
+}
+
+namespace {
+
+/// A face with the nodes that hang on its edges, as few triangles as they allow.
+void add_triangles(const SurfaceLevels& levels, int level, int face, std::array<bool, 3> hanging,
+                   std::vector<Triangle>& out) {
+  const Triangle& corner = levels.faces(level)[face];
+  const int count = hanging[0] + hanging[1] + hanging[2];
+  if (count == 0) {
+    out.push_back(corner);
+    return;
+  }
+  int middle[3];
+  for (int edge = 0; edge < 3; ++edge) middle[edge] = levels.edge_node(level, face, edge);
+  if (count == 3) {
+    for (int k = 0; k < 3; ++k) out.push_back({corner[k], middle[k], middle[(k + 2) % 3]});
+    out.push_back({middle[0], middle[1], middle[2]});
+    return;
+  }
+  int k = 0;  // count 1: the edge with the node; 2: the first of the two edges that have one, as they follow
+  while (!hanging[k] || (count == 2 && !hanging[(k + 1) % 3])) ++k;
+  const int a = corner[k], b = corner[(k + 1) % 3], c = corner[(k + 2) % 3];
+  if (count == 1) {
+    out.insert(out.end(), {{a, middle[k], c}, {middle[k], b, c}});
+  } else {
+    const int ab = middle[k], bc = middle[(k + 1) % 3];
+    out.insert(out.end(), {{ab, b, bc}, {a, ab, bc}, {a, bc, c}});
+  }
+}
+
+}  // namespace
+
+std::vector<Triangle> cover(const SurfaceLevels& levels, const FaceTree::Leaf& leaf, bool fine) {
+  std::vector<Triangle> out;
+  if (!fine) {
+    add_triangles(levels, leaf.level, leaf.face, leaf.hanging, out);
+    return out;
+  }
+  const auto [ab, bc, ca] = leaf.hanging;
+  const int child = 4 * leaf.face, below = leaf.level + 1;
+  const Triangle& middle = levels.faces(below)[child + 3];  // bc, ca, ab
+  add_triangles(levels, below, child, {ab, false, ca}, out);
+  out.push_back({middle[2], middle[0], middle[1]});
+  add_triangles(levels, below, child + 1, {ab, bc, false}, out);
+  add_triangles(levels, below, child + 2, {false, bc, ca}, out);
+  return out;
+}
+
+}  // namespace calot
