@@ -121,6 +121,8 @@ struct LaparoscopeDefinition {
 struct SolverDefinition {
   double rate = 50;         ///< steps a second
   double tolerance = 1e-6;  ///< dimensionless, see sim/equilibrium.h
+  int extension_levels =
+      0;  ///< of structural extensions at contacts, see sim/structural_extension.h; 0: none
 };
 
 struct SceneDefinition {

@@ -20,6 +20,33 @@ struct StencilTable {
   int rows() const { return static_cast<int>(begin.size()) - 1; }
 };
 
+/// Room for as many rows and entries as `like` has, and a share more, with its derivatives.
+inline void reserve_as(const StencilTable& like, double more, StencilTable& table) {
+  const auto entries = static_cast<std::size_t>((1 + more) * static_cast<double>(like.node.size()));
+  table.begin.reserve(like.begin.size());
+  table.node.reserve(entries);
+  table.value.reserve(entries);
+  if (!like.du.empty()) table.du.reserve(entries), table.dv.reserve(entries);
+  if (!like.duu.empty()) table.duu.reserve(entries), table.duv.reserve(entries), table.dvv.reserve(entries);
+}
+
+/// Adds rows first .. last - 1 of `from`, with the derivatives that it has.
+inline void append_rows(const StencilTable& from, int first, int last, StencilTable& to) {
+  const int begin = from.begin[first], end = from.begin[last];
+  const auto copy = [&](const auto& source, auto& target) {
+    if (!source.empty()) target.insert(target.end(), source.begin() + begin, source.begin() + end);
+  };
+  const int shift = static_cast<int>(to.node.size()) - begin;
+  copy(from.node, to.node);
+  copy(from.value, to.value);
+  copy(from.du, to.du);
+  copy(from.dv, to.dv);
+  copy(from.duu, to.duu);
+  copy(from.duv, to.duv);
+  copy(from.dvv, to.dvv);
+  for (int r = first; r < last; ++r) to.begin.push_back(from.begin[r + 1] + shift);
+}
+
 /// Sum of weights[e] * x[node[e]] over row r; `weights` is one of the table's arrays, x is 3 * nodes
 /// coordinates (x, y, z of node 0, then of node 1, ...).
 inline Vec3 blend(const StencilTable& table, const std::vector<double>& weights, int r, const VecX& x) {

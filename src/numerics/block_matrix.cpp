@@ -3,21 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace calot {
 
 BlockMatrix::BlockMatrix(int nodes, std::span<const std::vector<int>> cliques) {
-  std::vector<std::vector<int>> columns(nodes);
-  for (int j = 0; j < nodes; ++j) columns[j].push_back(j);
-  for (const std::vector<int>& clique : cliques)
-    for (int j : clique)
-      for (int i : clique)
-        if (i > j) columns[j].push_back(i);
+  std::vector<std::vector<int>> cliques_of(nodes);
+  for (std::size_t k = 0; k < cliques.size(); ++k)
+    for (int j : cliques[k]) cliques_of[j].push_back(static_cast<int>(k));
+  std::vector<int> seen_by(nodes, -1), column;
   block_start_.push_back(0);
   column_starts_.push_back(0);
-  for (std::vector<int>& column : columns) {
+  for (int j = 0; j < nodes; ++j) {
+    column.assign(1, j);
+    for (int k : cliques_of[j])
+      for (int i : cliques[k])
+        if (i > j && std::exchange(seen_by[i], j) != j) column.push_back(i);
     std::sort(column.begin(), column.end());
-    column.erase(std::unique(column.begin(), column.end()), column.end());
     block_row_.insert(block_row_.end(), column.begin(), column.end());
     block_start_.push_back(static_cast<int>(block_row_.size()));
     for (int c = 0; c < 3; ++c) {

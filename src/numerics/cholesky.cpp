@@ -3,14 +3,19 @@
 #include <suitesparse/cholmod.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
+
+#include "numerics/condense.h"
 
 namespace calot {
 
 struct Cholesky::Impl {
-  bool dense = false;
+  FactorKind kind = FactorKind::dense;
   Eigen::MatrixXd full;
+  std::optional<Condensation> condensation;
   Eigen::LLT<Eigen::MatrixXd> llt;
   cholmod_common common;
   cholmod_factor* factor = nullptr;
@@ -38,7 +43,9 @@ struct Cholesky::Impl {
     cholmod_finish(&common);
   }
 
+  long dense_rows() const { return condensation ? condensation->condensed().rows() : full.rows(); }
   FactorStatus factorise_dense(const BlockMatrix& matrix);
+  FactorStatus factorise_condensed(const BlockMatrix& matrix);
   FactorStatus factorise_sparse(const BlockMatrix& matrix);
 
   // CHOLMOD reads through non-const pointers and does not write through them here.
@@ -59,16 +66,19 @@ struct Cholesky::Impl {
   }
 };
 
-Cholesky::Cholesky(const BlockMatrix& pattern, bool dense) : impl_(std::make_unique<Impl>()) {
-  impl_->dense = dense;
-  if (dense) {
-    // Eigen cuts its products by the caches it finds; fixed sizes make the order of sums the same everywhere.
-    Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 8 * 1024 * 1024);
+Cholesky::Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->kind = kind;
+  // Eigen cuts its products by the caches it finds; fixed sizes make the order of sums the same everywhere.
+  Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 8 * 1024 * 1024);
+  if (kind == FactorKind::condensed) {
+    impl_->condensation.emplace(pattern, coarse);
+  } else if (kind == FactorKind::dense) {
     impl_->full = Eigen::MatrixXd::Zero(pattern.size(), pattern.size());
-    return;
+  } else {
+    cholmod_sparse sparse = Impl::view(pattern);
+    impl_->factor = cholmod_analyze(&sparse, &impl_->common);
   }
-  cholmod_sparse sparse = Impl::view(pattern);
-  impl_->factor = cholmod_analyze(&sparse, &impl_->common);
 }
 Cholesky::Cholesky(Cholesky&&) noexcept = default;
 Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
@@ -77,7 +87,9 @@ Cholesky::~Cholesky() = default;
 FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
   // Neither library minds a NaN (CHOLMOD 3.0.14 takes one on the diagonal for a success), so look before.
   if (!matrix.all_finite()) return FactorStatus::not_finite;
-  return impl_->dense ? impl_->factorise_dense(matrix) : impl_->factorise_sparse(matrix);
+  if (impl_->kind == FactorKind::sparse) return impl_->factorise_sparse(matrix);
+  return impl_->kind == FactorKind::dense ? impl_->factorise_dense(matrix)
+                                          : impl_->factorise_condensed(matrix);
 }
 
 FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix) {
@@ -86,6 +98,13 @@ FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix) {
     for (int e = matrix.column_starts()[column]; e < matrix.column_starts()[column + 1]; ++e)
       full(matrix.rows()[e], column) = matrix.entries()[e];
   llt.compute(full);  // reads the lower triangle
+  return llt.info() == Eigen::Success ? FactorStatus::ok : FactorStatus::not_positive_definite;
+}
+
+FactorStatus Cholesky::Impl::factorise_condensed(const BlockMatrix& matrix) {
+  const FactorStatus status = condensation->eliminate(matrix);
+  if (status != FactorStatus::ok) return status;
+  llt.compute(condensation->condensed());
   return llt.info() == Eigen::Success ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
@@ -99,7 +118,9 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
 }
 
 VecX Cholesky::solve(const VecX& right) const {
-  if (impl_->dense) return impl_->llt.solve(right);
+  if (impl_->kind == FactorKind::dense) return impl_->llt.solve(right);
+  if (impl_->kind == FactorKind::condensed)
+    return impl_->condensation->expand(right, impl_->llt.solve(impl_->condensation->reduce(right)));
   cholmod_dense b{};
   b.nrow = b.nzmax = b.d = static_cast<std::size_t>(right.size());
   b.ncol = 1;
@@ -116,20 +137,27 @@ VecX Cholesky::solve(const VecX& right) const {
 }
 
 double Cholesky::reciprocal_condition() const {
-  if (!impl_->dense) return cholmod_rcond(impl_->factor, &impl_->common);
+  if (impl_->kind == FactorKind::sparse) return cholmod_rcond(impl_->factor, &impl_->common);
   const auto diagonal = impl_->llt.matrixLLT().diagonal();
-  const double ratio = diagonal.minCoeff() / diagonal.maxCoeff();
-  return ratio * ratio;
+  double smallest = diagonal.minCoeff(), largest = diagonal.maxCoeff();
+  if (impl_->kind == FactorKind::condensed && impl_->condensation->groups() > 0) {
+    smallest = std::min(smallest, impl_->condensation->smallest_pivot());
+    largest = std::max(largest, impl_->condensation->largest_pivot());
+  }
+  return smallest / largest * (smallest / largest);
 }
 
 double Cholesky::factor_flops() const {
-  const double n = static_cast<double>(impl_->full.rows());
-  return impl_->dense ? n * n * n / 3.0 : impl_->common.fl;
+  if (impl_->kind == FactorKind::sparse) return impl_->common.fl;
+  const double n = static_cast<double>(impl_->dense_rows());
+  const double inner = impl_->kind == FactorKind::condensed ? impl_->condensation->flops() : 0;
+  return n * n * n / 3.0 + inner;
 }
 
 long Cholesky::factor_nonzeros() const {
-  const long n = impl_->full.rows();
-  return impl_->dense ? n * (n + 1) / 2 : static_cast<long>(impl_->common.lnz);
+  if (impl_->kind == FactorKind::sparse) return static_cast<long>(impl_->common.lnz);
+  const long n = impl_->dense_rows();
+  return n * (n + 1) / 2 + (impl_->kind == FactorKind::condensed ? impl_->condensation->nonzeros() : 0);
 }
 
 }  // namespace calot

@@ -1,8 +1,9 @@
 #pragma once
 // LL^T of a block matrix: dense (Eigen) for small bodies, whose matrices are half full, and sparse (CHOLMOD,
-// simplicial, symbolic factor reused) for larger ones. Neither calls BLAS, so the bits do not depend on the
-// machine.
+// simplicial, symbolic factor reused) for larger ones; in the dense one the nodes of structural extensions are
+// condensed onto the others first. None calls BLAS, so the bits do not depend on the machine.
 
+#include <limits>
 #include <memory>
 
 #include "numerics/block_matrix.h"
@@ -15,11 +16,18 @@ enum class FactorStatus { ok, not_finite, not_positive_definite, out_of_memory }
 /// against 12.7 at 238, even at 946 (see tests/bench).
 inline constexpr int dense_nodes = 600;
 
+enum class FactorKind { dense, sparse, condensed };
+
 class Cholesky {
  public:
-  /// Analyses the pattern (sparse: fill-reducing order AMD); values are not read.
-  explicit Cholesky(const BlockMatrix& pattern) : Cholesky(pattern, pattern.nodes() <= dense_nodes) {}
-  Cholesky(const BlockMatrix& pattern, bool dense);
+  /// Analyses the pattern (sparse: fill-reducing order AMD); values are not read. With `coarse` nodes before
+  /// those of extensions the latter are condensed, where the factor is dense.
+  explicit Cholesky(const BlockMatrix& pattern, int coarse = std::numeric_limits<int>::max())
+      : Cholesky(pattern, coarse,
+                 pattern.nodes() > dense_nodes ? FactorKind::sparse
+                 : coarse < pattern.nodes()    ? FactorKind::condensed
+                                               : FactorKind::dense) {}
+  Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind);
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;
   ~Cholesky();

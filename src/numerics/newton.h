@@ -68,7 +68,9 @@ std::string to_text(NewtonStatus status);
 
 /// Workspace of a body, kept between solves.
 struct NewtonWorkspace {
-  explicit NewtonWorkspace(BlockMatrix pattern) : matrix(std::move(pattern)), factor(matrix) {}
+  /// `coarse` nodes first, those of extensions after them.
+  explicit NewtonWorkspace(BlockMatrix pattern, int coarse = std::numeric_limits<int>::max())
+      : matrix(std::move(pattern)), factor(matrix, coarse) {}
   BlockMatrix matrix;
   Cholesky factor;
   VecX constraint_gradient;  ///< at the last factorisation

@@ -8,6 +8,7 @@
 #include "base/timed.h"
 #include "sim/grip.h"
 #include "sim/hold.h"
+#include "sim/structural_extension.h"
 
 namespace calot {
 namespace {
@@ -201,6 +202,7 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
       }
       if (accepted) {
         for (std::size_t i = 0; i < field.tools.size(); ++i) field.tools[i].pose = poses[i];
+        for (Organ& organ : field.organs) follow_contacts(field, organ, statistics);
         done = next;
         fresh = false;
         last = {};

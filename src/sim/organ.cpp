@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -192,7 +193,7 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
 }
 
 Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& field, const Vec3& up,
-                         double tolerance) {
+                         double tolerance, int levels) {
   Result<TriMesh> control = control_mesh(definition);
   if (!control) return control.failure();
   VirtualStructure::Setup setup;
@@ -201,34 +202,33 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   setup.material = wall_material(definition);
   setup.bile = definition.bile;
   setup.up = up;
+  setup.levels = levels;
   Result<LoopSurface> surface = LoopSurface::create(control.value());
   if (!surface) return surface.failure();
   const Tessellation corners = surface->tessellate(1);
   const std::vector<Vec3> skin =
       blend_all(corners.stencils, corners.stencils.value, to_coordinates(control->points));
   const std::map<std::string, Vec3> places = landmark_places(definition, skin);
-  std::vector<int> caught(definition.held.size(), 0);
-  setup.foundation = [&](const Vec3& x) {
+  setup.foundation = [held = definition.held, places](const Vec3& x) {
     double stiffness = 0;
-    for (std::size_t k = 0; k < definition.held.size(); ++k) {
-      const HeldRegion& region = definition.held[k];
-      if ((x - places.at(region.landmark)).norm() >= region.radius) continue;
-      stiffness += region.stiffness;
-      ++caught[k];
-    }
+    for (const HeldRegion& region : held)
+      if ((x - places.at(region.landmark)).norm() < region.radius) stiffness += region.stiffness;
     return stiffness;
   };
   Result<VirtualStructure> body = VirtualStructure::create(setup);
   if (!body) return body.failure();
-  for (std::size_t k = 0; k < caught.size(); ++k)
-    if (caught[k] == 0)
+  for (const HeldRegion& region : definition.held) {
+    const std::vector<Vec3>& wall = body->foundation().target;
+    if (std::none_of(wall.begin(), wall.end(),
+                     [&](const Vec3& x) { return (x - places.at(region.landmark)).norm() < region.radius; }))
       return fail(FailureKind::scenario,
                   fmt::format("held region '{}' of organ '{}' is too small to catch any of its wall",
-                              definition.held[k].name, definition.name),
+                              region.name, definition.name),
                   "give it a larger radius, or the organ more nodes");
+  }
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
-  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}};
+  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}};
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))

@@ -16,6 +16,13 @@ struct GripPoint {
   double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
 };
 
+/// Where details are active: around a skin point that a shape of the surroundings is near to.
+struct Extension {
+  int shape = 0;
+  int centre = 0;  ///< skin point
+  bool operator==(const Extension&) const = default;
+};
+
 struct Organ {
   OrganDefinition definition;
   VirtualStructure body;
@@ -24,12 +31,14 @@ struct Organ {
   ContactSearch search;
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
+  std::vector<Extension> extensions;     ///< ordered by shape
 };
 
-/// Builds the organ and brings it to rest under its bile (and on `field`). Failures: scenario (a mesh that
+/// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its
+/// bile (and on `field`). Failures: scenario (a mesh that
 /// cannot be used) or simulation (no rest state found).
 Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& field, const Vec3& up,
-                         double tolerance);
+                         double tolerance, int levels = 0);
 
 /// A failed solve in words: what happened, and what to change.
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);

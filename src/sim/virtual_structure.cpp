@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/units.h"
 #include "skin/subdivision.h"
@@ -26,6 +27,28 @@ struct RulePoints {
     }
   }
 };
+
+/// Coarse columns of the rule's points; those of faces that are not split are known.
+StencilTable coarse_rows(const SurfaceLevels& levels, const FaceTree& tree, const RulePoints& points,
+                         const StencilTable& unsplit) {
+  if (tree.leaves.size() == levels.faces(0).size()) return unsplit;
+  std::vector<FacePoint> at;
+  const std::size_t per_leaf = points.at.size() / tree.leaves.size();
+  for (std::size_t k = 0; k < points.at.size(); ++k)
+    if (tree.leaves[k / per_leaf].level > 0) at.push_back(points.at[k]);
+  const StencilTable split = levels.evaluate(0, at, 2);
+  StencilTable out;
+  reserve_as(unsplit, 1.0, out);
+  const int rows = static_cast<int>(per_leaf);
+  int done = 0;
+  for (const FaceTree::Leaf& leaf : tree.leaves) {
+    if (leaf.level == 0)
+      append_rows(unsplit, rows * leaf.face, rows * (leaf.face + 1), out);
+    else
+      append_rows(split, done, done + rows, out), done += rows;
+  }
+  return out;
+}
 
 std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
   std::vector<double> areas(points.size(), 0.0);
@@ -68,17 +91,19 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
   }
 }
 
-std::vector<VirtualStructure::SkinFace> faces_of(const Tessellation& skin, int faces) {
+std::vector<VirtualStructure::SkinFace> faces_of(const Tessellation& skin, int faces, int nodes) {
   std::vector<VirtualStructure::SkinFace> out(faces);
-  for (int r = 0; r < skin.stencils.rows(); ++r) {
-    VirtualStructure::SkinFace& face = out[skin.at[r].face];
-    face.rows.push_back(r);
-    face.nodes.insert(face.nodes.end(), skin.stencils.node.begin() + skin.stencils.begin[r],
-                      skin.stencils.node.begin() + skin.stencils.begin[r + 1]);
-  }
-  for (VirtualStructure::SkinFace& face : out) {
-    std::sort(face.nodes.begin(), face.nodes.end());
-    face.nodes.erase(std::unique(face.nodes.begin(), face.nodes.end()), face.nodes.end());
+  for (int r = 0; r < skin.stencils.rows(); ++r) out[skin.at[r].face].rows.push_back(r);
+  std::vector<int> seen_by(nodes, -1);
+  for (int f = 0; f < faces; ++f) {
+    std::vector<int>& found = out[f].nodes;
+    for (int r : out[f].rows) {
+      for (int e = skin.stencils.begin[r]; e < skin.stencils.begin[r + 1]; ++e) {
+        const int node = skin.stencils.node[e];
+        if (std::exchange(seen_by[node], f) != f) found.push_back(node);
+      }
+    }
+    std::sort(found.begin(), found.end());
   }
   return out;
 }
@@ -89,10 +114,19 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   Result<SurfaceLevels> levels = SurfaceLevels::create(setup.control, setup.levels);
   if (!levels) return levels.failure();
   const VecX rest = to_coordinates(setup.control.points);
-  Base base{setup, std::move(levels).value(), {}, {}, {}, {}, {}, 0, Vec3::Zero()};
+  Base base{setup, std::move(levels).value(), {}, {}, {}, {}, {}, {}, {}, {}, 0, Vec3::Zero()};
   base.skin = close_skin(base.levels.surface(), rest);
   base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
   base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
+  for (int level = 1; level <= setup.levels; ++level)
+    base.skin_by_level.push_back(base.levels.evaluate(level, base.skin.at, 1));
+  const RulePoints rule(base.levels, FaceTree(base.levels, {}), setup.rule);
+  base.quadrature = base.levels.evaluate(0, rule.at, 2);
+  std::vector<FacePoint> places;
+  for (int node = 0; node < base.levels.nodes(setup.levels); ++node)
+    places.push_back(base.levels.place(node));
+  const StencilTable at_nodes = base.levels.evaluate(0, places, 0);
+  base.node_rest = blend_all(at_nodes, at_nodes.value, rest);
   Eigen::AlignedBox3d box;
   for (const Vec3& p : base.skin_rest) box.extend(p);
   base.size = box.diagonal().norm();
@@ -105,7 +139,7 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
 
 void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
   const RulePoints points(base.levels, FaceTree(base.levels, {}), base.setup.rule);
-  const StencilTable table = base.levels.evaluate(0, points.at, 1);
+  const StencilTable& table = base.quadrature;
   for (int r = 0; r < table.rows(); ++r) {
     const Vec3 at = blend(table, table.value, r, rest);
     const double jacobian = blend(table, table.du, r, rest).cross(blend(table, table.dv, r, rest)).norm();
@@ -129,15 +163,17 @@ std::optional<Failure> VirtualStructure::build() {
   rest_ = VecX::Zero(3 * Eigen::Index{basis_.nodes()});
   rest_.head(3 * Eigen::Index{coarse_nodes()}) = to_coordinates(control().points);
   RulePoints points(base_->levels, tree, base_->setup.rule);
-  points.quadrature.stencils = basis_.evaluate(points.at, 2);
+  points.quadrature.stencils =
+      basis_.extend(coarse_rows(base_->levels, tree, points, base_->quadrature), points.at, 2);
   Result<Shell> shell = Shell::create(points.quadrature, rest_, base_->setup.material);
   if (!shell) return shell.failure();
   shell_ = std::move(shell).value();
   quadrature_ = std::move(points.quadrature.stencils);
 
   skin_ = base_->skin;
-  if (!details().empty()) skin_.stencils = basis_.extend(base_->skin.stencils, skin_.at, 1);
-  skin_faces_ = faces_of(skin_, static_cast<int>(control().triangles.size()));
+  if (!details().empty())
+    skin_.stencils = basis_.extend(base_->skin.stencils, skin_.at, base_->skin_by_level);
+  skin_faces_ = faces_of(skin_, static_cast<int>(control().triangles.size()), nodes());
   edge_lengths_ = shortest_edges(control());
   for (int detail : details()) {
     double shortest = base_->size;

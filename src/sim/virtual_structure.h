@@ -49,6 +49,8 @@ class VirtualStructure {
   Result<VirtualStructure> with_details(std::vector<int> details) const;
   const std::vector<int>& details() const { return basis_.details(); }
   const SurfaceLevels& levels() const { return base_->levels; }
+  /// Where the nodes of all levels lie on the surface at rest, m.
+  const std::vector<Vec3>& node_rest() const { return base_->node_rest; }
   /// Coordinates `x` of this structure as those of `other`, which differs in its details only: those that are new
   /// there begin at zero.
   VecX coordinates_in(const VirtualStructure& other, const VecX& x) const;
@@ -104,7 +106,9 @@ class VirtualStructure {
     Setup setup;
     SurfaceLevels levels;
     Tessellation skin;
-    std::vector<Vec3> skin_rest;
+    std::vector<StencilTable> skin_by_level;  ///< of levels 1, 2, ...
+    StencilTable quadrature;                  ///< of the coarse faces
+    std::vector<Vec3> skin_rest, node_rest;
     std::vector<double> skin_areas;
     Links bed;
     std::vector<FacePoint> bed_places;

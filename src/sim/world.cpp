@@ -89,6 +89,8 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
   state.volume = organ.body.bile()->volume(x);
   state.energy = organ.body.shell().value(x);
   state.max_stretch = organ.body.shell().max_stretch(x);
+  state.extensions = static_cast<int>(organ.extensions.size());
+  state.details = static_cast<int>(organ.body.details().size());
   return state;
 }
 
@@ -165,7 +167,8 @@ Result<World> World::create(const SceneDefinition& scene) {
   Surroundings still;
   if (impl->field.support) still.shapes.push_back(*impl->field.support);
   for (const OrganDefinition& definition : scene.anatomy.organs) {
-    Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance);
+    Result<Organ> organ =
+        make_organ(definition, still, impl->up, scene.solver.tolerance, scene.solver.extension_levels);
     if (!organ) return organ.failure();
     impl->field.organs.push_back(std::move(organ).value());
   }

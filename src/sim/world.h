@@ -42,14 +42,18 @@ struct OrganState {
   double volume = 0;       ///< m^3 enclosed
   double energy = 0;       ///< J, wall
   double max_stretch = 1;  ///< largest principal stretch of the wall
+  int extensions = 0;      ///< places where an instrument has structural extensions
+  int details = 0;         ///< nodes that they add
 };
 
 struct SolveStatistics {
   int substeps = 0;
   int newton_iterations = 0;
+  /// Changes of the active details, and those given up because the organ found no rest with them.
+  int extensions_changed = 0, extensions_refused = 0;
   /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,
-  /// and finding who meets whom and how far each may go.
-  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
+  /// and finding who meets whom and how far each may go; and changes of details, their solves included.
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0, extension_s = 0;
 };
 
 struct StepReport {

@@ -25,15 +25,17 @@ StencilTable DetailBasis::evaluate(std::span<const FacePoint> points, int order)
 
 namespace {
 
-/// Appends entry e of `from` as `column`.
-void copy_entry(const StencilTable& from, int e, int column, int order, StencilTable& to) {
+/// Adds entry e of `from` to the last row of `to`, as `column`.
+void add_entry(const StencilTable& from, int e, int column, StencilTable& to) {
   to.node.push_back(column);
   to.value.push_back(from.value[e]);
-  if (order >= 1) to.du.push_back(from.du[e]), to.dv.push_back(from.dv[e]);
-  if (order < 2) return;
-  to.duu.push_back(from.duu[e]);
-  to.duv.push_back(from.duv[e]);
-  to.dvv.push_back(from.dvv[e]);
+  if (!from.du.empty()) to.du.push_back(from.du[e]), to.dv.push_back(from.dv[e]);
+  if (!from.duu.empty()) {
+    to.duu.push_back(from.duu[e]);
+    to.duv.push_back(from.duv[e]);
+    to.dvv.push_back(from.dvv[e]);
+  }
+  ++to.begin.back();
 }
 
 }  // namespace
@@ -41,29 +43,50 @@ void copy_entry(const StencilTable& from, int e, int column, int order, StencilT
 StencilTable DetailBasis::extend(const StencilTable& coarse, std::span<const FacePoint> points,
                                  int order) const {
   std::vector<StencilTable> fine;
-  std::vector<std::vector<int>> row_of(active_.size());  // of each point, -1: none
-  for (std::size_t k = 0; k < active_.size(); ++k) {
+  for (const Level& level : active_) {
+    // Points that no function reaches get a row without entries.
     std::vector<FacePoint> at;
+    for (const FacePoint& point : points)
+      if (level.touched[point.face]) at.push_back(point);
+    const StencilTable rows = levels_->evaluate(level.level, at, order);
+    StencilTable all;
+    int row = 0;
     for (const FacePoint& point : points) {
-      const bool touched = active_[k].touched[point.face];
-      row_of[k].push_back(touched ? static_cast<int>(at.size()) : -1);
-      if (touched) at.push_back(point);
+      if (level.touched[point.face])
+        append_rows(rows, row, row + 1, all), ++row;
+      else
+        all.begin.push_back(all.begin.back());
     }
-    fine.push_back(levels_->evaluate(active_[k].level, at, order));
+    fine.push_back(std::move(all));
   }
+  std::vector<const StencilTable*> tables;
+  for (const StencilTable& table : fine) tables.push_back(&table);
+  return merge(coarse, points, tables);
+}
+
+StencilTable DetailBasis::extend(const StencilTable& coarse, std::span<const FacePoint> points,
+                                 const std::vector<StencilTable>& by_level) const {
+  std::vector<const StencilTable*> tables;
+  for (const Level& level : active_) tables.push_back(&by_level[level.level - 1]);
+  return merge(coarse, points, tables);
+}
+
+StencilTable DetailBasis::merge(const StencilTable& coarse, std::span<const FacePoint> points,
+                                const std::vector<const StencilTable*>& fine) const {
   StencilTable out;
+  reserve_as(coarse, 0.5, out);
+  int copied = 0;  // rows; those that no detail reaches are copied many at a time
   for (int r = 0; r < coarse.rows(); ++r) {
-    for (int e = coarse.begin[r]; e < coarse.begin[r + 1]; ++e)
-      copy_entry(coarse, e, coarse.node[e], order, out);
-    for (std::size_t k = 0; k < active_.size(); ++k) {
-      const int row = row_of[k][r];
-      if (row < 0) continue;
-      for (int e = fine[k].begin[row]; e < fine[k].begin[row + 1]; ++e)
-        if (const int column = active_[k].column[fine[k].node[e]]; column >= 0)
-          copy_entry(fine[k], e, column, order, out);
-    }
-    out.begin.push_back(static_cast<int>(out.node.size()));
+    const auto reached = [&](const Level& level) { return level.touched[points[r].face] != 0; };
+    if (std::none_of(active_.begin(), active_.end(), reached)) continue;
+    append_rows(coarse, copied, r + 1, out);
+    copied = r + 1;
+    for (std::size_t k = 0; k < active_.size(); ++k)
+      for (int e = fine[k]->begin[r]; e < fine[k]->begin[r + 1]; ++e)
+        if (const int column = active_[k].column[fine[k]->node[e]]; column >= 0)
+          add_entry(*fine[k], e, column, out);
   }
+  append_rows(coarse, copied, coarse.rows(), out);
   return out;
 }
 

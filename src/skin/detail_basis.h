@@ -23,8 +23,15 @@ class DetailBasis {
   StencilTable evaluate(std::span<const FacePoint> points, int order) const;
   /// The same where the coarse columns are known: `coarse` as SurfaceLevels::evaluate(0, points, order).
   StencilTable extend(const StencilTable& coarse, std::span<const FacePoint> points, int order) const;
+  /// The same where those of the levels 1, 2, ... are known too, by SurfaceLevels::evaluate.
+  StencilTable extend(const StencilTable& coarse, std::span<const FacePoint> points,
+                      const std::vector<StencilTable>& by_level) const;
 
  private:
+  /// `fine`: of each active level, a row a point.
+  StencilTable merge(const StencilTable& coarse, std::span<const FacePoint> points,
+                     const std::vector<const StencilTable*>& fine) const;
+
   const SurfaceLevels* levels_;
   std::vector<int> details_;
   struct Level {

@@ -9,13 +9,20 @@
 namespace calot {
 namespace {
 
-/// Both factorisations, dense and sparse, obey the same laws.
-class CholeskyOf : public ::testing::TestWithParam<bool> {
+/// Every factorisation obeys the same laws; the condensed one keeps two thirds of the nodes.
+class CholeskyOf : public ::testing::TestWithParam<FactorKind> {
  protected:
-  static Cholesky factor(const BlockMatrix& matrix) { return Cholesky(matrix, GetParam()); }
+  static Cholesky factor(const BlockMatrix& matrix) {
+    return Cholesky(matrix, (2 * matrix.nodes() + 2) / 3, GetParam());
+  }
 };
-INSTANTIATE_TEST_SUITE_P(Both, CholeskyOf, ::testing::Values(true, false),
-                         [](const auto& kind) { return kind.param ? "Dense" : "Sparse"; });
+INSTANTIATE_TEST_SUITE_P(Each, CholeskyOf,
+                         ::testing::Values(FactorKind::dense, FactorKind::sparse, FactorKind::condensed),
+                         [](const auto& kind) {
+                           return kind.param == FactorKind::dense    ? "Dense"
+                                  : kind.param == FactorKind::sparse ? "Sparse"
+                                                                     : "Condensed";
+                         });
 
 TEST_P(CholeskyOf, SolvesRandomPositiveSystems) {
   Rng rng(1);
@@ -102,10 +109,10 @@ TEST_P(CholeskyOf, FactorIsNeverSmallerThanTheMatrix) {
   EXPECT_GE(cholesky.factor_flops(), static_cast<double>(below));
 }
 
-TEST(Cholesky, SmallBodiesAreDenseAndBothKindsAgree) {
+TEST(Cholesky, SmallBodiesAreDenseAndAllKindsAgree) {
   Rng rng(7);
   const BlockMatrix matrix = test::random_positive(rng, 30);
-  Cholesky chosen(matrix), dense(matrix, true), sparse(matrix, false);
+  Cholesky chosen(matrix), dense(matrix, 30, FactorKind::dense), sparse(matrix, 30, FactorKind::sparse);
   const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
   for (Cholesky* one : {&chosen, &dense, &sparse}) ASSERT_EQ(one->factorise(matrix), FactorStatus::ok);
   EXPECT_EQ(chosen.solve(right), dense.solve(right));

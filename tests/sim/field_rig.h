@@ -4,19 +4,30 @@
 #include "base/units.h"
 #include "sim/advance.h"
 #include "sim/grip.h"
+#include "sim/structural_extension.h"
 
 namespace calot::test {
 
 /// One organ and, at `trocar`, one grasper pulled far back.
 inline Field make_field(const OrganDefinition& definition, double tolerance, const Vec3& up,
-                        const std::optional<Plane>& support = {}) {
+                        const std::optional<Plane>& support = {}, int levels = 0) {
   Field field;
   field.tolerance = tolerance;
   field.support = support;
   Surroundings still;
   if (support) still.shapes.push_back(*support);
-  field.organs.push_back(make_organ(definition, still, up, tolerance).value());
+  field.organs.push_back(make_organ(definition, still, up, tolerance, levels).value());
   return field;
+}
+
+/// Lays extensions around skin points without seeking the equilibrium that follows.
+inline void extend(Organ& organ, const std::vector<int>& centres) {
+  organ.extensions.clear();
+  for (int row : centres) organ.extensions.push_back({0, row});
+  VirtualStructure next = organ.body.with_details(details_around(organ.body, organ.extensions)).value();
+  organ.state.x = organ.body.coordinates_in(next, organ.state.x);
+  organ.body = std::move(next);
+  organ.work = NewtonWorkspace(organ.body.pattern(), organ.body.coarse_nodes());
 }
 
 inline void add_grasper(Field& field, const Vec3& trocar) {
@@ -42,7 +53,7 @@ inline std::string move_tip(Field& field, const Vec3& tip, double jaw, int parts
 /// Force of the bed and other held regions on the organ, N.
 inline Vec3 bed_force(const Organ& organ) {
   const Links& bed = organ.body.foundation();
-  const StencilTable& table = organ.body.quadrature();
+  const StencilTable& table = organ.body.bed_points();
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < bed.row.size(); ++i)
     sum += bed.stiffness[i] * (bed.target[i] - blend(table, table.value, bed.row[i], organ.state.x));

@@ -1,0 +1,167 @@
+#include "sim/structural_extension.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/timed.h"
+
+namespace calot {
+namespace {
+
+/// A skin point near a part of a tool, or held by it (at no distance).
+struct Near {
+  int row = 0;
+  double distance = 0;
+};
+
+std::vector<Near> near_points(const Organ& organ, int shape, const std::vector<ContactPair>& pairs) {
+  const bool served = std::any_of(organ.extensions.begin(), organ.extensions.end(),
+                                  [&](const Extension& e) { return e.shape == shape; });
+  std::vector<Near> out;
+  for (const GripPoint& grip : organ.grips)
+    if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.row, 0});
+  if (!out.empty()) return out;  // what is held does not slide: it alone says where
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const ContactPair& pair : pairs) {
+    if (pair.shape != shape || pair.distance > extension_behind) continue;
+    out.push_back({pair.row, pair.distance});
+    nearest = std::min(nearest, pair.distance);
+  }
+  if (nearest > (served ? extension_behind : extension_ahead)) out.clear();
+  return out;
+}
+
+/// Shortest coarse edge near a skin point at rest, m.
+double coarse_edge(const VirtualStructure& body, int row) {
+  double edge = body.size();
+  for (int node : body.control().triangles[body.skin().at[row].face])
+    edge = std::min(edge, body.edge_lengths()[node]);
+  return edge;
+}
+
+/// Middle, at rest, of the points about the nearest one: weighed by how near they are, so that it moves evenly as
+/// the nearest point jumps from one to the next.
+int middle_of(const VirtualStructure& body, const std::vector<Near>& points, double radius) {
+  constexpr double depth = 1e-3;  // m beyond the nearest
+  const auto lead = std::min_element(points.begin(), points.end(),
+                                     [](const Near& a, const Near& b) { return a.distance < b.distance; });
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  const auto counts = [&](const Near& p) {
+    return p.distance < lead->distance + depth &&
+           (body.skin_rest()[p.row] - body.skin_rest()[lead->row]).norm() < radius;
+  };
+  for (const Near& p : points) {
+    if (!counts(p)) continue;
+    const double share = 1 - (p.distance - lead->distance) / depth,
+                 weight = share * share * body.skin_areas()[p.row];
+    sum += weight * body.skin_rest()[p.row];
+    total += weight;
+  }
+  const Vec3 middle = sum / total;
+  int best = lead->row;
+  for (const Near& p : points)
+    if (counts(p) &&
+        (body.skin_rest()[p.row] - middle).squaredNorm() < (body.skin_rest()[best] - middle).squaredNorm())
+      best = p.row;
+  return best;
+}
+
+/// What a failed change of details gives back.
+struct Before {
+  VirtualStructure body;
+  BodyState state;
+  NewtonWorkspace work;
+};
+
+bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::vector<ContactPair>& near) {
+  return std::all_of(near.begin(), near.end(), [&](const ContactPair& pair) {
+    return signed_distance(field.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x)) > 0;
+  });
+}
+
+}  // namespace
+
+std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
+                                         const std::vector<ContactPair>& near) {
+  constexpr int most_along_a_part = 2;
+  const VirtualStructure& body = organ.body;
+  std::vector<Extension> out;
+  for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
+    std::vector<Near> points = near_points(organ, shape, near);
+    for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {
+      const double edge = coarse_edge(body, points.front().row);
+      Extension next{shape, middle_of(body, points, 0.5 * edge)};
+      const double drift = 0.25 * std::ldexp(edge, -body.levels().levels());
+      for (const Extension& present : organ.extensions)
+        if (present.shape == shape &&
+            (body.skin_rest()[present.centre] - body.skin_rest()[next.centre]).norm() < drift)
+          next = present;
+      out.push_back(next);
+      // Another one only where the part touches too far away to be served.
+      std::erase_if(points, [&](const Near& p) {
+        return p.distance > field.barrier.range ||
+               (body.skin_rest()[p.row] - body.skin_rest()[next.centre]).norm() < 1.5 * edge;
+      });
+    }
+  }
+  return out;
+}
+
+std::vector<int> details_around(const VirtualStructure& body, const std::vector<Extension>& extensions) {
+  std::vector<int> out;
+  std::vector<std::pair<double, int>> by_distance;
+  for (const Extension& extension : extensions) {
+    const Vec3& centre = body.skin_rest()[extension.centre];
+    for (int level = 1; level <= body.levels().levels(); ++level) {
+      by_distance.clear();
+      for (int node = body.levels().nodes(level - 1); node < body.levels().nodes(level); ++node)
+        by_distance.emplace_back((body.node_rest()[node] - centre).squaredNorm(), node);
+      const auto end =
+          by_distance.begin() + std::min<std::ptrdiff_t>(details_per_level, std::ssize(by_distance));
+      std::partial_sort(by_distance.begin(), end, by_distance.end());
+      for (auto it = by_distance.begin(); it != end; ++it) out.push_back(it->second);
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
+  if (organ.body.levels().levels() == 0) return;
+  const std::vector<InstrumentPose> poses = present_poses(field);
+  const Surroundings now = surroundings(field, organ, poses);
+  std::vector<ContactPair> near;
+  std::vector<int> details;
+  {
+    const Timed timed(statistics.contact_s);
+    near = organ.search.pairs(organ.body, organ.state.x, now, 0.0);
+    organ.extensions = wanted_extensions(field, organ, near);
+    details = details_around(organ.body, organ.extensions);
+  }
+  if (details == organ.body.details()) return;
+  const Timed timed(statistics.extension_s);
+  Result<VirtualStructure> next = organ.body.with_details(std::move(details));
+  if (!next) {
+    ++statistics.extensions_refused;
+    return;
+  }
+  NewtonWorkspace work(next->pattern(), next->coarse_nodes());
+  Before before{std::move(organ.body), organ.state, std::move(organ.work)};
+  organ.state.x = before.body.coordinates_in(next.value(), before.state.x);
+  organ.body = std::move(next).value();
+  organ.work = std::move(work);
+  ++statistics.extensions_changed;
+  if (clear_of_tools(organ, now, near) &&
+      settle_organ(field, organ, poses, NewtonSettings{}.max_iterations, statistics).converged())
+    return;
+  organ.body = std::move(before.body);
+  organ.state = std::move(before.state);
+  organ.work = std::move(before.work);
+  --statistics.extensions_changed;
+  ++statistics.extensions_refused;
+}
+
+}  // namespace calot

@@ -1,0 +1,236 @@
+// Structural extensions: laid ahead of contact, followed as it slides, taken away after it, without a trace.
+
+#include "sim/structural_extension.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "field_rig.h"
+#include "rig.h"
+#include "support/derivatives.h"
+
+namespace calot {
+namespace {
+
+/// The paper's ball, filled to a gallbladder's pressure, its lower half on a bed.
+OrganDefinition ball() {
+  OrganDefinition organ;
+  organ.name = "ball";
+  organ.shape = SphereShape{20e-3};
+  organ.nodes = 61;
+  organ.neck = {-80e-3, 70e-3, -150e-3};
+  organ.fundus = {-80e-3, 70e-3, -110e-3};
+  organ.held = {{"base", "neck", 22e-3, 1e6}};
+  organ.bile.fill_pressure = 1600;
+  return organ;
+}
+
+double furthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double out = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) out = std::max(out, (a[i] - b[i]).norm());
+  return out;
+}
+
+/// A ball that a pole pulls aside at its top by springs on the skin: a load that tools do not make.
+struct Pulled {
+  Field field;
+  Organ& organ;
+  Surroundings around;
+
+  explicit Pulled(int levels)
+      : field(test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, levels)), organ(field.organs[0]) {
+    const Vec3 top = organ.body.skin_rest()[organ.landmarks.at("fundus")];
+    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    for (std::size_t i = 0; i < skin.size(); ++i) {
+      if ((organ.body.skin_rest()[i] - top).norm() > 4e-3) continue;
+      around.grip.row.push_back(static_cast<int>(i));
+      around.grip.target.push_back(skin[i] + Vec3(3e-3, 1e-3, 4e-3));
+      around.grip.stiffness.push_back(20);
+    }
+    rest();
+  }
+  void rest() {
+    NewtonSettings settings;
+    settings.tolerance = 1e-9;
+    const NewtonResult result = settle(organ.body, around, settings, organ.work, organ.search, organ.state);
+    ASSERT_TRUE(result.converged()) << to_text(result.status) << " " << result.residual;
+  }
+  std::vector<Vec3> skin() const { return organ.body.skin_positions(organ.state.x); }
+};
+
+TEST(StructuralExtension, AThousandInsertedAndRemovedUnderLoadLeaveTheStateWithoutThem) {
+  Pulled pulled(1);
+  const std::vector<Vec3> before = pulled.skin();
+  const Vec3 moved = before[pulled.organ.landmarks.at("fundus")];
+  EXPECT_GT((moved - pulled.organ.body.skin_rest()[pulled.organ.landmarks.at("fundus")]).norm(), 2e-3);
+  Rng rng(1);
+  const double points = static_cast<double>(before.size());
+  double changed = 0;
+  for (int k = 0; k < 1000; ++k) {
+    test::extend(pulled.organ,
+                 {static_cast<int>(rng.uniform(0, points)), static_cast<int>(rng.uniform(0, points))});
+    if (k % 50 == 0) {  // the others are taken away before they moved
+      pulled.rest();
+      changed = std::max(changed, furthest(before, pulled.skin()));
+    }
+    test::extend(pulled.organ, {});
+    if (k % 50 == 0) pulled.rest();
+  }
+  pulled.rest();
+  EXPECT_GT(changed, 1e-5);
+  EXPECT_LT(furthest(before, pulled.skin()), 1e-8) << "m; equilibria are met to 1e-9";
+}
+
+TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
+  Pulled pulled(2);
+  Rng rng(2);
+  test::extend(pulled.organ, {10, 500, 1500});
+  VecX& x = pulled.organ.state.x;
+  for (Eigen::Index i = 3 * pulled.organ.body.coarse_nodes(); i < x.size(); ++i)
+    x[i] = rng.uniform(-1e-3, 1e-3);
+  const Bile& bile = *pulled.organ.body.bile();
+  VecX load = VecX::Zero(x.size());
+  bile.add_load(x, pulled.organ.state.multiplier, load);
+  // The coarse functions sum to one everywhere: their loads are all there are.
+  Vec3 net = Vec3::Zero();
+  for (int i = 0; i < pulled.organ.body.coarse_nodes(); ++i) net += load.segment<3>(Eigen::Index{3} * i);
+  const double weight = bile.specific_weight() * bile.volume(x);
+  EXPECT_GT(weight, 0.2);
+  EXPECT_LT((net - weight * Vec3::UnitZ()).norm(), 1e-12 * weight * 1e3)
+      << "rounding of pressures of 1600 Pa";
+}
+
+TEST(StructuralExtension, ItsUnknownsCondensedGiveTheWholeSystemsSolution) {
+  Pulled pulled(2);
+  test::extend(pulled.organ, {10, 700, pulled.organ.landmarks.at("fundus")});
+  pulled.rest();
+  const BodyProblem problem(pulled.organ.body, pulled.around, {}, pulled.organ.state);
+  BlockMatrix matrix = pulled.organ.body.pattern();
+  problem.hessian(pulled.organ.state.x, pulled.organ.state.multiplier, matrix);
+  const int coarse = pulled.organ.body.coarse_nodes();
+  ASSERT_GT(matrix.nodes(), coarse + 40);
+  Cholesky whole(matrix, coarse, FactorKind::dense), condensed(matrix, coarse, FactorKind::condensed);
+  ASSERT_EQ(whole.factorise(matrix), FactorStatus::ok);
+  ASSERT_EQ(condensed.factorise(matrix), FactorStatus::ok);
+  Rng rng(3);
+  const VecX load = test::random_coordinates(rng, matrix.size(), 1.0), x = whole.solve(load);
+  EXPECT_LT((condensed.solve(load) - x).norm(), 1e-10 * x.norm());
+}
+
+TEST(StructuralExtension, APulledWallIsTwiceAsTrueWithItAsWithout) {
+  // Against all details of two levels: 946 functions.
+  Pulled coarse(0), extended(1), fine(2);
+  test::extend(extended.organ, {extended.organ.landmarks.at("fundus")});
+  EXPECT_EQ(extended.organ.body.details().size(), 12u);
+  extended.rest();
+  std::vector<int> all;
+  for (int node = fine.organ.body.levels().nodes(0); node < fine.organ.body.levels().nodes(2); ++node)
+    all.push_back(node);
+  VirtualStructure finest = fine.organ.body.with_details(all).value();
+  fine.organ.state.x = fine.organ.body.coordinates_in(finest, fine.organ.state.x);
+  fine.organ.body = std::move(finest);
+  fine.organ.work = NewtonWorkspace(fine.organ.body.pattern());
+  fine.rest();
+  const double far_off = furthest(coarse.skin(), fine.skin()), near = furthest(extended.skin(), fine.skin());
+  EXPECT_GT(far_off, 1e-5);
+  EXPECT_LT(near, 0.5 * far_off);
+}
+
+/// A closed grasper that presses the ball near its top, from above.
+struct Pressed {
+  World world;
+  test::Driver driver;
+  Vec3 top;
+
+  static SceneDefinition scene(int levels) {
+    SceneDefinition out;
+    out.anatomy.organs = {ball()};
+    out.anatomy.table_head_up = out.anatomy.table_left_down = 0;
+    out.laparoscope.look_at = "ball.fundus";
+    out.solver.rate = 1000;
+    out.solver.extension_levels = levels;
+    InstrumentDefinition left;
+    left.name = "left";
+    left.port = "right_subcostal";
+    out.instruments = {left};
+    return out;
+  }
+  explicit Pressed(int levels)
+      : world(World::create(scene(levels)).value()), driver(world, 0.3), top(world.landmark("ball.fundus")) {}
+};
+
+TEST(StructuralExtension, ItIsLaidBeforeTheTouchAndTakenAwayAfterIt) {
+  Pressed pressed(1);
+  int without = 0, before_touch = 0;
+  const auto watch = [&](const StepReport& report) {
+    const bool touches = report.instruments[0].touching, extended = report.organs[0].extensions > 0;
+    without += touches && !extended;
+    before_touch += extended && !touches;
+  };
+  pressed.driver.watch = watch;
+  ASSERT_TRUE(pressed.driver.go(pressed.top + Vec3(-5e-3, 0, 8e-3), 0, 20)) << pressed.driver.why();
+  EXPECT_EQ(pressed.world.report().organs[0].details, 0);
+  ASSERT_TRUE(pressed.driver.go(pressed.top + Vec3(-5e-3, 0, -3e-3), 0, 110)) << pressed.driver.why();
+  EXPECT_GT(pressed.world.report().instruments[0].tip_force.norm(), 0.1);
+  EXPECT_GE(pressed.world.report().organs[0].details, details_per_level);
+  EXPECT_EQ(without, 0);
+  EXPECT_GT(before_touch, 5);
+  ASSERT_TRUE(pressed.driver.go(pressed.top + Vec3(-5e-3, 0, 12e-3), 0, 60)) << pressed.driver.why();
+  EXPECT_EQ(pressed.world.report().organs[0].details, 0);
+}
+
+TEST(StructuralExtension, NeitherForceNorSkinJumpsAsItIsLaidMovedOrTakenAway) {
+  for (int levels : {1, 2}) {
+    Pressed pressed(levels);
+    std::vector<double> force;
+    std::vector<bool> changed;
+    std::vector<Vec3> last = pressed.world.skin_positions(0);
+    const std::vector<Vec3> rest = last;
+    double skin_jump = 0, skin_range = 0;
+    pressed.driver.watch = [&](const StepReport& report) {
+      force.push_back(report.instruments[0].tip_force.norm());
+      changed.push_back(report.statistics.extensions_changed > 0);
+      EXPECT_EQ(report.statistics.extensions_refused, 0);
+      const std::vector<Vec3> skin = pressed.world.skin_positions(0);
+      if (changed.back() && force.back() == 0) skin_jump = std::max(skin_jump, furthest(skin, last));
+      skin_range = std::max(skin_range, furthest(skin, rest));
+      last = skin;
+    };
+    const Vec3 above = pressed.top + Vec3(-5e-3, 0, 8e-3), in = pressed.top + Vec3(-5e-3, 0, -3e-3),
+               along = pressed.top + Vec3(5e-3, 2e-3, -3e-3);
+    ASSERT_TRUE(pressed.driver.go(above, 0, 20) && pressed.driver.go(in, 0, 110) &&
+                pressed.driver.go(along, 0, 102) && pressed.driver.go(above, 0, 150))
+        << pressed.driver.why();
+    const double range = *std::max_element(force.begin(), force.end());
+    int changes = 0;
+    double jump = 0;
+    for (std::size_t k = 2; k + 1 < force.size(); ++k) {
+      if (!changed[k]) continue;
+      ++changes;
+      // What the motion itself adds is the mean of the steps before and after.
+      jump = std::max(jump, std::abs(force[k] - force[k - 1] - 0.5 * (force[k - 1] - force[k - 2]) -
+                                     0.5 * (force[k + 1] - force[k])));
+    }
+    EXPECT_GT(changes, 6);
+    EXPECT_GT(range, 0.2);
+    EXPECT_LT(jump, 0.01 * range) << levels << " levels";
+    EXPECT_LT(skin_jump, 0.01 * skin_range) << levels << " levels";
+  }
+}
+
+TEST(StructuralExtension, FollowsAHeldFoldAndLeavesWithIt) {
+  SceneDefinition scene = test::grasper_scene(100);
+  scene.solver.extension_levels = 1;
+  test::FundusPath path(scene);
+  ASSERT_TRUE(path.grasp() && path.lift()) << path.driver.why();
+  EXPECT_EQ(path.world.report().instruments[0].holds, "gallbladder");
+  EXPECT_GE(path.world.report().organs[0].extensions, 2)
+      << "one a pad, so that a crease can form between them";
+  EXPECT_GT(path.world.report().organs[0].details, details_per_level);
+  ASSERT_TRUE(path.lower() && path.release() && path.withdraw()) << path.driver.why();
+  EXPECT_EQ(path.world.report().organs[0].details, 0);
+}
+
+}  // namespace
+}  // namespace calot
