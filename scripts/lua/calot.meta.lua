@@ -177,9 +177,10 @@
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
 
----Structural extensions at contacts. Not available yet: levels must be 0.
+---Structural extensions: finer basis functions around each place that an instrument touches.
 ---@class calot.extensions
----@field levels? number subdivision levels added at a contact; default 0
+---@field levels? number subdivision levels added at a contact, each with 12 nodes; 0: none; default 0; 0 to 4
+---@field scheme? "condensed"|"staged" solved together with the organ, or after it as its boundary allows (the 1997 scheme, to compare with); default "condensed"
 
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
 ---@class calot.Session

@@ -118,11 +118,18 @@ struct LaparoscopeDefinition {
   double distance = 90e-3;                     ///< m from the scope's tip to what it looks at
 };
 
+/// How the unknowns of structural extensions are solved for: with the coarse ones, onto which they are condensed, or
+/// after them, as the paper does (section 5).
+enum class ExtensionScheme { condensed, staged };
+
+inline constexpr int most_extension_levels = 4;  ///< a 61-node ball's nodes then stand 0.6 mm apart
+
 struct SolverDefinition {
   double rate = 50;         ///< steps a second
   double tolerance = 1e-6;  ///< dimensionless, see sim/equilibrium.h
   int extension_levels =
       0;  ///< of structural extensions at contacts, see sim/structural_extension.h; 0: none
+  ExtensionScheme extension_scheme = ExtensionScheme::condensed;
 };
 
 struct SceneDefinition {

@@ -175,10 +175,15 @@ std::vector<ApiTable> scene_tables() {
   std::vector<ApiTable> all = field_tables();
   for (auto* more : {&organ_tables, &shape_tables})
     for (ApiTable& table : (*more)()) all.push_back(std::move(table));
-  all.push_back({"extensions",
-                 "Structural extensions at contacts. Not available yet: levels must be 0.",
-                 {number("levels", quantity::number, 0, 0, "0", "subdivision levels added at a contact")},
-                 {}});
+  all.push_back(
+      {"extensions",
+       "Structural extensions: finer basis functions around each place that an instrument touches.",
+       {number("levels", quantity::number, 0, most_extension_levels, "0",
+               "subdivision levels added at a contact, each with 12 nodes; 0: none"),
+        choice("scheme", {"condensed", "staged"}, "\"condensed\"",
+               "solved together with the organ, or after it as its boundary allows (the 1997 scheme, "
+               "to compare with)")},
+       {}});
   return all;
 }
 

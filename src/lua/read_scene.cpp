@@ -230,6 +230,10 @@ class SceneReader {
     reader.take("tolerance", solver.tolerance);
     const TableReader extensions(check_, reader.take("extensions"), "scene.solver.extensions",
                                  api_table("extensions"));
+    extensions.take("levels", solver.extension_levels);
+    std::string scheme;
+    extensions.take("scheme", scheme);
+    if (scheme == "staged") solver.extension_scheme = ExtensionScheme::staged;
     return solver;
   }
 

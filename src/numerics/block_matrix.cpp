@@ -62,6 +62,17 @@ void BlockMatrix::add_to_diagonal(double shift) {
     for (int c = 0; c < 3; ++c) values_[column_starts_[3 * j + c] + c] += shift;
 }
 
+void BlockMatrix::hold_all_but(int first, int last) {
+  const double mean = diagonal_mean();
+  const auto is_free = [&](int unknown) { return unknown >= 3 * first && unknown < 3 * last; };
+  for (int column = 0; column < size(); ++column) {
+    for (int e = column_starts_[column]; e < column_starts_[column + 1]; ++e) {
+      if (is_free(column) && is_free(rows_[e])) continue;
+      values_[e] = rows_[e] == column ? mean : 0.0;
+    }
+  }
+}
+
 double BlockMatrix::diagonal_mean() const {
   double sum = 0;
   for (int j = 0; j < nodes(); ++j)

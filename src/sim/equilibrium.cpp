@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/timed.h"
+#include "sim/staged.h"
 
 namespace calot {
 BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field,
@@ -109,7 +110,8 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
 }
 
 NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
-                    NewtonWorkspace& work, ContactSearch& search, BodyState& state, bool fixed_pressure) {
+                    NewtonWorkspace& work, ContactSearch& search, BodyState& state, bool fixed_pressure,
+                    ExtensionScheme scheme) {
   constexpr int max_rounds = 30;
   NewtonResult total;
   for (int round = 0; round < max_rounds; ++round) {
@@ -120,8 +122,11 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
       const Timed timed(gathering_s);
       pairs = search.pairs(body, state.x, field, 0.0);
     }
-    const BodyProblem problem(body, field, std::move(pairs), state, fixed_pressure);
-    const NewtonResult result = solve_equilibrium(problem, settings, work, state.x, state.multiplier);
+    const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
+    const NewtonResult result =
+        staged ? solve_in_stages(body, field, pairs, settings, work, state)
+               : solve_equilibrium(BodyProblem(body, field, pairs, state, fixed_pressure), settings, work,
+                                   state.x, state.multiplier);
     total.add(result);
     total.safety_s += gathering_s;
     const bool moved = (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;

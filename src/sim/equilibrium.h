@@ -49,7 +49,7 @@ class BodyProblem : public ConstrainedEnergy {
 /// all rounds.
 NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
                     NewtonWorkspace& work, ContactSearch& search, BodyState& state,
-                    bool fixed_pressure = false);
+                    bool fixed_pressure = false, ExtensionScheme scheme = ExtensionScheme::condensed);
 
 struct ContactForce {
   int shape = 0;

@@ -34,8 +34,8 @@ NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<In
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
-  const NewtonResult result =
-      settle(organ.body, surroundings(field, organ, poses), settings, organ.work, organ.search, organ.state);
+  const NewtonResult result = settle(organ.body, surroundings(field, organ, poses), settings, organ.work,
+                                     organ.search, organ.state, false, field.scheme);
   count(result, statistics);
   return result;
 }

@@ -17,6 +17,7 @@ struct Field {
   std::optional<Plane> support;
   Barrier barrier;
   double tolerance = 1e-6;
+  ExtensionScheme scheme = ExtensionScheme::condensed;
 };
 
 std::vector<InstrumentPose> present_poses(const Field& field);

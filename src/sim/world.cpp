@@ -162,6 +162,7 @@ Result<World> World::create(const SceneDefinition& scene) {
   if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
   impl->up = up_direction(scene.anatomy);
   impl->field.tolerance = scene.solver.tolerance;
+  impl->field.scheme = scene.solver.extension_scheme;
   if (scene.anatomy.support)
     impl->field.support = Plane{scene.anatomy.support->point, scene.anatomy.support->normal.normalized()};
   Surroundings still;

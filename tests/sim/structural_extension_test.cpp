@@ -219,6 +219,29 @@ TEST(StructuralExtension, NeitherForceNorSkinJumpsAsItIsLaidMovedOrTakenAway) {
   }
 }
 
+TEST(StructuralExtension, StagesRepeatedTendToTheCondensedSolution) {
+  Pulled condensed(1), staged(1);
+  for (Pulled* pulled : {&condensed, &staged}) {
+    test::extend(pulled->organ, {pulled->organ.landmarks.at("fundus")});
+    for (Vec3& target : pulled->around.grip.target) target += Vec3(-2e-3, 1e-3, 1e-3);
+  }
+  condensed.rest();
+  const std::vector<Vec3> aim = condensed.skin();
+  NewtonSettings settings;
+  settings.tolerance = 1e-9;
+  std::vector<double> apart;
+  for (int k = 0; k < 12; ++k) {
+    const NewtonResult result =
+        settle(staged.organ.body, staged.around, settings, staged.organ.work, staged.organ.search,
+               staged.organ.state, false, ExtensionScheme::staged);
+    ASSERT_TRUE(result.converged()) << to_text(result.status);
+    apart.push_back(furthest(aim, staged.skin()));
+  }
+  EXPECT_GT(apart.front(), 1e-5) << "the first pass leaves what the extension passes back";
+  EXPECT_LT(apart.front(), 1e-3);
+  for (std::size_t k = 1; k < apart.size(); ++k) EXPECT_LT(apart[k], 0.95 * apart[k - 1]);
+}
+
 TEST(StructuralExtension, FollowsAHeldFoldAndLeavesWithIt) {
   SceneDefinition scene = test::grasper_scene(100);
   scene.solver.extension_levels = 1;

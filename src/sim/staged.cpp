@@ -1,0 +1,43 @@
+#include "sim/staged.h"
+
+namespace calot {
+
+void Stage::keep_free(VecX& v) const {
+  v.head(3 * Eigen::Index{first_}).setZero();
+  v.tail(v.size() - 3 * Eigen::Index{last_}).setZero();
+}
+
+void Stage::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
+  whole_.gradient(x, gradient, largest_internal);
+  keep_free(gradient);
+}
+
+void Stage::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
+  whole_.hessian(x, multiplier, matrix);
+  matrix.hold_all_but(first_, last_);
+}
+
+double Stage::constraint(const VecX& x, VecX& gradient) const {
+  const double value = whole_.constraint(x, gradient);
+  keep_free(gradient);
+  return value;
+}
+
+NewtonResult solve_in_stages(const VirtualStructure& body, const Surroundings& field,
+                             const std::vector<ContactPair>& pairs, const NewtonSettings& settings,
+                             NewtonWorkspace& work, BodyState& state) {
+  work.factored = false;  // each stage has a matrix of its own
+  const BodyProblem coarse(body, field, pairs, state);
+  NewtonResult result =
+      solve_equilibrium(Stage(coarse, 0, body.coarse_nodes()), settings, work, state.x, state.multiplier);
+  work.factored = false;
+  if (!result.converged()) return result;
+  const BodyProblem fine(body, field, pairs, state, true);
+  double pressure = state.multiplier;
+  result.add(
+      solve_equilibrium(Stage(fine, body.coarse_nodes(), body.nodes()), settings, work, state.x, pressure));
+  work.factored = false;
+  return result;
+}
+
+}  // namespace calot
