@@ -110,10 +110,10 @@ std::vector<Mistake> mistakes() {
       {"PointOfTwo",
        with_scene("return { anatomy = calot.anatomy('standard'),\n ports = { here = { 0, 1 } } }"), "here",
        "no point", "three numbers"},
-      {"ExtensionsNotYet",
+      {"TooManyExtensionLevels",
        with_scene(
-           "return { anatomy = calot.anatomy('standard'),\n solver = { extensions = {\n levels = 2 } } }"),
-       "levels = 2", "not available", "levels must be 0"},
+           "return { anatomy = calot.anatomy('standard'),\n solver = { extensions = {\n levels = 7 } } }"),
+       "levels = 7", "levels", "0 to 4"},
       {"InstrumentNamedLikeAMethod", with_instruments("{\n wait = { port = 'right_flank' } }"), "wait = {",
        "method of t", "another name"},
       {"ErrorInScene", with_scene("local q\n return q.x"), "return q.x", "nil value", ""},
