@@ -112,6 +112,7 @@
 ---@field look_at? string landmark in the middle of the picture; default "gallbladder.fundus"
 ---@field distance? number from its tip to what it looks at; default 90 * mm; 10 to 400 mm
 ---@field field_of_view? number across the round picture; default 75 * deg; 20 to 120 deg
+---@field show_structure? boolean draw elements and nodes on the organs, to look into the simulation; default false
 
 ---How the simulation steps.
 ---@class calot.solver
@@ -180,6 +181,7 @@
 ---Structural extensions: finer basis functions around each place that an instrument touches.
 ---@class calot.extensions
 ---@field levels? number subdivision levels added at a contact, each with 12 nodes; 0: none; default 0; 0 to 4
+---@field view? number where the laparoscope looks at an organ from nearer than this it is refined too; 0: not; default 0 * mm; 0 to 400 mm
 ---@field scheme? "condensed"|"staged" solved together with the organ, or after it as its boundary allows (the 1997 scheme, to compare with); default "condensed"
 
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...

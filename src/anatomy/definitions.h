@@ -116,6 +116,7 @@ struct LaparoscopeDefinition {
   double field_of_view = 1.3089969389957472;   ///< rad, across the picture's round field; 70 to 80 deg (c)
   std::string look_at = "gallbladder.fundus";  ///< organ.landmark
   double distance = 90e-3;                     ///< m from the scope's tip to what it looks at
+  bool show_structure = false;                 ///< draw elements and nodes on the organs: a debug view
 };
 
 /// How the unknowns of structural extensions are solved for: with the coarse ones, onto which they are condensed, or
@@ -130,6 +131,8 @@ struct SolverDefinition {
   int extension_levels =
       0;  ///< of structural extensions at contacts, see sim/structural_extension.h; 0: none
   ExtensionScheme extension_scheme = ExtensionScheme::condensed;
+  /// m; where the laparoscope looks at an organ from nearer than this, it has an extension there too; 0: never
+  double extension_view = 0;
 };
 
 struct SceneDefinition {

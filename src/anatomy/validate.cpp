@@ -258,6 +258,8 @@ std::vector<Problem> validate(const SceneDefinition& scene) {
   check_laparoscope(check, scene.laparoscope);
   check_look_at(check, scene.laparoscope.look_at, scene.anatomy.organs);
   check.in_range("scene.solver.rate", scene.solver.rate, quantity::rate, 1, 2000, "a step rate");
+  check.in_range("scene.solver.extensions.view", scene.solver.extension_view, quantity::length, 0, 400 * mm,
+                 "a distance of the laparoscope");
   check.in_range("scene.solver.extensions.levels", scene.solver.extension_levels, quantity::number, 0,
                  most_extension_levels, "the levels of a structural extension");
   check.in_range("scene.solver.tolerance", scene.solver.tolerance, quantity::number, 1e-12, 1e-2,

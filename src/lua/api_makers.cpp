@@ -30,6 +30,12 @@ ApiKey text(std::string name, std::string fallback, std::string doc) {
   return key;
 }
 
+ApiKey flag(std::string name, std::string fallback, std::string doc) {
+  ApiKey key{std::move(name), ApiKind::boolean, std::move(doc)};
+  key.fallback = std::move(fallback);
+  return key;
+}
+
 ApiKey choice(std::string name, std::vector<std::string> choices, std::string fallback, std::string doc) {
   ApiKey key{std::move(name), ApiKind::choice, std::move(doc)};
   key.choices = std::move(choices);

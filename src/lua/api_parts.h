@@ -16,6 +16,7 @@ ApiKey number(std::string name, const Quantity& quantity, double low, double hig
               std::string doc);
 ApiKey point(std::string name, const Quantity& quantity, double reach, std::string fallback, std::string doc);
 ApiKey text(std::string name, std::string fallback, std::string doc);
+ApiKey flag(std::string name, std::string fallback, std::string doc);
 ApiKey choice(std::string name, std::vector<std::string> choices, std::string fallback, std::string doc);
 ApiKey table(std::string name, std::string of, std::string doc);
 ApiKey list(std::string name, std::string of, std::string doc);

@@ -220,6 +220,7 @@ class SceneReader {
     reader.take("look_at", scope.look_at);
     reader.take("distance", scope.distance);
     reader.take("field_of_view", scope.field_of_view);
+    reader.take("show_structure", scope.show_structure);
     return scope;
   }
 
@@ -231,6 +232,7 @@ class SceneReader {
     const TableReader extensions(check_, reader.take("extensions"), "scene.solver.extensions",
                                  api_table("extensions"));
     extensions.take("levels", solver.extension_levels);
+    extensions.take("view", solver.extension_view);
     std::string scheme;
     extensions.take("scheme", scheme);
     if (scheme == "staged") solver.extension_scheme = ExtensionScheme::staged;

@@ -163,6 +163,11 @@ void TableReader::take(const std::string& key, std::optional<double>& target) co
   if (const Value* value = take(key)) target = value->number;
 }
 
+void TableReader::take(const std::string& key, bool& target) const {
+  const Value* value = take(key);
+  if (value != nullptr) target = value->boolean;
+}
+
 void TableReader::take(const std::string& key, int& target) const {
   const Value* value = take(key);
   if (value == nullptr) return;

@@ -26,6 +26,7 @@ class TableReader {
   void take(const std::string& key, double& target) const;
   void take(const std::string& key, std::optional<double>& target) const;
   void take(const std::string& key, int& target) const;
+  void take(const std::string& key, bool& target) const;
   void take(const std::string& key, std::string& target) const;
   void take(const std::string& key, Vec3& target) const;
   /// A table's, list's, function's or other value; null unless there and of the right kind.

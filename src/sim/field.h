@@ -11,12 +11,18 @@
 
 namespace calot {
 
+/// What the laparoscope looks at from near by.
+struct ViewedPlace {
+  int organ = 0, row = 0;  ///< row: skin point
+};
+
 struct Field {
   std::vector<Organ> organs;
   std::vector<Tool> tools;
   std::optional<Plane> support;
   Barrier barrier;
   double tolerance = 1e-6;
+  std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
 };
 

@@ -18,7 +18,7 @@ struct GripPoint {
 
 /// Where details are active: around a skin point that a shape of the surroundings is near to.
 struct Extension {
-  int shape = 0;
+  int shape = 0;   ///< -1: none, the laparoscope looks there
   int centre = 0;  ///< skin point
   bool operator==(const Extension&) const = default;
 };

@@ -88,6 +88,7 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
   constexpr int most_along_a_part = 2;
   const VirtualStructure& body = organ.body;
   std::vector<Extension> out;
+  if (field.viewed && &field.organs[field.viewed->organ] == &organ) out.push_back({-1, field.viewed->row});
   for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
     std::vector<Near> points = near_points(organ, shape, near);
     for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "sim/advance.h"
 #include "sim/grip.h"
+#include "sim/structural_extension.h"
 #include "sim/vibration.h"
 
 namespace calot {
@@ -19,6 +20,17 @@ Vec3 up_direction(const AnatomyDefinition& anatomy) {
   const Eigen::AngleAxisd head_up(-anatomy.table_head_up, Vec3::UnitX());
   const Eigen::AngleAxisd left_down(-anatomy.table_left_down, Vec3::UnitY());
   return (head_up * left_down * Vec3::UnitZ()).normalized();
+}
+
+/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
+std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  for (std::size_t k = 0; k < organs.size() && dot != std::string::npos; ++k) {
+    if (organs[k].definition.name != name.substr(0, dot)) continue;
+    const auto found = organs[k].landmarks.find(name.substr(dot + 1));
+    if (found != organs[k].landmarks.end()) return {static_cast<int>(k), found->second};
+  }
+  return {0, -1};
 }
 
 }  // namespace
@@ -185,6 +197,12 @@ Result<World> World::create(const SceneDefinition& scene) {
     tool.pose.insertion = 1.5 * tool.geometry.jaw_length;
     world.impl_->field.tools.push_back(tool);
   }
+  if (scene.laparoscope.distance < scene.solver.extension_view) {
+    const auto [organ, row] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
+    if (row >= 0) world.impl_->field.viewed = ViewedPlace{organ, row};
+    SolveStatistics statistics;
+    for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
+  }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
   world.impl_->observe({});
   return world;
@@ -225,21 +243,6 @@ Vec3 World::port_position(const std::string& port) const {
   return Vec3::Zero();  // validated: every named port exists
 }
 
-namespace {
-
-/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
-std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
-  const std::size_t dot = name.find('.');
-  for (std::size_t k = 0; k < organs.size() && dot != std::string::npos; ++k) {
-    if (organs[k].definition.name != name.substr(0, dot)) continue;
-    const auto found = organs[k].landmarks.find(name.substr(dot + 1));
-    if (found != organs[k].landmarks.end()) return {static_cast<int>(k), found->second};
-  }
-  return {0, -1};
-}
-
-}  // namespace
-
 Vec3 World::landmark(const std::string& name) const {
   const auto [organ, row] = find_landmark(impl_->field.organs, name);
   if (row < 0) return Vec3::Zero();
@@ -262,6 +265,10 @@ std::vector<Vec3> World::skin_normals(int organ) const {
 }
 const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
   return impl_->field.organs[organ].body.skin_rest();
+}
+
+StructureDrawing World::structure(int organ) const {
+  return draw_structure(impl_->field.organs[organ].body, impl_->field.organs[organ].state.x);
 }
 
 Result<double> World::lowest_frequency(int index) const {

@@ -9,6 +9,7 @@
 #include "anatomy/definitions.h"
 #include "geometry/stencil.h"
 #include "sim/instrument.h"
+#include "sim/structure_drawing.h"
 
 namespace calot {
 
@@ -96,6 +97,8 @@ class World {
   std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
   std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
   const std::vector<Vec3>& skin_rest_positions(int organ) const;
+  /// Elements and nodes of an organ's structure and of its extensions, where they lie on the present skin.
+  StructureDrawing structure(int organ) const;
   /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
   /// equilibrium is not stable.

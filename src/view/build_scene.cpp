@@ -3,6 +3,7 @@
 #include "view/grasper_mesh.h"
 #include "view/laparoscope.h"
 #include "view/organ_frame.h"
+#include "view/structure_mesh.h"
 #include "view/vessels.h"
 
 namespace calot {
@@ -40,6 +41,9 @@ Scene SceneBuilder::build(const World& world) const {
     mesh.normals = world.skin_normals(static_cast<int>(i));
     scene.meshes.push_back(std::move(mesh));
   }
+  for (std::size_t i = 0; i < organs_.size() && definition.laparoscope.show_structure; ++i)
+    for (SceneMesh& mesh : structure_meshes(world.structure(static_cast<int>(i))))
+      scene.meshes.push_back(std::move(mesh));
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());
   return scene;
 }
