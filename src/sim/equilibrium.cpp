@@ -62,7 +62,7 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_intern
 }
 
 void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
-  matrix.assign(body_.constant_hessian());
+  matrix.assign(body_.pattern().entries());
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);

@@ -182,16 +182,15 @@ std::optional<Failure> VirtualStructure::build() {
     edge_lengths_.push_back(std::ldexp(shortest, -base_->levels.level_of(detail)));
   }
 
-  cliques_ = shell_.cliques();
+  std::vector<std::vector<int>> cliques = shell_.cliques();
   if (base_->setup.bile) {
     if (Result<bool> built = build_bile(tree); !built) return built.failure();
-    for (std::vector<int>& clique : bile_->cliques()) cliques_.push_back(std::move(clique));
+    for (std::vector<int>& clique : bile_->cliques()) cliques.push_back(std::move(clique));
   }
-  for (const SkinFace& face : skin_faces_) cliques_.push_back(face.nodes);
+  for (const SkinFace& face : skin_faces_) cliques.push_back(face.nodes);
   bed_points_ = basis_.evaluate(base_->bed_places, 0);
-  BlockMatrix constant = pattern();
-  foundation().add_hessian(bed_points_, constant);
-  constant_hessian_ = constant.entries();
+  constant_ = BlockMatrix(nodes(), cliques);
+  foundation().add_hessian(bed_points_, constant_);
   return std::nullopt;
 }
 
@@ -256,8 +255,6 @@ double VirtualStructure::largest_motion(const VecX& dx) const {
   }
   return sum;
 }
-
-BlockMatrix VirtualStructure::pattern() const { return BlockMatrix(nodes(), cliques_); }
 
 double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }
 

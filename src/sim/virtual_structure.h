@@ -85,9 +85,8 @@ class VirtualStructure {
   };
   const std::vector<SkinFace>& skin_faces() const { return skin_faces_; }
 
-  /// Empty matrix with this structure's pattern; and the constant part of its Hessian (the bed).
-  BlockMatrix pattern() const;
-  const std::vector<double>& constant_hessian() const { return constant_hessian_; }
+  /// A matrix with this structure's pattern that holds the constant part of its Hessian (the bed).
+  const BlockMatrix& pattern() const { return constant_; }
 
   /// The bed's springs and the surface points that they hold, the same at rest whatever the details.
   const Links& foundation() const { return base_->bed; }
@@ -128,9 +127,9 @@ class VirtualStructure {
   Shell shell_;
   std::optional<Bile> bile_;
   Tessellation skin_;
-  std::vector<double> edge_lengths_, constant_hessian_;
+  std::vector<double> edge_lengths_;
+  BlockMatrix constant_{0, {}};
   StencilTable quadrature_, bed_points_;
-  std::vector<std::vector<int>> cliques_;
   std::vector<SkinFace> skin_faces_;
 };
 
