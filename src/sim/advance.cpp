@@ -8,6 +8,7 @@
 #include "base/timed.h"
 #include "sim/grip.h"
 #include "sim/hold.h"
+#include "sim/rubbing.h"
 
 namespace calot {
 namespace {
@@ -68,6 +69,13 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
     spread(stencils, target.row[i], target.stiffness[i] * (target.target[i] - field_now.grip.target[i]),
            load);
     loaded = true;
+  }
+  // What rubs touches as well: it has been found loaded above.
+  const FrictionLoad carried_on = friction_load(field, organ, to);
+  for (std::size_t i = 0; i < carried_on.points.size(); ++i) {
+    const RubbingPoint& point = field_now.friction.points[i];
+    const FrictionSample now = point.hold.sample(organ.body.skin_point(point.row, organ.state.x));
+    spread(stencils, point.row, now.hessian * (carried_on.points[i].hold.anchor - point.hold.anchor), load);
   }
   return load;
 }
@@ -190,13 +198,13 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
       const double next = share >= 1.0 ? 1.0 : done + share * left;
       const Poses poses = next >= 1.0 ? to : between(from, to, share);
       accepted = true;
-      std::vector<BodyState> before;
+      std::vector<Placement> before;
       for (std::size_t k = 0; k < field.organs.size() && accepted; ++k) {
         Organ& organ = field.organs[k];
-        before.push_back(organ.state);
+        before.push_back(placement(organ));
         organ.state.x += share * predictions[k].dx;
         organ.state.multiplier += share * predictions[k].dmultiplier;
-        last = settle_organ(field, organ, poses, part_iterations, statistics);
+        last = settle_organ(field, organ, poses, before.back().state.x, part_iterations, statistics);
         accepted = last.converged();
       }
       if (accepted) {
@@ -206,7 +214,7 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
         last = {};
         ++statistics.substeps;
       } else {
-        for (std::size_t k = 0; k < before.size(); ++k) field.organs[k].state = before[k];
+        for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
         if (!fresh) {
           fresh = true;
           break;
@@ -325,6 +333,14 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
       const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
       if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
+    }
+    for (const RubbingPoint& point : now.friction.points) {
+      const std::size_t tool = static_cast<std::size_t>(point.shape) / shapes_per_tool;
+      const Vec3 at = organ.body.skin_point(point.row, organ.state.x);
+      // The point is counted where it presses.
+      if (tool >= loads.size()) continue;
+      loads[tool].force += point.hold.sample(at).gradient;
+      loads[tool].moment += (at - field.tools[tool].trocar).cross(point.hold.sample(at).gradient);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const Vec3 at = organ.body.skin_point(organ.grips[g].row, organ.state.x);

@@ -33,6 +33,7 @@ double BodyProblem::value(const VecX& x) const {
   if (!std::isfinite(sum)) return sum;
   sum += body_.foundation().value(body_.quadrature(), x);
   sum += field_.grip.value(body_.skin().stencils, x);
+  sum += field_.friction.value(body_.skin().stencils, x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
     if (fixed_pressure_) sum -= multiplier_ * body_.bile()->volume(x);
@@ -50,6 +51,7 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_intern
   largest_internal = largest_node(gradient);
   body_.foundation().add_gradient(body_.quadrature(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
+  field_.friction.add_gradient(body_.skin().stencils, x, gradient);
   if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
@@ -64,6 +66,7 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   matrix.assign(body_.constant_hessian());
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
+  field_.friction.add_hessian(body_.skin().stencils, x, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);

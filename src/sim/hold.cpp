@@ -7,23 +7,14 @@
 namespace calot {
 namespace {
 
-/// What a failed change of a grip gives back.
-struct Held {
-  BodyState state;
-  std::vector<GripPoint> grips;
-};
-
-std::vector<Held> held_now(const Field& field) {
-  std::vector<Held> out;
-  for (const Organ& organ : field.organs) out.push_back({organ.state, organ.grips});
+std::vector<Placement> placements(const Field& field) {
+  std::vector<Placement> out;
+  for (const Organ& organ : field.organs) out.push_back(placement(organ));
   return out;
 }
 
-void give_back(Field& field, const std::vector<Held>& held) {
-  for (std::size_t k = 0; k < held.size(); ++k) {
-    field.organs[k].state = held[k].state;
-    field.organs[k].grips = held[k].grips;
-  }
+void give_back(Field& field, const std::vector<Placement>& before) {
+  for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
 }
 
 /// Moves what a tool holds along its pads by `way` (m, patient's frame) and lets go what leaves them.
@@ -47,7 +38,7 @@ void slide(Field& field, int instrument, const Vec3& way) {
 
 Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
   constexpr double weaken = 0.2, last_stiffness = 0.05;  // N/m a point, far below the wall's
-  const std::vector<Held> before = held_now(field);
+  const std::vector<Placement> before = placements(field);
   const std::string when = "as a grip let it go";
   Result<bool> settled = true;
   for (double stiffness = grip_stiffness; settled && stiffness > last_stiffness; stiffness *= weaken) {
@@ -87,7 +78,7 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
   Vec3 pull = pad_pull(field, instrument);
   const double at_start = pull.norm();
   if (at_start <= above * limit) return 0.0;
-  const std::vector<Held> before = held_now(field);
+  const std::vector<Placement> before = placements(field);
   double way = first_way;
   for (int k = 0; k < max_slides; ++k) {
     slide(field, instrument, way * pull.normalized());

@@ -24,6 +24,7 @@ struct Organ {
   ContactSearch search;
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
+  FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
 };
 
 /// Builds the organ and brings it to rest under its bile (and on `field`). Failures: scenario (a mesh that

@@ -51,6 +51,12 @@ std::uint64_t World::Impl::hash() const {
       hash.add(grip.row);
       hash.add(std::span<const double>(grip.local.data(), 3));
     }
+    for (const RubbingPoint& point : organ.friction.points) {
+      hash.add(point.shape);
+      hash.add(point.row);
+      hash.add(point.hold.limit);
+      hash.add(std::span<const double>(point.hold.anchor.data(), 3));
+    }
   }
   for (const Tool& tool : field.tools) {
     hash.add(tool.jaw_stopped);
@@ -160,8 +166,10 @@ Result<World> World::create(const SceneDefinition& scene) {
   if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
   impl->up = up_direction(scene.anatomy);
   impl->field.tolerance = scene.solver.tolerance;
-  if (scene.anatomy.support)
-    impl->field.support = Plane{scene.anatomy.support->point, scene.anatomy.support->normal.normalized()};
+  if (const std::optional<SupportDefinition>& support = scene.anatomy.support) {
+    impl->field.support = Plane{support->point, support->normal.normalized()};
+    impl->field.support_friction = support->friction;
+  }
   Surroundings still;
   if (impl->field.support) still.shapes.push_back(*impl->field.support);
   for (const OrganDefinition& definition : scene.anatomy.organs) {
