@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/timed.h"
 #include "sim/grip.h"
@@ -164,9 +165,38 @@ Failure cannot_follow(const Field& field, const std::string& why, double done) {
       "organ more nodes where it is handled");
 }
 
-/// Moves all tools from their poses to `to`, organs in equilibrium at the end of each part.
-Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) {
-  const int iterations_before = statistics.newton_iterations;
+std::string held_organ(const Field& field, int instrument) {
+  for (const Organ& organ : field.organs)
+    if (grip_count(organ, instrument) > 0) return organ.definition.name;
+  return {};
+}
+
+/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost.
+Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
+                      SolveStatistics& statistics) {
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const int index = static_cast<int>(i);
+    if (!tool.jaw_stopped) continue;
+    const std::string organ = held_organ(field, index);
+    const Result<double> pull = slip(field, index, statistics);
+    if (!pull) return pull.failure();
+    if (pull.value() > 0 && !tool.slipping && !slipped_before[i])
+      events.push_back({"slip", 0, tool.definition.name, organ, pull.value()});
+    tool.slipping |= pull.value() > 0;
+    if (both_pads_hold(field, index)) continue;
+    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
+    tool.jaw_stopped = false;
+    events.push_back({"release", 0, tool.definition.name, organ, 0});
+  }
+  return true;
+}
+
+/// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
+/// of each part.
+Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slipped_before,
+                    std::vector<WorldEvent>& events, SolveStatistics& statistics) {
+  int iterations_before = statistics.newton_iterations;
   double done = 0;
   NewtonResult last;  // of the solve that failed last, if any did in this part
   bool fresh =
@@ -213,6 +243,10 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
         fresh = false;
         last = {};
         ++statistics.substeps;
+        const int iterations_moving = statistics.newton_iterations;
+        Result<bool> held = let_slip(field, slipped_before, events, statistics);
+        if (!held) return held;
+        iterations_before += statistics.newton_iterations - iterations_moving;
       } else {
         for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
         if (!fresh) {
@@ -245,38 +279,12 @@ std::vector<double> all_stops(const std::vector<std::vector<double>>& holding_st
   return stops;
 }
 
-std::string held_organ(const Field& field, int instrument) {
-  for (const Organ& organ : field.organs)
-    if (grip_count(organ, instrument) > 0) return organ.definition.name;
-  return {};
-}
-
-/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost.
-Result<bool> let_slip(Field& field, std::vector<WorldEvent>& events, SolveStatistics& statistics) {
-  for (std::size_t i = 0; i < field.tools.size(); ++i) {
-    Tool& tool = field.tools[i];
-    const int index = static_cast<int>(i);
-    const bool slipped_before = tool.slipping;
-    tool.slipping = false;
-    if (!tool.jaw_stopped) continue;
-    const std::string organ = held_organ(field, index);
-    const Result<double> pull = slip(field, index, statistics);
-    if (!pull) return pull.failure();
-    tool.slipping = pull.value() > 0;
-    if (tool.slipping && !slipped_before)
-      events.push_back({"slip", 0, tool.definition.name, organ, pull.value()});
-    if (both_pads_hold(field, index)) continue;
-    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
-    tool.jaw_stopped = false;
-    events.push_back({"release", 0, tool.definition.name, organ, 0});
-  }
-  return true;
-}
-
 }  // namespace
 
 Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
   std::vector<WorldEvent> events;
+  std::vector<char> slipped_before;
+  for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     // Opening lets go; so do jaws that stop closing before a fold fills them, as they press on nothing.
@@ -297,7 +305,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     Poses here = between(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (field.tools[i].jaw_stopped) here[i].jaw = field.tools[i].pose.jaw;
-    if (Result<bool> moved = follow(field, here, statistics); !moved) return moved.failure();
+    Result<bool> moved = follow(field, here, slipped_before, events, statistics);
+    if (!moved) return moved.failure();
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
       Tool& tool = field.tools[i];
       const int index = static_cast<int>(i);
@@ -314,7 +323,6 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       events.push_back({"grasp", 0, tool.definition.name, held_organ(field, index), 0});
     }
   }
-  if (Result<bool> held = let_slip(field, events, statistics); !held) return held.failure();
   return events;
 }
 

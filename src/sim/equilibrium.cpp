@@ -113,7 +113,7 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
                     NewtonWorkspace& work, ContactSearch& search, BodyState& state, bool fixed_pressure) {
   constexpr int max_rounds = 30;
   NewtonResult total;
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < max_rounds && total.iterations < settle_iterations; ++round) {
     const VecX before = state.x;
     double gathering_s = 0;
     std::vector<ContactPair> pairs;

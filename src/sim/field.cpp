@@ -50,8 +50,10 @@ NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<In
     total.add(settle(organ.body, around, settings, organ.work, organ.search, organ.state));
     if (!total.converged() || !has_friction(field)) break;
     const FrictionLoad used = around.friction;
-    if (renew_friction(field, organ, poses, before, around) <= friction_tolerance) {
-      keep_friction(field, organ, poses, used);
+    const double share = round < relaxed_round ? 1.0 : 0.5;
+    if (renew_friction(field, organ, poses, before, share, around) <= friction_tolerance) {
+      // Where nothing moved, not even rounding may.
+      if (organ.state.x != before || poses != present_poses(field)) keep_friction(field, organ, poses, used);
       break;
     }
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;

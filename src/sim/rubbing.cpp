@@ -25,16 +25,15 @@ double coefficient(const Field& field, int shape) {
   return tool < field.tools.size() ? field.tools[tool].definition.friction : field.support_friction;
 }
 
-/// Pairs (instrument, row) that are gripped, in order.
-std::vector<std::pair<int, int>> gripped(const Organ& organ) {
-  std::vector<std::pair<int, int>> out;
-  for (const GripPoint& grip : organ.grips) out.emplace_back(grip.instrument, grip.row);
-  std::sort(out.begin(), out.end());
+/// Whether each tool's jaws hold a part of the organ.
+std::vector<bool> holding_tools(const Field& field, const Organ& organ) {
+  std::vector<bool> out(field.tools.size() + 1, false);  // the last is the support
+  for (const GripPoint& grip : organ.grips) out[grip.instrument] = true;
   return out;
 }
 
-bool is_gripped(const std::vector<std::pair<int, int>>& held, int shape, int row) {
-  return std::binary_search(held.begin(), held.end(), std::pair(shape / shapes_per_tool, row));
+bool is_holding_jaw(const std::vector<bool>& holding, int shape) {
+  return holding[shape / shapes_per_tool] && shape % shapes_per_tool > 0;
 }
 
 /// Sum of the changes of the points' limits along their normals, over the sum of the limits.
@@ -49,7 +48,7 @@ double change(const FrictionLoad& from, const FrictionLoad& to) {
   }
   for (const RubbingPoint& point : from.points)
     if (!to.find(point.shape, point.row)) changed += point.hold.limit;
-  return changed > 0 ? changed / std::max(sum, changed * friction_tolerance) : 0.0;
+  return changed / std::max(sum, least_friction);
 }
 
 }  // namespace
@@ -64,22 +63,22 @@ FrictionLoad friction_load(const Field& field, const Organ& organ, const std::ve
   FrictionLoad out;
   if (organ.friction.points.empty()) return out;
   const std::vector<Pose> frames = shape_frames(field, poses);
-  const auto held = gripped(organ);
+  const std::vector<bool> holding = holding_tools(field, organ);
   for (const RubbingPoint& point : organ.friction.points)
-    if (!is_gripped(held, point.shape, point.row))
+    if (!is_holding_jaw(holding, point.shape))
       out.points.push_back({point.row, point.shape, point.hold.carried(frames[point.shape])});
   return out;
 }
 
 double renew_friction(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                      const VecX& before, Surroundings& around) {
+                      const VecX& before, double share, Surroundings& around) {
   const std::vector<Pose> frames = shape_frames(field, poses);
-  const auto held = gripped(organ);
+  const std::vector<bool> holding = holding_tools(field, organ);
   const std::vector<InstrumentPose> from = present_poses(field);
   FrictionLoad now;
   for (const ContactPair& pair : organ.search.pairs(organ.body, organ.state.x, around, 0.0)) {
     const double mu = coefficient(field, pair.shape);
-    if (pair.distance >= around.barrier.range || mu <= 0 || is_gripped(held, pair.shape, pair.row)) continue;
+    if (pair.distance >= around.barrier.range || mu <= 0 || is_holding_jaw(holding, pair.shape)) continue;
     const double area = organ.body.skin_areas()[pair.row];
     const DistanceSample d =
         sample_distance(around.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x));
@@ -97,6 +96,11 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
     return std::tie(a.shape, a.row) < std::tie(b.shape, b.row);
   });
   const double changed = change(around.friction, now);
+  for (RubbingPoint& point : now.points) {
+    const RubbingPoint* old = around.friction.find(point.shape, point.row);
+    const double limit = old ? old->hold.limit : 0.0;
+    point.hold.limit = limit + share * (point.hold.limit - limit);
+  }
   around.friction = std::move(now);
   return changed;
 }
