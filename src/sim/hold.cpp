@@ -36,8 +36,8 @@ Failure without_end(const Field& field, int instrument, const std::string& what)
 /// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
 /// equilibria; then they are let go.
 Result<bool> fade(Field& field, int instrument, const std::function<bool(const GripPoint&)>& leaves,
-                  const Budget& budget, SolveStatistics& statistics) {
-  constexpr double weaken = 0.2, last_stiffness = 0.05;  // N/m a point, far below the wall's
+                  double weaken, const Budget& budget, SolveStatistics& statistics) {
+  constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
   for (double stiffness = grip_stiffness; stiffness > last_stiffness; stiffness *= weaken) {
     if (budget.spent()) return without_end(field, instrument, "what leaves");
@@ -68,7 +68,8 @@ Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& 
       leave |= off_the_pads(grip);
     }
   }
-  if (leave) return fade(field, instrument, off_the_pads, budget, statistics);
+  // The rest of the fold holds on: longer steps than a release's do.
+  if (leave) return fade(field, instrument, off_the_pads, 0.04, budget, statistics);
   return settle_field(field, "as it slipped from the jaws", statistics);
 }
 
@@ -78,7 +79,7 @@ Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) 
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const std::vector<Placement> before = placements(field);
   const auto held = [&](const GripPoint& grip) { return grip.instrument == instrument; };
-  const Result<bool> faded = fade(field, instrument, held, budget, statistics);
+  const Result<bool> faded = fade(field, instrument, held, 0.2, budget, statistics);
   if (!faded) give_back(field, before);
   return faded;
 }
@@ -107,33 +108,39 @@ double holding_limit(const Tool& tool) {
 }
 
 Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
-  constexpr double above = 1.001, below = 0.98;  // of the limit
-  constexpr int max_slides = 400;
-  constexpr double first_way = 0.1e-3, longest_way = 0.5e-3;  // m, below half the skin's spacing
+  constexpr double above = 1.001, below = 0.95;  // of the limit
+  // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
+  // slide but the jump of a fold that a leaving point frees.
+  constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const double limit = holding_limit(field.tools[instrument]);
   Vec3 pull = pad_pull(field, instrument);
   const double at_start = pull.norm();
   if (at_start <= above * limit) return 0.0;
-  const std::vector<Placement> before = placements(field);
-  double way = first_way;
-  for (int k = 0; k < max_slides && !budget.spent(); ++k) {
+  const std::vector<Placement> start = placements(field);
+  double way = shortest_way;
+  while (!budget.spent()) {
+    const std::vector<Placement> before = placements(field);
     const Result<bool> slid = slide(field, instrument, way * pull.normalized(), budget, statistics);
     if (!slid) {
-      give_back(field, before);
+      give_back(field, start);
       return slid.failure();
     }
-    if (!both_pads_hold(field, instrument)) return at_start;
-    const double force = pull.norm();
-    pull = pad_pull(field, instrument);
-    // Slid too far, it is drawn back once, by no more than it slid.
-    if (pull.norm() <= above * limit && (pull.norm() >= below * limit || way <= 0)) return at_start;
-    // By the secant; a fold that gives no more resistance is followed at the longest pace.
-    const double stiffness = (force - pull.norm()) / way;
-    const double next = stiffness > 0 ? (pull.norm() - 0.99 * limit) / stiffness : longest_way;
-    way = std::clamp(next, -std::abs(way), longest_way);
+    const Vec3 now = pad_pull(field, instrument);
+    const bool lost = !both_pads_hold(field, instrument);
+    if (!lost && now.norm() < below * limit && way > shortest_way) {  // too far
+      give_back(field, before);
+      way = std::max(0.3 * way, shortest_way);
+      continue;
+    }
+    if (lost || now.norm() <= above * limit) return at_start;
+    // By the secant; a fold that gives no more resistance is followed at a growing pace.
+    const double stiffness = (pull.norm() - now.norm()) / way, longest = std::min(2 * way, longest_way);
+    const double next = stiffness > 0 ? (now.norm() - limit) / stiffness : longest;
+    way = std::clamp(next, shortest_way, longest);
+    pull = now;
   }
-  give_back(field, before);
+  give_back(field, start);
   return without_end(field, instrument, "the fold that slips through");
 }
 

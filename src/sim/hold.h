@@ -7,7 +7,7 @@ namespace calot {
 
 /// Newton iterations that a release or a slip may take: one that needs more is blocked, and says so within
 /// seconds.
-inline constexpr int hold_iterations = 1000;
+inline constexpr int hold_iterations = 1500;
 
 /// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish. On
 /// failure (simulation) the grip holds as before.
