@@ -160,7 +160,8 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
     const Surroundings now = surroundings(field, organ, present_poses(field));
     Vec3 rub = Vec3::Zero(), push = Vec3::Zero();
     for (const RubbingPoint& point : now.friction.points)
-      rub += point.hold.sample(organ.body.skin_point(point.row, organ.state.x)).gradient;
+      if (point.shape == shapes_per_tool)
+        rub += point.hold.sample(organ.body.skin_point(point.row, organ.state.x)).gradient;
     for (const ContactForce& force :
          contact_forces(organ.body, organ.state.x, now, gather_pairs(organ.body, organ.state.x, now, 0.0)))
       if (force.shape == shapes_per_tool) push += force.on_shape;
