@@ -96,6 +96,7 @@
 ---@class calot.support
 ---@field point? calot.point a point on it; default { 0, 0, 0 }
 ---@field normal? calot.point its unit normal, pointing out of the solid; default { 0, 0, 1 }
+---@field friction? number coefficient of friction of the skin on it; default 0; 0 to 1
 
 ---A grasper through a port.
 ---@class calot.instrument
@@ -104,6 +105,7 @@
 ---@field force_limit? number tip force above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; default 0.8; 0.01 to 5
+---@field friction? number coefficient of friction of the skin that the shaft and the jaws press on; default 0; 0 to 1
 
 ---The camera and its light.
 ---@class calot.laparoscope

@@ -83,6 +83,7 @@ struct OrganDefinition {
 struct SupportDefinition {
   Vec3 point = Vec3::Zero();    ///< m
   Vec3 normal = Vec3::UnitZ();  ///< unit
+  double friction = 0;          ///< Coulomb's, of the skin on it (d); the rest state is found without
 };
 
 struct AnatomyDefinition {
@@ -108,6 +109,9 @@ struct InstrumentDefinition {
   double pinch_force = 6.8;  ///< N, each jaw on the fold it holds: what surgeons apply (c)
   double pad_friction =
       0.8;  ///< Coulomb's, each serrated pad on the wall: 3 N of pinch hold a pull of 5 N (c)
+  /// Coulomb's, of the wet skin on the shaft and on what of the jaws does not hold it; a smooth shaft has 0 to
+  /// 0.3 (c).
+  double friction = 0;
 };
 
 struct LaparoscopeDefinition {

@@ -167,6 +167,8 @@ void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
   if (anatomy.support) {
     check.place_within(path + ".support.point", anatomy.support->point, reach, "a place in the abdomen");
     check.unit_direction(path + ".support.normal", anatomy.support->normal, "a unit normal");
+    check.in_range(path + ".support.friction", anatomy.support->friction, quantity::number, 0, 1,
+                   "a coefficient of friction of a support");
   }
   check.in_range(path + ".table_head_up", anatomy.table_head_up, quantity::angle, -60 * deg, 60 * deg,
                  "a tilt of an operating table");
@@ -225,6 +227,8 @@ void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition
                    "a force that a hand gives a jaw");
     check.in_range(at + ".pad_friction", instrument.pad_friction, quantity::number, 0.01, 5,
                    "a coefficient of friction");
+    check.in_range(at + ".friction", instrument.friction, quantity::number, 0, 1,
+                   "a coefficient of friction of a smooth tool");
   }
 }
 

@@ -63,6 +63,7 @@ class SceneReader {
     const TableReader reader(check_, &value, path, api_table("support"));
     reader.take("point", support.point);
     reader.take("normal", support.normal);
+    reader.take("friction", support.friction);
     return support;
   }
 
@@ -197,6 +198,7 @@ class SceneReader {
       reader.take("force_limit", instrument.force_limit);
       reader.take("pinch_force", instrument.pinch_force);
       reader.take("pad_friction", instrument.pad_friction);
+      reader.take("friction", instrument.friction);
       check_free(path, name);
       instruments.push_back(instrument);
     }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/timed.h"
 #include "sim/grip.h"
 #include "sim/hold.h"
+#include "sim/rubbing.h"
 #include "sim/structural_extension.h"
 
 namespace calot {
@@ -69,6 +71,13 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
     spread(stencils, target.row[i], target.stiffness[i] * (target.target[i] - field_now.grip.target[i]),
            load);
     loaded = true;
+  }
+  // What rubs touches as well: it has been found loaded above.
+  const FrictionLoad carried_on = friction_load(field, organ, to);
+  for (std::size_t i = 0; i < carried_on.points.size(); ++i) {
+    const RubbingPoint& point = field_now.friction.points[i];
+    const FrictionSample now = point.hold.sample(organ.body.skin_point(point.row, organ.state.x));
+    spread(stencils, point.row, now.hessian * (carried_on.points[i].hold.anchor - point.hold.anchor), load);
   }
   return load;
 }
@@ -157,9 +166,38 @@ Failure cannot_follow(const Field& field, const std::string& why, double done) {
       "organ more nodes where it is handled");
 }
 
-/// Moves all tools from their poses to `to`, organs in equilibrium at the end of each part.
-Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) {
-  const int iterations_before = statistics.newton_iterations;
+std::string held_organ(const Field& field, int instrument) {
+  for (const Organ& organ : field.organs)
+    if (grip_count(organ, instrument) > 0) return organ.definition.name;
+  return {};
+}
+
+/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost.
+Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
+                      SolveStatistics& statistics) {
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const int index = static_cast<int>(i);
+    if (!tool.jaw_stopped) continue;
+    const std::string organ = held_organ(field, index);
+    const Result<double> pull = slip(field, index, statistics);
+    if (!pull) return pull.failure();
+    if (pull.value() > 0 && !tool.slipping && !slipped_before[i])
+      events.push_back({"slip", 0, tool.definition.name, organ, pull.value()});
+    tool.slipping |= pull.value() > 0;
+    if (both_pads_hold(field, index)) continue;
+    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
+    tool.jaw_stopped = false;
+    events.push_back({"release", 0, tool.definition.name, organ, 0});
+  }
+  return true;
+}
+
+/// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
+/// of each part.
+Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slipped_before,
+                    std::vector<WorldEvent>& events, SolveStatistics& statistics) {
+  int iterations_before = statistics.newton_iterations;
   double done = 0;
   NewtonResult last;  // of the solve that failed last, if any did in this part
   bool fresh =
@@ -191,13 +229,13 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
       const double next = share >= 1.0 ? 1.0 : done + share * left;
       const Poses poses = next >= 1.0 ? to : between(from, to, share);
       accepted = true;
-      std::vector<BodyState> before;
+      std::vector<Placement> before;
       for (std::size_t k = 0; k < field.organs.size() && accepted; ++k) {
         Organ& organ = field.organs[k];
-        before.push_back(organ.state);
+        before.push_back(placement(organ));
         organ.state.x += share * predictions[k].dx;
         organ.state.multiplier += share * predictions[k].dmultiplier;
-        last = settle_organ(field, organ, poses, part_iterations, statistics);
+        last = settle_organ(field, organ, poses, before.back().state.x, part_iterations, statistics);
         accepted = last.converged();
       }
       if (accepted) {
@@ -207,8 +245,12 @@ Result<bool> follow(Field& field, const Poses& to, SolveStatistics& statistics) 
         fresh = false;
         last = {};
         ++statistics.substeps;
+        const int iterations_moving = statistics.newton_iterations;
+        Result<bool> held = let_slip(field, slipped_before, events, statistics);
+        if (!held) return held;
+        iterations_before += statistics.newton_iterations - iterations_moving;
       } else {
-        for (std::size_t k = 0; k < before.size(); ++k) field.organs[k].state = before[k];
+        for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
         if (!fresh) {
           fresh = true;
           break;
@@ -239,38 +281,12 @@ std::vector<double> all_stops(const std::vector<std::vector<double>>& holding_st
   return stops;
 }
 
-std::string held_organ(const Field& field, int instrument) {
-  for (const Organ& organ : field.organs)
-    if (grip_count(organ, instrument) > 0) return organ.definition.name;
-  return {};
-}
-
-/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost.
-Result<bool> let_slip(Field& field, std::vector<WorldEvent>& events, SolveStatistics& statistics) {
-  for (std::size_t i = 0; i < field.tools.size(); ++i) {
-    Tool& tool = field.tools[i];
-    const int index = static_cast<int>(i);
-    const bool slipped_before = tool.slipping;
-    tool.slipping = false;
-    if (!tool.jaw_stopped) continue;
-    const std::string organ = held_organ(field, index);
-    const Result<double> pull = slip(field, index, statistics);
-    if (!pull) return pull.failure();
-    tool.slipping = pull.value() > 0;
-    if (tool.slipping && !slipped_before)
-      events.push_back({"slip", 0, tool.definition.name, organ, pull.value()});
-    if (both_pads_hold(field, index)) continue;
-    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
-    tool.jaw_stopped = false;
-    events.push_back({"release", 0, tool.definition.name, organ, 0});
-  }
-  return true;
-}
-
 }  // namespace
 
 Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
   std::vector<WorldEvent> events;
+  std::vector<char> slipped_before;
+  for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     // Opening lets go; so do jaws that stop closing before a fold fills them, as they press on nothing.
@@ -291,7 +307,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     Poses here = between(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (field.tools[i].jaw_stopped) here[i].jaw = field.tools[i].pose.jaw;
-    if (Result<bool> moved = follow(field, here, statistics); !moved) return moved.failure();
+    Result<bool> moved = follow(field, here, slipped_before, events, statistics);
+    if (!moved) return moved.failure();
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
       Tool& tool = field.tools[i];
       const int index = static_cast<int>(i);
@@ -308,7 +325,6 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       events.push_back({"grasp", 0, tool.definition.name, held_organ(field, index), 0});
     }
   }
-  if (Result<bool> held = let_slip(field, events, statistics); !held) return held.failure();
   return events;
 }
 
@@ -327,6 +343,14 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
       const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
       if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
+    }
+    for (const RubbingPoint& point : now.friction.points) {
+      const std::size_t tool = static_cast<std::size_t>(point.shape) / shapes_per_tool;
+      const Vec3 at = organ.body.skin_point(point.row, organ.state.x);
+      // The point is counted where it presses.
+      if (tool >= loads.size()) continue;
+      loads[tool].force += point.hold.sample(at).gradient;
+      loads[tool].moment += (at - field.tools[tool].trocar).cross(point.hold.sample(at).gradient);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const Vec3 at = organ.body.skin_point(organ.grips[g].row, organ.state.x);

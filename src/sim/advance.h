@@ -3,9 +3,9 @@
 //
 // Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
 // wall moves along), is cut where a skin point would come too near a shape or a node would move further than
-// a set share of its local edge, and ends in equilibrium. Nothing depends on how the motion was cut into
-// steps but where jaws take hold, which happens at fixed jaw angles, and slipping, which is settled at the end
-// of each step.
+// a set share of its local edge, and ends in equilibrium; then folds slip that are pulled harder than they are
+// held. How the motion was cut into steps matters nowhere but to what slides, a little, as friction follows
+// the way in straight pieces; jaws take hold at fixed angles.
 
 #include <string>
 #include <vector>

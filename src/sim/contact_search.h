@@ -3,6 +3,7 @@
 
 #include "collision/barrier.h"
 #include "collision/shapes.h"
+#include "sim/friction_load.h"
 #include "sim/virtual_structure.h"
 
 namespace calot {
@@ -11,7 +12,8 @@ namespace calot {
 struct Surroundings {
   std::vector<Shape> shapes;
   Barrier barrier;
-  Links grip;  ///< rows of the skin's stencils
+  Links grip;             ///< rows of the skin's stencils
+  FrictionLoad friction;  ///< of the same rows
 };
 
 /// A skin point near enough to a shape to meet it within a solve.

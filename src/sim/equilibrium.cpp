@@ -34,6 +34,7 @@ double BodyProblem::value(const VecX& x) const {
   if (!std::isfinite(sum)) return sum;
   sum += body_.foundation().value(body_.bed_points(), x);
   sum += field_.grip.value(body_.skin().stencils, x);
+  sum += field_.friction.value(body_.skin().stencils, x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
     if (fixed_pressure_) sum -= multiplier_ * body_.bile()->volume(x);
@@ -51,6 +52,7 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_intern
   largest_internal = largest_node(gradient);
   body_.foundation().add_gradient(body_.bed_points(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
+  field_.friction.add_gradient(body_.skin().stencils, x, gradient);
   if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
@@ -65,6 +67,7 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   matrix.assign(body_.pattern().entries());
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
+  field_.friction.add_hessian(body_.skin().stencils, x, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
@@ -114,7 +117,7 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
                     ExtensionScheme scheme) {
   constexpr int max_rounds = 30;
   NewtonResult total;
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < max_rounds && total.iterations < settle_iterations; ++round) {
     const VecX before = state.x;
     double gathering_s = 0;
     std::vector<ContactPair> pairs;

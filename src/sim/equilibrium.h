@@ -12,6 +12,9 @@ namespace calot {
 /// No step takes a skin point nearer to a shape than this share of its distance before it.
 inline constexpr double contact_keep = 0.2;
 
+/// No equilibrium takes more Newton iterations, whatever its rounds: one that needs them is blocked.
+inline constexpr int settle_iterations = 1000;
+
 class BodyProblem : public ConstrainedEnergy {
  public:
   /// `fixed_pressure`: the multiplier is prescribed and the volume free.

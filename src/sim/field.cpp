@@ -1,6 +1,7 @@
 #include "sim/field.h"
 
 #include "sim/grip.h"
+#include "sim/rubbing.h"
 
 namespace calot {
 
@@ -18,6 +19,7 @@ Surroundings surroundings(const Field& field, const Organ& organ, const std::vec
       out.shapes.push_back(std::move(shape));
   if (field.support) out.shapes.push_back(*field.support);
   out.grip = grip_links(organ, field.tools, poses);
+  out.friction = friction_load(field, organ, poses);
   return out;
 }
 
@@ -29,21 +31,43 @@ void count(const NewtonResult& result, SolveStatistics& statistics) {
   statistics.contact_s += result.safety_s;
 }
 
+Placement placement(const Organ& organ) { return {organ.state, organ.grips, organ.friction}; }
+
+void give_back(Organ& organ, const Placement& placement) {
+  organ.state = placement.state;
+  organ.grips = placement.grips;
+  organ.friction = placement.friction;
+}
+
 NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                          int max_iterations, SolveStatistics& statistics) {
+                          const VecX& before, int max_iterations, SolveStatistics& statistics) {
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
-  const NewtonResult result = settle(organ.body, surroundings(field, organ, poses), settings, organ.work,
-                                     organ.search, organ.state, false, field.scheme);
-  count(result, statistics);
-  return result;
+  Surroundings around = surroundings(field, organ, poses);
+  NewtonResult total;
+  for (int round = 0; round <= friction_rounds; ++round) {
+    total.add(
+        settle(organ.body, around, settings, organ.work, organ.search, organ.state, false, field.scheme));
+    if (!total.converged() || !has_friction(field)) break;
+    const FrictionLoad used = around.friction;
+    const double share = round < relaxed_round ? 1.0 : 0.5;
+    if (renew_friction(field, organ, poses, before, share, around) <= friction_tolerance) {
+      // Where nothing moved, not even rounding may.
+      if (organ.state.x != before || poses != present_poses(field)) keep_friction(field, organ, poses, used);
+      break;
+    }
+    if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
+  }
+  count(total, statistics);
+  return total;
 }
 
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
   for (Organ& organ : field.organs) {
+    const VecX before = organ.state.x;
     const NewtonResult result =
-        settle_organ(field, organ, present_poses(field), NewtonSettings{}.max_iterations, statistics);
+        settle_organ(field, organ, present_poses(field), before, NewtonSettings{}.max_iterations, statistics);
     if (!result.converged()) return solve_failure(result, organ.definition.name, when);
   }
   return true;

@@ -20,6 +20,7 @@ struct Field {
   std::vector<Organ> organs;
   std::vector<Tool> tools;
   std::optional<Plane> support;
+  double support_friction = 0;  ///< Coulomb's
   Barrier barrier;
   double tolerance = 1e-6;
   std::optional<ViewedPlace> viewed;
@@ -29,15 +30,25 @@ struct Field {
 std::vector<InstrumentPose> present_poses(const Field& field);
 
 /// What acts on an organ when the tools stand at `poses`: the tools' shapes first, three each, then the
-/// support; and the springs of what they hold.
+/// support; the springs of what they hold; and friction as it was at the last equilibrium.
 Surroundings surroundings(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
 
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);
 
-/// Brings one organ to rest with the tools at `poses`; on failure it is left at the last iterate.
+/// What a failed motion gives back.
+struct Placement {
+  BodyState state;
+  std::vector<GripPoint> grips;
+  FrictionLoad friction;
+};
+Placement placement(const Organ& organ);
+void give_back(Organ& organ, const Placement& placement);
+
+/// Brings one organ to rest with the tools at `poses`; on failure it is left at the last iterate. `before` is
+/// where it was at its last equilibrium, tools as field.tools stand: friction resists what moved since.
 NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                          int max_iterations, SolveStatistics& statistics);
+                          const VecX& before, int max_iterations, SolveStatistics& statistics);
 
 /// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.

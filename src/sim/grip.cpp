@@ -41,17 +41,6 @@ void take_hold(Field& field, int instrument) {
   }
 }
 
-void loosen(Field& field, int instrument, double share) {
-  for (Organ& organ : field.organs)
-    for (GripPoint& grip : organ.grips)
-      if (grip.instrument == instrument) grip.stiffness *= share;
-}
-
-void let_go(Field& field, int instrument) {
-  for (Organ& organ : field.organs)
-    std::erase_if(organ.grips, [&](const GripPoint& g) { return g.instrument == instrument; });
-}
-
 int grip_count(const Organ& organ, int instrument) {
   return static_cast<int>(std::count_if(organ.grips.begin(), organ.grips.end(),
                                         [&](const GripPoint& g) { return g.instrument == instrument; }));

@@ -12,12 +12,6 @@ inline constexpr double grip_stiffness = 5e5;
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);
 
-/// Multiplies the stiffness of everything the tool holds by `share`.
-void loosen(Field& field, int instrument, double share);
-
-/// Lets everything go that the tool holds, without seeking the equilibrium that follows.
-void let_go(Field& field, int instrument);
-
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
 bool fold_fills_jaws(const Field& field, int instrument);
 

@@ -1,34 +1,63 @@
 #include "sim/hold.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <functional>
 
 #include "sim/grip.h"
 
 namespace calot {
 namespace {
 
-/// What a failed change of a grip gives back.
-struct Held {
-  BodyState state;
-  std::vector<GripPoint> grips;
-};
-
-std::vector<Held> held_now(const Field& field) {
-  std::vector<Held> out;
-  for (const Organ& organ : field.organs) out.push_back({organ.state, organ.grips});
+std::vector<Placement> placements(const Field& field) {
+  std::vector<Placement> out;
+  for (const Organ& organ : field.organs) out.push_back(placement(organ));
   return out;
 }
 
-void give_back(Field& field, const std::vector<Held>& held) {
-  for (std::size_t k = 0; k < held.size(); ++k) {
-    field.organs[k].state = held[k].state;
-    field.organs[k].grips = held[k].grips;
+void give_back(Field& field, const std::vector<Placement>& before) {
+  for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
+}
+
+/// Newton iterations that a change of a grip may take.
+struct Budget {
+  const SolveStatistics& statistics;
+  int last;  ///< count at which it is spent
+  bool spent() const { return statistics.newton_iterations >= last; }
+};
+
+Failure without_end(const Field& field, int instrument, const std::string& what) {
+  return fail(FailureKind::simulation,
+              fmt::format("{} the jaws of '{}' finds no rest", what, field.tools[instrument].definition.name),
+              "raise the instrument's pinch_force or pad_friction, pull less far, or move in smaller steps");
+}
+
+/// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
+/// equilibria; then they are let go.
+Result<bool> fade(Field& field, int instrument, const std::function<bool(const GripPoint&)>& leaves,
+                  double weaken, const Budget& budget, SolveStatistics& statistics) {
+  constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
+  const std::string when = "as a grip let it go";
+  for (double stiffness = grip_stiffness; stiffness > last_stiffness; stiffness *= weaken) {
+    if (budget.spent()) return without_end(field, instrument, "what leaves");
+    for (Organ& organ : field.organs)
+      for (GripPoint& grip : organ.grips)
+        if (leaves(grip)) grip.stiffness *= weaken;
+    if (Result<bool> settled = settle_field(field, when, statistics); !settled) return settled;
   }
+  for (Organ& organ : field.organs) std::erase_if(organ.grips, leaves);
+  return settle_field(field, when, statistics);
 }
 
 /// Moves what a tool holds along its pads by `way` (m, patient's frame) and lets go what leaves them.
-void slide(Field& field, int instrument, const Vec3& way) {
+Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& budget,
+                   SolveStatistics& statistics) {
   const Tool& tool = field.tools[instrument];
+  const auto off_the_pads = [&](const GripPoint& grip) {
+    return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
+  };
+  bool leave = false;
   for (Organ& organ : field.organs) {
     for (GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
@@ -36,40 +65,39 @@ void slide(Field& field, int instrument, const Vec3& way) {
       Vec3 along = jaw.linear().transpose() * way;
       along.x() = 0;  // never through the pad
       grip.local += along;
+      leave |= off_the_pads(grip);
     }
-    std::erase_if(organ.grips, [&](const GripPoint& grip) {
-      return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
-    });
   }
+  // The rest of the fold holds on: longer steps than a release's do.
+  if (leave) return fade(field, instrument, off_the_pads, 0.04, budget, statistics);
+  return settle_field(field, "as it slipped from the jaws", statistics);
 }
 
 }  // namespace
 
 Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
-  constexpr double weaken = 0.2, last_stiffness = 0.05;  // N/m a point, far below the wall's
-  const std::vector<Held> before = held_now(field);
-  const std::string when = "as a grip let it go";
-  Result<bool> settled = true;
-  for (double stiffness = grip_stiffness; settled && stiffness > last_stiffness; stiffness *= weaken) {
-    loosen(field, instrument, weaken);
-    settled = settle_field(field, when, statistics);
-  }
-  if (settled) {
-    let_go(field, instrument);
-    settled = settle_field(field, when, statistics);
-  }
-  if (!settled) give_back(field, before);
-  return settled;
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
+  const std::vector<Placement> before = placements(field);
+  const auto held = [&](const GripPoint& grip) { return grip.instrument == instrument; };
+  const Result<bool> faded = fade(field, instrument, held, 0.2, budget, statistics);
+  if (!faded) give_back(field, before);
+  return faded;
 }
 
 Vec3 pad_pull(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
   Vec3 pull = Vec3::Zero();
   for (const Organ& organ : field.organs) {
-    const Links links = grip_links(organ, field.tools, present_poses(field));
-    for (std::size_t g = 0; g < links.row.size(); ++g)
+    if (grip_count(organ, instrument) == 0) continue;
+    const Surroundings now = surroundings(field, organ, present_poses(field));
+    for (std::size_t g = 0; g < organ.grips.size(); ++g)
       if (organ.grips[g].instrument == instrument)
-        pull += links.stiffness[g] * (organ.body.skin_point(links.row[g], organ.state.x) - links.target[g]);
+        pull += now.grip.stiffness[g] *
+                (organ.body.skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
+    const auto touching = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
+    for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching))
+      if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
+        pull += contact.on_shape;
   }
   const Vec3 across = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(0);
   return pull - across * across.dot(pull);
@@ -80,34 +108,40 @@ double holding_limit(const Tool& tool) {
 }
 
 Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
-  constexpr double above = 1.001, below = 0.98;               // of the limit
-  constexpr double first_way = 0.1e-3, longest_way = 0.5e-3;  // m, below half the skin's spacing
-  constexpr int max_slides = 400;
+  constexpr double above = 1.001, below = 0.95;  // of the limit
+  // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
+  // slide but the jump of a fold that a leaving point frees.
+  constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const double limit = holding_limit(field.tools[instrument]);
   Vec3 pull = pad_pull(field, instrument);
   const double at_start = pull.norm();
   if (at_start <= above * limit) return 0.0;
-  const std::vector<Held> before = held_now(field);
-  double way = first_way;
-  for (int k = 0; k < max_slides; ++k) {
-    slide(field, instrument, way * pull.normalized());
-    if (Result<bool> settled = settle_field(field, "as it slipped from the jaws", statistics); !settled) {
-      give_back(field, before);
-      return settled.failure();
+  const std::vector<Placement> start = placements(field);
+  double way = shortest_way;
+  while (!budget.spent()) {
+    const std::vector<Placement> before = placements(field);
+    const Result<bool> slid = slide(field, instrument, way * pull.normalized(), budget, statistics);
+    if (!slid) {
+      give_back(field, start);
+      return slid.failure();
     }
-    if (!both_pads_hold(field, instrument)) return at_start;
-    const double force = pull.norm();
-    pull = pad_pull(field, instrument);
-    // Slid too far, it is drawn back once, by no more than it slid.
-    if (pull.norm() <= above * limit && (pull.norm() >= below * limit || way <= 0)) return at_start;
-    // By the secant; a fold that gives no more resistance is followed at the longest pace.
-    const double stiffness = (force - pull.norm()) / way;
-    const double next = stiffness > 0 ? (pull.norm() - 0.99 * limit) / stiffness : longest_way;
-    way = std::clamp(next, -std::abs(way), longest_way);
+    const Vec3 now = pad_pull(field, instrument);
+    const bool lost = !both_pads_hold(field, instrument);
+    if (!lost && now.norm() < below * limit && way > shortest_way) {  // too far
+      give_back(field, before);
+      way = std::max(0.3 * way, shortest_way);
+      continue;
+    }
+    if (lost || now.norm() <= above * limit) return at_start;
+    // By the secant; a fold that gives no more resistance is followed at a growing pace.
+    const double stiffness = (pull.norm() - now.norm()) / way, longest = std::min(2 * way, longest_way);
+    const double next = stiffness > 0 ? (now.norm() - limit) / stiffness : longest;
+    way = std::clamp(next, shortest_way, longest);
+    pull = now;
   }
-  give_back(field, before);
-  return fail(FailureKind::simulation, "the fold slips through the jaws without end",
-              "raise the instrument's pinch_force, or pull less far");
+  give_back(field, start);
+  return without_end(field, instrument, "the fold that slips through");
 }
 
 }  // namespace calot

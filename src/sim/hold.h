@@ -5,19 +5,24 @@
 
 namespace calot {
 
+/// Newton iterations that a release or a slip may take: one that needs more is blocked, and says so within
+/// seconds.
+inline constexpr int hold_iterations = 1500;
+
 /// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish. On
 /// failure (simulation) the grip holds as before.
 Result<bool> release(Field& field, int instrument, SolveStatistics& statistics);
 
-/// Pull of the held skin along the pads on the tool, N, patient's frame; what presses on a pad is carried by
-/// it.
+/// Pull of the held tissue along the pads on the tool, N, patient's frame: of the held points and of what
+/// presses on the jaws, as a squeezed fold that pushes on the jaws' edges and is held back by their pads pulls
+/// on nothing. What presses across the pads is carried by them.
 Vec3 pad_pull(const Field& field, int instrument);
 
 /// Largest pull that two pads hold, N: each holds friction times the pinch (Coulomb).
 double holding_limit(const Tool& tool);
 
 /// Lets the held fold slide along the pads, in the direction of the pull, until they can hold it; skin that
-/// slides off the pads is let go. Does nothing below holding_limit. The pull that started it is returned, N,
+/// slides off the pads is let go step by step, as in a release. Does nothing below holding_limit. The pull that started it is returned, N,
 /// 0 when nothing slipped; afterwards the pull is at most 100.1% of the limit, and near it unless part of
 /// the fold has left the pads. On failure (simulation) the grip holds as before.
 Result<double> slip(Field& field, int instrument, SolveStatistics& statistics);

@@ -32,6 +32,7 @@ struct Organ {
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
   std::vector<Extension> extensions;     ///< ordered by shape
+  FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
 };
 
 /// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its

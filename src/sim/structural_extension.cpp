@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/timed.h"
 
@@ -67,13 +68,6 @@ int middle_of(const VirtualStructure& body, const std::vector<Near>& points, dou
       best = p.row;
   return best;
 }
-
-/// What a failed change of details gives back.
-struct Before {
-  VirtualStructure body;
-  BodyState state;
-  NewtonWorkspace work;
-};
 
 bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::vector<ContactPair>& near) {
   return std::all_of(near.begin(), near.end(), [&](const ContactPair& pair) {
@@ -150,17 +144,18 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     return;
   }
   NewtonWorkspace work(next->pattern(), next->coarse_nodes());
-  Before before{std::move(organ.body), organ.state, std::move(organ.work)};
-  organ.state.x = before.body.coordinates_in(next.value(), before.state.x);
-  organ.body = std::move(next).value();
-  organ.work = std::move(work);
+  const Placement before = placement(organ);
+  organ.state.x = organ.body.coordinates_in(next.value(), before.state.x);
+  std::swap(organ.body, next.value());  // what a failed change gives back
+  std::swap(organ.work, work);
+  const VecX start = organ.state.x;
   ++statistics.extensions_changed;
   if (clear_of_tools(organ, now, near) &&
-      settle_organ(field, organ, poses, NewtonSettings{}.max_iterations, statistics).converged())
+      settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged())
     return;
-  organ.body = std::move(before.body);
-  organ.state = std::move(before.state);
-  organ.work = std::move(before.work);
+  std::swap(organ.body, next.value());
+  std::swap(organ.work, work);
+  give_back(organ, before);
   --statistics.extensions_changed;
   ++statistics.extensions_refused;
 }

@@ -14,12 +14,13 @@ InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, dou
           mix(a.jaw, b.jaw)};
 }
 
+Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part) {
+  return part == 0 ? hinge_frame(tool.trocar, pose, tool.geometry)
+                   : jaw_frame(tool.trocar, pose, tool.geometry, part - 1);
+}
+
 Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part) {
-  const auto frame = [&](const InstrumentPose& pose) {
-    return part == 0 ? hinge_frame(tool.trocar, pose, tool.geometry)
-                     : jaw_frame(tool.trocar, pose, tool.geometry, part - 1);
-  };
-  return frame(to) * frame(from).inverse();
+  return part_frame(tool, to, part) * part_frame(tool, from, part).inverse();
 }
 
 double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b) {

@@ -23,6 +23,9 @@ inline constexpr int shapes_per_tool = 3;  ///< shaft, jaw 0, jaw 1
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
 
+/// Frame (to world) that shape `part` (0 shaft, 1 and 2 the jaws) is fixed in.
+Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part);
+
 /// Rigid motion (world to world) of shape `part` (0 shaft, 1 and 2 the jaws) from one pose to another.
 Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part);
 

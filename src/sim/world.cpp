@@ -63,6 +63,12 @@ std::uint64_t World::Impl::hash() const {
       hash.add(grip.row);
       hash.add(std::span<const double>(grip.local.data(), 3));
     }
+    for (const RubbingPoint& point : organ.friction.points) {
+      hash.add(point.shape);
+      hash.add(point.row);
+      hash.add(point.hold.limit);
+      hash.add(std::span<const double>(point.hold.anchor.data(), 3));
+    }
   }
   for (const Tool& tool : field.tools) {
     hash.add(tool.jaw_stopped);
@@ -175,8 +181,10 @@ Result<World> World::create(const SceneDefinition& scene) {
   impl->up = up_direction(scene.anatomy);
   impl->field.tolerance = scene.solver.tolerance;
   impl->field.scheme = scene.solver.extension_scheme;
-  if (scene.anatomy.support)
-    impl->field.support = Plane{scene.anatomy.support->point, scene.anatomy.support->normal.normalized()};
+  if (const std::optional<SupportDefinition>& support = scene.anatomy.support) {
+    impl->field.support = Plane{support->point, support->normal.normalized()};
+    impl->field.support_friction = support->friction;
+  }
   Surroundings still;
   if (impl->field.support) still.shapes.push_back(*impl->field.support);
   for (const OrganDefinition& definition : scene.anatomy.organs) {

@@ -35,7 +35,8 @@ Shape at_gap(const std::vector<Vec3>& skin, double gap, const std::function<Shap
   return shape_at(way);
 }
 
-/// A ball deformed at random, with a plane, a shaft and a jaw 0.25 mm from its skin, and a gripped point.
+/// A ball deformed at random, with a plane, a shaft and a jaw 0.25 mm from its skin, a gripped point and two
+/// that rub.
 struct Touched {
   Field field;
   Organ& organ;
@@ -84,6 +85,9 @@ struct Touched {
     around.grip.row = {highest(Vec3::UnitZ())};
     around.grip.target = {skin[around.grip.row[0]] + Vec3(0.2e-3, -0.1e-3, 0.3e-3)};
     around.grip.stiffness = {1e3};
+    // One that sticks and one that slides.
+    around.friction.points = {{a, 0, {skin[a] + 20e-6 * side, out[a], 0.1, 1e3}},
+                              {b, 1, {skin[b] + 0.4e-3 * side, out[b], 0.1, 1e3}}};
   }
   BodyProblem problem() {
     return {organ.body, around, gather_pairs(organ.body, x, around, 0.0), organ.state};
