@@ -1,6 +1,6 @@
 // Two hundred random instrument paths through and around an organ: each ends in equilibrium with the jaws
 // outside the skin, or as a failure that says where, when and what to change. Fifty a test, so that they run
-// side by side.
+// side by side; every other fifty with structural extensions.
 
 #include <gtest/gtest.h>
 
@@ -39,8 +39,9 @@ class RandomPaths : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Fifties, RandomPaths, ::testing::Range(0, 200 / a_test));
 
 TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
-  const SceneDefinition scene = ball_scene();
-  int followed = 0, touched = 0;
+  SceneDefinition scene = ball_scene();
+  scene.solver.extension_levels = GetParam() % 2;
+  int followed = 0, touched = 0, changed = 0, refused = 0;
   for (int number = a_test * GetParam(); number < a_test * (GetParam() + 1); ++number) {
     Rng rng(77 + static_cast<std::uint64_t>(number));
     World world = World::create(scene).value();
@@ -57,7 +58,12 @@ TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
       for (int k = 1; k <= steps && !failure; ++k) {
         const Result<StepReport> report =
             world.step({.instruments = {interpolate(from, to, static_cast<double>(k) / steps)}});
-        if (!report) failure = report.failure();
+        if (!report) {
+          failure = report.failure();
+          continue;
+        }
+        changed += report->statistics.extensions_changed;
+        refused += report->statistics.extensions_refused;
       }
       from = to;
       touching |= world.report().instruments[0].touching;
@@ -76,6 +82,8 @@ TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
     EXPECT_LT(std::abs(world.report().organs[0].volume / volume - 1), 1e-9) << "path " << number;
   }
   RecordProperty("followed", followed);
+  EXPECT_EQ(changed > a_test, GetParam() % 2 == 1);
+  EXPECT_LE(20 * refused, changed) << "of " << changed << " changes of extensions";
   EXPECT_GE(touched, a_test / 2) << "paths that touch nothing test nothing";
   EXPECT_GE(followed, a_test / 2) << "most must be followed";
 }
