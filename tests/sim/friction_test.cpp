@@ -74,8 +74,10 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
   EXPECT_LT(slide.contact().rubbing, 0.8 * slide.contact().normal);
 
   const VecX x = slide.organ().state.x;
+  const Vec3 force = test::tool_force(slide.field);
   ASSERT_EQ(slide.go(-4e-3, 3e-3, 50), "");
   EXPECT_EQ(slide.organ().state.x, x) << "a tool that rests a second long leaves it where it is";
+  EXPECT_EQ(test::tool_force(slide.field), force);
 }
 
 TEST(Rubbing, WhatSticksDoesNotDependOnTheMesh) {
