@@ -29,7 +29,7 @@ return calot.exercise {
           },
         },
       },
-      laparoscope = { look_at = "sphere.fundus", distance = 80 * mm },
+      laparoscope = { look_at = "sphere.fundus", distance = 60 * mm },
       instruments = { left = { port = "right_subcostal" } },
     }
   end,
@@ -50,4 +50,6 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "left.peak_force_N", novice = 6, expert = 3 }, weight = 1 },
   },
+
+  golden = { at = { 0, 2.2 * s, 5 * s } },
 }
