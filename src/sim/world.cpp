@@ -126,11 +126,13 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
 
 namespace {
 
+constexpr double waiting_depth = 30e-3;  // m: a tool in its trocar before its first move
+
 /// Inputs come from files and devices too: no pose may be beyond what the instrument can do.
 std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) {
-  const GrasperGeometry& g = tool.geometry;
+  const InstrumentGeometry& g = tool.geometry;
   const bool finite = std::isfinite(pose.pitch + pose.yaw + pose.insertion + pose.roll + pose.jaw);
-  const double slack = 1e-9;
+  const double slack = g.has_jaws() ? 1e-9 : 0;
   if (finite && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
       pose.jaw <= g.jaw_opening + slack &&
       std::max({std::abs(pose.pitch), std::abs(pose.yaw), std::abs(pose.roll)}) < 100)
@@ -141,8 +143,9 @@ std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) 
           "instrument '{}' cannot take the pose pitch {:.3g}, yaw {:.3g}, roll {:.3g}, jaw {:.3g} rad, "
           "insertion {:.3g} m",
           tool.definition.name, pose.pitch, pose.yaw, pose.roll, pose.jaw, pose.insertion),
-      fmt::format("its insertion is at most {:.2f} m, its jaws open from 0 to {:.2f} rad", g.max_insertion,
-                  g.jaw_opening));
+      fmt::format("its insertion is at most {:.2f} m, {}", g.max_insertion,
+                  g.has_jaws() ? fmt::format("its jaws open from 0 to {:.2f} rad", g.jaw_opening)
+                               : "it has no jaws: its jaw angle is 0"));
 }
 
 }  // namespace
@@ -173,12 +176,13 @@ Result<World> World::create(const SceneDefinition& scene) {
   for (const InstrumentDefinition& definition : scene.instruments) {
     Tool tool;
     tool.definition = definition;
+    tool.geometry = instrument_geometry(definition.type);
     tool.trocar = world.port_position(definition.port);
     // Waiting in the trocar, closed, pointing at the first organ, just far enough in to be seen to come.
     const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
                                                        : Vec3(world.skin_positions(0).front());
-    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0);
-    tool.pose.insertion = 1.5 * tool.geometry.jaw_length;
+    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
+    tool.pose.insertion = waiting_depth;
     world.impl_->field.tools.push_back(tool);
   }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();

@@ -1,6 +1,6 @@
 #include "view/build_scene.h"
 
-#include "view/grasper_mesh.h"
+#include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
 #include "view/organ_frame.h"
 #include "view/vessels.h"
@@ -31,7 +31,8 @@ Scene SceneBuilder::build(const World& world) const {
   scene.camera = camera_;
   for (std::size_t i = 0; i < definition.instruments.size(); ++i) {
     const Vec3 trocar = world.port_position(definition.instruments[i].port);
-    for (SceneMesh& mesh : grasper_meshes(trocar, world.report().instruments[i].pose, GrasperGeometry{}))
+    for (SceneMesh& mesh :
+         instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))
       scene.meshes.push_back(std::move(mesh));
   }
   for (std::size_t i = 0; i < organs_.size(); ++i) {
