@@ -55,6 +55,7 @@ InstrumentGeometry instrument_geometry(InstrumentType type) {
   InstrumentGeometry geometry;
   if (type == InstrumentType::bipolar_electrode) {
     // A 5 mm rod (c) whose end is its own design (d).
+    geometry.fenestrated = false;
     geometry.jaw_length = 12e-3;
     geometry.jaw_width = geometry.jaw_thickness = geometry.jaw_rounding = geometry.jaw_opening = 0;
     geometry.electrode_radius = 2.5e-3;
@@ -62,11 +63,18 @@ InstrumentGeometry instrument_geometry(InstrumentType type) {
     geometry.neck_radius = 1.9e-3;
   } else if (type == InstrumentType::semm_forceps) {
     // 5 mm shaft (c), jaws broader and shorter than the grasper's (d); they pass a sleeve of 8 mm.
+    geometry.fenestrated = false;
     geometry.jaw_length = 15e-3;
     geometry.jaw_width = 7e-3;
     geometry.jaw_thickness = 2.2e-3;
   }
   return geometry;
+}
+
+std::optional<JawWindow> jaw_window(const InstrumentGeometry& geometry) {
+  if (!geometry.fenestrated) return std::nullopt;
+  const double wide = 0.5 * geometry.jaw_width;
+  return JawWindow{0.30 * geometry.jaw_length, 0.82 * geometry.jaw_length, 0.40 * wide, 0.30 * wide};
 }
 
 Pose hinge_frame(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry) {

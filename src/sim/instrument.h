@@ -1,6 +1,7 @@
 #pragma once
 // A rigid instrument pivoting about its trocar, and the shapes that touch the tissue.
 
+#include <optional>
 #include <vector>
 
 #include "anatomy/definitions.h"
@@ -20,6 +21,11 @@ struct InstrumentPose {
   bool operator==(const InstrumentPose&) const = default;
 };
 
+/// The opening in a fenestrated jaw, m: from `start` to `end` along it, narrowing, with round corners.
+struct JawWindow {
+  double start, end, start_half, end_half;
+};
+
 /// An instrument's measures, all in m and rad. The defaults are the atraumatic grasper's: 5 mm shaft, 310 mm
 /// working length, jaws 20 mm (c). Without jaws, jaw_opening is 0 and the hinge, which cannot turn, is where the
 /// shaft ends: a neck and an electrode, jaw_length long in all, follow on the shaft's axis.
@@ -32,11 +38,14 @@ struct InstrumentGeometry {
   double jaw_rounding = 0.8e-3;             ///< edge radius of the jaw's box; at most half its thickness
   double jaw_opening = 1.0471975511965976;  ///< 60 deg fully open (c)
   double max_insertion = 300e-3;
+  bool fenestrated = true;  ///< jaws with a window; contact takes them for solid
   double electrode_radius = 0, electrode_length = 0, neck_radius = 0;  ///< without jaws
   bool has_jaws() const { return jaw_opening > 0; }
 };
 
 InstrumentGeometry instrument_geometry(InstrumentType type);
+/// None for jaws that are solid, or where there are none.
+std::optional<JawWindow> jaw_window(const InstrumentGeometry& geometry);
 
 /// The frame of the tip: origin at the hinge, +z along the shaft outward (tip direction), jaws open in its xz
 /// plane. At pitch = yaw = roll = 0 its axes are the patient's +x, -y, -z. The hinge is insertion -

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "sim/advance.h"
 #include "sim/grip.h"
+#include "sim/jaw_mould.h"
 #include "sim/vibration.h"
 
 namespace calot {
@@ -27,6 +28,7 @@ struct World::Impl {
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
   Field field;
+  std::vector<JawMould> moulds;  ///< one a tool; of pictures only, so no hash knows them
   StepReport report;
   long steps = 0;
   bool failed = false;
@@ -184,6 +186,7 @@ Result<World> World::create(const SceneDefinition& scene) {
     tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
     tool.pose.insertion = waiting_depth;
     world.impl_->field.tools.push_back(tool);
+    world.impl_->moulds.emplace_back();
   }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
   world.impl_->observe({});
@@ -210,6 +213,8 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   ++self.steps;
+  for (std::size_t i = 0; i < self.moulds.size(); ++i)
+    self.moulds[i].follow(self.field, static_cast<int>(i), 1.0 / self.scene.solver.rate);
   self.observe(std::move(events).value());
   return self.report;
 }
@@ -262,6 +267,13 @@ std::vector<Vec3> World::skin_normals(int organ) const {
 }
 const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
   return impl_->field.organs[organ].body.skin_rest();
+}
+
+World::DrawnSkin World::drawn_skin(int organ) const {
+  DrawnSkin skin{skin_positions(organ), skin_normals(organ)};
+  for (std::size_t i = 0; i < impl_->moulds.size(); ++i)
+    impl_->moulds[i].apply(impl_->field, static_cast<int>(i), organ, skin.positions, skin.normals);
+  return skin;
 }
 
 Result<double> World::lowest_frequency(int index) const {

@@ -92,9 +92,26 @@ Mat3 FreeForm::gradient(const Vec3& x) const {
   return by_box * to_box_.linear();
 }
 
-Vec3 FreeForm::moved_normal(const Vec3& x, const Vec3& n) const {
-  const Mat3 jacobian = Mat3::Identity() + gradient(x);
+Vec3 FreeForm::moved_normal(const Vec3& x, const Vec3& n, double share) const {
+  const Mat3 jacobian = Mat3::Identity() + share * gradient(x);
   return (jacobian.inverse().transpose() * n).normalized();
+}
+
+/// The damped least squares by its normal equations: a row has 64 entries at most, so the products are few.
+Eigen::MatrixX3d FreeForm::damped_nodes(const Eigen::MatrixXd& b, const Eigen::MatrixX3d& wanted,
+                                        double damping) const {
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(b.cols(), b.cols());
+  std::vector<Eigen::Index> entries;
+  for (Eigen::Index k = 0; k < b.rows(); ++k) {
+    entries.clear();
+    for (Eigen::Index i = 0; i < b.cols(); ++i)
+      if (b(k, i) != 0) entries.push_back(i);
+    for (const Eigen::Index j : entries)
+      for (const Eigen::Index i : entries)
+        if (i >= j) normal(i, j) += b(k, i) * b(k, j);
+  }
+  normal.diagonal().array() += damping * damping;
+  return normal.llt().solve(b.transpose() * wanted);
 }
 
 Result<FreeForm::Fit> FreeForm::manipulate(const std::vector<Vec3>& points, const std::vector<Vec3>& targets,
@@ -113,9 +130,7 @@ Result<FreeForm::Fit> FreeForm::manipulate(const std::vector<Vec3>& points, cons
   }
   Fit fit;
   if (damping > 0) {
-    Eigen::MatrixXd normal = b * b.transpose();
-    normal.diagonal().array() += damping * damping;
-    nodes_ = b.transpose() * normal.llt().solve(wanted);
+    nodes_ = damped_nodes(b, wanted, damping);
     fit.rank = static_cast<int>(count);
   } else {
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(b);

@@ -6,9 +6,9 @@
 //
 // with as many functions in a direction as fit into it whole. So u, its first and its second derivatives vanish on
 // the box's faces and outside, and a surface that runs through a face stays smooth. With n functions across a box of
-// half extent h each reaches 4 h / (n + 3) to either side of its middle. Cost: 64 terms to move a point; K
-// manipulated points and N = n_x n_y n_z functions cost about 2 K N min(K, N) operations to fit, which is why the
-// lattice is kept small: 100 points and 300 functions take some milliseconds.
+// half extent h each reaches 4 h / (n + 3) to either side of its middle. Cost: 64 terms to move a point. To fit
+// N = n_x n_y n_z functions to K points: by pseudo-inverse about 2 K N min(K, N) operations, damped N^3 / 3, which is
+// why the lattice is kept small: 400 functions take some milliseconds.
 
 #include <array>
 #include <vector>
@@ -43,8 +43,9 @@ class FreeForm {
   bool contains(const Vec3& x) const;
   Vec3 displacement(const Vec3& x) const;  ///< m, world
   Mat3 gradient(const Vec3& x) const;      ///< of the displacement by x: J - I
-  /// Unit normal at the moved point of a surface with unit normal n at x: by J^-T. Needs det J > 0.
-  Vec3 moved_normal(const Vec3& x, const Vec3& n) const;
+  /// Unit normal at the moved point of a surface with unit normal n at x, where the surface is moved by `share` of
+  /// the displacement: by J^-T. Needs det J > 0.
+  Vec3 moved_normal(const Vec3& x, const Vec3& n, double share = 1) const;
 
   /// w_i(x), first direction fastest: what direct manipulation inverts.
   VecX weights(const Vec3& x) const;
@@ -59,6 +60,8 @@ class FreeForm {
     std::array<double, 4> value{}, slope{};
   };
   Reach reach(int axis, double at) const;
+  Eigen::MatrixX3d damped_nodes(const Eigen::MatrixXd& weights, const Eigen::MatrixX3d& wanted,
+                                double damping) const;
 
   Lattice lattice_;
   Pose to_box_;

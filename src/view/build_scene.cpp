@@ -37,8 +37,9 @@ Scene SceneBuilder::build(const World& world) const {
   }
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     SceneMesh mesh = organs_[i];
-    mesh.positions = world.skin_positions(static_cast<int>(i));
-    mesh.normals = world.skin_normals(static_cast<int>(i));
+    World::DrawnSkin skin = world.drawn_skin(static_cast<int>(i));
+    mesh.positions = std::move(skin.positions);
+    mesh.normals = std::move(skin.normals);
     scene.meshes.push_back(std::move(mesh));
   }
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());

@@ -20,7 +20,8 @@ double tooth(double z) {
 SceneMesh jaw_mesh(const InstrumentGeometry& g) {
   const double wide = 0.5 * g.jaw_width, thick = g.jaw_thickness, round = g.jaw_rounding;
   const Outline outer{0.1e-3, g.jaw_length - 0.05e-3, wide - 0.05e-3, 0.72 * wide};
-  const Outline window{0.30 * g.jaw_length, 0.82 * g.jaw_length, 0.40 * wide, 0.30 * wide};
+  const JawWindow opening = *jaw_window(g);
+  const Outline window{opening.start, opening.end, opening.start_half, opening.end_half};
   struct Station {
     bool inner;    // on the window's outline rather than the outer one
     double inset;  // m, inward from the outline (negative: away from the window)
