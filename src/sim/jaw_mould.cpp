@@ -70,10 +70,23 @@ double Solids::distance(const Vec3& x) const {
   return nearest;
 }
 
+std::optional<Vec3> Solids::pushed_out(Vec3 x, double least) const {
+  constexpr double step = 1e-7, slack = 1e-9;  // m
+  for (int round = 0; round < 8; ++round) {
+    const double room = distance(x);
+    if (room >= least - slack) return x;
+    Vec3 slope;
+    for (int c = 0; c < 3; ++c)
+      slope[c] = (distance(x + step * Vec3::Unit(c)) - distance(x - step * Vec3::Unit(c))) / (2 * step);
+    if (slope.squaredNorm() < 0.01) return std::nullopt;  // between two walls
+    x += (least - room) * slope / slope.squaredNorm();
+  }
+  return std::nullopt;
+}
+
 void JawMould::follow(const Field& field, int instrument, double dt) {
   const Tool& tool = field.tools[instrument];
   std::vector<Held> held;
-  const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse(Eigen::Isometry);
   for (std::size_t k = 0; tool.jaw_stopped && k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     for (const GripPoint& grip : organ.grips) {
@@ -84,11 +97,12 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
       Vec3 moved = local;
       moved.x() += share_on_pad(tool.geometry, local.y(), local.z()) *
                    (moulded_height(tool.geometry, local.y(), local.z()) - local.x());
-      held.push_back({static_cast<int>(k), grip.row, to_hinge.linear() * (jaw.linear() * (moved - local))});
+      held.push_back({static_cast<int>(k), grip.row, jaw.linear() * (moved - local)});
     }
   }
   if (!held.empty()) {
     held_ = std::move(held);
+    hinge_ = hinge_frame(tool.trocar, tool.pose, tool.geometry);
     jaw_ = tool.pose.jaw;
     weight_ = std::min(1.0, weight_ + dt / mould_ease);
     return;
@@ -100,13 +114,11 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
 void JawMould::apply(const Field& field, int instrument, int organ, std::vector<Vec3>& positions,
                      std::vector<Vec3>& normals) const {
   if (!active()) return;
-  const Tool& tool = field.tools[instrument];
-  const InstrumentGeometry& g = tool.geometry;
+  const InstrumentGeometry& g = field.tools[instrument].geometry;
   // Functions about 1 mm apart across the pads, so that the two sides of a fold move apart, and 2 mm along them.
   constexpr double around = 2.5e-3;  // m beyond the pads
   FreeForm::Lattice lattice;
-  const Pose hinge = hinge_frame(tool.trocar, tool.pose, g);
-  lattice.frame = hinge * Pose(Eigen::Translation3d(0, 0, 0.5 * g.jaw_length));
+  lattice.frame = hinge_ * Pose(Eigen::Translation3d(0, 0, 0.5 * g.jaw_length));
   lattice.half = Vec3(g.jaw_length * std::sin(0.5 * jaw_), 0.5 * g.jaw_width, 0.5 * g.jaw_length);
   lattice.half.array() += around;
   lattice.nodes = {5, 7, 9};
@@ -114,7 +126,7 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
   // The skin around what is held stays where it is.
   std::vector<Vec3> ways(positions.size(), Vec3::Zero());
   for (const Held& held : held_)
-    if (held.organ == organ) ways[held.row] = smooth(weight_) * (hinge.linear() * held.way);
+    if (held.organ == organ) ways[held.row] = smooth(weight_) * held.way;
   std::vector<Vec3> from, to;
   for (std::size_t p = 0; p < positions.size(); ++p) {
     if (!form.contains(positions[p])) continue;
@@ -128,20 +140,11 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
   for (std::size_t p = 0; p < positions.size(); ++p) {
     const Vec3 start = positions[p];
     if (!form.contains(start)) continue;
-    const Vec3 way = form.displacement(start);
     const double least = std::min(pad_clearance, solids.distance(start));
-    double reached = 1, refused = 1;
-    while (reached > 1e-3 && solids.distance(start + reached * way) < least - 1e-9) {
-      refused = reached;
-      reached *= 0.5;
-    }
-    for (int halving = 0; halving < 8 && refused > reached; ++halving) {
-      const double middle = 0.5 * (reached + refused);
-      (solids.distance(start + middle * way) < least - 1e-9 ? refused : reached) = middle;
-    }
-    if (reached <= 1e-3) continue;
-    positions[p] = start + reached * way;
-    normals[p] = form.moved_normal(start, normals[p], reached);
+    const std::optional<Vec3> place = solids.pushed_out(start + form.displacement(start), least);
+    if (!place) continue;
+    positions[p] = *place;
+    normals[p] = form.moved_normal(start, normals[p]);
   }
 }
 

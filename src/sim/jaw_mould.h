@@ -27,6 +27,8 @@ class Solids {
   explicit Solids(const Field& field);
   /// From x to the nearest, m, negative inside; in a window at most the true distance.
   double distance(const Vec3& x) const;
+  /// The place nearest to x (nearly, for deep ones) from which they are at least `least` away; none found: none.
+  std::optional<Vec3> pushed_out(Vec3 x, double least) const;
 
  private:
   struct Part {
@@ -37,8 +39,8 @@ class Solids {
   std::vector<Part> parts_;
 };
 
-/// The mould of one tool. Each held point has its way to go; while the mould fades out after the tool has let go it
-/// keeps a share of it. A tool that takes hold again within mould_ease jumps to the new fold's.
+/// The mould of one tool. Each held point has its way to go; after the tool has let go it keeps a share of it that
+/// fades, and the lattice stays where the jaws were. A tool that takes hold again within mould_ease jumps to the new fold's.
 class JawMould {
  public:
   /// Looks at the tool after a step of dt, s.
@@ -46,18 +48,19 @@ class JawMould {
   bool active() const { return weight_ > 0; }
 
   /// Moves an organ's drawn skin. A point that would come nearer to a solid than the pad's clearance, or than it
-  /// already is, goes only as far as it may.
+  /// already is, slides along it.
   void apply(const Field& field, int instrument, int organ, std::vector<Vec3>& positions,
              std::vector<Vec3>& normals) const;
 
  private:
   struct Held {
     int organ = 0, row = 0;   ///< skin point
-    Vec3 way = Vec3::Zero();  ///< m, hinge's frame: from where it is held to where the mould has it
+    Vec3 way = Vec3::Zero();  ///< m, patient's frame: from where it is held to where the mould has it
   };
   std::vector<Held> held_;
-  double jaw_ = 0;     ///< rad, of the tool that held
-  double weight_ = 0;  ///< 0 to 1, linear in time
+  Pose hinge_ = Pose::Identity();  ///< of the tool while it held
+  double jaw_ = 0;                 ///< rad, then
+  double weight_ = 0;              ///< 0 to 1, linear in time
 };
 
 }  // namespace calot

@@ -34,7 +34,7 @@ Field tools_only(const Tool& tool) {
 
 /// Mean distance from the moulded height, m, of skin well before the pads.
 double mean_misfit(const Tool& tool, const std::vector<Vec3>& touched, const std::vector<Vec3>& drawn) {
-  constexpr double well_inside = 1.2e-3, reach = 0.5e-3;  // m: the mould's rim; the contact's range
+  constexpr double well_inside = 0.6e-3, reach = 0.5e-3;  // m: of the pads' edges; the contact's range
   double sum = 0;
   int count = 0;
   for (int jaw = 0; jaw < 2; ++jaw) {
@@ -81,8 +81,8 @@ TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
   const std::vector<Vec3> touched = path.world.skin_positions(0);
   const World::DrawnSkin drawn = path.world.drawn_skin(0);
   const Tool tool = tool_of(path.world);
-  // A lattice of functions 1 to 2 mm apart follows what is wanted of points half a millimetre apart in the mean.
-  EXPECT_LT(mean_misfit(tool, touched, drawn.positions), 0.6 * mean_misfit(tool, touched, touched));
+  // Not all the way: towards the pads' edges the mould fades, and its functions are as wide as a fold at the tip.
+  EXPECT_LT(mean_misfit(tool, touched, drawn.positions), 0.8 * mean_misfit(tool, touched, touched));
   // No point goes further than the contact's range and the bulge together; far from the jaws none goes at all.
   EXPECT_LT(largest_way(drawn.positions, touched), 0.5e-3 + window_bulge + pad_clearance);
   EXPECT_GT(largest_way(drawn.positions, touched), 0.1e-3);
@@ -90,7 +90,8 @@ TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
   const double far = 2 * tool.geometry.jaw_length;
   for (std::size_t p = 0; p < touched.size(); ++p) {
     EXPECT_NEAR(drawn.normals[p].norm(), 1, 1e-12);
-    if ((touched[p] - tip).norm() > far) EXPECT_EQ(drawn.positions[p], touched[p]);
+    const bool away = (touched[p] - tip).norm() > far;
+    EXPECT_TRUE(!away || drawn.positions[p] == touched[p]);
   }
 }
 
@@ -130,7 +131,7 @@ TEST(JawMould, AFlatPadIsFlatAndAWindowLetsTheWallThroughInItsMiddleOnly) {
       const double height = moulded_height(grasper, y, z);
       highest = std::max(highest, height);
       const bool in_window = z > window.start && z < window.end && std::abs(y) < window.start_half;
-      if (!in_window) EXPECT_EQ(height, -pad_clearance);
+      EXPECT_TRUE(in_window || height == -pad_clearance) << y << ", " << z;
       // No step: from one place to the next, 0.1 mm on, it rises by less than the steepest smooth step's slope.
       EXPECT_LT(std::abs(moulded_height(grasper, y + 0.1e-3, z) - height),
                 1.5 * window_bulge * 0.1 / (0.7 * 0.75));
