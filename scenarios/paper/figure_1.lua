@@ -49,5 +49,5 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "left.peak_force_N", novice = 6, expert = 3 }, weight = 1 },
   },
-  golden = { at = { 0, 2 * s } },
+  golden = { at = { 2 * s } },
 }

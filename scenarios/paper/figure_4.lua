@@ -29,7 +29,8 @@ return calot.exercise {
           },
         },
       },
-      laparoscope = { look_at = "sphere.fundus", distance = 80 * mm },
+      solver = { extensions = { levels = 1 } },
+      laparoscope = { look_at = "sphere.fundus", distance = 60 * mm },
       instruments = { left = { port = "right_subcostal" } },
     }
   end,
@@ -50,4 +51,6 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "left.peak_force_N", novice = 6, expert = 3 }, weight = 1 },
   },
+
+  golden = { at = { 0, 2.2 * s, 5 * s } },
 }

@@ -98,14 +98,14 @@
 ---@field normal? calot.point its unit normal, pointing out of the solid; default { 0, 0, 1 }
 ---@field friction? number coefficient of friction of the skin on it; default 0; 0 to 1
 
----A grasper through a port.
+---An instrument through a port.
 ---@class calot.instrument
----@field type? "atraumatic_grasper" which instrument; default "atraumatic_grasper"
+---@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps" which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the semm_forceps have short broad flat ones; default "atraumatic_grasper"
 ---@field port string the port it goes through
 ---@field force_limit? number tip force above which the event overforce is raised; default 8 * N; 0.05 to 100 N
----@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; default 6.8 * N; 0.05 to 100 N
----@field pad_friction? number coefficient of friction of a pad; default 0.8; 0.01 to 5
----@field friction? number coefficient of friction of the skin that the shaft and the jaws press on; default 0; 0 to 1
+---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
+---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
+---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; default 0; 0 to 1
 
 ---The camera and its light.
 ---@class calot.laparoscope
@@ -270,16 +270,16 @@ function Instrument:tip() end
 ---@class calot.DemoInstrument: calot.Instrument
 local DemoInstrument = {}
 
----Opens the jaws and goes to a landmark from outside, ending pressed onto the tissue, ready to close.
+---Opens the jaws, if it has any, and goes to a landmark from outside, ending pressed onto the tissue, ready to close.
 ---@param landmark string a landmark such as "gallbladder.fundus"
 ---@param options? calot.approach_options how
 function DemoInstrument:approach(landmark, options) end
 
----Opens the jaws.
+---Opens the jaws. An error without jaws.
 ---@param angle? number angle between the jaws; default 60 * deg; 0 to 60 deg
 function DemoInstrument:open(angle) end
 
----Closes the jaws on what is between them.
+---Closes the jaws on what is between them. An error without jaws.
 function DemoInstrument:close() end
 
 ---Moves the tip straight to a place.

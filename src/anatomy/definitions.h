@@ -99,7 +99,11 @@ struct PortDefinition {
   Vec3 position = Vec3::Zero();  ///< m
 };
 
-enum class InstrumentType { atraumatic_grasper };
+enum class InstrumentType {
+  atraumatic_grasper,  ///< long fenestrated jaws with teeth
+  bipolar_electrode,   ///< bipolar electrode with channel: a rod with a rounded tip, no jaws: it only pushes
+  semm_forceps,        ///< Semm's endocoagulation forceps: short, broad, flat jaws, parallel when closed
+};
 
 struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
@@ -113,6 +117,15 @@ struct InstrumentDefinition {
   /// 0.3 (c).
   double friction = 0;
 };
+
+/// "atraumatic_grasper", "bipolar_electrode", "semm_forceps", in the order of the types.
+const std::vector<std::string>& instrument_type_names();
+std::string to_text(InstrumentType type);
+std::optional<InstrumentType> instrument_type_called(const std::string& name);
+bool has_jaws(InstrumentType type);
+/// An unnamed instrument with the defaults of its type. Semm's flat pads hold as smooth metal does, friction 0.3
+/// (c). Pinch and friction mean nothing without jaws.
+InstrumentDefinition default_instrument(InstrumentType type);
 
 struct LaparoscopeDefinition {
   std::string port = "umbilical";

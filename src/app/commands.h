@@ -42,7 +42,7 @@ struct NewCommand {
 ExitCode new_command(const NewCommand& command);
 
 struct GoldenCommand {
-  std::vector<std::string> names;  ///< "scenario" or "scenario/frame"
+  std::vector<std::string> names;  ///< see app/golden_select.h
   std::string folder;              ///< of the goldens; empty: the project's golden/
   std::string output;              ///< report: the HTML file; test: the folder for what differs
   bool json = false;

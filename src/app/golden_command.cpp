@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/golden_report.h"
+#include "app/golden_select.h"
 #include "app/golden_store.h"
 #include "app/project.h"
 #include "app/terminal.h"
@@ -15,16 +16,6 @@ namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A scenario with the frames that were asked for; no frames: all of them.
-struct Selected {
-  fs::path file;
-  std::string name;
-  std::vector<std::string> frames;
-  bool wants(const std::string& frame) const {
-    return frames.empty() || std::find(frames.begin(), frames.end(), frame) != frames.end();
-  }
-};
 
 fs::path golden_folder(const GoldenCommand& command) {
   return command.folder.empty() ? project_folder() / "golden" : fs::path(command.folder);
@@ -39,40 +30,6 @@ std::vector<std::string> stored_frames(const fs::path& folder) {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-/// The scenarios that names select (all for no names). Names that match nothing are an error.
-Result<std::vector<Selected>> select(const GoldenCommand& command) {
-  std::vector<Selected> selected;
-  std::vector<std::string> unmatched;
-  const std::vector<fs::path> scenarios = project_scenarios();
-  if (command.names.empty()) {
-    for (const fs::path& file : scenarios) selected.push_back({file, file.stem().string(), {}});
-  }
-  for (const std::string& name : command.names) {
-    const std::size_t slash = name.find('/');
-    const std::string scenario = name.substr(0, slash);
-    const auto file = std::find_if(scenarios.begin(), scenarios.end(),
-                                   [&](const fs::path& path) { return path.stem() == scenario; });
-    if (file == scenarios.end()) {
-      unmatched.push_back(name);
-      continue;
-    }
-    auto entry =
-        std::find_if(selected.begin(), selected.end(), [&](const Selected& s) { return s.name == scenario; });
-    const bool first = entry == selected.end();
-    if (first) entry = selected.insert(selected.end(), {*file, scenario, {}});
-    if (slash == std::string::npos)
-      entry->frames.clear();
-    else if (first || !entry->frames.empty())
-      entry->frames.push_back(name.substr(slash + 1));
-  }
-  if (unmatched.empty()) return selected;
-  std::vector<std::string> known;
-  for (const fs::path& file : scenarios) known.push_back(file.stem().string());
-  return fail(
-      FailureKind::usage, fmt::format("no scenario is called {}", fmt::join(unmatched, ", ")),
-      fmt::format("scenarios: {}; name one, or one of its frames as scenario/frame", fmt::join(known, ", ")));
 }
 
 /// The size its goldens have, so that frames are drawn alike.
@@ -116,7 +73,7 @@ GoldenResult compare_frame(const std::string& scenario, const std::string& frame
 }
 
 /// Plays a scenario and compares its golden frames. Interruption is a failed session like any other.
-Result<std::vector<GoldenResult>> compare_scenario(const Selected& selected, const fs::path& goldens,
+Result<std::vector<GoldenResult>> compare_scenario(const SelectedGolden& selected, const fs::path& goldens,
                                                    bool& interrupted) {
   std::vector<GoldenResult> results;
   const fs::path folder = goldens / selected.name;
@@ -151,13 +108,13 @@ struct Compared {
 
 Compared compare_selected(const GoldenCommand& command) {
   Compared compared;
-  const Result<std::vector<Selected>> selected = select(command);
+  const Result<std::vector<SelectedGolden>> selected = select_goldens(command.names);
   if (!selected) {
     print_failure(selected.failure(), "calot golden test", command.json);
     compared.ended = ExitCode::nothing_selected;
     return compared;
   }
-  for (const Selected& scenario : selected.value()) {
+  for (const SelectedGolden& scenario : selected.value()) {
     bool interrupted = false;
     Result<std::vector<GoldenResult>> results =
         compare_scenario(scenario, golden_folder(command), interrupted);
@@ -209,7 +166,7 @@ nlohmann::ordered_json result_json(const GoldenResult& result) {
   return json;
 }
 
-std::optional<Failure> accept_scenario(const Selected& selected, const fs::path& goldens) {
+std::optional<Failure> accept_scenario(const SelectedGolden& selected, const fs::path& goldens) {
   PlayRequest request;
   request.scenario = selected.file;
   const Result<Played> played = play(request);
@@ -296,12 +253,12 @@ ExitCode golden_accept_command(const GoldenCommand& command) {
     return print_failure(fail(FailureKind::usage, "name what to accept: a scenario, or scenario/frame"),
                          "calot golden test");
   }
-  const Result<std::vector<Selected>> selected = select(command);
+  const Result<std::vector<SelectedGolden>> selected = select_goldens(command.names);
   if (!selected) {
     print_failure(selected.failure(), "calot golden test");
     return ExitCode::nothing_selected;
   }
-  for (const Selected& scenario : selected.value()) {
+  for (const SelectedGolden& scenario : selected.value()) {
     const std::optional<Failure> failure = accept_scenario(scenario, golden_folder(command));
     if (failure) return print_failure(*failure, "calot run " + shell_word(scenario.file.string()));
   }

@@ -1,9 +1,8 @@
 #pragma once
 // Golden images: what a frame should look like, with what it takes to know why it does not.
 //
-// golden/<scenario>/<frame>.png with <frame>.json beside it, where <scenario> is the scenario's file name
-// without
-// ".lua". The state hash is compared first: if it differs, physics changed (or the toolchain, which the
+// golden/<scenario>/<frame>.png with <frame>.json beside it, where <scenario> is the scenario's path below
+// scenarios/ without ".lua" (app/project.h, scenario_name). The state hash is compared first: if it differs, physics changed (or the toolchain, which the
 // sidecar names); if only pixels differ, rendering changed; a different hash with equal pixels passes with a
 // notice when the toolchain differs and fails otherwise.
 

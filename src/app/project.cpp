@@ -33,11 +33,16 @@ fs::path project_part(const std::string& name) {
 std::vector<fs::path> project_scenarios() {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(project_folder() / "scenarios", error)) {
-    if (entry.path().extension() == ".lua") files.push_back(entry.path());
+  fs::recursive_directory_iterator entry(project_folder() / "scenarios", error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    if (entry->path().extension() == ".lua" && entry->is_regular_file()) files.push_back(entry->path());
   }
   std::sort(files.begin(), files.end());
   return files;
+}
+
+std::string scenario_name(const fs::path& file) {
+  return file.lexically_relative(project_folder() / "scenarios").replace_extension().generic_string();
 }
 
 std::optional<Failure> check_scenario_path(const std::string& path) {

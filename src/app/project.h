@@ -18,8 +18,11 @@ std::filesystem::path project_folder();
 /// this program.
 std::filesystem::path project_part(const std::string& name);
 
-/// Every scenario of the project (scenarios/*.lua), sorted.
+/// Every scenario of the project (scenarios/**/*.lua), sorted.
 std::vector<std::filesystem::path> project_scenarios();
+
+/// What one of them is called: its path below scenarios/ without ".lua", such as "paper/figure_4".
+std::string scenario_name(const std::filesystem::path& file);
 
 /// What is wrong with a path that should be a scenario's file, with the nearest one that exists.
 std::optional<Failure> check_scenario_path(const std::string& path);

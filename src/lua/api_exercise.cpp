@@ -84,7 +84,7 @@ std::vector<ApiTable> option_tables() {
         point("offset", quantity::length, 100 * mm, "{ 0, 0, 0 }", "added to the landmark, patient's frame"),
         number("clearance", quantity::length, 0, 100 * mm, "25 * mm",
                "the last stretch is straight and this long"),
-        number("jaw", quantity::angle, 0, GrasperGeometry{}.jaw_opening, "60 * deg",
+        number("jaw", quantity::angle, 0, InstrumentGeometry{}.jaw_opening, "60 * deg",
                "how far the jaws are open")},
        {}},
   };

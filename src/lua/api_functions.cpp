@@ -99,7 +99,7 @@ std::vector<ApiFunction> session_functions() {
 
 std::vector<ApiFunction> instrument_functions() {
   const ApiKey options = table("options", "move_options", "how fast");
-  const double open = GrasperGeometry{}.jaw_opening;
+  const double open = InstrumentGeometry{}.jaw_opening;
   ApiKey target{"target", ApiKind::place, "a point, m, or a landmark such as \"gallbladder.fundus\"", true};
   target.quantity = &quantity::length;
   target.low = -500 * mm;
@@ -117,15 +117,17 @@ std::vector<ApiFunction> instrument_functions() {
       {"Instrument", "tip", "Its tip's place, {x, y, z} in m.", {}, "calot.point"},
       {"DemoInstrument",
        "approach",
-       "Opens the jaws and goes to a landmark from outside, ending pressed onto the tissue, ready to close.",
+       "Opens the jaws, if it has any, and goes to a landmark from outside, ending pressed onto the tissue, "
+       "ready to "
+       "close.",
        {landmark, table("options", "approach_options", "how")},
        ""},
       {"DemoInstrument",
        "open",
-       "Opens the jaws.",
+       "Opens the jaws. An error without jaws.",
        {number("angle", quantity::angle, 0, open, "60 * deg", "angle between the jaws")},
        ""},
-      {"DemoInstrument", "close", "Closes the jaws on what is between them.", {}, ""},
+      {"DemoInstrument", "close", "Closes the jaws on what is between them. An error without jaws.", {}, ""},
       {"DemoInstrument", "move_to", "Moves the tip straight to a place.", {target, options}, ""},
       {"DemoInstrument",
        "move_by",

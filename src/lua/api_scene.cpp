@@ -145,18 +145,23 @@ std::vector<ApiTable> field_tables() {
            number("friction", quantity::number, 0, 1, written(SupportDefinition{}.friction, quantity::number),
                   "coefficient of friction of the skin on it")}),
       make(
-          "instrument", "A grasper through a port.",
-          {choice("type", {"atraumatic_grasper"}, "\"atraumatic_grasper\"", "which instrument"),
+          "instrument", "An instrument through a port.",
+          {choice("type", instrument_type_names(), "\"atraumatic_grasper\"",
+                  "which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the "
+                  "semm_forceps have short broad flat ones"),
            required(text("port", "", "the port it goes through")),
            number("force_limit", quantity::force, 0.05, 100, written(instrument.force_limit, quantity::force),
                   "tip force above which the event overforce is raised"),
+           number("pinch_force", quantity::force, 0.05, 100, written(instrument.pinch_force, quantity::force),
+                  "force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force "
+                  "slips; jaws only"),
            number(
-               "pinch_force", quantity::force, 0.05, 100, written(instrument.pinch_force, quantity::force),
-               "force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips"),
-           number("pad_friction", quantity::number, 0.01, 5,
-                  written(instrument.pad_friction, quantity::number), "coefficient of friction of a pad"),
+               "pad_friction", quantity::number, 0.01, 5, written(instrument.pad_friction, quantity::number),
+               "coefficient of friction of a pad; " +
+                   written(default_instrument(InstrumentType::semm_forceps).pad_friction, quantity::number) +
+                   " for semm_forceps; jaws only"),
            number("friction", quantity::number, 0, 1, written(instrument.friction, quantity::number),
-                  "coefficient of friction of the skin that the shaft and the jaws press on")}),
+                  "coefficient of friction of the skin that the shaft and what it ends in press on")}),
       make("laparoscope", "The camera and its light.",
            {text("port", "\"" + scope.port + "\"", "the port it goes through"),
             number("angle", quantity::angle, 0, 70 * deg, written(scope.angle, quantity::angle),

@@ -59,7 +59,7 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   if (tasks_.empty()) {
     for (std::size_t i = 0; i < scene().instruments.size(); ++i) {
       paths_.emplace_back(world.port_position(scene().instruments[i].port),
-                          world.report().instruments[i].pose, geometry_);
+                          world.report().instruments[i].pose, geometry(static_cast<int>(i)));
     }
     failure = start();
   }
@@ -214,25 +214,42 @@ InstrumentPath* DemoScript::free_path(lua_State* L, int instrument) {
   return nullptr;
 }
 
+InstrumentGeometry DemoScript::geometry(int instrument) const {
+  return instrument_geometry(scene().instruments[static_cast<std::size_t>(instrument)].type);
+}
+
+bool DemoScript::can_use_jaws(lua_State* L, int instrument, const std::string& command) {
+  const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
+  if (has_jaws(definition.type)) return true;
+  complain(L,
+           fmt::format("{} is for jaws, and {} is a {}, which has none", command, definition.name,
+                       to_text(definition.type)),
+           "push with approach and move_by, or give it another type");
+  return false;
+}
+
 bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip) {
   using units::mm;
   const double distance = (tip - path.trocar()).norm();
-  if (distance >= least_insertion && distance <= geometry_.max_insertion) return true;
-  complain(L,
-           fmt::format("the tip cannot go to ({:.1f}, {:.1f}, {:.1f}) mm: that is {:.0f} mm from its port",
-                       tip.x() / mm, tip.y() / mm, tip.z() / mm, distance / mm),
-           fmt::format("stay between {:.0f} and {:.0f} mm, or use another port", least_insertion / mm,
-                       geometry_.max_insertion / mm));
+  const double most = path.geometry().max_insertion;
+  if (distance >= least_insertion && distance <= most) return true;
+  complain(
+      L,
+      fmt::format("the tip cannot go to ({:.1f}, {:.1f}, {:.1f}) mm: that is {:.0f} mm from its port",
+                  tip.x() / mm, tip.y() / mm, tip.z() / mm, distance / mm),
+      fmt::format("stay between {:.0f} and {:.0f} mm, or use another port", least_insertion / mm, most / mm));
   return false;
 }
 
 int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
+  if (how.jaw && !can_use_jaws(L, instrument, "approach's jaw")) return 0;
   if (checking()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   const Vec3 normal = world(L).landmark_normal(how.landmark);
   const Vec3 open_tip = world(L).landmark(how.landmark) + how.offset - how.depth * normal;
-  const Vec3 tip = closed_tip(path->trocar(), open_tip, how.jaw, geometry_);
+  const double jaw = how.jaw.value_or(path->geometry().jaw_opening);
+  const Vec3 tip = closed_tip(path->trocar(), open_tip, jaw, path->geometry());
   // Straight in at the end, halfway between the shaft's way and the skin's normal: both jaws come down
   // together.
   const Vec3 shaft = (tip - path->trocar()).normalized();
@@ -240,17 +257,19 @@ int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
   const Vec3 before = tip + how.clearance * outward;
   if (!can_reach(L, *path, before) || !can_reach(L, *path, tip)) return 0;
   const double now = current(L)->clock;
-  path->set_jaw(now, how.jaw, jaw_duration);
+  if (path->geometry().has_jaws()) path->set_jaw(now, jaw, jaw_duration);
   path->move(now, before, how.speed);
   path->move(now, tip, how.speed);
   return sleep_until(L, path->busy_until());
 }
 
-int DemoScript::set_jaw(lua_State* L, int instrument, double angle) {
+int DemoScript::set_jaw(lua_State* L, int instrument, const std::string& method,
+                        std::optional<double> angle) {
+  if (!can_use_jaws(L, instrument, method)) return 0;
   if (checking()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
-  path->set_jaw(current(L)->clock, angle, jaw_duration);
+  path->set_jaw(current(L)->clock, angle.value_or(path->geometry().jaw_opening), jaw_duration);
   return sleep_until(L, path->busy_until());
 }
 
@@ -258,7 +277,7 @@ int DemoScript::move_to(lua_State* L, int instrument, const Vec3& tip, double sp
   if (checking()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
-  const Vec3 closed = closed_tip(path->trocar(), tip, path->jaw(), geometry_);
+  const Vec3 closed = closed_tip(path->trocar(), tip, path->jaw(), path->geometry());
   if (!can_reach(L, *path, closed)) return 0;
   path->move(current(L)->clock, closed, speed);
   return sleep_until(L, path->busy_until());

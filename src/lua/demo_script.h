@@ -14,9 +14,9 @@ inline constexpr double default_turning_speed = 1.5707963267948966;  ///< rad/s:
 struct Approach {
   std::string landmark;
   double speed = default_speed;
-  double depth = 4e-3;       ///< m
-  double clearance = 25e-3;  ///< m
-  double jaw = GrasperGeometry{}.jaw_opening;
+  double depth = 4e-3;        ///< m
+  double clearance = 25e-3;   ///< m
+  std::optional<double> jaw;  ///< rad; none: as far as they open
   Vec3 offset = Vec3::Zero();
 };
 
@@ -36,7 +36,8 @@ class DemoScript final : public ScriptSession, public InputSource {
   int wait_until(lua_State* L, int predicate) override;
   int together(lua_State* L);
   int approach(lua_State* L, int instrument, const Approach& how);
-  int set_jaw(lua_State* L, int instrument, double angle);
+  /// `method` for the complaint about an instrument without jaws; no angle: as far as they open.
+  int set_jaw(lua_State* L, int instrument, const std::string& method, std::optional<double> angle);
   int move_to(lua_State* L, int instrument, const Vec3& tip, double speed);
   int move_by(lua_State* L, int instrument, const Vec3& vector, double speed);
   int rotate(lua_State* L, int instrument, double angle, double speed);
@@ -68,8 +69,11 @@ class DemoScript final : public ScriptSession, public InputSource {
   std::optional<Failure> resume(std::size_t task);
   void finish(std::size_t task);
 
+  InstrumentGeometry geometry(int instrument) const;
+  /// Complains about a command for jaws that the instrument does not have.
+  bool can_use_jaws(lua_State* L, int instrument, const std::string& command);
+
   int function_;
-  GrasperGeometry geometry_;
   std::vector<Task> tasks_;
   std::vector<InstrumentPath> paths_;
   int running_ = -1;

@@ -197,13 +197,15 @@ int approach(lua_State* L) {
 int open(lua_State* L) {
   const DemoCall call = demo_call(L, "open");
   const Arguments arguments(L, call.demo, "DemoInstrument", "open");
-  return call.demo.set_jaw(L, call.instrument, arguments.number("angle", GrasperGeometry{}.jaw_opening));
+  std::optional<double> angle;
+  arguments.read().take("angle", angle);
+  return call.demo.set_jaw(L, call.instrument, "open", angle);
 }
 
 int close(lua_State* L) {
   const DemoCall call = demo_call(L, "close");
   take_nothing(L, call.demo, "close");
-  return call.demo.set_jaw(L, call.instrument, 0);
+  return call.demo.set_jaw(L, call.instrument, "close", 0.0);
 }
 
 double speed_option(Arguments& arguments, const char* api, double fallback) {

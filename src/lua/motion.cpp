@@ -26,7 +26,7 @@ double Travel::share(double t) const {
 }
 
 InstrumentPath::InstrumentPath(const Vec3& trocar, const InstrumentPose& start,
-                               const GrasperGeometry& geometry)
+                               const InstrumentGeometry& geometry)
     : trocar_(trocar), geometry_(geometry), to_roll_(start.roll), to_jaw_(start.jaw) {
   InstrumentPose closed = start;
   closed.jaw = 0;
@@ -73,7 +73,7 @@ InstrumentPose InstrumentPath::pose(double time) const {
   return pose;
 }
 
-Vec3 closed_tip(const Vec3& trocar, const Vec3& tip, double jaw, const GrasperGeometry& geometry) {
+Vec3 closed_tip(const Vec3& trocar, const Vec3& tip, double jaw, const InstrumentGeometry& geometry) {
   InstrumentPose pose = pose_reaching(trocar, tip, 0, jaw, geometry);
   pose.jaw = 0;
   return tip_position(trocar, pose, geometry);

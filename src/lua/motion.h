@@ -25,9 +25,10 @@ class Travel {
 /// What the demo commands of one instrument: the tip of its closed jaws, roll and jaw angle over time.
 class InstrumentPath {
  public:
-  InstrumentPath(const Vec3& trocar, const InstrumentPose& start, const GrasperGeometry& geometry);
+  InstrumentPath(const Vec3& trocar, const InstrumentPose& start, const InstrumentGeometry& geometry);
 
   const Vec3& trocar() const { return trocar_; }
+  const InstrumentGeometry& geometry() const { return geometry_; }
   /// Where the path leads once all motions have ended.
   const Vec3& tip() const { return to_tip_; }
   double roll() const { return to_roll_; }
@@ -52,7 +53,7 @@ class InstrumentPath {
   double scalar(const Segment& segment, double time) const;
 
   Vec3 trocar_;
-  GrasperGeometry geometry_;
+  InstrumentGeometry geometry_;
   std::vector<Segment> moves_;  ///< in order, one after the other
   Segment roll_, jaw_;          ///< in x
   Vec3 to_tip_;
@@ -60,6 +61,6 @@ class InstrumentPath {
 };
 
 /// The tip of the jaws once closed, for jaws open by `jaw` whose tip is at `tip`.
-Vec3 closed_tip(const Vec3& trocar, const Vec3& tip, double jaw, const GrasperGeometry& geometry);
+Vec3 closed_tip(const Vec3& trocar, const Vec3& tip, double jaw, const InstrumentGeometry& geometry);
 
 }  // namespace calot

@@ -191,18 +191,30 @@ class SceneReader {
     std::vector<InstrumentDefinition> instruments;
     for (const auto& [name, value] : map.fields) {
       const std::string path = "scene.instruments." + name;
-      InstrumentDefinition instrument;
-      instrument.name = name;
       const TableReader reader(check_, &value, path, api_table("instrument"));
+      std::string type = to_text(InstrumentType::atraumatic_grasper);
+      reader.take("type", type);
+      InstrumentDefinition instrument = default_instrument(*instrument_type_called(type));
+      instrument.name = name;
       reader.take("port", instrument.port);
       reader.take("force_limit", instrument.force_limit);
       reader.take("pinch_force", instrument.pinch_force);
       reader.take("pad_friction", instrument.pad_friction);
       reader.take("friction", instrument.friction);
+      check_jaws(reader, instrument);
       check_free(path, name);
       instruments.push_back(instrument);
     }
     return instruments;
+  }
+
+  void check_jaws(const TableReader& reader, const InstrumentDefinition& instrument) {
+    if (has_jaws(instrument.type)) return;
+    for (const char* key : {"pinch_force", "pad_friction"})
+      if (reader.has(key))
+        check_.problem(reader.path_of(key),
+                       fmt::format("a {} has no jaws to pinch with", to_text(instrument.type)),
+                       fmt::format("leave {} out", key));
   }
 
   void check_free(const std::string& path, const std::string& name) {

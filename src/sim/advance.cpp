@@ -373,7 +373,7 @@ Result<bool> check_clear(const Field& field) {
 double deepest_penetration(const Field& field) {
   double deepest = 0;
   for (const Tool& tool : field.tools) {
-    for (const Shape& shape : grasper_shapes(tool.trocar, tool.pose, tool.geometry)) {
+    for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {
       const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
       const auto sample = [&](const Vec3& p) {
         if (box.contains(p)) deepest = std::max(deepest, -signed_distance(shape, p));

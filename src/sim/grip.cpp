@@ -10,13 +10,13 @@ namespace {
 /// Two walls between the pads, squeezed to this share of their thickness.
 constexpr double fold_squeeze = 0.6;
 
-bool faces_pad(const Vec3& local, const GrasperGeometry& g, double range) {
+bool faces_pad(const Vec3& local, const InstrumentGeometry& g, double range) {
   return local.x() < 0 && local.x() > -range && before_pad(local, g);
 }
 
 }  // namespace
 
-bool before_pad(const Vec3& local, const GrasperGeometry& g) {
+bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
   return std::abs(local.y()) < 0.5 * g.jaw_width && local.z() > g.jaw_rounding && local.z() < g.jaw_length;
 }
 

@@ -22,7 +22,7 @@ int grip_count(const Organ& organ, int instrument);
 bool both_pads_hold(const Field& field, int instrument);
 
 /// Whether a point in a jaw's frame lies before its pad, however far away.
-bool before_pad(const Vec3& local, const GrasperGeometry& geometry);
+bool before_pad(const Vec3& local, const InstrumentGeometry& geometry);
 
 /// Springs of an organ's held points for the tools at `poses`.
 Links grip_links(const Organ& organ, const std::vector<Tool>& tools,

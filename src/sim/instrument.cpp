@@ -24,57 +24,96 @@ Vec3 shaft_direction(const InstrumentPose& pose) {
 }
 
 /// Opening the jaws draws their ends back by this much along the shaft, m.
-double jaw_setback(double jaw, const GrasperGeometry& geometry) {
+double jaw_setback(double jaw, const InstrumentGeometry& geometry) {
   const double s = std::sin(jaw / 4);
   return geometry.jaw_length * 2 * s * s;  // 1 - cos(jaw / 2)
 }
 
-double tip_depth(const InstrumentPose& pose, const GrasperGeometry& geometry) {
+double tip_depth(const InstrumentPose& pose, const InstrumentGeometry& geometry) {
   return pose.insertion - jaw_setback(pose.jaw, geometry);
 }
 
-RoundedBox jaw_box(const Pose& frame, const GrasperGeometry& geometry) {
+RoundedBox jaw_box(const Pose& frame, const InstrumentGeometry& geometry) {
   const Vec3 outer_half(geometry.jaw_thickness / 2, geometry.jaw_width / 2, geometry.jaw_length / 2);
   const Vec3 centre(geometry.jaw_thickness / 2, 0.0, geometry.jaw_length / 2);
   return {frame * Pose(Eigen::Translation3d(centre)), outer_half - Vec3::Constant(geometry.jaw_rounding),
           geometry.jaw_rounding};
 }
 
+/// A rod's end: a neck that grows out of the shaft, and the electrode that it carries.
+std::vector<Shape> rod_end(const Pose& hinge, const InstrumentGeometry& geometry) {
+  const auto at = [&](double z) { return Vec3(hinge * Vec3(0, 0, z)); };
+  const double back = geometry.jaw_length - geometry.electrode_length + geometry.electrode_radius;
+  const double front = geometry.jaw_length - geometry.electrode_radius;
+  return {Capsule{at(-geometry.shaft_radius), at(back), geometry.neck_radius},
+          Capsule{at(back), at(front), geometry.electrode_radius}};
+}
+
 }  // namespace
 
-Pose hinge_frame(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry) {
+InstrumentGeometry instrument_geometry(InstrumentType type) {
+  InstrumentGeometry geometry;
+  if (type == InstrumentType::bipolar_electrode) {
+    // A 5 mm rod (c) whose end is its own design (d).
+    geometry.fenestrated = false;
+    geometry.jaw_length = 12e-3;
+    geometry.jaw_width = geometry.jaw_thickness = geometry.jaw_rounding = geometry.jaw_opening = 0;
+    geometry.electrode_radius = 2.5e-3;
+    geometry.electrode_length = 6e-3;
+    geometry.neck_radius = 1.9e-3;
+  } else if (type == InstrumentType::semm_forceps) {
+    // 5 mm shaft (c), jaws broader and shorter than the grasper's (d); they pass a sleeve of 8 mm.
+    geometry.fenestrated = false;
+    geometry.jaw_length = 15e-3;
+    geometry.jaw_width = 7e-3;
+    geometry.jaw_thickness = 2.2e-3;
+  }
+  return geometry;
+}
+
+std::optional<JawWindow> jaw_window(const InstrumentGeometry& geometry) {
+  if (!geometry.fenestrated) return std::nullopt;
+  const double wide = 0.5 * geometry.jaw_width;
+  return JawWindow{0.30 * geometry.jaw_length, 0.82 * geometry.jaw_length, 0.40 * wide, 0.30 * wide};
+}
+
+Pose hinge_frame(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry) {
   Pose frame = Pose::Identity();
   frame.linear() = hinge_rotation(pose);
   frame.translation() = trocar + shaft_direction(pose) * (pose.insertion - geometry.jaw_length);
   return frame;
 }
 
-Pose jaw_frame(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry, int jaw) {
+Pose jaw_frame(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry, int jaw) {
   const double side = jaw == 0 ? 0.0 : 180 * units::deg;
   Pose frame = hinge_frame(trocar, pose, geometry);
   frame.linear() = frame.linear() * turn(side, Vec3::UnitZ()) * turn(pose.jaw / 2, Vec3::UnitY());
   return frame;
 }
 
-Vec3 handle_position(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry) {
+Vec3 handle_position(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry) {
   return trocar - shaft_direction(pose) * (geometry.working_length - pose.insertion);
 }
 
-std::vector<Shape> grasper_shapes(const Vec3& trocar, const InstrumentPose& pose,
-                                  const GrasperGeometry& geometry) {
+std::vector<Shape> instrument_shapes(const Vec3& trocar, const InstrumentPose& pose,
+                                     const InstrumentGeometry& geometry) {
   const Vec3 shaft_end =
       trocar + shaft_direction(pose) * (pose.insertion - geometry.jaw_length - geometry.shaft_radius);
-  return {Capsule{handle_position(trocar, pose, geometry), shaft_end, geometry.shaft_radius},
-          jaw_box(jaw_frame(trocar, pose, geometry, 0), geometry),
+  const Capsule shaft{handle_position(trocar, pose, geometry), shaft_end, geometry.shaft_radius};
+  if (!geometry.has_jaws()) {
+    const std::vector<Shape> end = rod_end(hinge_frame(trocar, pose, geometry), geometry);
+    return {shaft, end[0], end[1]};
+  }
+  return {shaft, jaw_box(jaw_frame(trocar, pose, geometry, 0), geometry),
           jaw_box(jaw_frame(trocar, pose, geometry, 1), geometry)};
 }
 
-Vec3 tip_position(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry) {
+Vec3 tip_position(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry) {
   return trocar + shaft_direction(pose) * tip_depth(pose, geometry);
 }
 
 InstrumentPose pose_reaching(const Vec3& trocar, const Vec3& tip, double roll, double jaw,
-                             const GrasperGeometry& geometry) {
+                             const InstrumentGeometry& geometry) {
   const Vec3 reach = tip - trocar;
   InstrumentPose pose;
   pose.roll = roll;
@@ -87,7 +126,7 @@ InstrumentPose pose_reaching(const Vec3& trocar, const Vec3& tip, double roll, d
   return pose;
 }
 
-Vec3 handle_force(const Vec3& /*trocar*/, const InstrumentPose& pose, const GrasperGeometry& geometry,
+Vec3 handle_force(const Vec3& /*trocar*/, const InstrumentPose& pose, const InstrumentGeometry& geometry,
                   const Vec3& tip_force) {
   const Vec3 along = shaft_direction(pose);
   const Vec3 axial = along * along.dot(tip_force);

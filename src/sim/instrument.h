@@ -1,6 +1,7 @@
 #pragma once
-// A rigid grasper pivoting about its trocar, and the shapes that touch the tissue.
+// A rigid instrument pivoting about its trocar, and the shapes that touch the tissue.
 
+#include <optional>
 #include <vector>
 
 #include "anatomy/definitions.h"
@@ -16,12 +17,19 @@ struct InstrumentPose {
   double insertion =
       0;            ///< m, trocar to the tip of the closed jaws along the shaft: opening them leaves it alone
   double roll = 0;  ///< rad about the shaft, right-handed about its outward (tip) direction
-  double jaw = 0;   ///< rad between the two jaws; 0 is closed on nothing
+  double jaw = 0;   ///< rad between the two jaws; 0 is closed on nothing, and all there is without jaws
   bool operator==(const InstrumentPose&) const = default;
 };
 
-/// The standard atraumatic grasper, all in m and rad: 5 mm shaft, 310 mm working length, jaws 20 mm (c).
-struct GrasperGeometry {
+/// The opening in a fenestrated jaw, m: from `start` to `end` along it, narrowing, with round corners.
+struct JawWindow {
+  double start, end, start_half, end_half;
+};
+
+/// An instrument's measures, all in m and rad. The defaults are the atraumatic grasper's: 5 mm shaft, 310 mm
+/// working length, jaws 20 mm (c). Without jaws, jaw_opening is 0 and the hinge, which cannot turn, is where the
+/// shaft ends: a neck and an electrode, jaw_length long in all, follow on the shaft's axis.
+struct InstrumentGeometry {
   double shaft_radius = 2.5e-3;
   double working_length = 310e-3;  ///< handle to the tip of the closed jaws
   double jaw_length = 20e-3;       ///< hinge to tip
@@ -30,40 +38,50 @@ struct GrasperGeometry {
   double jaw_rounding = 0.8e-3;             ///< edge radius of the jaw's box; at most half its thickness
   double jaw_opening = 1.0471975511965976;  ///< 60 deg fully open (c)
   double max_insertion = 300e-3;
+  bool fenestrated = true;  ///< jaws with a window; contact takes them for solid
+  double electrode_radius = 0, electrode_length = 0, neck_radius = 0;  ///< without jaws
+  bool has_jaws() const { return jaw_opening > 0; }
 };
+
+InstrumentGeometry instrument_geometry(InstrumentType type);
+/// None for jaws that are solid, or where there are none.
+std::optional<JawWindow> jaw_window(const InstrumentGeometry& geometry);
 
 /// The frame of the tip: origin at the hinge, +z along the shaft outward (tip direction), jaws open in its xz
 /// plane. At pitch = yaw = roll = 0 its axes are the patient's +x, -y, -z. The hinge is insertion -
 /// jaw_length deep.
-Pose hinge_frame(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry);
+Pose hinge_frame(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry);
 
 /// Frame of jaw 0 or 1: origin at the hinge, +z along the jaw, +x from the pad into the jaw's back. The pad
 /// (the gripping face) is the plane x = 0 of this frame; closed (jaw = 0) the two pads coincide. Jaw 0 opens
 /// to the hinge frame's +x, jaw 1 to its -x, by half of pose.jaw each.
-Pose jaw_frame(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry, int jaw);
+Pose jaw_frame(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry, int jaw);
 
 /// Where the hand holds it: on the shaft's axis, working_length behind the tip of the closed jaws, m.
-Vec3 handle_position(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry);
+Vec3 handle_position(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry);
+
+inline constexpr int shapes_per_tool = 3;  ///< shaft and two more, whatever the type
 
 /// Shaft (capsule from the handle whose round end stops at the hinge), jaw 0, jaw 1, in this order. A jaw's
-/// box spans 0 to jaw_thickness, -jaw_width/2 to jaw_width/2 and 0 to jaw_length of its frame.
-std::vector<Shape> grasper_shapes(const Vec3& trocar, const InstrumentPose& pose,
-                                  const GrasperGeometry& geometry);
+/// box spans 0 to jaw_thickness, -jaw_width/2 to jaw_width/2 and 0 to jaw_length of its frame. Without jaws: shaft,
+/// neck and electrode, capsules on the shaft's axis; the electrode's round end is the tip.
+std::vector<Shape> instrument_shapes(const Vec3& trocar, const InstrumentPose& pose,
+                                     const InstrumentGeometry& geometry);
 
 /// The tip: middle of the jaws' pad ends, on the shaft's axis, jaw_length * cos(jaw / 2) beyond the hinge.
-Vec3 tip_position(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry);
+Vec3 tip_position(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry);
 
 /// The pose (roll and jaw as given) that puts tip_position at `tip`: pitch in (-180, 180], yaw in [-90, 90]
 /// deg. With the tip in the trocar itself no direction is defined: pitch = yaw = 0. Insertion is not held to
 /// max_insertion.
 InstrumentPose pose_reaching(const Vec3& trocar, const Vec3& tip, double roll, double jaw,
-                             const GrasperGeometry& geometry = {});
+                             const InstrumentGeometry& geometry = {});
 
 /// Force the instrument exerts on the hand for a force `tip_force` of the tissue on the tip (N): the axial
 /// part passes through; the lateral part is turned round and scaled by the lever about the trocar, tip depth
 /// over (working_length - insertion). No trocar friction. The work at the handle equals the work at the tip.
 /// Needs insertion < working_length (at which the handle is in the trocar and the lever infinite).
-Vec3 handle_force(const Vec3& trocar, const InstrumentPose& pose, const GrasperGeometry& geometry,
+Vec3 handle_force(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry,
                   const Vec3& tip_force);
 
 }  // namespace calot

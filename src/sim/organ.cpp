@@ -168,7 +168,7 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
 /// Contact is felt at skin points: they must stand closer than half a jaw is wide, or it would slip in
 /// between.
 std::optional<Failure> check_skin_spacing(const VirtualStructure& body) {
-  const double limit = 0.5 * GrasperGeometry{}.jaw_width;
+  const double limit = 0.5 * InstrumentGeometry{}.jaw_width;
   const double widest = body.widest_skin_gap();
   if (widest <= limit) return std::nullopt;
   return fail(

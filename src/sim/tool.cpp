@@ -24,8 +24,9 @@ Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentP
 }
 
 double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b) {
-  const double reach = std::max(a.insertion, b.insertion) + tool.geometry.jaw_width;
-  const double jaws = tool.geometry.jaw_length + tool.geometry.jaw_width;
+  const double width = std::max(tool.geometry.jaw_width, 2 * tool.geometry.shaft_radius);
+  const double reach = std::max(a.insertion, b.insertion) + width;
+  const double jaws = tool.geometry.jaw_length + width;
   return std::abs(b.insertion - a.insertion) +
          reach * (std::abs(b.pitch - a.pitch) + std::abs(b.yaw - a.yaw)) +
          jaws * (0.5 * std::abs(b.jaw - a.jaw) + std::abs(b.roll - a.roll));

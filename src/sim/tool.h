@@ -11,7 +11,7 @@ namespace calot {
 
 struct Tool {
   InstrumentDefinition definition;
-  GrasperGeometry geometry;
+  InstrumentGeometry geometry;
   Vec3 trocar = Vec3::Zero();  ///< m
   InstrumentPose pose;
   bool touched = false, over_limit = false;  ///< at the last step, for events
@@ -19,14 +19,13 @@ struct Tool {
   bool slipping = false;                     ///< the fold slid through the jaws at the last step, for events
 };
 
-inline constexpr int shapes_per_tool = 3;  ///< shaft, jaw 0, jaw 1
-
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
 
 /// Frame (to world) that shape `part` (0 shaft, 1 and 2 the jaws) is fixed in.
 Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part);
 
-/// Rigid motion (world to world) of shape `part` (0 shaft, 1 and 2 the jaws) from one pose to another.
+/// Rigid motion (world to world) of shape `part` (0 shaft, 1 and 2 the jaws, or what a rod ends in) from one pose to
+/// another.
 Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part);
 
 /// Share (0 to 1] of the joint motion of a point (x to x + motion, m) and a tool's part (`shape`, from one

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "sim/advance.h"
 #include "sim/grip.h"
+#include "sim/jaw_mould.h"
 #include "sim/structural_extension.h"
 #include "sim/vibration.h"
 
@@ -39,6 +40,7 @@ struct World::Impl {
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
   Field field;
+  std::vector<JawMould> moulds;  ///< one a tool; of pictures only, so no hash knows them
   StepReport report;
   long steps = 0;
   bool failed = false;
@@ -146,11 +148,13 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
 
 namespace {
 
+constexpr double waiting_depth = 30e-3;  // m: a tool in its trocar before its first move
+
 /// Inputs come from files and devices too: no pose may be beyond what the instrument can do.
 std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) {
-  const GrasperGeometry& g = tool.geometry;
+  const InstrumentGeometry& g = tool.geometry;
   const bool finite = std::isfinite(pose.pitch + pose.yaw + pose.insertion + pose.roll + pose.jaw);
-  const double slack = 1e-9;
+  const double slack = g.has_jaws() ? 1e-9 : 0;
   if (finite && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
       pose.jaw <= g.jaw_opening + slack &&
       std::max({std::abs(pose.pitch), std::abs(pose.yaw), std::abs(pose.roll)}) < 100)
@@ -161,8 +165,9 @@ std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) 
           "instrument '{}' cannot take the pose pitch {:.3g}, yaw {:.3g}, roll {:.3g}, jaw {:.3g} rad, "
           "insertion {:.3g} m",
           tool.definition.name, pose.pitch, pose.yaw, pose.roll, pose.jaw, pose.insertion),
-      fmt::format("its insertion is at most {:.2f} m, its jaws open from 0 to {:.2f} rad", g.max_insertion,
-                  g.jaw_opening));
+      fmt::format("its insertion is at most {:.2f} m, {}", g.max_insertion,
+                  g.has_jaws() ? fmt::format("its jaws open from 0 to {:.2f} rad", g.jaw_opening)
+                               : "it has no jaws: its jaw angle is 0"));
 }
 
 }  // namespace
@@ -197,13 +202,15 @@ Result<World> World::create(const SceneDefinition& scene) {
   for (const InstrumentDefinition& definition : scene.instruments) {
     Tool tool;
     tool.definition = definition;
+    tool.geometry = instrument_geometry(definition.type);
     tool.trocar = world.port_position(definition.port);
     // Waiting in the trocar, closed, pointing at the first organ, just far enough in to be seen to come.
     const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
                                                        : Vec3(world.skin_positions(0).front());
-    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0);
-    tool.pose.insertion = 1.5 * tool.geometry.jaw_length;
+    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
+    tool.pose.insertion = waiting_depth;
     world.impl_->field.tools.push_back(tool);
+    world.impl_->moulds.emplace_back();
   }
   if (scene.laparoscope.distance < scene.solver.extension_view) {
     const auto [organ, row] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
@@ -236,6 +243,8 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   ++self.steps;
+  for (std::size_t i = 0; i < self.moulds.size(); ++i)
+    self.moulds[i].follow(self.field, static_cast<int>(i), 1.0 / self.scene.solver.rate);
   self.observe(std::move(events).value());
   return self.report;
 }
@@ -277,6 +286,13 @@ const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
 
 StructureDrawing World::structure(int organ) const {
   return draw_structure(impl_->field.organs[organ].body, impl_->field.organs[organ].state.x);
+}
+
+World::DrawnSkin World::drawn_skin(int organ) const {
+  DrawnSkin skin{skin_positions(organ), skin_normals(organ)};
+  for (std::size_t i = 0; i < impl_->moulds.size(); ++i)
+    impl_->moulds[i].apply(impl_->field, static_cast<int>(i), organ, skin.positions, skin.normals);
+  return skin;
 }
 
 Result<double> World::lowest_frequency(int index) const {

@@ -92,13 +92,19 @@ class World {
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
 
-  /// The skin that is drawn and touched: triangles fixed, positions present; rest positions for texture.
+  /// The skin that is touched, and drawn but for the mould of jaws: triangles fixed, positions present; rest
+  /// positions for texture.
   const Tessellation& skin(int organ) const;
   std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
   std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
   const std::vector<Vec3>& skin_rest_positions(int organ) const;
   /// Elements and nodes of an organ's structure and of its extensions, where they lie on the present skin.
   StructureDrawing structure(int organ) const;
+  /// The skin as it is drawn: what jaws hold takes their shape (sim/jaw_mould.h). Some milliseconds a holding tool.
+  struct DrawnSkin {
+    std::vector<Vec3> positions, normals;  ///< m; unit, outward
+  };
+  DrawnSkin drawn_skin(int organ) const;
   /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
   /// equilibrium is not stable.

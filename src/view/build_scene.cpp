@@ -1,6 +1,6 @@
 #include "view/build_scene.h"
 
-#include "view/grasper_mesh.h"
+#include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
 #include "view/organ_frame.h"
 #include "view/structure_mesh.h"
@@ -32,13 +32,15 @@ Scene SceneBuilder::build(const World& world) const {
   scene.camera = camera_;
   for (std::size_t i = 0; i < definition.instruments.size(); ++i) {
     const Vec3 trocar = world.port_position(definition.instruments[i].port);
-    for (SceneMesh& mesh : grasper_meshes(trocar, world.report().instruments[i].pose, GrasperGeometry{}))
+    for (SceneMesh& mesh :
+         instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))
       scene.meshes.push_back(std::move(mesh));
   }
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     SceneMesh mesh = organs_[i];
-    mesh.positions = world.skin_positions(static_cast<int>(i));
-    mesh.normals = world.skin_normals(static_cast<int>(i));
+    World::DrawnSkin skin = world.drawn_skin(static_cast<int>(i));
+    mesh.positions = std::move(skin.positions);
+    mesh.normals = std::move(skin.normals);
     scene.meshes.push_back(std::move(mesh));
   }
   for (std::size_t i = 0; i < organs_.size() && definition.laparoscope.show_structure; ++i)

@@ -8,9 +8,9 @@
 namespace calot {
 
 /// An atraumatic grasper as it is drawn: insulated shaft, steel end with a clevis and its pin, two
-/// fenestrated jaws with teeth on their pads. Nothing drawn lies outside grasper_shapes(): what is seen is
+/// fenestrated jaws with teeth on their pads. Nothing drawn lies outside instrument_shapes(): what is seen is
 /// what touches.
 std::vector<SceneMesh> grasper_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                      const GrasperGeometry& geometry);
+                                      const InstrumentGeometry& geometry);
 
 }  // namespace calot

@@ -100,5 +100,18 @@ TEST(Ports, StandardGallbladderIsWithinReachOfEveryOne) {
     }
 }
 
+TEST(Instruments, AreNamedBothWaysAndGiveWhatTheirTypeDoes) {
+  for (const std::string& name : instrument_type_names()) {
+    const std::optional<InstrumentType> type = instrument_type_called(name);
+    ASSERT_TRUE(type) << name;
+    EXPECT_EQ(to_text(*type), name);
+    EXPECT_EQ(default_instrument(*type).type, *type);
+  }
+  EXPECT_FALSE(instrument_type_called("grasper"));
+  EXPECT_FALSE(has_jaws(InstrumentType::bipolar_electrode));
+  EXPECT_LT(default_instrument(InstrumentType::semm_forceps).pad_friction,
+            default_instrument(InstrumentType::atraumatic_grasper).pad_friction);
+}
+
 }  // namespace
 }  // namespace calot

@@ -55,6 +55,41 @@ TEST_F(GoldenProject, OnlyAcceptWithNamesWritesGoldens) {
   EXPECT_EQ(goldens(), accepted);
 }
 
+TEST_F(GoldenProject, AScenarioInAFolderIsNamedByItsPathAndTheFolderMayBeLeftOut) {
+  spill(folder_ / "scenarios" / "paper" / "deep.lua", small_scenario());
+  ASSERT_EQ(calot({"golden", "accept", "deep/t000.40s"}).code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "golden" / "paper" / "deep" / "t000.40s.png"));
+  EXPECT_EQ(goldens().size(), 2u);
+  ASSERT_EQ(calot({"golden", "accept", "paper/deep"}).code, 0);
+  EXPECT_EQ(goldens().size(), 4u);
+  const Outcome one = calot({"golden", "test", "paper/deep/t000.00s", "--json"});
+  EXPECT_EQ(one.code, 0) << one.out << one.err;
+  const Json json = Json::parse(one.out);
+  ASSERT_EQ(json["frames"].size(), 1u);
+  EXPECT_EQ(json["frames"][0]["scenario"], "paper/deep");
+  // Without names it is found like any other.
+  const Json all = Json::parse(calot({"golden", "test", "--json"}).out);
+  EXPECT_EQ(all["frames"].size(), 4u);
+}
+
+TEST_F(GoldenProject, ANameThatMayMeanTwoScenariosIsRefused) {
+  spill(folder_ / "scenarios" / "first" / "deep.lua", small_scenario());
+  spill(folder_ / "scenarios" / "second" / "deep.lua", small_scenario());
+  for (const std::string name : {"deep", "deep/t000.40s"}) {
+    const Outcome outcome = calot({"golden", "accept", name});
+    EXPECT_EQ(outcome.code, 5) << name;
+    EXPECT_NE(outcome.err.find("first/deep"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("second/deep"), std::string::npos) << outcome.err;
+    expect_next_command(outcome);
+  }
+  EXPECT_TRUE(goldens().empty());
+  // A scenario's full name is never in doubt, though others end in it.
+  EXPECT_EQ(calot({"golden", "accept", "second/deep"}).code, 0);
+  spill(folder_ / "scenarios" / "second" / "small.lua", small_scenario());
+  EXPECT_EQ(calot({"golden", "accept", "small/t000.00s"}).code, 0);
+  EXPECT_TRUE(fs::exists(golden("t000.00s.png")));
+}
+
 TEST_F(GoldenProject, ChangedPixelsOfTheSameStateAreRenderingsChange) {
   ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
   const std::string file = golden("t000.40s.png").string();

@@ -49,7 +49,7 @@ void contact_search(benchmark::State& state) {
   const Vec3 fundus = organ.body.skin_positions(organ.state.x)[organ.landmarks.at("fundus")];
   const Vec3 trocar = fundus + Vec3(20e-3, -20e-3, 100e-3);
   Surroundings field;
-  field.shapes = grasper_shapes(trocar, pose_reaching(trocar, fundus, 0, 0), {});
+  field.shapes = instrument_shapes(trocar, pose_reaching(trocar, fundus, 0, 0), {});
   for (auto _ : state) benchmark::DoNotOptimize(gather_pairs(organ.body, organ.state.x, field, 2e-3));
 }
 

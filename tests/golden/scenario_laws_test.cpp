@@ -9,9 +9,10 @@ namespace calot {
 namespace {
 
 class Scenario : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Shipped, Scenario, ::testing::Values("grasp_and_traction", "paper/figure_4"));
+INSTANTIATE_TEST_SUITE_P(Shipped, Scenario,
+                         ::testing::Values("grasp_and_traction", "paper/figure_4", "paper/figure_2"));
 
-TEST_P(Scenario, KeepsTheGrasperOutOfTheSkinAndTheBileIn) {
+TEST_P(Scenario, KeepsTheInstrumentsOutOfTheSkinAndTheBileIn) {
   LoadOptions options;
   options.modules = CALOT_SOURCE_DIR "/scripts/lua";
   auto script = load_exercise(CALOT_SOURCE_DIR "/scenarios/" + std::string(GetParam()) + ".lua", options);

@@ -42,6 +42,11 @@ ScenarioText with_demo(const std::string& demo) {
   text.demo = demo;
   return text;
 }
+ScenarioText electrode_demo(const std::string& demo) {
+  ScenarioText text = with_instruments("{ left = { type = 'bipolar_electrode', port = 'right_flank' } }");
+  text.demo = demo;
+  return text;
+}
 ScenarioText with_score(const std::string& parts) {
   ScenarioText text;
   text.score = "calot.score.weighted {\n" + parts + "}";
@@ -79,6 +84,24 @@ std::vector<Mistake> mistakes() {
        "\"port\" is missing", "port = "},
       {"UnknownInstrumentType", with_instruments("{ left = {\n type = 'grasper', port = 'right_flank' } }"),
        "'grasper'", "unknown type", "atraumatic_grasper"},
+      {"InstrumentTypeSpeltNearly",
+       with_instruments("{ left = {\n type = 'bipolar_electrod', port = 'right_flank' } }"),
+       "'bipolar_electrod'", "unknown type", "bipolar_electrode"},
+      {"PinchWithoutJaws",
+       with_instruments(
+           "{ left = { type = 'bipolar_electrode', port = 'right_flank',\n pinch_force = 3 * N } }"),
+       "pinch_force", "no jaws", "leave pinch_force out"},
+      {"FrictionWithoutJaws",
+       with_instruments(
+           "{ left = { type = 'bipolar_electrode', port = 'right_flank',\n pad_friction = 1 } }"),
+       "pad_friction", "no jaws", "leave pad_friction out"},
+      {"ClosingWithoutJaws", electrode_demo("\nt.left:close()"), "t.left:close()",
+       "close is for jaws, and left is a bipolar_electrode", "push with approach"},
+      {"OpeningWithoutJaws", electrode_demo("\nt.left:open()"), "t.left:open()", "which has none",
+       "another type"},
+      {"ApproachingWithJawsItDoesNotHave",
+       electrode_demo("\nt.left:approach('gallbladder.fundus', { jaw = 30 * deg })"), "t.left:approach",
+       "approach's jaw", "another type"},
       {"UnknownLandmarkToLookAt",
        with_scene("return { anatomy = calot.anatomy('standard'), laparoscope = {\n look_at = "
                   "'gallbladder.fundas' } }"),

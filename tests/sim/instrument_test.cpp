@@ -12,7 +12,7 @@ using units::deg;
 using units::mm;
 
 const Vec3 trocar(-80 * mm, 70 * mm, -5 * mm);
-const GrasperGeometry geometry;
+const InstrumentGeometry geometry;
 constexpr double rounding = 1e-15;  // m, of coordinates below a metre after a few operations
 
 InstrumentPose random_instrument(Rng& rng) {
@@ -28,7 +28,7 @@ InstrumentPose random_instrument(Rng& rng) {
 Vec3 random_vector(Rng& rng) { return {rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)}; }
 
 Shape part(const InstrumentPose& pose, int index) {
-  return grasper_shapes(trocar, pose, geometry)[static_cast<std::size_t>(index)];
+  return instrument_shapes(trocar, pose, geometry)[static_cast<std::size_t>(index)];
 }
 
 TEST(Instrument, PitchLiftsTheTipCephaladAndYawTurnsItToThePatientsLeft) {
@@ -213,10 +213,58 @@ TEST(Instrument, TheHandFeelsAPushStraightAndASidewaysForceTurnedRoundAtEqualArm
   EXPECT_LT((handle_force(trocar, pose, geometry, {2, 1, 0}) + Vec3(2, 1, 0)).norm(), 1e-14);
 }
 
-TEST(Instrument, TheStandardGrasperIsASoundBody) {
-  EXPECT_LE(geometry.jaw_rounding, geometry.jaw_thickness / 2);
-  EXPECT_LE(geometry.jaw_rounding, geometry.jaw_width / 2);
-  EXPECT_LT(geometry.max_insertion, geometry.working_length);
+TEST(Instrument, EveryTypeIsASoundBody) {
+  for (const std::string& name : instrument_type_names()) {
+    const InstrumentType type = *instrument_type_called(name);
+    const InstrumentGeometry g = instrument_geometry(type);
+    EXPECT_EQ(g.has_jaws(), has_jaws(type)) << name;
+    EXPECT_LE(g.jaw_rounding, g.jaw_thickness / 2) << name;
+    EXPECT_LE(g.jaw_rounding, g.jaw_width / 2) << name;
+    EXPECT_LT(g.max_insertion, g.working_length) << name;
+    EXPECT_EQ(instrument_shapes(trocar, {}, g).size(), static_cast<std::size_t>(shapes_per_tool)) << name;
+    // What meets tissue is no narrower than the grasper: its skin must stand close enough for that one only.
+    EXPECT_GE(g.has_jaws() ? g.jaw_width : 2 * g.electrode_radius, geometry.jaw_width) << name;
+  }
+}
+
+TEST(Instrument, SemmsJawsAreShorterAndBroaderThanTheGraspers) {
+  const InstrumentGeometry semm = instrument_geometry(InstrumentType::semm_forceps);
+  EXPECT_LT(semm.jaw_length, geometry.jaw_length);
+  EXPECT_GT(semm.jaw_width, geometry.jaw_width);
+}
+
+TEST(Instrument, AnElectrodeEndsRoundAtItsTipAndIsOneBody) {
+  Rng rng(11);
+  const InstrumentGeometry rod = instrument_geometry(InstrumentType::bipolar_electrode);
+  for (int trial = 0; trial < 50; ++trial) {
+    InstrumentPose pose = random_instrument(rng);
+    pose.jaw = 0;
+    const std::vector<Shape> shapes = instrument_shapes(trocar, pose, rod);
+    const auto distance = [&](const Vec3& x) {
+      double nearest = signed_distance(shapes[0], x);
+      for (const Shape& shape : shapes) nearest = std::min(nearest, signed_distance(shape, x));
+      return nearest;
+    };
+    const Vec3 tip = tip_position(trocar, pose, rod), along = (tip - trocar).normalized();
+    const Vec3 across = along.unitOrthogonal();
+    EXPECT_NEAR(distance(tip), 0, rounding);
+    EXPECT_NEAR(distance(tip + 3 * mm * along), 3 * mm, rounding);
+    const Vec3 centre = tip - rod.electrode_radius * along;
+    EXPECT_NEAR(distance(centre + rod.electrode_radius * (along + across).normalized()), 0, rounding);
+    EXPECT_NEAR((tip - trocar).norm(), pose.insertion, rounding);
+    // No gap on the axis from the trocar to the tip.
+    for (int k = 1; k < 40; ++k) EXPECT_LT(distance(trocar + (tip - trocar) * k / 40), -1 * mm);
+  }
+}
+
+TEST(Instrument, AnElectrodesPoseReachesItsTarget) {
+  Rng rng(12);
+  const InstrumentGeometry rod = instrument_geometry(InstrumentType::bipolar_electrode);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 target = trocar + 200 * mm * random_vector(rng);
+    const InstrumentPose pose = pose_reaching(trocar, target, 0.3, 0, rod);
+    EXPECT_LT((tip_position(trocar, pose, rod) - target).norm(), rounding);
+  }
 }
 
 }  // namespace

@@ -22,11 +22,14 @@ inline SceneDefinition grasper_scene(int nodes = 120) {
   return scene;
 }
 
-/// Moves the one grasper of a world; collects what happens on the way.
+/// Moves the one instrument of a world; collects what happens on the way.
 class Driver {
  public:
   explicit Driver(World& world, double roll = 0)
-      : world_(world), trocar_(world.port_position(world.scene().instruments[0].port)), roll_(roll) {
+      : world_(world),
+        geometry_(instrument_geometry(world.scene().instruments[0].type)),
+        trocar_(world.port_position(world.scene().instruments[0].port)),
+        roll_(roll) {
     tip_ = world.report().instruments[0].tip;
   }
 
@@ -43,7 +46,7 @@ class Driver {
       tip_ = from + share * (tip - from);
       jaw_ = jaw_from + share * (jaw - jaw_from);
       StepInput input;
-      input.instruments = {pose_reaching(trocar_, tip_, roll_, jaw_)};
+      input.instruments = {pose_reaching(trocar_, tip_, roll_, jaw_, geometry_)};
       const Result<StepReport> report = world_.step(input);
       if (!report) {
         failure = report.failure();
@@ -66,6 +69,7 @@ class Driver {
 
  private:
   World& world_;
+  InstrumentGeometry geometry_;
   Vec3 trocar_, tip_;
   double roll_, jaw_ = 0;
 };

@@ -55,12 +55,21 @@ TEST(Tool, InterpolationMeetsItsEndsExactly) {
   EXPECT_NEAR(interpolate(a, b, 0.25).insertion, 0.1575, 1e-15);
 }
 
-TEST(Tool, PartMotionCarriesEachShapeFromOnePoseToTheOther) {
+class ToolOfType : public ::testing::TestWithParam<std::string> {
+ protected:
+  const InstrumentType type = *instrument_type_called(GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(Each, ToolOfType, ::testing::ValuesIn(instrument_type_names()),
+                         [](const auto& one) { return one.param; });
+
+TEST_P(ToolOfType, PartMotionCarriesEachShapeFromOnePoseToTheOther) {
   Tool tool;
   tool.trocar = Vec3(0.1, 0, 0.05);
-  const InstrumentPose from{0.1, -0.2, 0.15, 0.3, 0.7}, to{0.12, -0.15, 0.155, 0.35, 0.6};
-  const std::vector<Shape> before = grasper_shapes(tool.trocar, from, tool.geometry);
-  const std::vector<Shape> after = grasper_shapes(tool.trocar, to, tool.geometry);
+  tool.geometry = instrument_geometry(type);
+  const double jaw = tool.geometry.has_jaws() ? 0.7 : 0;
+  const InstrumentPose from{0.1, -0.2, 0.15, 0.3, jaw}, to{0.12, -0.15, 0.155, 0.35, 0.9 * jaw};
+  const std::vector<Shape> before = instrument_shapes(tool.trocar, from, tool.geometry);
+  const std::vector<Shape> after = instrument_shapes(tool.trocar, to, tool.geometry);
   Rng rng(1);
   for (int part = 0; part < shapes_per_tool; ++part) {
     const Pose motion = part_motion(tool, from, to, part);

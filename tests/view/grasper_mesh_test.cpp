@@ -23,11 +23,11 @@ TEST(GrasperMesh, NothingDrawnLiesOutsideWhatTouches) {
   Rng rng(11);
   const Vec3 trocar(-80e-3, 70e-3, -5e-3);
   for (int i = 0; i < 12; ++i) {
-    GrasperGeometry geometry;
+    InstrumentGeometry geometry;
     if (i % 3 == 1) geometry.jaw_length = 30e-3, geometry.jaw_width = 4e-3, geometry.jaw_thickness = 2.4e-3;
     if (i % 3 == 2) geometry.shaft_radius = 5e-3, geometry.jaw_width = 8e-3, geometry.jaw_rounding = 0.5e-3;
     const InstrumentPose pose = random_pose(rng);
-    const std::vector<Shape> shapes = grasper_shapes(trocar, pose, geometry);
+    const std::vector<Shape> shapes = instrument_shapes(trocar, pose, geometry);
     double outermost = -1;
     for (const SceneMesh& mesh : grasper_meshes(trocar, pose, geometry))
       for (const Vec3& p : mesh.positions) outermost = std::max(outermost, depth_in_union(shapes, p));
@@ -37,7 +37,7 @@ TEST(GrasperMesh, NothingDrawnLiesOutsideWhatTouches) {
 
 TEST(GrasperMesh, TheDrawnJawsReachWhereTheTouchingJawsDo) {
   // What touches is also seen: along each jaw's axes the drawn extent falls short by less than 0.3 mm.
-  const GrasperGeometry geometry;
+  const InstrumentGeometry geometry;
   const InstrumentPose pose{0.2, -0.3, 0.12, 0.7, 0.6};
   const Vec3 trocar(0.01, 0.02, 0.03);
   for (int jaw = 0; jaw < 2; ++jaw) {
@@ -58,7 +58,7 @@ TEST(GrasperMesh, TheDrawnJawsReachWhereTheTouchingJawsDo) {
 
 TEST(GrasperMesh, FacesTheWayItsTrianglesTurn) {
   // Back faces are not drawn: a normal against its triangle's turn would be a hole or a dark patch.
-  for (const SceneMesh& mesh : grasper_meshes(Vec3::Zero(), {0.1, 0.2, 0.1, 0.3, 0.4}, GrasperGeometry{}))
+  for (const SceneMesh& mesh : grasper_meshes(Vec3::Zero(), {0.1, 0.2, 0.1, 0.3, 0.4}, InstrumentGeometry{}))
     for (const Triangle& t : mesh.triangles) {
       const Vec3& a = mesh.positions[t[0]];
       const Vec3 turn = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
@@ -67,7 +67,7 @@ TEST(GrasperMesh, FacesTheWayItsTrianglesTurn) {
 }
 
 TEST(GrasperMesh, MovesRigidlyWithTheInstrument) {
-  const GrasperGeometry geometry;
+  const InstrumentGeometry geometry;
   const InstrumentPose a{0.3, 0.1, 0.1, 0.2, 0.5}, b{-0.2, 0.4, 0.2, 1.2, 0.5};
   const Vec3 trocar(0.01, -0.02, 0);
   const Pose motion = hinge_frame(trocar, b, geometry) * hinge_frame(trocar, a, geometry).inverse();

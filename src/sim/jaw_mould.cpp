@@ -1,0 +1,151 @@
+#include "sim/jaw_mould.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/grip.h"
+#include "skin/free_form.h"
+
+namespace calot {
+namespace {
+
+double smooth(double t) {
+  const double s = std::clamp(t, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+double window_half(const JawWindow& window, double z) {
+  const double along = (z - window.start) / (window.end - window.start);
+  return window.start_half + (window.end_half - window.start_half) * along;
+}
+
+/// Share of the mould at a place of the pad: none at its rim, so that points come and go without a jump.
+double share_on_pad(const InstrumentGeometry& g, double y, double z) {
+  constexpr double rim = 1.2e-3;  // m
+  const double inside = std::min({0.5 * g.jaw_width - std::abs(y), z - g.jaw_rounding, g.jaw_length - z});
+  return smooth(inside / rim);
+}
+
+}  // namespace
+
+double moulded_height(const InstrumentGeometry& g, double y, double z) {
+  double bulge = 0;
+  const std::optional<JawWindow> window = jaw_window(g);
+  if (window && z > window->start && z < window->end) {
+    const double across = std::abs(y) / window_half(*window, z);
+    const double along = std::abs(2 * z - window->start - window->end) / (window->end - window->start);
+    bulge = window_bulge * smooth((1 - across) / 0.7) * smooth((1 - along) / 0.3);
+  }
+  return bulge - pad_clearance;
+}
+
+Solids::Solids(const Field& field) {
+  if (field.support) parts_.push_back({*field.support, std::nullopt, Pose::Identity()});
+  for (const Tool& tool : field.tools) {
+    const std::vector<Shape> shapes = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
+    const std::optional<JawWindow> window = jaw_window(tool.geometry);
+    for (int part = 0; part < shapes_per_tool; ++part) {
+      const Pose frame = jaw_frame(tool.trocar, tool.pose, tool.geometry, std::max(0, part - 1));
+      parts_.push_back({shapes[static_cast<std::size_t>(part)], part > 0 ? window : std::nullopt,
+                        frame.inverse(Eigen::Isometry)});
+    }
+  }
+}
+
+double Solids::distance(const Vec3& x) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Part& part : parts_) {
+    double distance = signed_distance(part.shape, x);
+    if (distance <= 0 && part.window) {
+      constexpr double corner = 0.4e-3;  // m: the window's ends are round
+      const Vec3 q = part.to_jaw * x;
+      const double from_wall =
+          std::min({window_half(*part.window, q.z()) - std::abs(q.y()), q.z() - part.window->start - corner,
+                    part.window->end - corner - q.z()});
+      distance = std::max(distance, from_wall);
+    }
+    nearest = std::min(nearest, distance);
+  }
+  return nearest;
+}
+
+std::optional<Vec3> Solids::pushed_out(Vec3 x, double least) const {
+  constexpr double step = 1e-7, slack = 1e-9;  // m
+  for (int round = 0; round < 8; ++round) {
+    const double room = distance(x);
+    if (room >= least - slack) return x;
+    Vec3 slope;
+    for (int c = 0; c < 3; ++c)
+      slope[c] = (distance(x + step * Vec3::Unit(c)) - distance(x - step * Vec3::Unit(c))) / (2 * step);
+    if (slope.squaredNorm() < 0.01) return std::nullopt;  // between two walls
+    x += (least - room) * slope / slope.squaredNorm();
+  }
+  return std::nullopt;
+}
+
+void JawMould::follow(const Field& field, int instrument, double dt) {
+  const Tool& tool = field.tools[instrument];
+  std::vector<Held> held;
+  for (std::size_t k = 0; tool.jaw_stopped && k < field.organs.size(); ++k) {
+    const Organ& organ = field.organs[k];
+    for (const GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      const Pose jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, grip.jaw);
+      const Vec3 at = organ.body.skin_point(grip.row, organ.state.x);
+      const Vec3 local = jaw.inverse(Eigen::Isometry) * at;
+      Vec3 moved = local;
+      moved.x() += share_on_pad(tool.geometry, local.y(), local.z()) *
+                   (moulded_height(tool.geometry, local.y(), local.z()) - local.x());
+      held.push_back({static_cast<int>(k), grip.row, jaw.linear() * (moved - local)});
+    }
+  }
+  if (!held.empty()) {
+    held_ = std::move(held);
+    hinge_ = hinge_frame(tool.trocar, tool.pose, tool.geometry);
+    jaw_ = tool.pose.jaw;
+    weight_ = std::min(1.0, weight_ + dt / mould_ease);
+    return;
+  }
+  weight_ = std::max(0.0, weight_ - dt / mould_ease);
+  if (weight_ == 0) held_.clear();
+}
+
+void JawMould::apply(const Field& field, int instrument, int organ, std::vector<Vec3>& positions,
+                     std::vector<Vec3>& normals) const {
+  if (!active()) return;
+  const InstrumentGeometry& g = field.tools[instrument].geometry;
+  // Functions about 1 mm apart across the pads, so that the two sides of a fold move apart, and 2 mm along them.
+  constexpr double around = 2.5e-3;  // m beyond the pads
+  FreeForm::Lattice lattice;
+  lattice.frame = hinge_ * Pose(Eigen::Translation3d(0, 0, 0.5 * g.jaw_length));
+  lattice.half = Vec3(g.jaw_length * std::sin(0.5 * jaw_), 0.5 * g.jaw_width, 0.5 * g.jaw_length);
+  lattice.half.array() += around;
+  lattice.nodes = {5, 7, 9};
+  FreeForm form(lattice);
+  // The skin around what is held stays where it is.
+  std::vector<Vec3> ways(positions.size(), Vec3::Zero());
+  for (const Held& held : held_)
+    if (held.organ == organ) ways[held.row] = smooth(weight_) * held.way;
+  std::vector<Vec3> from, to;
+  for (std::size_t p = 0; p < positions.size(); ++p) {
+    if (!form.contains(positions[p])) continue;
+    from.push_back(positions[p]);
+    to.push_back(positions[p] + ways[p]);
+  }
+  // Neighbours on a fold come close to each other: without damping their small differences would be blown up.
+  constexpr double damping = 0.06;
+  if (!form.manipulate(from, to, damping)) return;  // finite and paired: it does not fail
+  const Solids solids(field);
+  for (std::size_t p = 0; p < positions.size(); ++p) {
+    const Vec3 start = positions[p];
+    if (!form.contains(start)) continue;
+    const double least = std::min(pad_clearance, solids.distance(start));
+    const std::optional<Vec3> place = solids.pushed_out(start + form.displacement(start), least);
+    if (!place) continue;
+    positions[p] = *place;
+    normals[p] = form.moved_normal(start, normals[p]);
+  }
+}
+
+}  // namespace calot

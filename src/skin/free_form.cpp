@@ -1,0 +1,144 @@
+#include "skin/free_form.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+
+namespace calot {
+
+FreeForm::FreeForm(const Lattice& lattice)
+    : lattice_(lattice), to_box_(lattice.frame.inverse(Eigen::Isometry)) {
+  nodes_.setZero(Eigen::Index{1} * lattice.nodes[0] * lattice.nodes[1] * lattice.nodes[2], 3);
+}
+
+bool FreeForm::contains(const Vec3& x) const {
+  return ((to_box_ * x).cwiseAbs().array() < lattice_.half.array()).all();
+}
+
+FreeForm::Reach FreeForm::reach(int axis, double at) const {
+  const int n = lattice_.nodes[static_cast<std::size_t>(axis)];
+  const double spans_per_metre = (n + 3) / (2 * lattice_.half[axis]);
+  const double t = (at + lattice_.half[axis]) * spans_per_metre;
+  Reach out;
+  if (!(t > 0 && t < n + 3)) return out;
+  const int span = std::min(static_cast<int>(t), n + 2);
+  const double s = t - span, r = 1 - s;
+  out.first = span - 3;
+  out.value = {r * r * r / 6, (3 * s * s * s - 6 * s * s + 4) / 6, (3 * r * r * r - 6 * r * r + 4) / 6,
+               s * s * s / 6};
+  out.slope = {-r * r / 2, (3 * s - 4) * s / 2, -(3 * r - 4) * r / 2, s * s / 2};
+  for (int k = 0; k < 4; ++k) {
+    const bool whole = out.first + k >= 0 && out.first + k < n;  // the others would stick out of the box
+    out.value[static_cast<std::size_t>(k)] *= whole ? 1 : 0;
+    out.slope[static_cast<std::size_t>(k)] *= whole ? spans_per_metre : 0;
+  }
+  return out;
+}
+
+namespace {
+
+/// Calls use(function, i, j, k) for each function of the lattice that lies in the three reaches.
+template <class Reaches, class Use>
+void for_each_function(const Reaches& r, const std::array<int, 3>& n, const Use& use) {
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) {
+        const int a = r[0].first + i, b = r[1].first + j, c = r[2].first + k;
+        if (a < 0 || b < 0 || c < 0 || a >= n[0] || b >= n[1] || c >= n[2]) continue;
+        use((Eigen::Index{1} * c * n[1] + b) * n[0] + a, static_cast<std::size_t>(i),
+            static_cast<std::size_t>(j), static_cast<std::size_t>(k));
+      }
+}
+
+bool all_finite(const std::vector<Vec3>& points) {
+  for (const Vec3& p : points)
+    if (!p.allFinite()) return false;
+  return true;
+}
+
+}  // namespace
+
+VecX FreeForm::weights(const Vec3& x) const {
+  const Vec3 q = to_box_ * x;
+  const std::array<Reach, 3> r{reach(0, q.x()), reach(1, q.y()), reach(2, q.z())};
+  VecX w = VecX::Zero(nodes_.rows());
+  for_each_function(r, lattice_.nodes, [&](Eigen::Index f, std::size_t i, std::size_t j, std::size_t k) {
+    w[f] = r[0].value[i] * r[1].value[j] * r[2].value[k];
+  });
+  return w;
+}
+
+Vec3 FreeForm::displacement(const Vec3& x) const {
+  const Vec3 q = to_box_ * x;
+  const std::array<Reach, 3> r{reach(0, q.x()), reach(1, q.y()), reach(2, q.z())};
+  Vec3 u = Vec3::Zero();
+  for_each_function(r, lattice_.nodes, [&](Eigen::Index f, std::size_t i, std::size_t j, std::size_t k) {
+    u += r[0].value[i] * r[1].value[j] * r[2].value[k] * nodes_.row(f).transpose();
+  });
+  return u;
+}
+
+Mat3 FreeForm::gradient(const Vec3& x) const {
+  const Vec3 q = to_box_ * x;
+  const std::array<Reach, 3> r{reach(0, q.x()), reach(1, q.y()), reach(2, q.z())};
+  Mat3 by_box = Mat3::Zero();
+  for_each_function(r, lattice_.nodes, [&](Eigen::Index f, std::size_t i, std::size_t j, std::size_t k) {
+    const Vec3 slope(r[0].slope[i] * r[1].value[j] * r[2].value[k],
+                     r[0].value[i] * r[1].slope[j] * r[2].value[k],
+                     r[0].value[i] * r[1].value[j] * r[2].slope[k]);
+    by_box += nodes_.row(f).transpose() * slope.transpose();
+  });
+  return by_box * to_box_.linear();
+}
+
+Vec3 FreeForm::moved_normal(const Vec3& x, const Vec3& n, double share) const {
+  const Mat3 jacobian = Mat3::Identity() + share * gradient(x);
+  return (jacobian.inverse().transpose() * n).normalized();
+}
+
+/// The damped least squares by its normal equations: a row has 64 entries at most, so the products are few.
+Eigen::MatrixX3d FreeForm::damped_nodes(const Eigen::MatrixXd& b, const Eigen::MatrixX3d& wanted,
+                                        double damping) const {
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(b.cols(), b.cols());
+  std::vector<Eigen::Index> entries;
+  for (Eigen::Index k = 0; k < b.rows(); ++k) {
+    entries.clear();
+    for (Eigen::Index i = 0; i < b.cols(); ++i)
+      if (b(k, i) != 0) entries.push_back(i);
+    for (const Eigen::Index j : entries)
+      for (const Eigen::Index i : entries)
+        if (i >= j) normal(i, j) += b(k, i) * b(k, j);
+  }
+  normal.diagonal().array() += damping * damping;
+  return normal.llt().solve(b.transpose() * wanted);
+}
+
+Result<FreeForm::Fit> FreeForm::manipulate(const std::vector<Vec3>& points, const std::vector<Vec3>& targets,
+                                           double damping) {
+  if (points.size() != targets.size() || !all_finite(points) || !all_finite(targets))
+    return fail(FailureKind::internal, "a lattice was given points and targets that do not pair up");
+  const Eigen::Index count = static_cast<Eigen::Index>(points.size());
+  nodes_.setZero();
+  if (count == 0) return Fit{};
+  Eigen::MatrixXd b(count, nodes_.rows());
+  Eigen::MatrixX3d wanted(count, 3);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const std::size_t at = static_cast<std::size_t>(k);
+    b.row(k) = weights(points[at]);
+    wanted.row(k) = targets[at] - points[at];
+  }
+  Fit fit;
+  if (damping > 0) {
+    nodes_ = damped_nodes(b, wanted, damping);
+    fit.rank = static_cast<int>(count);
+  } else {
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(b);
+    nodes_ = decomposition.solve(wanted);
+    fit.rank = static_cast<int>(decomposition.rank());
+  }
+  fit.largest_miss = (b * nodes_ - wanted).rowwise().norm().maxCoeff();
+  return fit;
+}
+
+}  // namespace calot

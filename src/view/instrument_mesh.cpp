@@ -1,0 +1,23 @@
+#include "view/instrument_mesh.h"
+
+#include "view/electrode_mesh.h"
+#include "view/grasper_mesh.h"
+#include "view/semm_mesh.h"
+
+namespace calot {
+
+std::vector<SceneMesh> instrument_meshes(InstrumentType type, const Vec3& trocar,
+                                         const InstrumentPose& pose) {
+  const InstrumentGeometry geometry = instrument_geometry(type);
+  switch (type) {
+    case InstrumentType::bipolar_electrode:
+      return electrode_meshes(trocar, pose, geometry);
+    case InstrumentType::semm_forceps:
+      return semm_meshes(trocar, pose, geometry);
+    case InstrumentType::atraumatic_grasper:
+      return grasper_meshes(trocar, pose, geometry);
+  }
+  return {};
+}
+
+}  // namespace calot

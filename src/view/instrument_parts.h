@@ -1,0 +1,33 @@
+#pragma once
+// What drawn instruments have in common. All in the hinge's frame (sim/instrument.h) unless said otherwise.
+
+#include <vector>
+
+#include "render/scene.h"
+#include "sim/instrument.h"
+
+namespace calot {
+
+/// rad: rounded edges stay smooth, cut ones sharp.
+inline constexpr double instrument_crease = 0.6;
+
+/// A surface of revolution about z through (radius, height) points, outward for rising heights.
+SceneMesh turned(Material material, const std::vector<Vec2>& profile, int around);
+
+/// Outline of a jaw (or of its window) in the plane of its width y and length z: a rounded strip that
+/// narrows or widens.
+struct Outline {
+  double start, end;            // z, m
+  double start_half, end_half;  // half width, m
+  double half_width(double z) const;
+  /// t in [0, 1) runs once around, counter-clockwise seen from +x; `inset` moves inward.
+  Vec2 at(double t, double inset) const;
+};
+
+/// Insulated shaft and its steel end with a clevis and its pin.
+struct ForcepsShaft {
+  SceneMesh steel, insulation;
+};
+ForcepsShaft forceps_shaft(const InstrumentGeometry& geometry);
+
+}  // namespace calot

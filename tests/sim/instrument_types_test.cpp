@@ -1,0 +1,74 @@
+// What the other instruments do to a gallbladder: the electrode pushes and never grips, Semm's forceps grip.
+
+#include <gtest/gtest.h>
+
+#include "rig.h"
+
+namespace calot {
+namespace {
+
+SceneDefinition scene_with(InstrumentType type) {
+  SceneDefinition scene = test::grasper_scene();
+  InstrumentDefinition tool = default_instrument(type);
+  tool.name = "left";
+  tool.port = scene.instruments[0].port;
+  scene.instruments[0] = tool;
+  return scene;
+}
+
+TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
+  test::FundusPath path(scene_with(InstrumentType::bipolar_electrode));
+  const double pressure = path.world.report().organs[0].pressure;
+  ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 3)) << path.driver.why();
+  ASSERT_TRUE(path.driver.go(path.fundus - 6e-3 * path.out, 0, 6)) << path.driver.why();
+  const StepReport& pressed = path.world.report();
+  EXPECT_GT(pressed.instruments[0].tip_force.dot(path.out), 0.1) << "it is pushed back";
+  EXPECT_GT(pressed.organs[0].pressure, pressure);
+  EXPECT_LT(path.world.deepest_penetration(), 0.2e-3);
+  // The wall has gone along: it covers the tip, within the contact's range and half a grid of the skin.
+  double nearest = 1;
+  for (const Vec3& p : path.world.skin_positions(0))
+    nearest = std::min(nearest, (p - pressed.instruments[0].tip).norm());
+  EXPECT_LT(nearest, 1e-3);
+  EXPECT_EQ(pressed.instruments[0].grip_points, 0);
+  ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 6)) << path.driver.why();
+  EXPECT_FALSE(path.world.report().instruments[0].touching);
+  // A state is known to the solver's tolerance of the organ's size.
+  EXPECT_LT((path.world.landmark("gallbladder.fundus") - path.fundus).norm(), 1e-5);
+  EXPECT_EQ(path.driver.count("contact"), 1);
+  EXPECT_EQ(path.driver.count("grasp"), 0);
+}
+
+TEST(Electrode, RefusesAJawAngle) {
+  const World reference = World::create(scene_with(InstrumentType::bipolar_electrode)).value();
+  for (double jaw : {0.1, -1e-10}) {
+    World world = World::create(scene_with(InstrumentType::bipolar_electrode)).value();
+    StepInput input;
+    input.instruments = {world.report().instruments[0].pose};
+    input.instruments[0].jaw = jaw;
+    const Result<StepReport> step = world.step(input);
+    ASSERT_FALSE(step) << jaw;
+    EXPECT_NE(to_text(step.failure()).find("no jaws"), std::string::npos) << to_text(step.failure());
+    EXPECT_EQ(world.state_hash(), reference.state_hash());
+  }
+}
+
+TEST(SemmGrasp, GripsLiftsAndLetsGo) {
+  test::FundusPath path(scene_with(InstrumentType::semm_forceps));
+  double deepest = 0;
+  path.driver.watch = [&](const StepReport&) {
+    deepest = std::max(deepest, path.world.deepest_penetration());
+  };
+  ASSERT_TRUE(path.grasp()) << path.driver.why();
+  EXPECT_EQ(path.world.report().instruments[0].holds, "gallbladder");
+  ASSERT_TRUE(path.lift()) << path.driver.why();
+  EXPECT_EQ(path.world.report().instruments[0].holds, "gallbladder");
+  EXPECT_LT(path.world.report().instruments[0].tip_force.dot(path.out), -0.2) << "it pulls";
+  ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
+  EXPECT_EQ(path.world.report().instruments[0].holds, "");
+  EXPECT_EQ(path.driver.count("release"), 1);
+  EXPECT_LT(deepest, 0.2e-3);
+}
+
+}  // namespace
+}  // namespace calot
