@@ -9,6 +9,14 @@
 namespace calot {
 namespace {
 
+/// Where p lies in a triangle, whose plane it is in.
+FacePoint place_in(const TriMesh& mesh, int face, const Vec3& p) {
+  const Triangle& t = mesh.triangles[face];
+  const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+  const Vec3 n = (b - a).cross(c - a);
+  return {face, (p - a).cross(c - a).dot(n) / n.squaredNorm(), (b - a).cross(p - a).dot(n) / n.squaredNorm()};
+}
+
 int add_point(TriMesh& mesh, const Vec3& p) {
   mesh.points.push_back(p);
   return static_cast<int>(mesh.points.size()) - 1;
@@ -148,7 +156,14 @@ Result<StarMesh> star_split(const TriMesh& coarse, std::span<const FacePoint> co
     has_star[contact.face] = true;
   }
   for (int level = 0; level < levels; ++level) subdivide(split, has_star);
-  for (int face : split.parent) split.extended.push_back(has_star[face]);
+  split.places.resize(split.mesh.points.size() - coarse.points.size());
+  for (std::size_t t = 0; t < split.parent.size(); ++t) {
+    const int face = split.parent[t];
+    split.extended.push_back(has_star[face]);
+    for (int node : split.mesh.triangles[t])
+      if (node >= split.coarse_nodes)
+        split.places[node - split.coarse_nodes] = place_in(coarse, face, split.mesh.points[node]);
+  }
   return split;
 }
 

@@ -27,6 +27,9 @@ struct StarMesh {
   std::vector<bool> extended;  ///< of each triangle: whether that parent has a star
   std::vector<Star> stars;     ///< one a contact, in order
   int coarse_nodes = 0;        ///< of the given mesh
+  /// Where each further node lies in the given mesh: its displacement with the coarse structure's, and a force
+  /// on it passed to P1, P2, P3 (virtual work), are by these weights.
+  std::vector<FacePoint> places;
 };
 
 /// The smallest barycentric weight of P0, half of what it has in the middle.

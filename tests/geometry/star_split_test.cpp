@@ -100,6 +100,17 @@ TEST(StarSplit, NewNodesAreThePapersAndTheirTrianglesLieInTheTouchedOne) {
     EXPECT_EQ(split.extended[t], split.parent[t] == 7 || split.parent[t] == 50);
 }
 
+TEST(StarSplit, PlacesBlendTheGivenNodesToTheNewOnes) {
+  const TriMesh coarse = sphere();
+  const StarMesh split = star_split(coarse, std::vector<FacePoint>{{7, 0.3, 0.4}, {50, 0.2, 0.5}}, 1).value();
+  const StencilTable table = linear_stencils(coarse.triangles, split.places);
+  ASSERT_EQ(table.rows() + 61U, split.mesh.points.size());
+  for (int r = 0; r < table.rows(); ++r) {
+    const Vec3 at = blend(table, table.value, r, to_coordinates(coarse.points));
+    EXPECT_LT((at - split.mesh.points[61 + r]).norm(), 1e-16);
+  }
+}
+
 TEST(StarSplit, SubdivisionHalvesTheStarsEdgesAndLeavesTheCoarseOnes) {
   const TriMesh coarse = sphere();
   const std::vector<FacePoint> contacts = {{0, 0.3, 0.4}, {neighbour(coarse, 2), 0.2, 0.3}};
