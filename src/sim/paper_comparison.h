@@ -18,8 +18,8 @@ struct PaperCase {
   double base_spread = 8e-3;       ///< m, of its Gaussian
   Vec3 contact{0.45, 0.25, 0.86};  ///< direction from the centre, of any length but 0
   double outward = 10e-3;          ///< how far the springs' ends go, m; negative: inward
-  double contact_stiffness = 1e7;  ///< N/m per m^2 in the middle of the contact
-  double contact_spread = 3e-3;    ///< m, of its Gaussian
+  double contact_stiffness = 1e8;  ///< N/m per m^2 in the middle of the contact
+  double contact_spread = 2e-3;    ///< m, of its Gaussian
   int steps = 8;                   ///< of the motion
   int extensions = 3;              ///< in the triangles nearest to the contact
   std::vector<int> levels{0};      ///< subdivisions of the extensions, a pair of rows each
