@@ -30,47 +30,67 @@ Result<std::vector<TriMesh>> nested_spheres(const PaperCase& given) {
   return out;
 }
 
-/// Where a ray from the origin meets the plane of a face; u, v are not a number when it does not.
-FacePoint on_plane(const TriMesh& mesh, int face, const Vec3& direction) {
-  const Triangle& t = mesh.triangles[face];
-  Mat3 corners;
-  corners << mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]];
-  const Vec3 w = corners.inverse() * direction;
-  return {face, w.sum() > 0 ? w[1] / w.sum() : NAN, w.sum() > 0 ? w[2] / w.sum() : NAN};
+/// Directions in which all structures are loaded and measured: the nodes of a finer sphere than any of them.
+std::vector<Vec3> sample_directions(TriMesh mesh) {
+  constexpr int splits = 3;
+  for (int k = 0; k < splits; ++k) mesh = split_edges(mesh);
+  for (Vec3& p : mesh.points) p.normalize();
+  return mesh.points;
 }
 
-/// How deep inside its face a point lies: its smallest weight.
-double depth(const FacePoint& p) {
-  if (std::isnan(p.u)) return -std::numeric_limits<double>::infinity();
-  return std::min({p.u, p.v, 1 - p.u - p.v});
-}
-
-/// Faces in the order of how near the ray passes.
-std::vector<FacePoint> nearest_faces(const TriMesh& mesh, const Vec3& direction) {
-  std::vector<FacePoint> out;
-  for (int f = 0; f < static_cast<int>(mesh.triangles.size()); ++f)
-    out.push_back(on_plane(mesh, f, direction));
-  std::stable_sort(out.begin(), out.end(),
-                   [](const FacePoint& a, const FacePoint& b) { return depth(a) > depth(b); });
-  return out;
-}
-
-std::vector<FacePoint> seen_points(const TriMesh& mesh, const std::vector<Vec3>& directions) {
-  std::vector<FacePoint> out;
-  for (const Vec3& d : directions) {
-    FacePoint best = on_plane(mesh, 0, d);
-    for (int f = 1; f < static_cast<int>(mesh.triangles.size()); ++f)
-      if (const FacePoint p = on_plane(mesh, f, d); depth(p) > depth(best)) best = p;
-    out.push_back(best);
+/// Where rays from the origin meet a mesh around it.
+class View {
+ public:
+  explicit View(const TriMesh& mesh) {
+    for (const Triangle& t : mesh.triangles) {
+      Mat3 corners;
+      corners << mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]];
+      inverses_.push_back(corners.inverse());
+    }
   }
-  return out;
-}
+
+  FacePoint point(const Vec3& direction) const {
+    int best = 0;
+    for (int f = 1; f < faces(); ++f)
+      if (depth(f, direction) > depth(best, direction)) best = f;
+    return on_plane(best, direction);
+  }
+  std::vector<FacePoint> points(const std::vector<Vec3>& directions) const {
+    std::vector<FacePoint> out;
+    for (const Vec3& d : directions) out.push_back(point(d));
+    return out;
+  }
+  /// A point on each of the faces' planes; the nearer the ray passes to a face the earlier it comes.
+  std::vector<FacePoint> nearest(const Vec3& direction, int count) const {
+    std::vector<int> order(inverses_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return depth(a, direction) > depth(b, direction); });
+    std::vector<FacePoint> out;
+    for (int k = 0; k < count; ++k) out.push_back(on_plane(order[k], direction));
+    return out;
+  }
+
+ private:
+  int faces() const { return static_cast<int>(inverses_.size()); }
+  FacePoint on_plane(int face, const Vec3& direction) const {
+    const Vec3 w = inverses_[face] * direction;
+    return {face, w[1] / w.sum(), w[2] / w.sum()};
+  }
+  /// The smallest barycentric weight of where the ray meets the face's plane.
+  double depth(int face, const Vec3& direction) const {
+    const Vec3 w = inverses_[face] * direction;
+    return w.sum() > 0 ? w.minCoeff() / w.sum() : -std::numeric_limits<double>::infinity();
+  }
+
+  std::vector<Mat3> inverses_;
+};
 
 class Comparison {
  public:
   Comparison(const PaperCase& given, std::vector<TriMesh> meshes)
       : given_(given), meshes_(std::move(meshes)) {
-    for (const Vec3& p : meshes_.back().points) directions_.push_back(p.normalized());
+    directions_ = sample_directions(meshes_.front());
     along_ = given_.contact.normalized();
     to_base_ = gaussian(-given_.setup.up, given_.base_stiffness, given_.base_spread);
     to_contact_ = gaussian(along_, given_.contact_stiffness, given_.contact_spread);
@@ -78,15 +98,15 @@ class Comparison {
 
   Result<std::vector<PaperRow>> run() {
     for (const TriMesh& mesh : meshes_)
-      add("uniform", 0, 0, PaperBody::one_system(mesh, seen_points(mesh, directions_), given_.setup));
+      add("uniform", 0, 0, PaperBody::one_system(mesh, View(mesh).points(directions_), given_.setup));
     const TriMesh& coarse = meshes_.front();
-    std::vector<FacePoint> contacts = nearest_faces(coarse, along_);
-    contacts.resize(given_.extensions);
-    const std::vector<FacePoint> points = seen_points(coarse, directions_);
+    const View view(coarse);
+    const std::vector<FacePoint> contacts = view.nearest(along_, given_.extensions);
+    const std::vector<FacePoint> points = view.points(directions_);
     for (int levels : given_.levels) {
       const Result<StarMesh> split = star_split(coarse, contacts, levels);
       if (!split) return split.failure();
-      const std::vector<FacePoint> split_points = seen_points(split->mesh, directions_);
+      const std::vector<FacePoint> split_points = View(split->mesh).points(directions_);
       add("extended, one system", given_.extensions, levels,
           PaperBody::one_system(split->mesh, split_points, given_.setup));
       add("extended, two stages", given_.extensions, levels,
@@ -179,7 +199,8 @@ class Comparison {
 Result<std::vector<PaperRow>> compare_paper(const PaperCase& given) {
   if (!(given.radius > 0) || given.refinements < 0 || !(given.contact.norm() > 0) || given.steps < 1 ||
       given.extensions < 0 || given.extensions > 2 * given.nodes - 4 || !(given.base_spread > 0) ||
-      !(given.contact_spread > 0))
+      !(given.contact_spread > 0) ||
+      std::any_of(given.levels.begin(), given.levels.end(), [](int l) { return l < 0; }))
     return fail(FailureKind::usage,
                 "the paper's comparison needs a radius, spreads, a contact and steps above 0",
                 "see PaperCase");

@@ -42,8 +42,9 @@ struct PaperRow {
 };
 
 /// Rows: the uniform structures from coarse to fine, then for each of `levels` the extended one of one system
-/// and in two stages. Surface points are the finest structure's nodes, seen from the sphere's centre; all
-/// structures are scaled to hold the sphere's volume, and displacements count from the filled state. Fails
+/// and in two stages. Some 3,800 surface points, seen from the sphere's centre, carry the load and are
+/// compared; all structures are scaled to hold the sphere's volume, and displacements count from the filled
+/// state. Fails
 /// (usage) for a case without sense, and (simulation) when a structure finds no equilibrium.
 Result<std::vector<PaperRow>> compare_paper(const PaperCase& given);
 
