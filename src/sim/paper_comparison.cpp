@@ -197,13 +197,13 @@ class Comparison {
 }  // namespace
 
 Result<std::vector<PaperRow>> compare_paper(const PaperCase& given) {
-  if (!(given.radius > 0) || given.refinements < 0 || !(given.contact.norm() > 0) || given.steps < 1 ||
-      given.extensions < 0 || given.extensions > 2 * given.nodes - 4 || !(given.base_spread > 0) ||
-      !(given.contact_spread > 0) ||
-      std::any_of(given.levels.begin(), given.levels.end(), [](int l) { return l < 0; }))
-    return fail(FailureKind::usage,
-                "the paper's comparison needs a radius, spreads, a contact and steps above 0",
-                "see PaperCase");
+  const int coarse_faces = 2 * given.nodes - 4;
+  const bool lengths = given.radius > 0 && given.base_spread > 0 && given.contact_spread > 0;
+  const bool levels = std::all_of(given.levels.begin(), given.levels.end(), [](int l) { return l >= 0; });
+  if (!lengths || !levels || !(given.contact.norm() > 0) || given.steps < 1 || given.refinements < 0 ||
+      given.extensions < 0 || given.extensions > coarse_faces)
+    return fail(FailureKind::usage, "a case of the paper's comparison that makes no sense",
+                "lengths and steps above 0, counts not below 0, at most one extension a coarse triangle");
   Result<std::vector<TriMesh>> meshes = nested_spheres(given);
   if (!meshes) return meshes.failure();
   return Comparison(given, std::move(meshes).value()).run();

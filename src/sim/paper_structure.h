@@ -91,7 +91,7 @@ class PaperBody {
   NewtonResult settle(const Vec3& pull);
 
   std::vector<Vec3> surface() const;  ///< the points, m
-  double volume() const;              ///< enclosed, m^3
+  double volume() const;              ///< enclosed by the first (or only) stage, m^3
   const VecX& nodes() const { return stages_.back().nodes; }
   double pressure() const { return multiplier_; }  ///< at the origin's height, Pa
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "geometry/shapes.h"
+#include "sim/paper_structure.h"
 
 namespace calot {
 namespace {
@@ -68,6 +69,30 @@ TEST(PaperSkin, FollowsRigidMotionsOfTheNodes) {
   for (int i = 0; i < there.size(); i += 3) there.segment<3>(i) = (motion * Vec3(there.segment<3>(i))).eval();
   const std::vector<Vec3> moved = blend_all(table, table.value, there);
   for (std::size_t r = 0; r < rest.size(); ++r) EXPECT_LT((moved[r] - motion * rest[r]).norm(), 1e-15);
+}
+
+TEST(PaperSkin, OfABodyPulledAtItsExtensionsDoesNotFold) {
+  const TriMesh coarse = revolve(sphere_profile(radius), 61).value();
+  const StarMesh split = structure(0);
+  // A point in the middle of each triangle; those of the extensions are pulled, those far away held.
+  std::vector<FacePoint> points;
+  std::vector<double> base, contact;
+  const Vec3 at = split.mesh.points[split.stars[0].centre], pull = 8e-3 * at.normalized();
+  for (int t = 0; t < static_cast<int>(split.mesh.triangles.size()); ++t) {
+    points.push_back({t, 1.0 / 3, 1.0 / 3});
+    const double far = (split.mesh.points[split.mesh.triangles[t][0]] - at).norm();
+    base.push_back(far > 1.7 * radius ? 400.0 : 0.0);
+    contact.push_back(split.extended[t] ? 100.0 : 0.0);
+  }
+  PaperBody body = PaperBody::one_system(split.mesh, points, {}).value();
+  body.bind(base, false);
+  ASSERT_TRUE(body.settle(Vec3::Zero()).converged());
+  body.bind(contact, true);
+  for (int k = 1; k <= 4; ++k) ASSERT_TRUE(body.settle(k / 4.0 * pull).converged());
+  const Tessellation skin = paper_skin(split, 4).value();
+  const TriMesh mesh{blend_all(skin.stencils, skin.stencils.value, body.nodes()), skin.triangles};
+  for (const Problem& problem : check(mesh)) ADD_FAILURE() << to_text(problem);
+  EXPECT_GT((Vec3(body.nodes().segment<3>(3 * split.stars[0].centre)) - at).dot(at.normalized()), 6e-3);
 }
 
 TEST(PaperSkin, MovingPZeroMovesTheSkinAroundItOnly) {
