@@ -4,31 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <numeric>
 
+#include "geometry/radial_view.h"
 #include "geometry/shapes.h"
 
 namespace calot {
 namespace {
 
 constexpr double near_contact = 10e-3;  // m
-
-/// Each structure twice as fine as the one before it, all of the sphere's volume.
-Result<std::vector<TriMesh>> nested_spheres(const PaperCase& given) {
-  Result<TriMesh> coarsest = revolve(sphere_profile(given.radius), given.nodes);
-  if (!coarsest) return coarsest.failure();
-  std::vector<TriMesh> out = {coarsest.value()};
-  for (int k = 0; k < given.refinements; ++k) out.push_back(split_edges(out.back()));
-  for (TriMesh& mesh : out) {
-    for (Vec3& p : mesh.points) p = given.radius * p.normalized();
-    const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(given.radius, 3);
-    const double scale = std::cbrt(volume / enclosed_volume(mesh));
-    for (Vec3& p : mesh.points) p *= scale;
-  }
-  return out;
-}
 
 /// Directions in which all structures are loaded and measured: the nodes of a finer sphere than any of them.
 std::vector<Vec3> sample_directions(TriMesh mesh) {
@@ -37,54 +21,6 @@ std::vector<Vec3> sample_directions(TriMesh mesh) {
   for (Vec3& p : mesh.points) p.normalize();
   return mesh.points;
 }
-
-/// Where rays from the origin meet a mesh around it.
-class View {
- public:
-  explicit View(const TriMesh& mesh) {
-    for (const Triangle& t : mesh.triangles) {
-      Mat3 corners;
-      corners << mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]];
-      inverses_.push_back(corners.inverse());
-    }
-  }
-
-  FacePoint point(const Vec3& direction) const {
-    int best = 0;
-    for (int f = 1; f < faces(); ++f)
-      if (depth(f, direction) > depth(best, direction)) best = f;
-    return on_plane(best, direction);
-  }
-  std::vector<FacePoint> points(const std::vector<Vec3>& directions) const {
-    std::vector<FacePoint> out;
-    for (const Vec3& d : directions) out.push_back(point(d));
-    return out;
-  }
-  /// A point on each of the faces' planes; the nearer the ray passes to a face the earlier it comes.
-  std::vector<FacePoint> nearest(const Vec3& direction, int count) const {
-    std::vector<int> order(inverses_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](int a, int b) { return depth(a, direction) > depth(b, direction); });
-    std::vector<FacePoint> out;
-    for (int k = 0; k < count; ++k) out.push_back(on_plane(order[k], direction));
-    return out;
-  }
-
- private:
-  int faces() const { return static_cast<int>(inverses_.size()); }
-  FacePoint on_plane(int face, const Vec3& direction) const {
-    const Vec3 w = inverses_[face] * direction;
-    return {face, w[1] / w.sum(), w[2] / w.sum()};
-  }
-  /// The smallest barycentric weight of where the ray meets the face's plane.
-  double depth(int face, const Vec3& direction) const {
-    const Vec3 w = inverses_[face] * direction;
-    return w.sum() > 0 ? w.minCoeff() / w.sum() : -std::numeric_limits<double>::infinity();
-  }
-
-  std::vector<Mat3> inverses_;
-};
 
 class Comparison {
  public:
@@ -98,15 +34,15 @@ class Comparison {
 
   Result<std::vector<PaperRow>> run() {
     for (const TriMesh& mesh : meshes_)
-      add("uniform", 0, 0, PaperBody::one_system(mesh, View(mesh).points(directions_), given_.setup));
+      add("uniform", 0, 0, PaperBody::one_system(mesh, RadialView(mesh).points(directions_), given_.setup));
     const TriMesh& coarse = meshes_.front();
-    const View view(coarse);
+    const RadialView view(coarse);
     const std::vector<FacePoint> contacts = view.nearest(along_, given_.extensions);
     const std::vector<FacePoint> points = view.points(directions_);
     for (int levels : given_.levels) {
       const Result<StarMesh> split = star_split(coarse, contacts, levels);
       if (!split) return split.failure();
-      const std::vector<FacePoint> split_points = View(split->mesh).points(directions_);
+      const std::vector<FacePoint> split_points = RadialView(split->mesh).points(directions_);
       add("extended, one system", given_.extensions, levels,
           PaperBody::one_system(split->mesh, split_points, given_.setup));
       add("extended, two stages", given_.extensions, levels,
@@ -137,12 +73,12 @@ class Comparison {
       failure_ = body.failure();
       return;
     }
-    body->bind(to_base_, false);
-    if (!settled(formulation, body->settle(Vec3::Zero()))) return;
+    body->bind(to_base_, Vec3::Zero());
+    if (!settled(formulation, body->settle(0))) return;
     const std::vector<Vec3> filled = body->surface();
-    body->bind(to_contact_, true);
+    body->bind(to_contact_, given_.outward * along_);
     for (int k = 1; k <= given_.steps; ++k)
-      if (!settled(formulation, body->settle(k * given_.outward / given_.steps * along_))) return;
+      if (!settled(formulation, body->settle(static_cast<double>(k) / given_.steps))) return;
     std::vector<Vec3> moved = body->surface();
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= filled[i];
     displacements_.push_back(std::move(moved));
@@ -196,6 +132,20 @@ class Comparison {
 
 }  // namespace
 
+Result<std::vector<TriMesh>> flat_spheres(double radius, int nodes, int refinements) {
+  Result<TriMesh> coarsest = revolve(sphere_profile(radius), nodes);
+  if (!coarsest) return coarsest.failure();
+  std::vector<TriMesh> out = {coarsest.value()};
+  for (int k = 0; k < refinements; ++k) out.push_back(split_edges(out.back()));
+  for (TriMesh& mesh : out) {
+    for (Vec3& p : mesh.points) p = radius * p.normalized();
+    const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
+    const double scale = std::cbrt(volume / enclosed_volume(mesh));
+    for (Vec3& p : mesh.points) p *= scale;
+  }
+  return out;
+}
+
 Result<std::vector<PaperRow>> compare_paper(const PaperCase& given) {
   const int coarse_faces = 2 * given.nodes - 4;
   const bool lengths = given.radius > 0 && given.base_spread > 0 && given.contact_spread > 0;
@@ -204,7 +154,7 @@ Result<std::vector<PaperRow>> compare_paper(const PaperCase& given) {
       given.extensions < 0 || given.extensions > coarse_faces)
     return fail(FailureKind::usage, "a case of the paper's comparison that makes no sense",
                 "lengths and steps above 0, counts not below 0, at most one extension a coarse triangle");
-  Result<std::vector<TriMesh>> meshes = nested_spheres(given);
+  Result<std::vector<TriMesh>> meshes = flat_spheres(given.radius, given.nodes, given.refinements);
   if (!meshes) return meshes.failure();
   return Comparison(given, std::move(meshes).value()).run();
 }

@@ -8,6 +8,9 @@
 
 namespace calot {
 
+/// Spheres of flat triangles, each twice as fine as the one before it, all of the sphere's volume.
+Result<std::vector<TriMesh>> flat_spheres(double radius, int nodes, int refinements);
+
 /// A sphere full of bile, its base held, one place of it moved along its normal.
 struct PaperCase {
   PaperSetup setup;

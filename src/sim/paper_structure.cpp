@@ -9,19 +9,15 @@
 namespace calot {
 namespace {
 
-/// Each face split at the middles of its edges, as Bile takes its surface; on flat triangles its
-/// extrapolation changes nothing, the sum is exact.
-Tessellation split_flat(const std::vector<Triangle>& triangles) {
-  constexpr double places[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
-  Tessellation out;
-  for (int f = 0; f < static_cast<int>(triangles.size()); ++f) {
-    for (const auto& [u, v] : places) out.at.push_back({f, u, v});
-    const int p = 6 * f;
-    out.triangles.insert(
-        out.triangles.end(),
-        {{p, p + 3, p + 5}, {p + 3, p + 1, p + 4}, {p + 5, p + 4, p + 2}, {p + 3, p + 4, p + 5}});
+/// The flat triangles themselves: their sum is exact.
+BileSurface flat_surface(const TriMesh& mesh) {
+  BileSurface out;
+  for (int node = 0; node < static_cast<int>(mesh.points.size()); ++node) {
+    out.points.node.push_back(node);
+    out.points.value.push_back(1);
+    out.points.begin.push_back(node + 1);
   }
-  out.stencils = linear_stencils(triangles, out.at);
+  for (const Triangle& t : mesh.triangles) out.cells.push_back({{t, 1}});
   return out;
 }
 
@@ -45,15 +41,16 @@ Result<PaperElements> PaperElements::create(const TriMesh& mesh, const std::vect
   std::vector<FacePoint> middles;
   for (int f = 0; f < faces; ++f) middles.push_back({f, 1.0 / 3.0, 1.0 / 3.0});
   const double mu = setup.wall.shear_modulus, thickness = setup.wall.thickness;
-  Result<Shell> membrane = Shell::create(linear_stencils(mesh.triangles, middles), {{1.0 / 3, 1.0 / 3, 0.5}},
-                                         out.rest, {{mu, thickness}, {mu, thickness}, false});
+  Result<Shell> membrane =
+      Shell::create(face_by_face(linear_stencils(mesh.triangles, middles), {{1.0 / 3, 1.0 / 3, 0.5}}),
+                    out.rest, {{mu, thickness}, {mu, thickness}, false});
   if (!membrane) return membrane.failure();
   std::vector<Triangle> hinged = mesh.triangles;
   hinged.insert(hinged.end(), neighbours.begin(), neighbours.end());
   Result<Hinges> hinges = Hinges::create(hinged, out.rest, KoiterBending{mu, thickness}.rigidity());
   if (!hinges) return hinges.failure();
-  Result<Bile> bile = Bile::create(split_flat(mesh.triangles), faces,
-                                   setup.bile_density * units::standard_gravity, setup.up, Vec3::Zero());
+  Result<Bile> bile =
+      Bile::create(flat_surface(mesh), setup.bile_density * units::standard_gravity, setup.up, Vec3::Zero());
   if (!bile) return bile.failure();
   out.membrane = std::move(membrane).value();
   out.hinges = std::move(hinges).value();
@@ -147,9 +144,11 @@ double PaperProblem::safe_share(const VecX&, const VecX& step) const {
 }
 
 PaperBody::Stage PaperBody::make_stage(PaperElements elements, StencilTable points, std::vector<bool> loaded,
-                                       std::optional<double> volume, int first) {
+                                       std::optional<double> volume, int first,
+                                       std::optional<FactorKind> solver) {
   const VecX rest = elements.rest;
   NewtonWorkspace work(PaperProblem::pattern(elements, first));
+  if (solver) work.factor = Cholesky(work.matrix, work.matrix.nodes(), *solver);
   return {std::move(elements),
           std::move(points),
           std::move(loaded),
@@ -170,7 +169,7 @@ Result<PaperBody> PaperBody::one_system(const TriMesh& mesh, const std::vector<F
   body.setup_ = setup;
   const double volume = setup.fill * elements->bile.volume(elements->rest);
   body.stages_.push_back(make_stage(std::move(elements).value(), linear_stencils(mesh.triangles, points),
-                                    std::vector<bool>(points.size(), true), volume, 0));
+                                    std::vector<bool>(points.size(), true), volume, 0, setup.solver));
   return body;
 }
 
@@ -189,12 +188,12 @@ Result<PaperBody> PaperBody::two_stages(const TriMesh& coarse, const std::vector
   for (const FacePoint& p : split_points) loaded.push_back(split.extended[p.face]);
   body->stages_.push_back(make_stage(std::move(elements).value(),
                                      linear_stencils(split.mesh.triangles, split_points), std::move(loaded),
-                                     std::nullopt, split.coarse_nodes));
+                                     std::nullopt, split.coarse_nodes, setup.solver));
   body->places_ = linear_stencils(coarse.triangles, split.places);
   return body;
 }
 
-void PaperBody::bind(const std::vector<double>& stiffness, bool follow) {
+void PaperBody::bind(const std::vector<double>& stiffness, const Vec3& travel) {
   for (Stage& stage : stages_) {
     for (int p = 0; p < stage.points.rows(); ++p) {
       if (stiffness[p] <= 0 || !stage.loaded[p]) continue;
@@ -202,8 +201,8 @@ void PaperBody::bind(const std::vector<double>& stiffness, bool follow) {
       stage.springs.row.push_back(p);
       stage.springs.target.push_back(at);
       stage.springs.stiffness.push_back(stiffness[p]);
-      stage.follows_from.push_back(at);
-      stage.follows.push_back(follow);
+      stage.from.push_back(at);
+      stage.travel.push_back(travel);
     }
   }
 }
@@ -218,9 +217,9 @@ void PaperBody::carry_extension() {
     nodes.segment<3>(coarse.size() + 3 * r) += blend(places_, places_.value, r, moved);
 }
 
-NewtonResult PaperBody::solve(Stage& stage, const Vec3& pull) {
-  for (std::size_t i = 0; i < stage.follows.size(); ++i)
-    if (stage.follows[i]) stage.springs.target[i] = stage.follows_from[i] + pull;
+NewtonResult PaperBody::solve(Stage& stage, double share) {
+  for (std::size_t i = 0; i < stage.from.size(); ++i)
+    stage.springs.target[i] = stage.from[i] + share * stage.travel[i];
   const PaperProblem problem(stage.elements, stage.points, stage.springs, stage.volume, multiplier_,
                              stage.nodes, stage.first);
   VecX x = stage.nodes.tail(stage.nodes.size() - 3 * stage.first);
@@ -237,17 +236,23 @@ NewtonResult PaperBody::solve(Stage& stage, const Vec3& pull) {
   return result;
 }
 
-NewtonResult PaperBody::settle(const Vec3& pull) {
-  NewtonResult total = solve(stages_[0], pull);
+NewtonResult PaperBody::settle(double share) {
+  NewtonResult total = solve(stages_[0], share);
   if (stages_.size() == 1 || !total.converged()) return total;
   carry_extension();
-  total.add(solve(stages_[1], pull));
+  total.add(solve(stages_[1], share));
   return total;
 }
 
 std::vector<Vec3> PaperBody::surface() const {
   const Stage& stage = stages_.back();
   return blend_all(stage.points, stage.points.value, stage.nodes);
+}
+
+std::vector<const NewtonWorkspace*> PaperBody::systems() const {
+  std::vector<const NewtonWorkspace*> out;
+  for (const Stage& stage : stages_) out.push_back(&stage.work);
+  return out;
 }
 
 double PaperBody::volume() const { return stages_[0].elements.bile.volume(stages_[0].nodes); }

@@ -19,6 +19,7 @@ struct PaperSetup {
   Vec3 up = Vec3::UnitZ();     ///< unit
   double fill = 1.0;           ///< kept volume over the rest volume
   NewtonSettings newton;
+  std::optional<FactorKind> solver = {};  ///< none: by the number of nodes
 };
 
 /// Membrane, hinges and bile of some triangles. Fixed once built.
@@ -84,11 +85,14 @@ class PaperBody {
                                       const StarMesh& split, const std::vector<FacePoint>& split_points,
                                       const PaperSetup& setup);
 
-  /// Springs of `stiffness` (N/m, one a point, 0: none) to where the points are now. Those that follow are
-  /// carried along by settle()'s `pull` (m).
-  void bind(const std::vector<double>& stiffness, bool follow);
-  /// To equilibrium. On failure the stage that failed is at its last iterate.
-  NewtonResult settle(const Vec3& pull);
+  /// Springs of `stiffness` (N/m, one a point, 0: none) to where the points are now. Their ends
+  /// go by `travel` (m), as far as settle() says.
+  void bind(const std::vector<double>& stiffness, const Vec3& travel);
+  /// To equilibrium with the springs' ends at `share` of their travels. On failure the stage that failed is at
+  /// its last iterate.
+  NewtonResult settle(double share);
+  /// Of each stage: its matrix, as last assembled, and its factor.
+  std::vector<const NewtonWorkspace*> systems() const;
 
   std::vector<Vec3> surface() const;  ///< the points, m
   double volume() const;              ///< enclosed by the first (or only) stage, m^3
@@ -116,15 +120,14 @@ class PaperBody {
     VecX nodes;
     NewtonWorkspace work;
     Links springs;
-    std::vector<Vec3> follows_from;  ///< of each spring
-    std::vector<bool> follows;
+    std::vector<Vec3> from, travel;  ///< of each spring
     int iterations = 0, factorisations = 0;
     double seconds = 0;
   };
   static Stage make_stage(PaperElements elements, StencilTable points, std::vector<bool> loaded,
-                          std::optional<double> volume, int first);
+                          std::optional<double> volume, int first, std::optional<FactorKind> solver);
   void carry_extension();
-  NewtonResult solve(Stage& stage, const Vec3& pull);
+  NewtonResult solve(Stage& stage, double share);
 
   PaperSetup setup_;
   std::vector<Stage> stages_;
