@@ -8,8 +8,6 @@
 namespace calot {
 namespace {
 
-constexpr int most_dense_nodes = 1000;  // beyond, one factorisation takes a minute
-
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -27,6 +25,7 @@ const char* name_of(FactorKind kind) {
 }
 
 std::vector<FactorKind> solvers_of(const ComparedBody& body) {
+  constexpr int most_dense_nodes = 1000;  // beyond, one factorisation takes a minute
   std::vector<FactorKind> out = {FactorKind::sparse};
   if (body.nodes() <= most_dense_nodes) out.push_back(FactorKind::dense);
   if (body.coarse_nodes() < body.nodes()) out.push_back(FactorKind::condensed);
@@ -66,6 +65,7 @@ ComparedRun run_out_and_back(ComparedBody& body, const ComparedLoad& load, Facto
     out.status = "not filled: " + to_text(filled.status);
     return out;
   }
+  constexpr int least_steps = 5;
   const std::vector<Vec3> before = body.surface();
   const double start = now_s();
   for (int k = 1; k <= 2 * steps_out * cycles; ++k) {
@@ -83,7 +83,8 @@ ComparedRun run_out_and_back(ComparedBody& body, const ComparedLoad& load, Facto
       out.displacements = body.surface();
       for (std::size_t i = 0; i < before.size(); ++i) out.displacements[i] -= before[i];
     }
-    if (now_s() - start > patience && k >= 2 && (k >= steps_out || !to_the_end)) break;
+    const int least = to_the_end ? steps_out : std::min(steps_out, least_steps);
+    if (now_s() - start > patience && k >= least) break;
   }
   return out;
 }
