@@ -17,13 +17,15 @@ struct Series {
   bool extended = false;
   const char* name;
   const char* colour;
+  double label_x, label_y;  ///< of marks, beside them
 };
 constexpr const char* ink = "#333";
-const std::vector<Series> all_series = {{"shell", false, "shell, uniform", "#1b6ca8"},
-                                        {"shell", true, "shell, 3 extensions", "#d1495b"},
-                                        {"1997", false, "1997, uniform", "#7a8b99"},
-                                        {"1997", true, "1997, 3 extensions", "#c9a227"},
-                                        {"1997 two stages", true, "1997, two stages", "#6b9080"}};
+const std::vector<Series> all_series = {
+    {"shell", false, "shell, uniform: nodes", "#1b6ca8", 7, -6},
+    {"shell", true, "shell, 3 extensions: levels", "#d1495b", -4, 18},
+    {"1997", false, "1997, uniform: nodes", "#7a8b99", 7, 14},
+    {"1997", true, "1997, 3 extensions: levels", "#c9a227", -3, -22},
+    {"1997 two stages", true, "1997, two stages: levels", "#6b9080", -3, -9}};
 
 /// Powers of ten that enclose some values.
 struct Decades {
@@ -46,8 +48,7 @@ std::vector<Mark> marks_of(const std::vector<ComparisonRow>& rows, const Series&
     if (row.formulation != series.formulation || (row.extensions > 0) != series.extended) continue;
     if (row.load != load || row.rate_hz != rate || row.step_ms_median <= 0 || row.contact_error_pct <= 0)
       continue;
-    const std::string label =
-        row.extensions > 0 ? fmt::format("level {}", row.levels) : std::to_string(row.nodes);
+    const std::string label = row.extensions > 0 ? std::to_string(row.levels) : std::to_string(row.nodes);
     const auto same = std::find_if(out.begin(), out.end(), [&](const Mark& m) { return m.label == label; });
     if (same == out.end())
       out.push_back({row.step_ms_median, row.contact_error_pct, label});
@@ -97,18 +98,19 @@ std::string axes(const Panel& panel, double rate) {
   return out;
 }
 
-std::string curve(const Panel& panel, const std::vector<Mark>& marks, const char* colour) {
+std::string curve(const Panel& panel, const std::vector<Mark>& marks, const Series& series) {
   std::string points, out;
   for (const Mark& mark : marks)
     points += fmt::format("{:.1f},{:.1f} ", panel.x(mark.cost), panel.y(mark.error));
   out += fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="2"/>)"
                      "\n",
-                     points, colour);
+                     points, series.colour);
   for (const Mark& mark : marks) {
     out += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="{}"/>)"
                        "\n",
-                       panel.x(mark.cost), panel.y(mark.error), colour);
-    out += text(panel.x(mark.cost) + 7, panel.y(mark.error) - 6, mark.label, "start", colour, 11);
+                       panel.x(mark.cost), panel.y(mark.error), series.colour);
+    out += text(panel.x(mark.cost) + series.label_x, panel.y(mark.error) + series.label_y, mark.label,
+                "start", series.colour, 11);
   }
   return out;
 }
@@ -120,7 +122,7 @@ std::string legend(double left, double top) {
                        "\n",
                        left, top, series.colour);
     out += text(left + 10, top + 4, series.name, "start", ink);
-    left += 175;
+    left += 195;
   }
   return out;
 }
@@ -142,14 +144,13 @@ std::string bench_plot(const std::vector<ComparisonRow>& rows, const std::string
       "\n"
       R"(<rect width="{0:.0f}" height="{1:.0f}" fill="white"/>)"
       "\n",
-      std::max(whole, 920.0), top + height + 60);
+      std::max(whole, 1020.0), top + height + 60);
   out += legend(40, 24);
   double left = gap;
   for (double rate : rates) {
     const Panel panel{left, top, width, height, Decades(costs), Decades(errors)};
     out += axes(panel, rate);
-    for (const Series& series : all_series)
-      out += curve(panel, marks_of(rows, series, load, rate), series.colour);
+    for (const Series& series : all_series) out += curve(panel, marks_of(rows, series, load, rate), series);
     left += width + gap;
   }
   const double middle = top + 0.5 * height;

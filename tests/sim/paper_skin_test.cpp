@@ -85,10 +85,10 @@ TEST(PaperSkin, OfABodyPulledAtItsExtensionsDoesNotFold) {
     contact.push_back(split.extended[t] ? 100.0 : 0.0);
   }
   PaperBody body = PaperBody::one_system(split.mesh, points, {}).value();
-  body.bind(base, false);
-  ASSERT_TRUE(body.settle(Vec3::Zero()).converged());
-  body.bind(contact, true);
-  for (int k = 1; k <= 4; ++k) ASSERT_TRUE(body.settle(k / 4.0 * pull).converged());
+  body.bind(base, Vec3::Zero());
+  ASSERT_TRUE(body.settle(0).converged());
+  body.bind(contact, pull);
+  for (int k = 1; k <= 4; ++k) ASSERT_TRUE(body.settle(k / 4.0).converged());
   const Tessellation skin = paper_skin(split, 4).value();
   const TriMesh mesh{blend_all(skin.stencils, skin.stencils.value, body.nodes()), skin.triangles};
   for (const Problem& problem : check(mesh)) ADD_FAILURE() << to_text(problem);
