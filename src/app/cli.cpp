@@ -20,6 +20,7 @@ struct Program {
   CheckCommand check;
   NewCommand fresh;
   GoldenCommand golden;
+  BenchCommand bench;
   std::function<ExitCode()> chosen;
 };
 
@@ -99,6 +100,18 @@ void add_golden(Program& program) {
       ->type_name("FILE");
 }
 
+void add_bench(Program& program) {
+  CLI::App& command = *program.app.add_subcommand(
+      "bench", "compare structural extensions with uniform meshes: error and cost");
+  command
+      .add_option("-o,--output", program.bench.output,
+                  "folder for bench.json and the plot (default: out/bench)")
+      ->type_name("DIR");
+  command.add_flag("--json", program.bench.json, "print the figures as JSON, and nothing else, to stdout");
+  command.add_flag("--quick", program.bench.quick, "one load and coarser meshes, a few seconds");
+  command.callback([&program] { program.chosen = [&program] { return bench_command(program.bench); }; });
+}
+
 void add_doctor(Program& program) {
   CLI::App& command = *program.app.add_subcommand("doctor", "check what this program needs on this machine");
   command.callback([&program] { program.chosen = [] { return doctor_command(); }; });
@@ -128,6 +141,7 @@ int parse_and_run(int argc, char** argv) {
   add_check(program);
   add_new(program);
   add_golden(program);
+  add_bench(program);
   add_doctor(program);
   program.app.footer(
       "Exit codes: 0 ok, 1 mismatch or score below --fail-below, 2 interrupted, 3 internal, 4 usage,\n"

@@ -51,6 +51,12 @@ ExitCode golden_test_command(const GoldenCommand& command);
 ExitCode golden_accept_command(const GoldenCommand& command);
 ExitCode golden_report_command(const GoldenCommand& command);
 
+struct BenchCommand {
+  std::string output;  ///< folder; empty: out/bench
+  bool json = false, quick = false;
+};
+ExitCode bench_command(const BenchCommand& command);
+
 ExitCode doctor_command();
 
 }  // namespace calot

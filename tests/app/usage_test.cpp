@@ -13,7 +13,7 @@ TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
   const Outcome outcome = calot({});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
-  for (const char* command : {"run", "replay", "check", "new", "golden", "doctor"}) {
+  for (const char* command : {"run", "replay", "check", "new", "golden", "bench", "doctor"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
   }
 }
@@ -27,6 +27,7 @@ TEST_F(Usage, EveryCommandHasHelp) {
                                                                                      {"golden", "test"},
                                                                                      {"golden", "accept"},
                                                                                      {"golden", "report"},
+                                                                                     {"bench"},
                                                                                      {"doctor"}}) {
     std::vector<std::string> arguments = words;
     arguments.push_back("--help");
@@ -59,6 +60,8 @@ TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
       {"golden"},
       {"golden", "frobnicate"},
       {"golden", "accept"},
+      {"bench", "fast"},
+      {"bench", "--json", "--output"},
       {"doctor", "--fix"},
   };
   for (const std::vector<std::string>& arguments : wrong) {

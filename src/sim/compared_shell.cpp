@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/timed.h"
+#include "sim/compared_body.h"
+#include "sim/structural_extension.h"
+
+namespace calot {
+namespace {
+
+/// A body under springs on surface points of any kind.
+class SpringProblem : public ConstrainedEnergy {
+ public:
+  SpringProblem(const VirtualStructure& body, const Surroundings& nothing, const StencilTable& points,
+                const Links& springs, const BodyState& start)
+      : body_(body, nothing, {}, start), points_(points), springs_(springs) {}
+
+  bool constrained() const override { return body_.constrained(); }
+  double value(const VecX& x) const override { return body_.value(x) + springs_.value(points_, x); }
+  void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override {
+    body_.gradient(x, gradient, largest_internal);
+    springs_.add_gradient(points_, x, gradient);
+  }
+  void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override {
+    body_.hessian(x, multiplier, matrix);
+    springs_.add_hessian(points_, matrix);
+  }
+  double constraint(const VecX& x, VecX& gradient) const override { return body_.constraint(x, gradient); }
+  double constraint_value(const VecX& x) const override { return body_.constraint_value(x); }
+  double constraint_scale() const override { return body_.constraint_scale(); }
+  double length_scale() const override { return body_.length_scale(); }
+  int places() const override { return body_.places(); }
+  double safe_share(const VecX& x, const VecX& step) const override { return body_.safe_share(x, step); }
+
+ private:
+  BodyProblem body_;
+  const StencilTable& points_;
+  const Links& springs_;
+};
+
+/// Where the springs' ends are at `share` of their travels.
+struct Springs {
+  Links links;
+  std::vector<Vec3> from, travel;
+
+  void move_to(double share) {
+    for (std::size_t i = 0; i < from.size(); ++i) links.target[i] = from[i] + share * travel[i];
+  }
+};
+
+/// A body that is filled and at rest.
+struct Rested {
+  VirtualStructure body;
+  BodyState state;
+};
+
+class ComparedShell : public ComparedBody {
+ public:
+  ComparedShell(const ComparedSurface& surface, Rested rested, StencilTable points, double insertion_s)
+      : surface_(surface),
+        body_(std::move(rested.body)),
+        points_(std::move(points)),
+        work_(body_.pattern(), body_.coarse_nodes()),
+        filled_(std::move(rested.state)),
+        state_(filled_),
+        insertion_s_(insertion_s) {}
+
+  NewtonResult begin(const ComparedLoad& load, FactorKind solver) override {
+    state_ = filled_;
+    work_ = NewtonWorkspace(body_.pattern(), body_.coarse_nodes());
+    work_.factor = Cholesky(work_.matrix, body_.coarse_nodes(), solver);
+    springs_ = {};
+    share_ = 0;
+    for (const LoadedPlace& place : load.places) {
+      const std::vector<double> stiffness = surface_.springs(place.direction);
+      for (int row = 0; row < points_.rows(); ++row) {
+        if (stiffness[row] <= 0) continue;
+        springs_.links.row.push_back(row);
+        springs_.links.stiffness.push_back(stiffness[row]);
+        springs_.from.push_back(blend(points_, points_.value, row, state_.x));
+        springs_.travel.push_back(place.travel * place.direction);
+      }
+    }
+    springs_.links.target = springs_.from;
+    return {};
+  }
+
+  /// As the simulator's motion (sim/advance.cpp): in parts that a first-order answer begins.
+  NewtonResult step(double share) override {
+    constexpr int most_parts = 100;
+    NewtonResult total;
+    bool fresh = false;
+    double most = 1;  // of what is left
+    for (int part = 0; part < most_parts && share_ != share; ++part) {
+      const BodyState before = state_;
+      const double from = share_;
+      total.add(predict(share, most, fresh));
+      if (total.converged()) total.add(settle());
+      if (total.converged()) {
+        fresh = false, most = 1;
+        continue;
+      }
+      if (fresh) most *= 0.5;
+      fresh = true;
+      state_ = before;
+      share_ = from;
+      if (part + 1 < most_parts) total.status = NewtonStatus::converged;
+    }
+    return total;
+  }
+
+  std::vector<Vec3> surface() const override { return blend_all(points_, points_.value, state_.x); }
+  int nodes() const override { return body_.nodes(); }
+  int coarse_nodes() const override { return body_.coarse_nodes(); }
+  std::vector<const NewtonWorkspace*> systems() const override { return {&work_}; }
+  double insertion_s() const override { return insertion_s_; }
+
+ private:
+  SpringProblem problem() const { return {body_, nothing_, points_, springs_.links, state_}; }
+
+  NewtonResult settle() {
+    return solve_equilibrium(problem(), NewtonSettings{}, work_, state_.x, state_.multiplier);
+  }
+
+  /// Moves springs and body on towards `share` to first order, as far as no node goes beyond half an edge.
+  NewtonResult predict(double share, double most, bool fresh) {
+    constexpr double edge_share = 0.5;
+    const NewtonResult result = factorise_tangent(problem(), work_, state_.x, state_.multiplier, fresh);
+    if (!result.converged()) return result;
+    VecX load = VecX::Zero(state_.x.size());
+    for (std::size_t i = 0; i < springs_.from.size(); ++i)
+      spread(points_, springs_.links.row[i],
+             springs_.links.stiffness[i] * (share - share_) * springs_.travel[i], load);
+    double dmultiplier = 0;
+    const VecX dx = linear_response(work_, load, dmultiplier);
+    double part = most;
+    for (int i = 0; i < body_.nodes(); ++i)
+      part = std::min(part, edge_share * body_.edge_lengths()[i] / dx.segment<3>(3 * i).norm());
+    state_.x += part * dx;
+    state_.multiplier += part * dmultiplier;
+    share_ = part >= 1 ? share : share_ + part * (share - share_);
+    springs_.move_to(share_);
+    return result;
+  }
+
+  const ComparedSurface& surface_;
+  VirtualStructure body_;
+  StencilTable points_;
+  NewtonWorkspace work_;
+  Surroundings nothing_;
+  BodyState filled_, state_;
+  Springs springs_;
+  double share_ = 0, insertion_s_ = 0;
+};
+
+VirtualStructure::Setup setup_of(const TriMesh& control, double radius, int levels) {
+  VirtualStructure::Setup setup;
+  setup.name = "sphere";
+  setup.control = control;
+  setup.bile = BileDefinition{};
+  setup.levels = levels;
+  setup.foundation = [radius](const Vec3& x) {
+    const double far = (x + radius * Vec3::UnitZ()).norm() / bed_spread;
+    return bed_stiffness * std::exp(-0.5 * far * far);
+  };
+  return setup;
+}
+
+int skin_point_at(const VirtualStructure& body, const Vec3& place) {
+  const auto nearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - place).squaredNorm() < (b - place).squaredNorm();
+  };
+  const std::vector<Vec3>& skin = body.skin_rest();
+  return static_cast<int>(std::min_element(skin.begin(), skin.end(), nearer) - skin.begin());
+}
+
+Result<Rested> brought_to_rest(VirtualStructure body, BodyState state) {
+  NewtonWorkspace work(body.pattern(), body.coarse_nodes());
+  const Surroundings nothing;
+  const BodyProblem problem(body, nothing, {}, state);
+  const NewtonResult result = solve_equilibrium(problem, NewtonSettings{}, work, state.x, state.multiplier);
+  if (!result.converged())
+    return fail(FailureKind::simulation, "a filled sphere found no rest: " + to_text(result.status));
+  return Rested{std::move(body), std::move(state)};
+}
+
+Result<Rested> filled(const TriMesh& control, double radius, int levels) {
+  Result<VirtualStructure> body = VirtualStructure::create(setup_of(control, radius, levels));
+  if (!body) return body.failure();
+  const BodyState state{body->rest(), 0, compared_fill * body->bile()->volume(body->rest())};
+  return brought_to_rest(std::move(body).value(), state);
+}
+
+Result<Rested> extended(const Rested& before, std::span<const Extension> extensions) {
+  std::vector<Extension> all(extensions.begin(), extensions.end());
+  Result<VirtualStructure> body = before.body.with_details(details_around(before.body, all));
+  if (!body) return body.failure();
+  const BodyState state{before.body.coordinates_in(body.value(), before.state.x), before.state.multiplier,
+                        before.state.volume};
+  return brought_to_rest(std::move(body).value(), state);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ComparedBody>> uniform_shell(const ComparedSurface& surface, int uniform) {
+  const Result<TriMesh> control = surface.level_control(uniform);
+  if (!control) return control.failure();
+  Result<Rested> rested = filled(control.value(), surface.radius, 0);
+  if (!rested) return rested.failure();
+  return std::unique_ptr<ComparedBody>(std::make_unique<ComparedShell>(
+      surface, std::move(rested).value(), surface.levels.evaluate(uniform, surface.points, 0), 0));
+}
+
+Result<std::unique_ptr<ComparedBody>> extended_shell(const ComparedSurface& surface,
+                                                     const std::vector<Vec3>& places, int levels) {
+  Result<Rested> coarse = filled(surface.control, surface.radius, levels);
+  if (!coarse) return coarse.failure();
+  std::vector<Extension> extensions;
+  for (const Vec3& place : places)
+    extensions.push_back(
+        {static_cast<int>(extensions.size()), skin_point_at(coarse->body, surface.radius * place)});
+  const Result<Rested> before = extended(coarse.value(), std::span(extensions).first(places.size() - 1));
+  if (!before) return before.failure();
+  constexpr int repeats = 5;
+  std::vector<double> seconds(repeats, 0.0);
+  for (int k = 0;; ++k) {
+    Result<Rested> rested = [&] {
+      const Timed timed(seconds[k]);
+      return extended(before.value(), extensions);
+    }();
+    if (!rested) return rested.failure();
+    if (k + 1 < repeats) continue;
+    std::nth_element(seconds.begin(), seconds.begin() + repeats / 2, seconds.end());
+    StencilTable points =
+        DetailBasis(rested->body.levels(), rested->body.details()).evaluate(surface.points, 0);
+    return std::unique_ptr<ComparedBody>(std::make_unique<ComparedShell>(
+        surface, std::move(rested).value(), std::move(points), seconds[repeats / 2]));
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,129 @@
+// Structural extensions against uniform meshes: what the comparison promises of its errors, not of its times.
+
+#include "sim/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace calot {
+namespace {
+
+ComparisonCase small(int uniform_levels, int extension_levels, bool paper) {
+  ComparisonCase out;
+  out.loads = standard_loads(6e-3);
+  out.loads.resize(1);
+  out.rates = {50};
+  out.uniform_levels = uniform_levels;
+  out.extension_levels = extension_levels;
+  out.cycles = 1;
+  out.patience = 0;
+  out.paper = paper;
+  return out;
+}
+
+Comparison compared(const ComparisonCase& given) {
+  const Result<Comparison> made = compare(given, [](const std::string&) {});
+  EXPECT_TRUE(made) << to_text(made.failure());
+  return made ? made.value() : Comparison{};
+}
+
+/// By any solver: the errors do not depend on it.
+ComparisonRow row_of(const Comparison& all, const std::string& formulation, int nodes) {
+  for (const ComparisonRow& row : all.rows)
+    if (row.formulation == formulation && row.nodes == nodes) return row;
+  ADD_FAILURE() << formulation << " " << nodes;
+  return {};
+}
+
+TEST(Comparison, ErrorsFallWithTheNodesAndExtensionsKeepTheTargets) {
+  const Comparison all = compared(small(2, 1, false));
+  for (const ComparisonRow& row : all.rows) EXPECT_EQ(row.status, "converged") << row.nodes << row.solver;
+  const ComparisonRow coarse = row_of(all, "shell", 61), fine = row_of(all, "shell", 238),
+                      finest = row_of(all, "shell", 946), extended = row_of(all, "shell", 61 + 36);
+  EXPECT_EQ(finest.max_error_pct, 0);
+  // Halving the edges: first order at least.
+  EXPECT_LT(fine.mean_error_pct, 0.5 * coarse.mean_error_pct);
+  EXPECT_LT(fine.contact_error_pct, 0.5 * coarse.contact_error_pct);
+  EXPECT_LT(fine.max_error_pct, 0.5 * coarse.max_error_pct);
+  EXPECT_GT(extended.mean_error_pct, 0);
+  EXPECT_LT(extended.mean_error_pct, 2);
+  EXPECT_LT(extended.contact_error_pct, 3);
+  EXPECT_LT(extended.max_error_pct, 5);
+  EXPECT_EQ(extended.uniform_nodes, 238);
+  EXPECT_EQ(extended.extensions, 3);
+  // The springs' ends go 6 mm and the springs are soft beside the bed.
+  ASSERT_EQ(all.largest_mm.size(), 1U);
+  EXPECT_GT(all.largest_mm[0], 3);
+  EXPECT_LT(all.largest_mm[0], 6);
+}
+
+TEST(Comparison, BothFormulationsComeToTheSameShape) {
+  const Comparison all = compared(small(1, 1, true));
+  ASSERT_EQ(all.formulations_apart_pct.size(), 1U);
+  EXPECT_GT(all.formulations_apart_pct[0], 0);
+  EXPECT_LT(all.formulations_apart_pct[0], 2);  // 238 flat triangles' nodes err by 1 % themselves
+  const ComparisonRow star = row_of(all, "1997", 61 + 12), staged = row_of(all, "1997 two stages", 61 + 12);
+  EXPECT_EQ(star.levels, 0);
+  EXPECT_LT(star.contact_error_pct, row_of(all, "1997", 61).contact_error_pct);
+  EXPECT_LT(star.contact_error_pct, staged.contact_error_pct);
+  EXPECT_LT(staged.flops, star.flops);
+}
+
+TEST(Comparison, TheShapeDoesNotDependOnTheRateNorTheSolver) {
+  const ComparedSurface surface = ComparedSurface::create(20e-3, 61, 2).value();
+  const ComparedLoad load = standard_loads(6e-3)[2];
+  std::vector<Vec3> places;
+  for (const LoadedPlace& place : load.places) places.push_back(place.direction);
+  const std::unique_ptr<ComparedBody> body = extended_shell(surface, places, 2).value();
+  EXPECT_EQ(body->nodes(), 61 + 3 * 24);
+  EXPECT_EQ(body->coarse_nodes(), 61);
+  std::vector<std::vector<Vec3>> ends;
+  for (const auto& [solver, steps] : {std::pair(FactorKind::sparse, 3), std::pair(FactorKind::dense, 3),
+                                      std::pair(FactorKind::condensed, 20)}) {
+    ASSERT_TRUE(body->begin(load, solver).converged());
+    for (int k = 1; k <= steps; ++k) ASSERT_TRUE(body->step(static_cast<double>(k) / steps).converged());
+    ends.push_back(body->surface());
+  }
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    for (std::size_t i = 0; i < ends[0].size(); ++i)
+      // Converged to 1e-6 of the body's 69 mm, and of forces of some newton on springs of 1000 N/m.
+      EXPECT_LT((ends[k][i] - ends[0][i]).norm(), 1e-6);
+}
+
+TEST(Comparison, EveryMeshHasTheSameSurfaceAndTheSameSprings) {
+  const ComparedSurface surface = ComparedSurface::create(20e-3, 61, 2).value();
+  for (int level : {1, 2}) {
+    const TriMesh mesh = surface.level_control(level).value();
+    const StencilTable table = surface.levels.evaluate(level, surface.points, 0);
+    const std::vector<Vec3> points = blend_all(table, table.value, to_coordinates(mesh.points));
+    ASSERT_EQ(points.size(), surface.rest.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_LT((points[i] - surface.rest[i]).norm(), 1e-12);  // rounding of a solve
+  }
+  double sum = 0;
+  int held = 0;
+  for (double k : surface.springs(Vec3::UnitX())) {
+    sum += k;
+    held += k > 0;
+  }
+  EXPECT_NEAR(sum, contact_stiffness, 1e-9);
+  EXPECT_GT(held, 10);
+}
+
+TEST(Comparison, CasesWithoutSenseAreRefused) {
+  for (int k = 0; k < 5; ++k) {
+    ComparisonCase given = small(1, 1, false);
+    if (k == 0) given.radius = 0;
+    if (k == 1) given.loads.clear();
+    if (k == 2) given.rates = {0};
+    if (k == 3) given.cycles = 0;
+    if (k == 4) given.loads.push_back({"other", {}});
+    const Result<Comparison> made = compare(given, [](const std::string&) {});
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.failure().kind, FailureKind::usage);
+  }
+}
+
+}  // namespace
+}  // namespace calot
