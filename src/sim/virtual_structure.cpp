@@ -95,20 +95,24 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
   }
 }
 
+/// Adds the nodes from `first` on that a face's skin points depend on; before them its nodes are known.
+void add_nodes(const StencilTable& skin, int first, std::vector<char>& seen,
+               VirtualStructure::SkinFace& face) {
+  const std::size_t known = face.nodes.size();
+  for (int r : face.rows) {
+    // Nodes increase within a row: those looked for are its last.
+    for (int e = skin.begin[r + 1] - 1; e >= skin.begin[r] && skin.node[e] >= first; --e)
+      if (!std::exchange(seen[skin.node[e] - first], 1)) face.nodes.push_back(skin.node[e]);
+  }
+  for (std::size_t k = known; k < face.nodes.size(); ++k) seen[face.nodes[k] - first] = 0;
+  std::sort(face.nodes.begin() + static_cast<std::ptrdiff_t>(known), face.nodes.end());
+}
+
 std::vector<VirtualStructure::SkinFace> faces_of(const Tessellation& skin, int faces, int nodes) {
   std::vector<VirtualStructure::SkinFace> out(faces);
   for (int r = 0; r < skin.stencils.rows(); ++r) out[skin.at[r].face].rows.push_back(r);
-  std::vector<int> seen_by(nodes, -1);
-  for (int f = 0; f < faces; ++f) {
-    std::vector<int>& found = out[f].nodes;
-    for (int r : out[f].rows) {
-      for (int e = skin.stencils.begin[r]; e < skin.stencils.begin[r + 1]; ++e) {
-        const int node = skin.stencils.node[e];
-        if (std::exchange(seen_by[node], f) != f) found.push_back(node);
-      }
-    }
-    std::sort(found.begin(), found.end());
-  }
+  std::vector<char> seen(nodes, 0);
+  for (VirtualStructure::SkinFace& face : out) add_nodes(skin.stencils, 0, seen, face);
   return out;
 }
 
@@ -118,9 +122,11 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   Result<SurfaceLevels> levels = SurfaceLevels::create(setup.control, setup.levels);
   if (!levels) return levels.failure();
   const VecX rest = to_coordinates(setup.control.points);
-  Base base{setup, std::move(levels).value(), {}, {}, {}, {}, {}, {}, {}, {}, 0, Vec3::Zero()};
+  Base base{setup, std::move(levels).value()};
   base.skin = close_skin(base.levels.surface(), rest);
   base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
+  base.skin_faces =
+      faces_of(base.skin, static_cast<int>(setup.control.triangles.size()), base.levels.nodes(0));
   base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
   for (int level = 1; level <= setup.levels; ++level)
     base.skin_by_level.push_back(base.levels.evaluate(level, base.skin.at, 1));
@@ -174,10 +180,13 @@ std::optional<Failure> VirtualStructure::build() {
   shell_ = std::move(shell).value();
   quadrature_ = std::move(points.quadrature.stencils);
 
-  skin_ = base_->skin;
-  if (!details().empty())
-    skin_.stencils = basis_.extend(base_->skin.stencils, skin_.at, base_->skin_by_level);
-  skin_faces_ = faces_of(skin_, static_cast<int>(control().triangles.size()), nodes());
+  skin_.at = base_->skin.at;
+  skin_.triangles = base_->skin.triangles;
+  skin_.stencils = basis_.extend(base_->skin.stencils, skin_.at, base_->skin_by_level);
+  skin_faces_ = base_->skin_faces;
+  std::vector<char> seen(details().size(), 0);
+  for (std::size_t f = 0; f < skin_faces_.size(); ++f)
+    if (basis_.reaches(static_cast<int>(f))) add_nodes(skin_.stencils, coarse_nodes(), seen, skin_faces_[f]);
   edge_lengths_ = shortest_edges(control());
   for (int detail : details()) {
     double shortest = base_->size;

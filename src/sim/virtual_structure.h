@@ -104,13 +104,14 @@ class VirtualStructure {
   struct Base {
     Setup setup;
     SurfaceLevels levels;
-    Tessellation skin;
-    std::vector<StencilTable> skin_by_level;  ///< of levels 1, 2, ...
-    StencilTable quadrature;                  ///< of the coarse faces
-    std::vector<Vec3> skin_rest, node_rest;
-    std::vector<double> skin_areas;
-    Links bed;
-    std::vector<FacePoint> bed_places;
+    Tessellation skin{};
+    std::vector<StencilTable> skin_by_level{};  ///< of levels 1, 2, ...
+    StencilTable quadrature{};                  ///< of the coarse faces
+    std::vector<Vec3> skin_rest{}, node_rest{};
+    std::vector<double> skin_areas{};
+    std::vector<SkinFace> skin_faces{};  ///< with the coarse nodes
+    Links bed{};
+    std::vector<FacePoint> bed_places{};
     double size = 0;
     Vec3 middle = Vec3::Zero();
   };

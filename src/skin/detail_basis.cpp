@@ -18,6 +18,11 @@ DetailBasis::DetailBasis(const SurfaceLevels& levels, std::vector<int> details)
   }
 }
 
+bool DetailBasis::reaches(int face) const {
+  return std::any_of(active_.begin(), active_.end(),
+                     [&](const Level& level) { return level.touched[face] != 0; });
+}
+
 StencilTable DetailBasis::evaluate(std::span<const FacePoint> points, int order) const {
   StencilTable coarse = levels_->evaluate(0, points, order);
   return active_.empty() ? coarse : extend(coarse, points, order);
@@ -77,8 +82,7 @@ StencilTable DetailBasis::merge(const StencilTable& coarse, std::span<const Face
   reserve_as(coarse, 0.5, out);
   int copied = 0;  // rows; those that no detail reaches are copied many at a time
   for (int r = 0; r < coarse.rows(); ++r) {
-    const auto reached = [&](const Level& level) { return level.touched[points[r].face] != 0; };
-    if (std::none_of(active_.begin(), active_.end(), reached)) continue;
+    if (!reaches(points[r].face)) continue;
     append_rows(coarse, copied, r + 1, out);
     copied = r + 1;
     for (std::size_t k = 0; k < active_.size(); ++k)

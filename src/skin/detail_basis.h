@@ -19,6 +19,9 @@ class DetailBasis {
   int nodes() const { return coarse_nodes() + static_cast<int>(details_.size()); }
   const std::vector<int>& details() const { return details_; }
 
+  /// Whether any detail's function is not zero somewhere on a coarse face.
+  bool reaches(int face) const;
+
   /// Stencils at points of coarse faces, with derivatives by the coarse parameters.
   StencilTable evaluate(std::span<const FacePoint> points, int order) const;
   /// The same where the coarse columns are known: `coarse` as SurfaceLevels::evaluate(0, points, order).
