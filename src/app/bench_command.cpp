@@ -37,8 +37,11 @@ ExitCode bench_command(const BenchCommand& command) {
   if (!comparison) return print_failure(comparison.failure(), "calot doctor", command.json);
   const std::string json = bench_json(comparison.value(), machine, command.quick);
   const std::string& load = comparison->rows.front().load;
-  for (const auto& [name, text] : {std::pair("bench.json", json + "\n"),
-                                   std::pair("error_against_cost.svg", bench_plot(comparison->rows, load))}) {
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"bench.json", json + "\n"},
+      {"table.md", bench_markdown(comparison->rows, load)},
+      {"error_against_cost.svg", bench_plot(comparison->rows, load)}};
+  for (const auto& [name, text] : files) {
     const Result<std::string> written = write_text(folder.value() / name, text);
     if (!written) return print_failure(written.failure(), "calot bench --help", command.json);
   }
@@ -47,7 +50,8 @@ ExitCode bench_command(const BenchCommand& command) {
     return ExitCode::ok;
   }
   print(bench_text(comparison.value(), machine));
-  print("Wrote " + (folder.value() / "bench.json").string() + " and error_against_cost.svg beside it");
+  print("Wrote " + (folder.value() / "bench.json").string() +
+        ", with table.md and error_against_cost.svg beside it");
   return ExitCode::ok;
 }
 

@@ -21,8 +21,8 @@ struct Series {
 };
 constexpr const char* ink = "#333";
 const std::vector<Series> all_series = {
-    {"shell", false, "shell, uniform: nodes", "#1b6ca8", 7, -6},
-    {"shell", true, "shell, 3 extensions: levels", "#d1495b", -4, 18},
+    {"shell", false, "shell, uniform: nodes", "#1b6ca8", -28, 4},
+    {"shell", true, "shell, 3 extensions: levels", "#d1495b", -3, -9},
     {"1997", false, "1997, uniform: nodes", "#7a8b99", 7, 14},
     {"1997", true, "1997, 3 extensions: levels", "#c9a227", -3, -22},
     {"1997 two stages", true, "1997, two stages: levels", "#6b9080", -3, -9}};

@@ -29,6 +29,8 @@ BenchMachine this_machine();
 std::string bench_json(const Comparison& comparison, const BenchMachine& machine, bool quick);
 /// A table for each load and rate, the targets, the machine.
 std::string bench_text(const Comparison& comparison, const BenchMachine& machine);
+/// For a README: one load, each mesh by its fastest solver.
+std::string bench_markdown(const std::vector<ComparisonRow>& rows, const std::string& load);
 /// Error near the contacts against the time of a step, for one load, a panel for each rate.
 std::string bench_plot(const std::vector<ComparisonRow>& rows, const std::string& load);
 

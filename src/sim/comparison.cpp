@@ -110,6 +110,7 @@ class Comparing {
   void compare_body(ComparedBody& body, ComparisonRow row) {
     row.nodes = body.nodes();
     row.insertion_ms = 1e3 * body.insertion_s();
+    const bool extended = row.extensions > 0;
     double factorise_solve_s = 0;
     for (std::size_t l = 0; l < loads_for(row); ++l) {
       const ComparedLoad& load = given_.loads[l];
@@ -117,11 +118,11 @@ class Comparing {
       std::vector<Vec3> displacements;
       for (double rate : given_.rates) {
         row.rate_hz = rate;
-        for (FactorKind solver : solvers_of(body)) {
+        for (FactorKind solver : solvers_of(body, extended)) {
           const ComparedRun made = run_out_and_back(body, load, solver, steps_out(load, rate), given_.cycles,
                                                     given_.patience, displacements.empty());
           if (displacements.empty()) displacements = made.displacements;
-          if (factorise_solve_s == 0) factorise_solve_s = fastest_factor_and_solve(body);
+          if (factorise_solve_s == 0) factorise_solve_s = fastest_factor_and_solve(body, extended);
           row.solver = name_of(solver);
           add_row(body, row, made, displacements, factorise_solve_s, l);
         }

@@ -23,7 +23,7 @@ struct ComparisonCase {
   int cycles = 2;                          ///< out and back
   /// A run that takes longer, s, is cut short after five steps or the way out; not the first of each body and load,
   /// which goes out once at least.
-  double patience = 2;
+  double patience = 1.5;
   bool paper = true;  ///< the 1997 formulation too
 };
 

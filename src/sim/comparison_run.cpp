@@ -24,21 +24,22 @@ const char* name_of(FactorKind kind) {
   return kind == FactorKind::dense ? "dense" : kind == FactorKind::sparse ? "sparse" : "condensed";
 }
 
-std::vector<FactorKind> solvers_of(const ComparedBody& body) {
-  constexpr int most_dense_nodes = 1000;  // beyond, one factorisation takes a minute
+std::vector<FactorKind> solvers_of(const ComparedBody& body, bool extended) {
+  // Beyond, one factorisation takes a minute; the many nodes of fine stars hardly fill a matrix.
+  const int most_dense_nodes = extended ? 400 : 1000;
   std::vector<FactorKind> out = {FactorKind::sparse};
   if (body.nodes() <= most_dense_nodes) out.push_back(FactorKind::dense);
   if (body.coarse_nodes() < body.nodes()) out.push_back(FactorKind::condensed);
   return out;
 }
 
-double fastest_factor_and_solve(const ComparedBody& body) {
+double fastest_factor_and_solve(const ComparedBody& body, bool extended) {
   constexpr double enough = 0.2;  // s for each solver and system
   constexpr int most = 25;
   double sum = 0;
   for (const NewtonWorkspace* system : body.systems()) {
     double best = 0;
-    for (FactorKind kind : solvers_of(body)) {
+    for (FactorKind kind : solvers_of(body, extended)) {
       Cholesky factor(system->matrix, body.coarse_nodes(), kind);
       const VecX right = VecX::Ones(system->matrix.size());
       std::vector<double> times;

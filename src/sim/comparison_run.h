@@ -12,11 +12,11 @@ double median(std::vector<double> values);
 
 const char* name_of(FactorKind kind);
 /// Those that make sense for a body of this size.
-std::vector<FactorKind> solvers_of(const ComparedBody& body);
+std::vector<FactorKind> solvers_of(const ComparedBody& body, bool extended);
 
 /// Seconds of one factorisation and solve of each of the body's systems by whatever is fastest; 0 where none
 /// succeeds.
-double fastest_factor_and_solve(const ComparedBody& body);
+double fastest_factor_and_solve(const ComparedBody& body, bool extended);
 
 struct ComparedRun {
   std::string status = "converged";  ///< else what failed
