@@ -37,8 +37,9 @@ double BodyProblem::value(const VecX& x) const {
   sum += field_.friction.value(body_.skin().stencils, x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
-    if (fixed_pressure_) sum -= multiplier_ * body_.bile()->volume(x);
+    if (fixed_pressure_) sum -= multiplier_ * body_.volume(x);
   }
+  if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const double distance = signed_distance(field_.shapes[pair.shape], at);
     sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
@@ -54,6 +55,7 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_intern
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
   field_.friction.add_gradient(body_.skin().stencils, x, gradient);
   if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
+  if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
     const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
@@ -80,10 +82,10 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
 
 double BodyProblem::constraint(const VecX& x, VecX& gradient) const {
   gradient.setZero(x.size());
-  return body_.bile()->add_volume_gradient(x, gradient) - volume_;
+  return body_.add_volume_gradient(x, gradient) - volume_;
 }
 
-double BodyProblem::constraint_value(const VecX& x) const { return body_.bile()->volume(x) - volume_; }
+double BodyProblem::constraint_value(const VecX& x) const { return body_.volume(x) - volume_; }
 
 double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   double share = 1.0;

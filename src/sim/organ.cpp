@@ -244,6 +244,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   settings.tolerance = tolerance;
   Result<bool> filled = fill(organ, field, settings);
   if (!filled) return filled.failure();
+  organ.body.keep_in_equilibrium(organ.state);
   return organ;
 }
 

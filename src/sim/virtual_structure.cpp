@@ -165,7 +165,31 @@ void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
 Result<VirtualStructure> VirtualStructure::with_details(std::vector<int> details) const {
   VirtualStructure out(base_, std::move(details));
   if (std::optional<Failure> failure = out.build()) return *failure;
+  out.kept_ = kept_;
+  out.make_good();
   return out;
+}
+
+VecX VirtualStructure::own_forces(const VecX& x, double multiplier) const {
+  VecX out = VecX::Zero(x.size());
+  shell_.add_gradient(x, out);
+  foundation().add_gradient(bed_points_, x, out);
+  if (bile_) bile_->add_load(x, multiplier, out);
+  return out;
+}
+
+void VirtualStructure::keep_in_equilibrium(const BodyState& rest) {
+  kept_ = std::make_shared<const Kept>(Kept{rest, own_forces(rest.x, rest.multiplier)});
+}
+
+void VirtualStructure::make_good() {
+  if (!kept_ || details().empty()) return;
+  const BodyState& state = kept_->state;
+  VecX x = VecX::Zero(rest_.size());
+  x.head(state.x.size()) = state.x;
+  kept_load_ = own_forces(x, state.multiplier);
+  kept_load_.head(state.x.size()) -= kept_->own_forces;
+  if (bile_) kept_volume_ = bile_->volume(x) - state.volume;
 }
 
 std::optional<Failure> VirtualStructure::build() {

@@ -47,6 +47,19 @@ class VirtualStructure {
   /// structural extensions. The faces that they split have quadrature and bile of their own; the bed stays where
   /// it was. Fails (scenario) where too many details reach one face.
   Result<VirtualStructure> with_details(std::vector<int> details) const;
+  /// From here on details refine the answer to instruments, not the state `rest` (of this structure, which has no
+  /// details, in equilibrium): with any details the same shape is in equilibrium, held by a constant load and volume
+  /// that make good what the finer rules see differently there. So nothing moves where an extension is laid or
+  /// taken away unloaded (the defect correction of the full approximation scheme: Brandt 1977).
+  void keep_in_equilibrium(const BodyState& rest);
+  /// That load, N, 3 a node; empty without details or before keep_in_equilibrium.
+  const VecX& kept_load() const { return kept_load_; }
+  /// Enclosed volume, m^3, of a structure with bile.
+  double volume(const VecX& x) const { return bile_->volume(x) - kept_volume_; }
+  /// The same, its gradient (m^2) added to `gradient`.
+  double add_volume_gradient(const VecX& x, VecX& gradient) const {
+    return bile_->add_volume_gradient(x, gradient) - kept_volume_;
+  }
   const std::vector<int>& details() const { return basis_.details(); }
   const SurfaceLevels& levels() const { return base_->levels; }
   /// Where the nodes of all levels lie on the surface at rest, m.
@@ -122,7 +135,19 @@ class VirtualStructure {
   std::optional<Failure> build();
   Result<bool> build_bile(const FaceTree& tree);
 
+  struct Kept {
+    BodyState state;
+    VecX own_forces;  ///< of wall, bed and bile
+  };
+  /// Gradient of the energies of wall, bed and bile, N.
+  VecX own_forces(const VecX& x, double multiplier) const;
+  /// Sets the load and volume that keep the state kept_ in equilibrium.
+  void make_good();
+
   std::shared_ptr<const Base> base_;
+  std::shared_ptr<const Kept> kept_;
+  VecX kept_load_;
+  double kept_volume_ = 0;
   DetailBasis basis_;
   VecX rest_;
   Shell shell_;

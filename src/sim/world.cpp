@@ -106,7 +106,7 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
   OrganState state;
   const VecX& x = organ.state.x;
   state.pressure = organ.body.bile()->pressure_at_top(x, organ.state.multiplier);
-  state.volume = organ.body.bile()->volume(x);
+  state.volume = organ.body.volume(x);
   state.energy = organ.body.shell().value(x);
   state.max_stretch = organ.body.shell().max_stretch(x);
   state.extensions = static_cast<int>(organ.extensions.size());

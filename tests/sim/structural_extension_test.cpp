@@ -82,6 +82,20 @@ TEST(StructuralExtension, AThousandInsertedAndRemovedUnderLoadLeaveTheStateWitho
   EXPECT_LT(furthest(before, pulled.skin()), 1e-8) << "m; equilibria are met to 1e-9";
 }
 
+TEST(StructuralExtension, AnOrganAtRestDoesNotMoveWhenItIsExtended) {
+  Field field = test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, 2);
+  Organ& organ = field.organs[0];
+  const std::vector<Vec3> before = organ.body.skin_positions(organ.state.x);
+  const double multiplier = organ.state.multiplier;
+  NewtonSettings settings;
+  settings.tolerance = 1e-9;
+  test::extend(organ, {10, 700, organ.landmarks.at("fundus")});
+  EXPECT_GT(organ.body.kept_load().norm(), 1e-4) << "N: the finer rules do see the wall otherwise";
+  EXPECT_TRUE(settle(organ.body, {}, settings, organ.work, organ.search, organ.state).converged());
+  EXPECT_LT(furthest(before, organ.body.skin_positions(organ.state.x)), 1e-9) << "m; met to 1e-9";
+  EXPECT_NEAR(organ.state.multiplier, multiplier, 1e-6 * multiplier);
+}
+
 TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
   Pulled pulled(2);
   Rng rng(2);
