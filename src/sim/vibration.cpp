@@ -125,10 +125,14 @@ Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings
     for (int k = 0; k < vectors; ++k) masses.col(k) = mass.multiply(next.col(k));
     // With K next = loads + a pressure that does no work on motions that keep the volume.
     const Eigen::MatrixXd stiffness = next.transpose() * loads, inertia = next.transpose() * masses;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(
-        0.5 * (stiffness + stiffness.transpose()), 0.5 * (inertia + inertia.transpose()));
+    // In the masses' own measure, as an ordinary eigenproblem of fixed size.
+    using Small = Eigen::Matrix<double, vectors, vectors>;
+    const Eigen::LLT<Small> measure(Small(0.5 * (inertia + inertia.transpose())));
+    if (measure.info() != Eigen::Success) break;
+    const Small half = measure.matrixL().solve(Small(0.5 * (stiffness + stiffness.transpose())));
+    const Eigen::SelfAdjointEigenSolver<Small> ritz(Small(measure.matrixL().solve(Small(half.transpose()))));
     if (ritz.info() != Eigen::Success || !(ritz.eigenvalues()[0] > 0)) break;
-    shapes = next * ritz.eigenvectors();
+    shapes = next * Eigen::MatrixXd(measure.matrixU().solve(ritz.eigenvectors()));
     const double before = std::exchange(lowest, ritz.eigenvalues()[0]);
     if (std::abs(lowest - before) <= tolerance * lowest) return std::sqrt(lowest) / (2 * std::numbers::pi);
   }

@@ -1,6 +1,6 @@
 // Two hundred random instrument paths through and around an organ: each ends in equilibrium with the jaws
 // outside the skin, or as a failure that says where, when and what to change. Fifty a test, so that they run
-// side by side; every other fifty with structural extensions.
+// side by side; every fifth with structural extensions.
 
 #include <gtest/gtest.h>
 
@@ -40,10 +40,10 @@ INSTANTIATE_TEST_SUITE_P(Fifties, RandomPaths, ::testing::Range(0, 200 / a_test)
 
 TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
   SceneDefinition scene = ball_scene();
-  scene.solver.extension_levels = GetParam() % 2;
   int followed = 0, touched = 0, changed = 0, refused = 0;
   for (int number = a_test * GetParam(); number < a_test * (GetParam() + 1); ++number) {
     Rng rng(77 + static_cast<std::uint64_t>(number));
+    scene.solver.extension_levels = number % 5 == 0 ? 1 : 0;
     World world = World::create(scene).value();
     const double volume = world.report().organs[0].volume;
     const Vec3 trocar = world.port_position("right_subcostal"), fundus = world.landmark("ball.fundus");
@@ -82,7 +82,7 @@ TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
     EXPECT_LT(std::abs(world.report().organs[0].volume / volume - 1), 1e-9) << "path " << number;
   }
   RecordProperty("followed", followed);
-  EXPECT_EQ(changed > a_test, GetParam() % 2 == 1);
+  EXPECT_GT(changed, a_test / 5) << "paths with extensions that never change test nothing";
   EXPECT_LE(20 * refused, changed) << "of " << changed << " changes of extensions";
   EXPECT_GE(touched, a_test / 2) << "paths that touch nothing test nothing";
   EXPECT_GE(followed, a_test / 2) << "most must be followed";
