@@ -88,6 +88,7 @@ FactorStatus Condensation::eliminate(const BlockMatrix& matrix) {
   for (Group& group : groups_) {
     group.factor.compute(group.stiffness);
     if (group.factor.info() != Eigen::Success) return FactorStatus::not_positive_definite;
+    if (group.outer.empty()) continue;
     group.factor.matrixL().solveInPlace(group.coupling);
     product.setZero(group.coupling.cols(), group.coupling.cols());
     product.selfadjointView<Eigen::Lower>().rankUpdate(group.coupling.transpose());
@@ -112,6 +113,7 @@ VecX pick(const VecX& from, const std::vector<int>& at) {
 VecX Condensation::reduce(const VecX& right) const {
   VecX out = right.head(kept_);
   for (const Group& group : groups_) {
+    if (group.outer.empty()) continue;
     const VecX passed = group.coupling.transpose() * group.factor.matrixL().solve(pick(right, group.inner));
     for (std::size_t i = 0; i < group.outer.size(); ++i)
       out[group.outer[i]] -= passed[static_cast<Eigen::Index>(i)];
@@ -124,7 +126,7 @@ VecX Condensation::expand(const VecX& right, const VecX& kept) const {
   out.head(kept_) = kept;
   for (const Group& group : groups_) {
     VecX inner = group.factor.matrixL().solve(pick(right, group.inner));
-    inner -= group.coupling * pick(kept, group.outer);
+    if (!group.outer.empty()) inner -= group.coupling * pick(kept, group.outer);
     group.factor.matrixU().solveInPlace(inner);
     for (std::size_t i = 0; i < group.inner.size(); ++i)
       out[group.inner[i]] = inner[static_cast<Eigen::Index>(i)];
