@@ -228,7 +228,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   }
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
-  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}};
+  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}, {}};
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))

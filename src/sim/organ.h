@@ -32,6 +32,8 @@ struct Organ {
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
   std::vector<Extension> extensions;     ///< ordered by shape
+  std::vector<int>
+      refused_details;    ///< found no rest when tried last: not tried again until others are wanted
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
 };
 

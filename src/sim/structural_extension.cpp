@@ -136,7 +136,8 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     organ.extensions = wanted_extensions(field, organ, near);
     details = details_around(organ.body, organ.extensions);
   }
-  if (details == organ.body.details()) return;
+  if (details == organ.body.details() || details == organ.refused_details) return;
+  organ.refused_details = details;
   const Timed timed(statistics.extension_s);
   Result<VirtualStructure> next = organ.body.with_details(std::move(details));
   if (!next) {
@@ -151,8 +152,10 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   const VecX start = organ.state.x;
   ++statistics.extensions_changed;
   if (clear_of_tools(organ, now, near) &&
-      settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged())
+      settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged()) {
+    organ.refused_details.clear();
     return;
+  }
   std::swap(organ.body, next.value());
   std::swap(organ.work, work);
   give_back(organ, before);
