@@ -2,6 +2,7 @@
 // An organ of the world: its structure, where it is now, and what grips it.
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "sim/equilibrium.h"
@@ -32,8 +33,8 @@ struct Organ {
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
   std::vector<Extension> extensions;     ///< ordered by shape
-  std::vector<int>
-      refused_details;    ///< found no rest when tried last: not tried again until others are wanted
+  /// Details that found no rest when they were tried last: not tried again until others are wanted.
+  std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
 };
 

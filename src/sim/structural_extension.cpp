@@ -153,7 +153,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   ++statistics.extensions_changed;
   if (clear_of_tools(organ, now, near) &&
       settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged()) {
-    organ.refused_details.clear();
+    organ.refused_details.reset();
     return;
   }
   std::swap(organ.body, next.value());
