@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -241,6 +242,19 @@ double enclosed_volume(const TriMesh& mesh) {
     sum += a.dot(b.cross(c));
   }
   return sum / 6;
+}
+
+std::vector<double> shortest_edges(const TriMesh& mesh) {
+  std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity());
+  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      const double length = (mesh.points[a] - mesh.points[b]).norm();
+      shortest[a] = std::min(shortest[a], length);
+      shortest[b] = std::min(shortest[b], length);
+    }
+  }
+  return shortest;
 }
 
 TriMesh split_edges(const TriMesh& mesh) {

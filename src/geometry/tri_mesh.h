@@ -27,6 +27,9 @@ std::vector<Problem> check(const TriMesh& mesh, const MeshRequirements& requirem
 /// Signed volume of a closed mesh, m^3; positive when triangles face outward.
 double enclosed_volume(const TriMesh& mesh);
 
+/// Length of the shortest edge at each point, m; infinite at a point of no triangle.
+std::vector<double> shortest_edges(const TriMesh& mesh);
+
 /// One split of every triangle into four with new points at edge midpoints (points stay first, in order).
 TriMesh split_edges(const TriMesh& mesh);
 

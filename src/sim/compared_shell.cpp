@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "base/timed.h"
-#include "sim/compared_body.h"
+#include "sim/comparison_run.h"
 #include "sim/structural_extension.h"
 
 namespace calot {
@@ -166,14 +166,6 @@ VirtualStructure::Setup setup_of(const TriMesh& control, double radius, int leve
   return setup;
 }
 
-int skin_point_at(const VirtualStructure& body, const Vec3& place) {
-  const auto nearer = [&](const Vec3& a, const Vec3& b) {
-    return (a - place).squaredNorm() < (b - place).squaredNorm();
-  };
-  const std::vector<Vec3>& skin = body.skin_rest();
-  return static_cast<int>(std::min_element(skin.begin(), skin.end(), nearer) - skin.begin());
-}
-
 Result<Rested> brought_to_rest(VirtualStructure body, BodyState state) {
   NewtonWorkspace work(body.pattern(), body.coarse_nodes());
   const Surroundings nothing;
@@ -218,7 +210,7 @@ Result<std::unique_ptr<ComparedBody>> extended_shell(const ComparedSurface& surf
   std::vector<Extension> extensions;
   for (const Vec3& place : places)
     extensions.push_back(
-        {static_cast<int>(extensions.size()), skin_point_at(coarse->body, surface.radius * place)});
+        {static_cast<int>(extensions.size()), coarse->body.nearest_skin_point(surface.radius * place)});
   const Result<Rested> before = extended(coarse.value(), std::span(extensions).first(places.size() - 1));
   if (!before) return before.failure();
   constexpr int repeats = 5;
@@ -230,11 +222,9 @@ Result<std::unique_ptr<ComparedBody>> extended_shell(const ComparedSurface& surf
     }();
     if (!rested) return rested.failure();
     if (k + 1 < repeats) continue;
-    std::nth_element(seconds.begin(), seconds.begin() + repeats / 2, seconds.end());
-    StencilTable points =
-        DetailBasis(rested->body.levels(), rested->body.details()).evaluate(surface.points, 0);
-    return std::unique_ptr<ComparedBody>(std::make_unique<ComparedShell>(
-        surface, std::move(rested).value(), std::move(points), seconds[repeats / 2]));
+    StencilTable points = rested->body.basis().evaluate(surface.points, 0);
+    return std::unique_ptr<ComparedBody>(std::make_unique<ComparedShell>(surface, std::move(rested).value(),
+                                                                         std::move(points), median(seconds)));
   }
 }
 

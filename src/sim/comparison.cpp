@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "sim/comparison_run.h"
+#include "sim/displacement_errors.h"
 
 namespace calot {
 namespace {
-
-constexpr double near_contact = 10e-3;  // m
 
 /// How to make one body, and what its rows have in common.
 struct Candidate {
@@ -159,18 +158,12 @@ class Comparing {
   }
 
   void measure(const std::vector<Vec3>& displacements, std::size_t load, ComparisonRow& row) const {
-    const std::vector<Vec3>& reference = references_[load];
-    const double largest = largest_of(reference);
-    int near = 0;
-    for (std::size_t i = 0; i < reference.size(); ++i) {
-      const double error = 100 * (displacements[i] - reference[i]).norm() / largest;
-      row.mean_error_pct += error / static_cast<double>(reference.size());
-      row.max_error_pct = std::max(row.max_error_pct, error);
-      if (!near_a_place(surface_.rest[i])) continue;
-      row.contact_error_pct += error;
-      ++near;
-    }
-    if (near > 0) row.contact_error_pct /= near;
+    std::vector<bool> near;
+    for (const Vec3& point : surface_.rest) near.push_back(near_a_place(point));
+    const DisplacementErrors errors = displacement_errors(displacements, references_[load], near);
+    row.mean_error_pct = errors.mean_pct;
+    row.contact_error_pct = errors.contact_pct;
+    row.max_error_pct = errors.max_pct;
   }
 
   bool near_a_place(const Vec3& point) const {
@@ -178,12 +171,6 @@ class Comparing {
     return std::any_of(all.begin(), all.end(), [&](const LoadedPlace& place) {
       return (point - surface_.radius * place.direction).norm() < near_contact;
     });
-  }
-
-  static double largest_of(const std::vector<Vec3>& displacements) {
-    double out = 0;
-    for (const Vec3& d : displacements) out = std::max(out, d.norm());
-    return out;
   }
 
   void remember_reference(const std::string& family) {

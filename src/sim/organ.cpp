@@ -115,13 +115,6 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
   return places;
 }
 
-int nearest(const std::vector<Vec3>& points, const Vec3& place) {
-  int best = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if ((points[i] - place).squaredNorm() < (points[best] - place).squaredNorm()) best = static_cast<int>(i);
-  return best;
-}
-
 /// Volume and pressure that the author asked for, by small steps from the unstressed shape.
 Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings& settings) {
   const BileDefinition& bile = organ.definition.bile;
@@ -232,7 +225,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))
-    organ.landmarks[name] = nearest(organ.body.skin_rest(), place);
+    organ.landmarks[name] = organ.body.nearest_skin_point(place);
   for (const Shape& shape : field.shapes)
     for (const Vec3& p : organ.body.skin_rest())
       if (signed_distance(shape, p) <= 0)

@@ -8,11 +8,10 @@
 
 #include "geometry/radial_view.h"
 #include "geometry/shapes.h"
+#include "sim/displacement_errors.h"
 
 namespace calot {
 namespace {
-
-constexpr double near_contact = 10e-3;  // m
 
 /// Directions in which all structures are loaded and measured: the nodes of a finer sphere than any of them.
 std::vector<Vec3> sample_directions(TriMesh mesh) {
@@ -98,25 +97,15 @@ class Comparison {
 
   /// Errors against the finest uniform structure.
   void measure() {
-    const std::vector<Vec3>& reference = displacements_[meshes_.size() - 1];
-    const auto largest = [](const std::vector<Vec3>& v) {
-      double out = 0;
-      for (const Vec3& d : v) out = std::max(out, d.norm());
-      return out;
-    };
+    std::vector<bool> near;
+    for (const Vec3& d : directions_) near.push_back(given_.radius * (d - along_).norm() <= near_contact);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      PaperRow& row = rows_[k];
-      row.largest_m = largest(displacements_[k]);
-      int near = 0;
-      for (std::size_t i = 0; i < reference.size(); ++i) {
-        const double error = 100 * (displacements_[k][i] - reference[i]).norm() / largest(reference);
-        row.mean_error_pct += error / static_cast<double>(reference.size());
-        row.max_error_pct = std::max(row.max_error_pct, error);
-        if (given_.radius * (directions_[i] - along_).norm() > near_contact) continue;
-        row.contact_error_pct += error;
-        ++near;
-      }
-      if (near > 0) row.contact_error_pct /= near;
+      const DisplacementErrors errors =
+          displacement_errors(displacements_[k], displacements_[meshes_.size() - 1], near);
+      rows_[k].mean_error_pct = errors.mean_pct;
+      rows_[k].contact_error_pct = errors.contact_pct;
+      rows_[k].max_error_pct = errors.max_pct;
+      rows_[k].largest_m = largest_of(displacements_[k]);
     }
   }
 

@@ -1,7 +1,6 @@
 #include "sim/paper_structure.h"
 
 #include <cmath>
-#include <limits>
 
 #include "base/timed.h"
 #include "base/units.h"
@@ -19,16 +18,6 @@ BileSurface flat_surface(const TriMesh& mesh) {
   }
   for (const Triangle& t : mesh.triangles) out.cells.push_back({{t, 1}});
   return out;
-}
-
-std::vector<double> shortest_edges(const TriMesh& mesh) {
-  std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity());
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const double length = (mesh.points[t[k]] - mesh.points[t[(k + 1) % 3]]).norm();
-      for (int node : {t[k], t[(k + 1) % 3]}) shortest[node] = std::min(shortest[node], length);
-    }
-  return shortest;
 }
 
 }  // namespace

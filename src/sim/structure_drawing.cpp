@@ -29,7 +29,6 @@ std::map<std::pair<int, int>, std::pair<FacePoint, FacePoint>> edges_of(const Su
 StructureDrawing draw_structure(const VirtualStructure& body, const VecX& x) {
   constexpr int parts = 8;  // of an edge
   const SurfaceLevels& levels = body.levels();
-  const DetailBasis basis(levels, body.details());
   std::vector<FacePoint> at;
   StructureDrawing out;
   for (const auto& [ends, places] : edges_of(levels, FaceTree(levels, body.details()))) {
@@ -42,7 +41,7 @@ StructureDrawing draw_structure(const VirtualStructure& body, const VecX& x) {
   }
   for (int node = 0; node < body.coarse_nodes(); ++node) at.push_back(levels.place(node));
   for (int detail : body.details()) at.push_back(levels.place(detail));
-  const StencilTable table = basis.evaluate(at, 1);
+  const StencilTable table = body.basis().evaluate(at, 1);
   int row = 0;
   for (StructureDrawing::Line& line : out.lines) {
     for (int k = 0; k <= parts; ++k, ++row) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/units.h"
@@ -61,19 +60,6 @@ std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vec
     for (int p : t) areas[p] += area / 3.0;
   }
   return areas;
-}
-
-std::vector<double> shortest_edges(const TriMesh& mesh) {
-  std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity());
-  for (const Triangle& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = t[k], b = t[(k + 1) % 3];
-      const double length = (mesh.points[a] - mesh.points[b]).norm();
-      shortest[a] = std::min(shortest[a], length);
-      shortest[b] = std::min(shortest[b], length);
-    }
-  }
-  return shortest;
 }
 
 double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
@@ -141,24 +127,24 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   for (const Vec3& p : base.skin_rest) box.extend(p);
   base.size = box.diagonal().norm();
   base.middle = box.center();
-  if (setup.foundation) lay_bed(rest, base);
+  if (setup.foundation) lay_bed(rest, rule.at, rule.quadrature.weights, base);
   VirtualStructure body(std::make_shared<const Base>(std::move(base)), {});
   if (std::optional<Failure> failure = body.build()) return *failure;
   return body;
 }
 
-void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
-  const RulePoints points(base.levels, FaceTree(base.levels, {}), base.setup.rule);
+void VirtualStructure::lay_bed(const VecX& rest, const std::vector<FacePoint>& places,
+                               const std::vector<double>& weights, Base& base) {
   const StencilTable& table = base.quadrature;
   for (int r = 0; r < table.rows(); ++r) {
     const Vec3 at = blend(table, table.value, r, rest);
     const double jacobian = blend(table, table.du, r, rest).cross(blend(table, table.dv, r, rest)).norm();
-    const double stiffness = base.setup.foundation(at) * points.quadrature.weights[r] * jacobian;
+    const double stiffness = base.setup.foundation(at) * weights[r] * jacobian;
     if (stiffness <= 0) continue;
     base.bed.row.push_back(static_cast<int>(base.bed_places.size()));
     base.bed.target.push_back(at);
     base.bed.stiffness.push_back(stiffness);
-    base.bed_places.push_back(points.at[r]);
+    base.bed_places.push_back(places[r]);
   }
 }
 
@@ -291,6 +277,14 @@ double VirtualStructure::largest_motion(const VecX& dx) const {
     begin = end;
   }
   return sum;
+}
+
+int VirtualStructure::nearest_skin_point(const Vec3& place) const {
+  const auto nearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - place).squaredNorm() < (b - place).squaredNorm();
+  };
+  return static_cast<int>(std::min_element(skin_rest().begin(), skin_rest().end(), nearer) -
+                          skin_rest().begin());
 }
 
 double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }

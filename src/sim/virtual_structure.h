@@ -61,6 +61,7 @@ class VirtualStructure {
     return bile_->add_volume_gradient(x, gradient) - kept_volume_;
   }
   const std::vector<int>& details() const { return basis_.details(); }
+  const DetailBasis& basis() const { return basis_; }
   const SurfaceLevels& levels() const { return base_->levels; }
   /// Where the nodes of all levels lie on the surface at rest, m.
   const std::vector<Vec3>& node_rest() const { return base_->node_rest; }
@@ -83,6 +84,8 @@ class VirtualStructure {
   /// Rest area that each skin point stands for, m^2.
   const std::vector<double>& skin_areas() const { return base_->skin_areas; }
   const std::vector<Vec3>& skin_rest() const { return base_->skin_rest; }
+  /// The skin point that lies nearest to a place at rest, the first of equals.
+  int nearest_skin_point(const Vec3& place) const;
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const;
   /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe
@@ -131,7 +134,8 @@ class VirtualStructure {
   VirtualStructure(std::shared_ptr<const Base> base, std::vector<int> details)
       : base_(std::move(base)), basis_(base_->levels, std::move(details)) {}
   /// The bed holds on to the coarse rule's points.
-  static void lay_bed(const VecX& rest, Base& base);
+  static void lay_bed(const VecX& rest, const std::vector<FacePoint>& places,
+                      const std::vector<double>& weights, Base& base);
   std::optional<Failure> build();
   Result<bool> build_bile(const FaceTree& tree);
 

@@ -56,10 +56,7 @@ SceneMesh jaw_mesh(const InstrumentGeometry& g) {
 
 std::vector<SceneMesh> grasper_meshes(const Vec3& trocar, const InstrumentPose& pose,
                                       const InstrumentGeometry& geometry) {
-  auto [steel, insulation] = forceps_shaft(geometry);
-  const Pose hinge = hinge_frame(trocar, pose, geometry);
-  move(insulation, hinge);
-  move(steel, hinge);
+  auto [steel, insulation] = forceps_shaft(trocar, pose, geometry);
   for (int jaw = 0; jaw < 2; ++jaw) {
     SceneMesh part = jaw_mesh(geometry);
     move(part, jaw_frame(trocar, pose, geometry, jaw));

@@ -64,7 +64,8 @@ Vec2 Outline::at(double t, double inset) const {
   return {(half_width(z) - inset) * shape * c, z};
 }
 
-ForcepsShaft forceps_shaft(const InstrumentGeometry& geometry) {
+ForcepsShaft forceps_shaft(const Vec3& trocar, const InstrumentPose& pose,
+                           const InstrumentGeometry& geometry) {
   const double r = geometry.shaft_radius;
   const double outside = geometry.jaw_length - geometry.working_length;  // the handle, in the hinge's frame
   SceneMesh insulation =
@@ -82,6 +83,9 @@ ForcepsShaft forceps_shaft(const InstrumentGeometry& geometry) {
   append(steel, prong(geometry, -1));
   append(steel, bar(0.5 * r, 0.42 * r, -0.65 * r));
   append(steel, bar(0.26 * r, 0.945 * r, -0.95 * r));
+  const Pose hinge = hinge_frame(trocar, pose, geometry);
+  move(insulation, hinge);
+  move(steel, hinge);
   return {steel, insulation};
 }
 

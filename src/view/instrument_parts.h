@@ -24,10 +24,11 @@ struct Outline {
   Vec2 at(double t, double inset) const;
 };
 
-/// Insulated shaft and its steel end with a clevis and its pin.
+/// Insulated shaft and its steel end with a clevis and its pin, where the instrument stands.
 struct ForcepsShaft {
   SceneMesh steel, insulation;
 };
-ForcepsShaft forceps_shaft(const InstrumentGeometry& geometry);
+ForcepsShaft forceps_shaft(const Vec3& trocar, const InstrumentPose& pose,
+                           const InstrumentGeometry& geometry);
 
 }  // namespace calot

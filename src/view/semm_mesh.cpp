@@ -61,10 +61,7 @@ Jaw jaw_meshes(const InstrumentGeometry& g) {
 
 std::vector<SceneMesh> semm_meshes(const Vec3& trocar, const InstrumentPose& pose,
                                    const InstrumentGeometry& geometry) {
-  auto [steel, insulation] = forceps_shaft(geometry);
-  const Pose hinge = hinge_frame(trocar, pose, geometry);
-  move(insulation, hinge);
-  move(steel, hinge);
+  auto [steel, insulation] = forceps_shaft(trocar, pose, geometry);
   for (int jaw = 0; jaw < 2; ++jaw) {
     Jaw part = jaw_meshes(geometry);
     const Pose frame = jaw_frame(trocar, pose, geometry, jaw);

@@ -7,17 +7,8 @@
 namespace calot {
 namespace {
 
-SceneDefinition scene_with(InstrumentType type) {
-  SceneDefinition scene = test::grasper_scene();
-  InstrumentDefinition tool = default_instrument(type);
-  tool.name = "left";
-  tool.port = scene.instruments[0].port;
-  scene.instruments[0] = tool;
-  return scene;
-}
-
 TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
-  test::FundusPath path(scene_with(InstrumentType::bipolar_electrode));
+  test::FundusPath path(test::scene_with(InstrumentType::bipolar_electrode));
   const double pressure = path.world.report().organs[0].pressure;
   ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 3)) << path.driver.why();
   ASSERT_TRUE(path.driver.go(path.fundus - 6e-3 * path.out, 0, 6)) << path.driver.why();
@@ -40,9 +31,9 @@ TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
 }
 
 TEST(Electrode, RefusesAJawAngle) {
-  const World reference = World::create(scene_with(InstrumentType::bipolar_electrode)).value();
+  const World reference = World::create(test::scene_with(InstrumentType::bipolar_electrode)).value();
   for (double jaw : {0.1, -1e-10}) {
-    World world = World::create(scene_with(InstrumentType::bipolar_electrode)).value();
+    World world = World::create(test::scene_with(InstrumentType::bipolar_electrode)).value();
     StepInput input;
     input.instruments = {world.report().instruments[0].pose};
     input.instruments[0].jaw = jaw;
@@ -54,7 +45,7 @@ TEST(Electrode, RefusesAJawAngle) {
 }
 
 TEST(SemmGrasp, GripsLiftsAndLetsGo) {
-  test::FundusPath path(scene_with(InstrumentType::semm_forceps));
+  test::FundusPath path(test::scene_with(InstrumentType::semm_forceps));
   double deepest = 0;
   path.driver.watch = [&](const StepReport&) {
     deepest = std::max(deepest, path.world.deepest_penetration());

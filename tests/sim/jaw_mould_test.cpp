@@ -8,15 +8,6 @@
 namespace calot {
 namespace {
 
-SceneDefinition scene_with(InstrumentType type) {
-  SceneDefinition scene = test::grasper_scene();
-  InstrumentDefinition tool = default_instrument(type);
-  tool.name = "left";
-  tool.port = scene.instruments[0].port;
-  scene.instruments[0] = tool;
-  return scene;
-}
-
 /// The one tool of a world, where it stands.
 Tool tool_of(const World& world) {
   Tool tool;
@@ -75,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Of, JawMouldGrasp, ::testing::Values("atraumatic_graspe
                          [](const auto& one) { return one.param; });
 
 TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
-  test::FundusPath path(scene_with(type));
+  test::FundusPath path(test::scene_with(type));
   expect_same(path.world);
   ASSERT_TRUE(path.grasp() && path.driver.stay(12)) << path.driver.why();
   const std::vector<Vec3> touched = path.world.skin_positions(0);
@@ -96,7 +87,7 @@ TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
 }
 
 TEST_P(JawMouldGrasp, KeepsOutOfTheInstrumentComesAndGoesWithoutAJumpAndLeavesNothingBehind) {
-  test::FundusPath path(scene_with(type));
+  test::FundusPath path(test::scene_with(type));
   std::vector<Vec3> before = path.world.skin_positions(0), drawn_before = before;
   path.driver.watch = [&](const StepReport&) {
     const std::vector<Vec3> touched = path.world.skin_positions(0);

@@ -22,6 +22,16 @@ inline SceneDefinition grasper_scene(int nodes = 120) {
   return scene;
 }
 
+/// The same with an instrument of another type.
+inline SceneDefinition scene_with(InstrumentType type) {
+  SceneDefinition scene = grasper_scene();
+  InstrumentDefinition tool = default_instrument(type);
+  tool.name = "left";
+  tool.port = scene.instruments[0].port;
+  scene.instruments[0] = tool;
+  return scene;
+}
+
 /// Moves the one instrument of a world; collects what happens on the way.
 class Driver {
  public:
