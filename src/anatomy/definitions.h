@@ -15,6 +15,7 @@ namespace calot {
 
 struct SphereShape {
   double radius = 20e-3;  ///< m
+  bool operator==(const SphereShape&) const = default;
 };
 
 struct PearShape {
@@ -23,11 +24,13 @@ struct PearShape {
   /// Vertices are closer by `refine` (>= 1) within `refine_radius` (m) of the fundus, where the grasper
   /// works.
   double refine = 1.0, refine_radius = 20e-3;
+  bool operator==(const PearShape&) const = default;
 };
 
 struct MeshFile {
   std::string path;
   double scale = 1.0;  ///< coordinates of the file times this are metres
+  bool operator==(const MeshFile&) const = default;
 };
 
 using OrganShape = std::variant<PearShape, SphereShape, MeshFile>;
@@ -78,6 +81,8 @@ struct OrganDefinition {
   WallDefinition wall;
   BileDefinition bile;
   std::vector<HeldRegion> held;
+  bool extensions = true;     ///< false: none are laid on this organ, whatever the solver's levels
+  std::string compared_with;  ///< another organ of the same shape and posture, see sim/skin_difference.h
 };
 
 struct SupportDefinition {

@@ -153,6 +153,27 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
   }
 }
 
+/// Two skins can be compared point by point where one is the other moved aside.
+void check_compared(FieldCheck& check, const std::string& path, const OrganDefinition& organ,
+                    const std::vector<OrganDefinition>& organs) {
+  if (organ.compared_with.empty()) return;
+  std::vector<std::string> others;
+  for (const OrganDefinition& other : organs)
+    if (&other != &organ) others.push_back(other.name);
+  if (!check.known(path, organ.compared_with, others, "other organ")) return;
+  constexpr double same = 1e-9;  // m: rounding
+  for (const OrganDefinition& other : organs) {
+    if (&other == &organ || other.name != organ.compared_with) continue;
+    const Vec3 axis = organ.fundus - organ.neck, other_axis = other.fundus - other.neck;
+    if (organ.shape == other.shape && (axis - other_axis).norm() < same &&
+        (organ.liver_side - other.liver_side).norm() < same)
+      return;
+    check.problem(path, fmt::format("\"{}\" has another shape or posture", other.name),
+                  "give both the same shape, liver_side and way from neck to fundus");
+    return;
+  }
+}
+
 void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
   const std::string path = "scene.anatomy";
   if (anatomy.organs.empty())
@@ -163,6 +184,7 @@ void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
     const std::string at = fmt::format("{}.organs[{}]", path, i + 1);
     names.add(at + ".name", anatomy.organs[i].name);
     check_organ(check, at, anatomy.organs[i]);
+    check_compared(check, at + ".compared_with", anatomy.organs[i], anatomy.organs);
   }
   if (anatomy.support) {
     check.place_within(path + ".support.point", anatomy.support->point, reach, "a place in the abdomen");

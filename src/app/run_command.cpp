@@ -60,6 +60,7 @@ ExitCode conclude(const Played& played, const SessionCommand& command, const std
     if (!output.empty()) print(fmt::format("Written to {}", output.string()));
   }
   std::fflush(stdout);
+  for (const std::string& note : played.session.notes) log_warning(note);
   if (played.session.end == SessionEnd::steps_done && !played.renderer.empty()) note_missing_frames(played);
   const std::string file = shell_word(scenario);
   if (played.session.end == SessionEnd::failed) {

@@ -75,7 +75,11 @@ std::vector<ApiTable> organ_tables() {
            point("liver_side", quantity::number, std::numeric_limits<double>::infinity(), "{ 0, 0.8, 0.6 }",
                  "direction from the organ's axis to its bed on the liver"),
            table("wall", "wall", "its wall"), table("bile", "bile", "what fills it"),
-           list("held", "held", "elastic attachments; a list given here replaces the anatomy's own")}),
+           list("held", "held", "elastic attachments; a list given here replaces the anatomy's own"),
+           flag("extensions", "true", "false: no structural extensions on this organ"),
+           text("compared_with", "",
+                "another organ of the same shape; metrics <name>.mean_difference_pct and "
+                "<name>.largest_difference_pct then say how far from its skin's motion this one's is")}),
       make("wall", "The organ's wall.",
            {length("thickness", 0.1 * mm, 10 * mm, wall.thickness, "2 to 3 mm is usual"),
             number("shear_modulus", quantity::pressure, 1 * kPa, 100e3 * kPa,

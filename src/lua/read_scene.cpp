@@ -78,6 +78,8 @@ class SceneReader {
     read_wall(organ.wall, reader.take("wall"), path + ".wall");
     read_bile(organ.bile, reader.take("bile"), path + ".bile");
     if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
+    reader.take("extensions", organ.extensions);
+    reader.take("compared_with", organ.compared_with);
   }
 
   void read_wall(WallDefinition& wall, const Value* value, const std::string& path) {

@@ -28,6 +28,8 @@ const char* const instrument_metrics[] = {"path_length_mm",
                                           "slips"};
 const char* const organ_metrics[] = {"peak_pressure_Pa", "max_stretch", "lowest_frequency_Hz"};
 
+const char* const difference_metrics[] = {"mean_difference_pct", "largest_difference_pct"};
+
 using Metrics = std::map<std::string, double>;
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -136,6 +138,8 @@ std::vector<std::string> metric_names(const SceneDefinition& scene, const std::v
   }
   for (const OrganDefinition& organ : scene.anatomy.organs) {
     for (const char* metric : organ_metrics) names.push_back(organ.name + "." + metric);
+    if (organ.compared_with.empty()) continue;
+    for (const char* metric : difference_metrics) names.push_back(organ.name + "." + metric);
   }
   for (const std::string& hold : holds) names.push_back(hold + ".time_in_s");
   for (const std::string& step : steps) names.push_back(step + ".time_s");

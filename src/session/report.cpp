@@ -111,6 +111,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   json["steps"] = steps_json(session.progress);
   json["events"] = events_json(session.progress);
   json["metrics"] = report.metrics;
+  json["notes"] = session.notes;
   json["motion_processing"] = {{"version", MotionProcessing::version},
                                {"rate_Hz", MotionProcessing::rate},
                                {"cut_off_Hz", MotionProcessing::cut_off}};

@@ -33,6 +33,7 @@ class Session {
       step();
     }
     close_steps();
+    note_differences();
     observe(true);
     if (options_.recording != nullptr) options_.recording->finish(to_text(result_.end));
     result_.timing.wall_s = seconds_since(start);
@@ -112,12 +113,27 @@ class Session {
                "free space or choose another folder with -o DIR"));
   }
 
-  /// The licence for statics, of each organ at rest; an organ without one gets no figure.
+  /// The licence for statics, of each organ at rest; an organ without one gets no figure, and a note why.
   void note_frequencies() {
     const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
-    for (std::size_t i = 0; i < organs.size(); ++i)
-      if (const Result<double> found = world_.lowest_frequency(static_cast<int>(i)))
-        result_.progress.set_metric(organs[i].name + ".lowest_frequency_Hz", found.value());
+    for (std::size_t i = 0; i < organs.size(); ++i) {
+      const std::string name = organs[i].name + ".lowest_frequency_Hz";
+      const Result<double> found = world_.lowest_frequency(static_cast<int>(i));
+      if (found)
+        result_.progress.set_metric(name, found.value());
+      else
+        result_.notes.push_back(name + " is left out: " + to_text(found.failure()));
+    }
+  }
+
+  void note_differences() {
+    const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
+    for (std::size_t i = 0; i < organs.size(); ++i) {
+      const std::optional<SkinDifference> found = world_.difference(static_cast<int>(i));
+      if (!found) continue;
+      result_.progress.set_metric(organs[i].name + ".mean_difference_pct", found->mean_pct);
+      result_.progress.set_metric(organs[i].name + ".largest_difference_pct", found->largest_pct);
+    }
   }
 
   void close_steps() {

@@ -40,7 +40,8 @@ struct World::Impl {
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
   Field field;
-  std::vector<JawMould> moulds;  ///< one a tool; of pictures only, so no hash knows them
+  std::vector<JawMould> moulds;                ///< one a tool; of pictures only, so no hash knows them
+  std::vector<std::vector<Vec3>> first_skins;  ///< m, each organ's skin points at time 0
   StepReport report;
   long steps = 0;
   bool failed = false;
@@ -193,8 +194,8 @@ Result<World> World::create(const SceneDefinition& scene) {
   Surroundings still;
   if (impl->field.support) still.shapes.push_back(*impl->field.support);
   for (const OrganDefinition& definition : scene.anatomy.organs) {
-    Result<Organ> organ =
-        make_organ(definition, still, impl->up, scene.solver.tolerance, scene.solver.extension_levels);
+    Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance,
+                                     definition.extensions ? scene.solver.extension_levels : 0);
     if (!organ) return organ.failure();
     impl->field.organs.push_back(std::move(organ).value());
   }
@@ -219,6 +220,8 @@ Result<World> World::create(const SceneDefinition& scene) {
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
+  for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i)
+    world.impl_->first_skins.push_back(world.skin_positions(static_cast<int>(i)));
   world.impl_->observe({});
   return world;
 }
@@ -301,6 +304,15 @@ Result<double> World::lowest_frequency(int index) const {
                       organ.definition.bile.density);
   return calot::lowest_frequency(organ.body, surroundings(impl_->field, organ, present_poses(impl_->field)),
                                  organ.state, mass);
+}
+
+std::optional<SkinDifference> World::difference(int index) const {
+  const std::vector<Organ>& organs = impl_->field.organs;
+  for (std::size_t k = 0; k < organs.size(); ++k)
+    if (organs[k].definition.name == organs[index].definition.compared_with)
+      return skin_difference(moved_skin(organs[index], impl_->first_skins[index]),
+                             moved_skin(organs[k], impl_->first_skins[k]));
+  return std::nullopt;
 }
 
 double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }

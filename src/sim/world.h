@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "anatomy/definitions.h"
 #include "geometry/stencil.h"
 #include "sim/instrument.h"
+#include "sim/skin_difference.h"
 #include "sim/structure_drawing.h"
 
 namespace calot {
@@ -109,6 +111,9 @@ class World {
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
   /// equilibrium is not stable.
   Result<double> lowest_frequency(int organ) const;
+  /// How far the motion of an organ's skin since time 0 is from that of the organ it is compared with. None without
+  /// one, or where that has not moved. Some 0.1 s.
+  std::optional<SkinDifference> difference(int organ) const;
   /// Deepest penetration of any instrument part into the skin (m, 0 when none), tested on a finer
   /// tessellation than contact uses: for tests and reports.
   double deepest_penetration() const;

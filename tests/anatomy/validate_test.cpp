@@ -70,6 +70,24 @@ const std::vector<Refusal>& refusals() {
        "give 12 to 4000"},
       {"TooManyNodes", [](auto& s) { organ(s).nodes = 4001; }, organ_path + ".nodes", "4001 is not",
        "12 to 4000"},
+      {"ComparedWithItself", [](auto& s) { organ(s).compared_with = "gallbladder"; },
+       organ_path + ".compared_with", "gallbladder", ""},
+      {"ComparedWithAnotherShape",
+       [](auto& s) {
+         s.anatomy.organs.push_back(organ(s));
+         s.anatomy.organs[1].name = "other";
+         s.anatomy.organs[1].shape = SphereShape{};
+         organ(s).compared_with = "other";
+       },
+       organ_path + ".compared_with", "another shape", "same shape"},
+      {"ComparedWithAnotherPosture",
+       [](auto& s) {
+         s.anatomy.organs.push_back(organ(s));
+         s.anatomy.organs[1].name = "other";
+         s.anatomy.organs[1].neck.x() += 1 * mm;
+         organ(s).compared_with = "other";
+       },
+       organ_path + ".compared_with", "posture", "neck to fundus"},
       {"Thickness", [](auto& s) { organ(s).wall.thickness = 2; }, organ_path + ".wall.thickness",
        "2 m is not a wall's thickness", "did you mean 2 * mm?"},
       {"NoThinShell",

@@ -158,9 +158,38 @@ TEST(Runner, AnInputThatCannotBeFollowedEndsTheSessionInTheStateBeforeIt) {
   EXPECT_EQ(result.state_hashes[4], result.state_hashes[3]);
 }
 
+TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
+  SceneDefinition scene = test::small_scene();
+  OrganDefinition other = scene.anatomy.organs[0];
+  other.name = "other";
+  other.nodes = 90;
+  for (Vec3* place : {&other.neck, &other.fundus}) place->x() += 60e-3;
+  scene.anatomy.organs[0].compared_with = "other";
+  scene.anatomy.organs.push_back(other);
+  World world = World::create(scene).value();
+  EXPECT_FALSE(world.difference(0)) << "nothing has moved";
+  EXPECT_FALSE(world.difference(1)) << "it is compared with none";
+  // Only the other one is pressed.
+  const Vec3 trocar = world.port_position("right_subcostal"), top = world.landmark("other.fundus"),
+             in = world.landmark("other.neck") - top;
+  for (double share : {-0.2, -0.1, 0.0, 0.05}) {
+    StepInput input;
+    input.instruments = {pose_reaching(trocar, top + share * in, 0, 0)};
+    const Result<StepReport> step = world.step(input);
+    ASSERT_TRUE(step) << to_text(step.failure());
+  }
+  const std::optional<SkinDifference> found = world.difference(0);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->largest_pct, 100, 1e-9) << "one has not moved at all";
+  EXPECT_GT(found->mean_pct, 0);
+  EXPECT_LT(found->mean_pct, found->largest_pct);
+}
+
 TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   test::TimedScript script(0.2);
-  const SessionResult result = played(script, script.demo());
+  SessionResult result = played(script, script.demo());
+  EXPECT_TRUE(result.notes.empty()) << "everything could be measured";
+  result.notes = {"a note"};
   SessionReport report;
   report.metrics = measure(script.definition().scene, result.traces, result.progress);
   report.score = score(script.definition(), report.metrics, result.progress);
@@ -171,6 +200,7 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   }
   EXPECT_EQ(json["schema"], "calot.report/1");
   EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["notes"], nlohmann::json::array({"a note"}));
   EXPECT_GT(json["timing"]["real_time_factor"].get<double>(), 0);
   double sum = 0;
   for (const auto& part : json["score"]["parts"]) {

@@ -1,0 +1,33 @@
+#pragma once
+// How differently two organs of the same shape have moved: the error of the paper's section 6, where one of them has
+// a finer mesh.
+
+#include <optional>
+#include <vector>
+
+#include "geometry/types.h"
+
+namespace calot {
+
+struct Organ;
+
+/// Skin points of an organ in its own frame, all lists of the same length.
+struct MovedSkin {
+  std::vector<Vec3> rest, motion;  ///< m: unstressed, and displacement since the organ was filled
+  std::vector<double> areas;       ///< m^2 at rest, that each point stands for
+  std::vector<Triangle> triangles;
+};
+
+/// `first`: its skin points when it had been filled, m.
+MovedSkin moved_skin(const Organ& organ, const std::vector<Vec3>& first);
+
+/// Distances between the two displacements of each of the reference's points, in % of its largest displacement.
+struct SkinDifference {
+  double mean_pct = 0;  ///< over the rest area
+  double largest_pct = 0;
+};
+
+/// Points correspond by the nearest place at rest. None where the reference has not moved.
+std::optional<SkinDifference> skin_difference(const MovedSkin& skin, const MovedSkin& reference);
+
+}  // namespace calot
