@@ -1,5 +1,8 @@
+#include <cstdio>
+
 #include "app/bench_report.h"
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/project.h"
 #include "app/terminal.h"
 
@@ -21,6 +24,20 @@ ComparisonCase case_of(bool quick) {
   return out;
 }
 
+std::optional<Failure> write_all(const Comparison& comparison, const std::string& json,
+                                 const std::filesystem::path& folder) {
+  const std::string& load = comparison.rows.front().load;
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"bench.json", json + "\n"},
+      {"table.md", bench_markdown(comparison.rows, load)},
+      {"error_against_cost.svg", bench_plot(comparison.rows, load)}};
+  for (const auto& [name, text] : files) {
+    const Result<std::string> written = write_text(folder / name, text);
+    if (!written) return written.failure();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 ExitCode bench_command(const BenchCommand& command) {
@@ -28,31 +45,30 @@ ExitCode bench_command(const BenchCommand& command) {
       make_folder(command.output.empty() ? "out/bench" : command.output);
   if (!folder) return print_failure(folder.failure(), "calot bench --help", command.json);
   const BenchMachine machine = this_machine();
+  ComparisonCase given = case_of(command.quick);
+  given.stop = &interrupt_flag();
   Result<Comparison> comparison = [&] {
     ProgressLine line;
-    return compare(case_of(command.quick), [&](const std::string& next) {
+    return compare(given, [&](const std::string& next) {
       if (line.due()) line.show(next);
     });
   }();
   if (!comparison) return print_failure(comparison.failure(), "calot doctor", command.json);
+  const bool measured = !comparison->rows.empty();
+  // Printed first: minutes of measuring are not lost to a full disk.
   const std::string json = bench_json(comparison.value(), machine, command.quick);
-  const std::string& load = comparison->rows.front().load;
-  const std::vector<std::pair<std::string, std::string>> files = {
-      {"bench.json", json + "\n"},
-      {"table.md", bench_markdown(comparison->rows, load)},
-      {"error_against_cost.svg", bench_plot(comparison->rows, load)}};
-  for (const auto& [name, text] : files) {
-    const Result<std::string> written = write_text(folder.value() / name, text);
-    if (!written) return print_failure(written.failure(), "calot bench --help", command.json);
+  if (command.json || measured) print(command.json ? json : bench_text(comparison.value(), machine));
+  if (measured) {
+    if (const std::optional<Failure> unwritten = write_all(comparison.value(), json, folder.value()))
+      return print_failure(*unwritten, "calot bench -o DIR");
+    const std::string first = (folder.value() / "bench.json").string();
+    if (!command.json) print("Wrote " + first + ", with table.md and error_against_cost.svg beside it");
   }
-  if (command.json) {
-    print(json);
-    return ExitCode::ok;
-  }
-  print(bench_text(comparison.value(), machine));
-  print("Wrote " + (folder.value() / "bench.json").string() +
-        ", with table.md and error_against_cost.svg beside it");
-  return ExitCode::ok;
+  if (!comparison->interrupted) return ExitCode::ok;
+  std::fflush(stdout);
+  std::fprintf(stderr, "Interrupted: %s.\nNext: calot bench\n",
+               measured ? "these are the meshes that were measured" : "nothing was measured or written");
+  return ExitCode::interrupted;
 }
 
 }  // namespace calot

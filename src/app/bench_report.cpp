@@ -72,6 +72,36 @@ Json row_json(const ComparisonRow& row) {
           {"insertion_ms", figure_or_null(row.insertion_ms)}};
 }
 
+Json staged_json(const StagedRow& row) {
+  return {{"levels", row.levels},
+          {"load", row.load},
+          {"rate_hz", row.rate_hz},
+          {"status", row.status},
+          {"mean_apart_pct", row.mean_apart_pct},
+          {"largest_apart_pct", row.largest_apart_pct},
+          {"step_ms_median", figure_or_null(row.step_ms_median)},
+          {"condensed_step_ms_median", figure_or_null(row.condensed_step_ms_median)}};
+}
+
+std::string staged_text(const std::vector<StagedRow>& rows) {
+  std::vector<std::vector<std::string>> lines = {
+      {"load", "Hz", "levels", "apart: mean %", "most %", "step ms", "condensed ms"}};
+  for (const StagedRow& row : rows) {
+    lines.push_back({row.load, fmt::format("{:g}", row.rate_hz), std::to_string(row.levels)});
+    if (row.status != "converged") {
+      lines.back().resize(6);
+      lines.back().push_back(row.status);
+      continue;
+    }
+    for (double figure : {row.mean_apart_pct, row.largest_apart_pct})
+      lines.back().push_back(fmt::format("{:.3f}", figure));
+    for (double figure : {row.step_ms_median, row.condensed_step_ms_median})
+      lines.back().push_back(fmt::format("{:.3f}", figure));
+  }
+  return bold("The shell's extensions in two stages against condensed ones, % of the largest displacement") +
+         "\n" + table(lines, "lrrrrrr") + "\n";
+}
+
 std::vector<std::string> cells(const ComparisonRow& row) {
   std::vector<std::string> out = {row.formulation, std::to_string(row.nodes), std::to_string(row.extensions),
                                   std::to_string(row.levels), row.solver};
@@ -145,6 +175,7 @@ std::string bench_json(const Comparison& comparison, const BenchMachine& machine
   Json json = {
       {"schema", "calot.bench/1"},
       {"quick", quick},
+      {"interrupted", comparison.interrupted},
       {"version", version()},
       {"toolchain", toolchain()},
       {"instruction_set", instruction_set()},
@@ -161,6 +192,8 @@ std::string bench_json(const Comparison& comparison, const BenchMachine& machine
                                {target.at_least ? "at_least" : "at_most", target.limit},
                                {"met", target.met()}});
   for (const ComparisonRow& row : comparison.rows) json["rows"].push_back(row_json(row));
+  json["staged"] = Json::array();
+  for (const StagedRow& row : comparison.staged) json["staged"].push_back(staged_json(row));
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -177,6 +210,7 @@ std::string bench_text(const Comparison& comparison, const BenchMachine& machine
     out += bold(fmt::format("{}, {:g} Hz", group.first, group.second)) + "\n";
     out += table(lines, "lrrrlrrrrrrrrrrr") + "\n";
   }
+  if (!comparison.staged.empty()) out += staged_text(comparison.staged);
   out += bold("Wanted of the shell with extensions, the worst of the loads") + "\n";
   std::vector<std::vector<std::string>> lines;
   for (const BenchTarget& target : bench_targets(comparison.rows))

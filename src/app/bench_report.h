@@ -27,7 +27,7 @@ struct BenchMachine {
 BenchMachine this_machine();
 
 std::string bench_json(const Comparison& comparison, const BenchMachine& machine, bool quick);
-/// A table for each load and rate, the targets, the machine.
+/// A table for each load and rate, one for the two stages, the targets, the machine.
 std::string bench_text(const Comparison& comparison, const BenchMachine& machine);
 /// For a README: one load, each mesh by its fastest solver.
 std::string bench_markdown(const std::vector<ComparisonRow>& rows, const std::string& load);

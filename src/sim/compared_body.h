@@ -61,6 +61,8 @@ class ComparedBody {
   virtual std::vector<const NewtonWorkspace*> systems() const = 0;
   /// Wall time in which the last of the extensions was laid and the body was at rest again, s; 0 without.
   virtual double insertion_s() const { return 0; }
+  /// From now on a step solves in the paper's two stages, or not; false where there is no such choice.
+  virtual bool use_stages(bool /*staged*/) { return false; }
 };
 
 /// The finite elements of this project, on the Loop surface. Level `uniform` of the whole surface, or with details

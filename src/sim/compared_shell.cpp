@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "base/timed.h"
 #include "sim/comparison_run.h"
+#include "sim/staged.h"
 #include "sim/structural_extension.h"
 
 namespace calot {
@@ -12,8 +14,8 @@ namespace {
 class SpringProblem : public ConstrainedEnergy {
  public:
   SpringProblem(const VirtualStructure& body, const Surroundings& nothing, const StencilTable& points,
-                const Links& springs, const BodyState& start)
-      : body_(body, nothing, {}, start), points_(points), springs_(springs) {}
+                const Links& springs, const BodyState& start, bool fixed_pressure = false)
+      : body_(body, nothing, {}, start, fixed_pressure), points_(points), springs_(springs) {}
 
   bool constrained() const override { return body_.constrained(); }
   double value(const VecX& x) const override { return body_.value(x) + springs_.value(points_, x); }
@@ -114,11 +116,23 @@ class ComparedShell : public ComparedBody {
   int coarse_nodes() const override { return body_.coarse_nodes(); }
   std::vector<const NewtonWorkspace*> systems() const override { return {&work_}; }
   double insertion_s() const override { return insertion_s_; }
+  bool use_stages(bool staged) override {
+    staged_ = staged;
+    return true;
+  }
 
  private:
   SpringProblem problem() const { return {body_, nothing_, points_, springs_.links, state_}; }
 
   NewtonResult settle() {
+    if (staged_)
+      return solve_in_stages(
+          body_,
+          [&](const BodyState& start, bool fixed_pressure) {
+            return std::make_unique<SpringProblem>(body_, nothing_, points_, springs_.links, start,
+                                                   fixed_pressure);
+          },
+          NewtonSettings{}, work_, state_);
     return solve_equilibrium(problem(), NewtonSettings{}, work_, state_.x, state_.multiplier);
   }
 
@@ -151,6 +165,7 @@ class ComparedShell : public ComparedBody {
   BodyState filled_, state_;
   Springs springs_;
   double share_ = 0, insertion_s_ = 0;
+  bool staged_ = false;
 };
 
 VirtualStructure::Setup setup_of(const TriMesh& control, double radius, int levels) {

@@ -36,6 +36,7 @@ class Comparing {
     compare_formulation("shell", shells());
     if (given_.paper) compare_formulation("1997", triangles());
     add_speedups();
+    out_.interrupted = given_.stopped();
     return std::move(out_);
   }
 
@@ -87,6 +88,7 @@ class Comparing {
   void compare_formulation(const std::string& family, const std::vector<Candidate>& candidates) {
     references_.clear();
     for (const Candidate& candidate : candidates) {
+      if (given_.stopped()) return;
       progress_(fmt::format("{}, {} extensions, level {}, as fine as {} nodes", candidate.row.formulation,
                             candidate.row.extensions, candidate.row.levels, candidate.row.uniform_nodes));
       Result<std::unique_ptr<ComparedBody>> body = candidate.make();
@@ -118,15 +120,37 @@ class Comparing {
       for (double rate : given_.rates) {
         row.rate_hz = rate;
         for (FactorKind solver : solvers_of(body, extended)) {
-          const ComparedRun made = run_out_and_back(body, load, solver, steps_out(load, rate), given_.cycles,
-                                                    given_.patience, displacements.empty());
+          const ComparedRun made =
+              run_out_and_back(body, load, solver, steps_out(load, rate), given_, displacements.empty());
+          if (given_.stopped()) return;
           if (displacements.empty()) displacements = made.displacements;
           if (factorise_solve_s == 0) factorise_solve_s = fastest_factor_and_solve(body, extended);
           row.solver = name_of(solver);
           add_row(body, row, made, displacements, factorise_solve_s, l);
         }
+        if (extended && !displacements.empty()) compare_stages(body, load, displacements);
       }
     }
+  }
+
+  /// After the row of the condensed solver, which comes last (solvers_of).
+  void compare_stages(ComparedBody& body, const ComparedLoad& load, const std::vector<Vec3>& displacements) {
+    if (!body.use_stages(true)) return;
+    const ComparisonRow& condensed = out_.rows.back();
+    const ComparedRun made =
+        run_out_and_back(body, load, FactorKind::condensed, steps_out(load, condensed.rate_hz), given_, true);
+    body.use_stages(false);
+    if (given_.stopped()) return;
+    StagedRow row{condensed.levels, load.name, condensed.rate_hz, made.status};
+    row.condensed_step_ms_median = condensed.step_ms_median;
+    if (made.status == "converged") {
+      row.step_ms_median = 1e3 * median(made.times_s);
+      const DisplacementErrors apart =
+          displacement_errors(made.displacements, displacements, std::vector<bool>(displacements.size()));
+      row.mean_apart_pct = apart.mean_pct;
+      row.largest_apart_pct = apart.max_pct;
+    }
+    out_.staged.push_back(row);
   }
 
   /// Thousands of nodes in three triangles take a minute a load.

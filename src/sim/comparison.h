@@ -2,6 +2,7 @@
 // Structural extensions against uniform meshes, error and cost, in both formulations: the paper's section 6 with
 // the surface, the springs, their motion and the tolerance the same for all.
 
+#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -24,7 +25,9 @@ struct ComparisonCase {
   /// A run that takes longer, s, is cut short after five steps or the way out; not the first of each body and load,
   /// which goes out once at least.
   double patience = 1.5;
-  bool paper = true;  ///< the 1997 formulation too
+  bool paper = true;                        ///< the 1997 formulation too
+  const std::atomic<bool>* stop = nullptr;  ///< set: it ends with the rows that it has
+  bool stopped() const { return stop != nullptr && *stop; }
 };
 
 /// A pull and a push at all three places, and two instruments: a pull, a push, and a place that is held.
@@ -56,8 +59,24 @@ struct ComparisonRow {
   double insertion_ms = 0;  ///< to lay the last extension and be at rest again
 };
 
+/// The shell's extensions solved in the paper's two stages against the same ones condensed (the simulator's setting
+/// extensions.scheme), both by the condensed solver. As there, a step of either begins with a first-order answer of the
+/// whole body; stages factorise anew each time.
+struct StagedRow {
+  int levels = 0;
+  std::string load;
+  double rate_hz = 0;
+  std::string status = "converged";
+  /// Distance of surface points from where the condensed ones have them, over their largest displacement, at the end
+  /// of the way out, %.
+  double mean_apart_pct = 0, largest_apart_pct = 0;
+  double step_ms_median = 0, condensed_step_ms_median = 0;
+};
+
 struct Comparison {
+  bool interrupted = false;
   std::vector<ComparisonRow> rows;
+  std::vector<StagedRow> staged;
   /// For each load: how far the finest mesh of the 1997 formulation is from the shell's, in the mean, % of the
   /// largest displacement; empty without it.
   std::vector<double> formulations_apart_pct;

@@ -60,7 +60,7 @@ double fastest_factor_and_solve(const ComparedBody& body, bool extended) {
 }
 
 ComparedRun run_out_and_back(ComparedBody& body, const ComparedLoad& load, FactorKind solver, int steps_out,
-                             int cycles, double patience, bool to_the_end) {
+                             const ComparisonCase& given, bool to_the_end) {
   ComparedRun out;
   if (const NewtonResult filled = body.begin(load, solver); !filled.converged()) {
     out.status = "not filled: " + to_text(filled.status);
@@ -69,9 +69,13 @@ ComparedRun run_out_and_back(ComparedBody& body, const ComparedLoad& load, Facto
   constexpr int least_steps = 5;
   const std::vector<Vec3> before = body.surface();
   const double start = now_s();
-  for (int k = 1; k <= 2 * steps_out * cycles; ++k) {
+  for (int k = 1; k <= 2 * steps_out * given.cycles; ++k) {
     const int phase = k % (2 * steps_out);
     const double share = static_cast<double>(phase <= steps_out ? phase : 2 * steps_out - phase) / steps_out;
+    if (given.stopped()) {
+      out.status = "interrupted";
+      return out;
+    }
     const double begin = now_s();
     const NewtonResult result = body.step(share);
     out.times_s.push_back(now_s() - begin);
@@ -85,7 +89,7 @@ ComparedRun run_out_and_back(ComparedBody& body, const ComparedLoad& load, Facto
       for (std::size_t i = 0; i < before.size(); ++i) out.displacements[i] -= before[i];
     }
     const int least = to_the_end ? steps_out : std::min(steps_out, least_steps);
-    if (now_s() - start > patience && k >= least) break;
+    if (now_s() - start > given.patience && k >= least) break;
   }
   return out;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/compared_body.h"
+#include "sim/comparison.h"
 
 namespace calot {
 
@@ -25,9 +25,9 @@ struct ComparedRun {
   std::vector<Vec3> displacements;  ///< at the end of the way out; empty where it was not reached
 };
 
-/// Out and back by equal steps, `cycles` times. After `patience` s it is cut short, `to_the_end` not before it has
-/// been out once.
+/// Out and back by equal steps, given.cycles times. After given.patience s it is cut short, `to_the_end` not before it
+/// has been out once; given.stop ends it at once, as not converged.
 ComparedRun run_out_and_back(ComparedBody& body, const ComparedLoad& load, FactorKind solver, int steps_out,
-                             int cycles, double patience, bool to_the_end);
+                             const ComparisonCase& given, bool to_the_end);
 
 }  // namespace calot

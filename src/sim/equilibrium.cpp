@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "base/timed.h"
 #include "sim/staged.h"
@@ -128,8 +129,11 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
       pairs = search.pairs(body, state.x, field, 0.0);
     }
     const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
+    const auto problem = [&](const BodyState& start, bool at_pressure) {
+      return std::make_unique<BodyProblem>(body, field, pairs, start, at_pressure);
+    };
     const NewtonResult result =
-        staged ? solve_in_stages(body, field, pairs, settings, work, state)
+        staged ? solve_in_stages(body, problem, settings, work, state)
                : solve_equilibrium(BodyProblem(body, field, pairs, state, fixed_pressure), settings, work,
                                    state.x, state.multiplier);
     total.add(result);

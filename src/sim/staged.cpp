@@ -23,19 +23,16 @@ double Stage::constraint(const VecX& x, VecX& gradient) const {
   return value;
 }
 
-NewtonResult solve_in_stages(const VirtualStructure& body, const Surroundings& field,
-                             const std::vector<ContactPair>& pairs, const NewtonSettings& settings,
-                             NewtonWorkspace& work, BodyState& state) {
+NewtonResult solve_in_stages(const VirtualStructure& body, const StagedProblem& problem,
+                             const NewtonSettings& settings, NewtonWorkspace& work, BodyState& state) {
   work.factored = false;  // each stage has a matrix of its own
-  const BodyProblem coarse(body, field, pairs, state);
-  NewtonResult result =
-      solve_equilibrium(Stage(coarse, 0, body.coarse_nodes()), settings, work, state.x, state.multiplier);
+  NewtonResult result = solve_equilibrium(Stage(*problem(state, false), 0, body.coarse_nodes()), settings,
+                                          work, state.x, state.multiplier);
   work.factored = false;
   if (!result.converged()) return result;
-  const BodyProblem fine(body, field, pairs, state, true);
   double pressure = state.multiplier;
-  result.add(
-      solve_equilibrium(Stage(fine, body.coarse_nodes(), body.nodes()), settings, work, state.x, pressure));
+  result.add(solve_equilibrium(Stage(*problem(state, true), body.coarse_nodes(), body.nodes()), settings,
+                               work, state.x, pressure));
   work.factored = false;
   return result;
 }

@@ -2,6 +2,9 @@
 // The paper's two stages (section 5): the coarse structure first, then the extensions with its result as their
 // boundary condition; their forces reach the coarse structure at the next solve only.
 
+#include <functional>
+#include <memory>
+
 #include "sim/equilibrium.h"
 
 namespace calot {
@@ -30,10 +33,13 @@ class Stage : public ConstrainedEnergy {
   int first_, last_;
 };
 
+/// A problem in the whole body from a state on, its pressure fixed (and its volume free) or not.
+using StagedProblem =
+    std::function<std::unique_ptr<ConstrainedEnergy>(const BodyState& start, bool fixed_pressure)>;
+
 /// Both stages once. The volume is the coarse stage's, whose pressure the second one takes over; what is left out
 /// of balance is what the extensions pass back. The workspace is left without a factor.
-NewtonResult solve_in_stages(const VirtualStructure& body, const Surroundings& field,
-                             const std::vector<ContactPair>& pairs, const NewtonSettings& settings,
-                             NewtonWorkspace& work, BodyState& state);
+NewtonResult solve_in_stages(const VirtualStructure& body, const StagedProblem& problem,
+                             const NewtonSettings& settings, NewtonWorkspace& work, BodyState& state);
 
 }  // namespace calot

@@ -49,10 +49,37 @@ TEST_F(Bench, TheQuickOneWritesRowsWithEveryFigureAndAPlot) {
   }
   EXPECT_EQ(formulations.size(), 3U);
   EXPECT_EQ(solvers.size(), 3U);
+  ASSERT_EQ(json["staged"].size(), 2U) << "one load, one level, two rates";
+  for (const auto& row : json["staged"]) {
+    EXPECT_EQ(row["status"], "converged");
+    EXPECT_EQ(row["levels"], 1);
+    EXPECT_GT(row["largest_apart_pct"].get<double>(), row["mean_apart_pct"].get<double>());
+    EXPECT_GT(row["step_ms_median"].get<double>(), 0);
+    EXPECT_GT(row["condensed_step_ms_median"].get<double>(), 0);
+  }
   const std::string plot = slurp(folder_ / "figures" / "error_against_cost.svg");
   EXPECT_EQ(plot.compare(0, 4, "<svg"), 0);
   EXPECT_NE(plot.find("</svg>"), std::string::npos);
   EXPECT_EQ(plot.find("nan"), std::string::npos);
+}
+
+TEST_F(Bench, AnInterruptedOneKeepsWhatItMeasured) {
+  const Outcome outcome = calot({"bench", "--quick", "--json", "-o", "figures"}, [&](pid_t pid) {
+    while (!fs::exists(folder_ / "figures")) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // into the work of seconds
+    kill(pid, SIGINT);
+  });
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  expect_next_command(outcome);
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_TRUE(json["interrupted"].get<bool>());
+  for (const auto& row : json["rows"]) EXPECT_EQ(row["status"], "converged");
+  // Figures of an earlier time are not replaced by none.
+  const fs::path file = folder_ / "figures" / "bench.json";
+  ASSERT_EQ(fs::exists(file), !json["rows"].empty());
+  if (fs::exists(file)) {
+    EXPECT_EQ(json, nlohmann::json::parse(slurp(file)));
+  }
 }
 
 TEST_F(Bench, AFolderThatCannotBeIsAUsageErrorBeforeAnythingIsMeasured) {
