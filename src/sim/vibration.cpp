@@ -1,9 +1,12 @@
 #include "sim/vibration.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "base/rng.h"
@@ -96,31 +99,63 @@ VecX BodyMass::multiply(const VecX& motion) const {
   return out;
 }
 
-Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
-                                const BodyState& state, const BodyMass& mass) {
+namespace {
+
+/// K^-1 on the motions that keep the volume to first order, where K itself need not be positive definite: a balloon
+/// blown up beyond its greatest pressure would burst or shrink if its filling could come and go.
+class KeptVolumeFactor {
+ public:
+  KeptVolumeFactor(const BlockMatrix& matrix, VecX gradient) : gradient_(std::move(gradient)) {
+    const Eigen::Map<const Eigen::SparseMatrix<double>> lower(
+        matrix.size(), matrix.size(), static_cast<Eigen::Index>(matrix.entries().size()),
+        matrix.column_starts().data(), matrix.rows().data(), matrix.entries().data());
+    factor_.compute(lower);
+    if (factor_.info() != Eigen::Success) return;
+    bordered_ = factor_.solve(gradient_);
+    complement_ = gradient_.dot(bordered_);
+    // Without pivots the factor may have lost its figures.
+    constexpr double figures = 1e-6;
+    sound_ =
+        complement_ != 0 && (matrix.multiply(bordered_) - gradient_).norm() <= figures * gradient_.norm();
+  }
+
+  /// K is positive definite on these motions: by Sylvester's law of inertia the matrix bordered by the gradient then
+  /// has one negative pivot, the border's or K's own.
+  bool stable() const {
+    if (!sound_) return false;
+    const auto negative = (factor_.vectorD().array() <= 0).count();
+    return negative + (complement_ > 0 ? 1 : 0) == 1;
+  }
+
+  VecX response(const VecX& load) const {
+    const VecX dx = factor_.solve(load);
+    return dx - gradient_.dot(dx) / complement_ * bordered_;
+  }
+
+ private:
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  VecX gradient_, bordered_;
+  double complement_ = 0;
+  bool sound_ = false;
+};
+
+using Response = std::function<VecX(const VecX&)>;
+
+/// The smallest w^2 of K v = w^2 M v, in 1/s^2, by inverse iteration on a few vectors; `response` is K^-1 on the
+/// motions that keep the volume.
+Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mass, Eigen::Index size) {
   constexpr int vectors = 6, max_rounds = 300;
-  constexpr double tolerance = 1e-8;  // of the squared frequency
-  NewtonWorkspace work(body.pattern());
-  const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
-  const NewtonResult factored = factorise_tangent(problem, work, state.x, state.multiplier, true);
-  if (!factored.converged())
-    return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
-                "hold the organ, or give it fewer nodes");
-  if (work.shifted)
-    return fail(FailureKind::simulation, "the organ has no natural frequency: its equilibrium is not stable",
-                "hold the organ, or fill it less");
+  constexpr double tolerance = 1e-8;
   Rng rng(1);
-  Eigen::MatrixXd shapes(state.x.size(), vectors);
+  Eigen::MatrixXd shapes(size, vectors);
   for (Eigen::Index i = 0; i < shapes.size(); ++i) shapes.data()[i] = rng.uniform(-1, 1);
   double lowest = 0;
   for (int round = 0; round < max_rounds; ++round) {
     // One step of K^-1 M on the whole space, then the best combinations in it (Rayleigh and Ritz).
-    Eigen::MatrixXd loads(shapes.rows(), vectors), next(shapes.rows(), vectors),
-        masses(shapes.rows(), vectors);
+    Eigen::MatrixXd loads(size, vectors), next(size, vectors), masses(size, vectors);
     for (int k = 0; k < vectors; ++k) {
       loads.col(k) = mass.multiply(shapes.col(k));
-      double ignored = 0;
-      next.col(k) = linear_response(work, loads.col(k), ignored);
+      next.col(k) = response(loads.col(k));
     }
     for (int k = 0; k < vectors; ++k) masses.col(k) = mass.multiply(next.col(k));
     // With K next = loads + a pressure that does no work on motions that keep the volume.
@@ -134,10 +169,39 @@ Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings
     if (ritz.info() != Eigen::Success || !(ritz.eigenvalues()[0] > 0)) break;
     shapes = next * Eigen::MatrixXd(measure.matrixU().solve(ritz.eigenvectors()));
     const double before = std::exchange(lowest, ritz.eigenvalues()[0]);
-    if (std::abs(lowest - before) <= tolerance * lowest) return std::sqrt(lowest) / (2 * std::numbers::pi);
+    if (std::abs(lowest - before) <= tolerance * lowest) return lowest;
   }
   return fail(FailureKind::simulation, "the organ's lowest natural frequency was not found",
               "give the organ more nodes");
+}
+
+}  // namespace
+
+Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
+                                const BodyState& state, const BodyMass& mass) {
+  NewtonWorkspace work(body.pattern());
+  const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
+  const NewtonResult factored = factorise_tangent(problem, work, state.x, state.multiplier, true);
+  if (!factored.converged())
+    return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
+                "hold the organ, or give it fewer nodes");
+  Response response = [&](const VecX& load) {
+    double ignored = 0;
+    return linear_response(work, load, ignored);
+  };
+  std::optional<KeptVolumeFactor> kept;
+  if (work.shifted) {
+    problem.hessian(state.x, state.multiplier, work.matrix);
+    if (problem.constrained()) kept.emplace(work.matrix, work.constraint_gradient);
+    if (!kept || !kept->stable())
+      return fail(FailureKind::simulation,
+                  "the organ has no natural frequency: its equilibrium is not stable",
+                  "hold the organ, or fill it less");
+    response = [&](const VecX& load) { return kept->response(load); };
+  }
+  const Result<double> squared = smallest_eigenvalue(response, mass, state.x.size());
+  if (!squared) return squared.failure();
+  return std::sqrt(squared.value()) / (2 * std::numbers::pi);
 }
 
 }  // namespace calot

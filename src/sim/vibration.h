@@ -36,9 +36,9 @@ class BodyMass {
   Eigen::LDLT<Eigen::MatrixXd> kinetic_;
 };
 
-/// Lowest natural frequency, Hz, of the organ in `field` at its present state, its volume kept: the smallest
-/// w of K v = w^2 M v by inverse iteration on a few vectors. Fails (simulation) where the tangent is not
-/// positive definite, even if the kept volume alone makes the state stable.
+/// Lowest natural frequency, Hz, of the organ in `field` at its present state: the smallest w of K v = w^2 M v among
+/// motions v that keep the volume to first order. Fails (simulation) where K is not positive definite on these: the
+/// state is not stable.
 Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
                                 const BodyState& state, const BodyMass& mass);
 

@@ -109,7 +109,7 @@ class World {
   DrawnSkin drawn_skin(int organ) const;
   /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
-  /// equilibrium is not stable.
+  /// equilibrium is not stable, its volume kept.
   Result<double> lowest_frequency(int organ) const;
   /// How far the motion of an organ's skin since time 0 is from that of the organ it is compared with. None without
   /// one, or where that has not moved. Some 0.1 s.
