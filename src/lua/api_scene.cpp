@@ -147,7 +147,7 @@ std::vector<ApiTable> field_tables() {
           {place("point", "{ 0, 0, 0 }", "a point on it"),
            point("normal", quantity::number, 1, "{ 0, 0, 1 }", "its unit normal, pointing out of the solid"),
            number("friction", quantity::number, 0, 1, written(SupportDefinition{}.friction, quantity::number),
-                  "coefficient of friction of the skin on it")}),
+                  "coefficient of friction of the skin on it; 0 to 0.3 for wet tissue")}),
       make(
           "instrument", "An instrument through a port.",
           {choice("type", instrument_type_names(), "\"atraumatic_grasper\"",
@@ -165,7 +165,8 @@ std::vector<ApiTable> field_tables() {
                    written(default_instrument(InstrumentType::semm_forceps).pad_friction, quantity::number) +
                    " for semm_forceps; jaws only"),
            number("friction", quantity::number, 0, 1, written(instrument.friction, quantity::number),
-                  "coefficient of friction of the skin that the shaft and what it ends in press on")}),
+                  "coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 "
+                  "for a smooth shaft on wet skin")}),
       make("laparoscope", "The camera and its light.",
            {text("port", "\"" + scope.port + "\"", "the port it goes through"),
             number("angle", quantity::angle, 0, 70 * deg, written(scope.angle, quantity::angle),
