@@ -1,6 +1,7 @@
 #include "app/cli.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <functional>
 
@@ -163,7 +164,13 @@ int parse_and_run(int argc, char** argv) {
 
 int run_program(int argc, char** argv) {
   try {
-    return parse_and_run(argc, argv);
+    const int code = parse_and_run(argc, argv);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    const ExitCode unprinted =
+        print_failure(fail(FailureKind::usage, "what was to be printed could not be written",
+                           "free space where the output goes, or print it elsewhere"),
+                      "calot --help");
+    return code != 0 ? code : static_cast<int>(unprinted);
   } catch (const std::bad_alloc&) {
     return static_cast<int>(print_failure(fail(FailureKind::resource, "out of memory"), "calot doctor"));
   } catch (const std::exception& error) {

@@ -47,9 +47,14 @@ Finding renderer() {
 
 Finding output() {
   const Result<fs::path> made = make_folder("out");
-  if (!made)
-    return {false, "output folder", to_text(made.failure()),
+  const fs::path probe = fs::path("out") / ".doctor";
+  const Result<std::string> written =
+      made ? write_text(probe, std::string(100'000, ' ')) : Result<std::string>(made.failure());
+  if (!written)
+    return {false, "output folder", to_text(written.failure()),
             "run in a folder you may write to, or give -o DIR"};
+  std::error_code ignored;
+  fs::remove(probe, ignored);
   return {true, "output folder", fs::absolute(made.value()).string(), ""};
 }
 

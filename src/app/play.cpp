@@ -168,6 +168,7 @@ Result<ExerciseDefinition> load_definition(const fs::path& scenario) {
 std::string frame_name(double golden_time) { return fmt::format("t{:06.2f}s", golden_time); }
 
 Result<Played> play(const PlayRequest& request) {
+  interrupt_flag();  // from here on an interrupted session ends as one, with its files
   Result<std::unique_ptr<ExerciseScript>> script = load(request);
   if (!script) return script.failure();
   const ExerciseDefinition& exercise = script.value()->definition();

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 
@@ -71,10 +72,23 @@ Result<std::string> read_text(const fs::path& path) {
 }
 
 Result<std::string> write_text(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out << text << std::flush;
-  if (!out) return fail(FailureKind::usage, fmt::format("cannot write {}", path.string()));
-  return path.string();
+  // A file that was there is lost only to a whole new one.
+  fs::path part = path;
+  part += ".part";
+  errno = 0;
+  std::ofstream out(part, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (!out)
+    error = std::error_code(errno != 0 ? errno : EIO, std::generic_category());
+  else
+    fs::rename(part, path, error);
+  if (!error) return path.string();
+  std::error_code ignored;
+  fs::remove(part, ignored);
+  return fail(FailureKind::usage, fmt::format("cannot write {}: {}", path.string(), error.message()),
+              "choose a folder that exists and has space");
 }
 
 Result<fs::path> make_folder(const fs::path& path) {

@@ -29,7 +29,7 @@ std::optional<Failure> check_scenario_path(const std::string& path);
 
 /// The whole text of a file. Fails (usage) where it cannot be read.
 Result<std::string> read_text(const std::filesystem::path& path);
-/// Fails (usage) where it cannot be written. The value is the path.
+/// Fails (usage) where it cannot be written; a file that was there is then left as it was. The value is the path.
 Result<std::string> write_text(const std::filesystem::path& path, const std::string& text);
 /// Makes a folder and its parents. Fails (usage) where it cannot be made or written to.
 Result<std::filesystem::path> make_folder(const std::filesystem::path& path);

@@ -148,6 +148,10 @@ ExitCode replay_command(const ReplayCommand& command) {
   PlayRequest request;
   request.scenario = command.scenario.empty() ? find_scenario(recording->header.file, command.recording)
                                               : fs::path(command.scenario);
+  if (std::error_code ignored; command.scenario.empty() && !fs::is_regular_file(request.scenario, ignored))
+    return print_failure(fail(FailureKind::usage, "there is no file " + recording->header.file,
+                              "name the scenario it was made with: --scenario FILE"),
+                         "calot replay --help", command.json);
   request.params = recording->header.params;
   request.seed = recording->header.seed;
   request.replay = &recording.value();

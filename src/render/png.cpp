@@ -55,7 +55,8 @@ Result<std::string> write_png(const std::string& path, const Image& image) {
   if (written && closed && !error) return path;
   const std::string reason = !written ? png.image.message : error ? error.message() : "the disk may be full";
   std::filesystem::remove(temporary, error);
-  return file_failure(path, "cannot write the picture: " + reason);
+  return file_failure(path, "cannot write the picture: " + reason,
+                      "choose a folder that exists and has space");
 }
 
 Result<Image> read_png(const std::string& path) {

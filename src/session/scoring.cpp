@@ -55,7 +55,8 @@ ScoredPart score_benchmark(const ScorePart& part, const std::map<std::string, do
     return scored;
   }
   scored.measured = found->second;
-  scored.fraction = std::clamp((part.novice - found->second) / (part.novice - part.expert), 0.0, 1.0);
+  // + 0.0: a novice's very value gives minus zero, which would be printed as such.
+  scored.fraction = std::clamp((part.novice - found->second) / (part.novice - part.expert), 0.0, 1.0) + 0.0;
   scored.explanation =
       fmt::format("{} = {:.4g}, between novice {:.4g} (no points) and expert {:.4g} (all points)",
                   part.metric, found->second, part.novice, part.expert);

@@ -202,6 +202,16 @@ TEST_F(Run, ARecordingOfAnotherScenarioIsRefused) {
   expect_next_command(outcome);
 }
 
+TEST_F(Run, ARecordingWhoseScenarioIsGoneAsksForItByOption) {
+  ASSERT_EQ(calot({"run", "small.lua", "--no-render", "-o", "here"}).code, 0);
+  fs::rename(folder_ / "small.lua", folder_ / "other.lua");
+  const Outcome lost = calot({"replay", "here/recording.jsonl"});
+  EXPECT_EQ(lost.code, 4);
+  EXPECT_NE(lost.err.find("--scenario FILE"), std::string::npos) << lost.err;
+  expect_next_command(lost);
+  EXPECT_EQ(calot({"replay", "here/recording.jsonl", "--scenario", "other.lua"}).code, 0);
+}
+
 TEST_F(Run, TwentyFreshProcessesReachTheSameStateWithAndWithoutPictures) {
   std::set<std::string> hashes;
   for (int i = 0; i < 20; ++i) {

@@ -1,6 +1,8 @@
 // How the program meets someone who has never used it.
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/program.h"
 
@@ -101,6 +103,44 @@ TEST_F(Usage, AnOutputFolderThatCannotBeIsAUsageErrorBeforeAnythingIsPlayed) {
     expect_next_command(outcome);
   }
   EXPECT_EQ(slurp(folder_ / "taken"), "a file\n");
+}
+
+/// Runs a line of shell in the test's folder; `$calot` is the program.
+int shell(const fs::path& folder, const std::string& line) {
+  const std::string words =
+      "cd '" + folder.string() + "' && calot='" + CALOT_PROGRAM "' && { " + line + " ; } 2>.stderr";
+  const int status = std::system(words.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST_F(Usage, WhatCannotBePrintedIsAnError) {
+  for (const char* command : {"--help", "check small.lua", "run small.lua --no-render --json"})
+    EXPECT_EQ(shell(folder_, std::string("$calot ") + command + " >/dev/full"), 4) << command;
+  EXPECT_NE(slurp(folder_ / ".stderr").find("free space"), std::string::npos);
+}
+
+TEST_F(Usage, AFileThatDoesNotFitLeavesWhatWasThere) {
+  // Files may have 512 bytes here, as on a disk that is full.
+  const std::string little = "trap '' XFSZ; ulimit -f 1; ";
+  EXPECT_EQ(shell(folder_, little + "$calot new mine"), 4);
+  EXPECT_NE(slurp(folder_ / ".stderr").find("cannot write mine.lua"), std::string::npos);
+  std::set<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+    files.insert(entry.path().filename());
+  EXPECT_EQ(files, (std::set<std::string>{".stderr", "small.lua"}));
+  fs::create_directories(folder_ / "scenarios");
+  fs::create_directories(folder_ / "scripts" / "lua");
+  fs::rename(folder_ / "small.lua", folder_ / "scenarios" / "small.lua");
+  spill(folder_ / "out" / "page.html", "the last one\n");
+  EXPECT_EQ(shell(folder_, little + "$calot golden report -o out/page.html >/dev/null"), 4);
+  EXPECT_EQ(slurp(folder_ / "out" / "page.html"), "the last one\n");
+}
+
+TEST_F(Usage, DoctorSeesThatNothingCanBeWritten) {
+  const std::string little = "trap '' XFSZ; ulimit -f 1; ";
+  EXPECT_EQ(shell(folder_, little + "$calot doctor >found"), 1);
+  const std::string found = slurp(folder_ / "found");
+  EXPECT_NE(found.find("FAILED  output folder: cannot write"), std::string::npos) << found;
 }
 
 TEST_F(Usage, DoctorFindsNothingWrongHere) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "session/session_for_tests.h"
 
 namespace calot {
@@ -68,6 +70,12 @@ TEST(Scoring, BeyondTheBenchmarksNothingIsGainedOrLost) {
         score(exercise(), {{"hold.band.time_in_s", hold}, {"left.path_length_mm", path}}, finished());
     EXPECT_NEAR(result.total, expected, 1e-12);
   }
+}
+
+TEST(Scoring, ANovicesVeryValueEarnsZeroNotMinusZero) {
+  const Score result = score(exercise(), {{"hold.band.time_in_s", 6}}, finished());
+  EXPECT_EQ(result.parts[0].points, 0);
+  EXPECT_FALSE(std::signbit(result.parts[0].points));
 }
 
 TEST(Scoring, WhatWasNeverMeasuredEarnsNothingAndSaysSo) {
