@@ -117,13 +117,13 @@ std::pair<double, bool> by_brute_force(const Organ& organ, const BodyMass& mass)
 
 TEST(Vibration, ABallThatItsKeptVolumeAloneMakesStableHasTheFrequencyOfMotionsThatKeepIt) {
   OrganDefinition balloon = ball(1e5);
-  balloon.nodes = 42;
+  balloon.nodes = 32;
   balloon.wall.shear_modulus = 30e3;
   const double volume = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   // A neo-Hookean balloon's pressure is greatest at a stretch of 7^(1/6) = 1.38: 2.6 times its volume.
-  for (const auto& [times, beyond] : {std::pair(1.5, false), std::pair(4.0, true)}) {
+  for (const auto& [times, beyond] : {std::pair(1.5, false), std::pair(3.5, true)}) {
     balloon.bile.fill_volume = times * volume;
-    const Field field = test::make_field(balloon, 1e-9, Vec3::UnitZ());
+    const Field field = test::make_field(balloon, 1e-6, Vec3::UnitZ());
     const Organ& organ = field.organs[0];
     const BodyMass mass(organ.body, organ.state.x, organ.definition.wall.thickness, bile_density);
     const auto [expected, unstable_if_free] = by_brute_force(organ, mass);
