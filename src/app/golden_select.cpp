@@ -53,6 +53,7 @@ void add(std::vector<SelectedGolden>& selected, const Meaning& meaning) {
 
 std::string names_of(const std::vector<Meaning>& meanings) {
   std::vector<std::string> names;
+  names.reserve(meanings.size());
   for (const Meaning& meaning : meanings)
     names.push_back(scenario_name(meaning.file) + (meaning.frame.empty() ? "" : "/" + meaning.frame));
   return fmt::format("{}", fmt::join(names, " or "));
@@ -71,6 +72,7 @@ Result<std::vector<SelectedGolden>> select_goldens(const std::vector<std::string
     for (const fs::path& file : scenarios) add(selected, {file, ""});
   std::vector<Problem> problems;
   std::vector<std::string> known;
+  known.reserve(scenarios.size());
   for (const fs::path& file : scenarios) known.push_back(scenario_name(file));
   const std::string hint =
       fmt::format("scenarios: {}; name one, or one of its frames as scenario/frame", fmt::join(known, ", "));

@@ -56,6 +56,7 @@ std::optional<Failure> check_scenario_path(const std::string& path) {
   std::vector<std::string> known;
   for (const fs::path& file : project_scenarios()) known.push_back(fs::proximate(file, ignored).string());
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const std::string& file : known) names.push_back(fs::path(file).filename().string());
   const std::string near = closest_name(fs::path(path).filename().string(), names);
   std::string hint = fmt::format("scenarios here: {}", fmt::join(known, ", "));
