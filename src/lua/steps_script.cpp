@@ -93,14 +93,14 @@ Result<bool> StepsScript::ask(int predicate) {
 
 Result<bool> StepsScript::is_over() {
   switch (wait_.kind) {
-    case Wait::none:
+    case Wait::Kind::none:
       return fail(FailureKind::scenario, "steps called coroutine.yield",
                   "wait with t:wait, t:wait_until or t:hold", {exercise().file, 0, {}});
-    case Wait::time:
+    case Wait::Kind::time:
       return now_ >= wait_.until - slack;
-    case Wait::condition:
+    case Wait::Kind::condition:
       return timed_out_ ? Result<bool>(true) : ask(wait_.predicate);
-    case Wait::hold:
+    case Wait::Kind::hold:
       break;
   }
   Result<bool> inside = ask(wait_.predicate);
@@ -156,7 +156,7 @@ int StepsScript::wait(lua_State* L, double duration) {
   if (!may_wait(L, "wait")) return 0;
   if (checking()) return dry_wait(L, duration);
   Wait wait;
-  wait.kind = Wait::time;
+  wait.kind = Wait::Kind::time;
   wait.until = now_ + duration;
   return suspend(L, std::move(wait));
 }
@@ -169,7 +169,7 @@ int StepsScript::wait_until(lua_State* L, int predicate) {
     return 1;
   }
   Wait wait;
-  wait.kind = Wait::condition;
+  wait.kind = Wait::Kind::condition;
   wait.predicate = predicate;
   return suspend(L, std::move(wait));
 }
@@ -205,7 +205,7 @@ int StepsScript::hold(lua_State* L, const std::string& name, int predicate, doub
     return 1;
   }
   Wait wait;
-  wait.kind = Wait::hold;
+  wait.kind = Wait::Kind::hold;
   wait.predicate = predicate;
   wait.metric = full + ".time_in_s";
   wait.duration = duration;

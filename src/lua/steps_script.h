@@ -30,7 +30,7 @@ class StepsScript final : public ScriptSession {
 
  private:
   struct Wait {
-    enum Kind { none, time, condition, hold } kind = none;
+    enum class Kind { none, time, condition, hold } kind = Kind::none;
     double until = 0;     ///< time: s
     int predicate = 0;    ///< condition, hold: registry reference
     std::string metric;   ///< hold
