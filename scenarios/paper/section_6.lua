@@ -2,8 +2,8 @@
 -- points. For comparable levels of structural resolution the virtual structure model would require a coarse structure
 -- with 61 nodes and three structural extensions." Both are here, side by side, and pressed alike by three blunt tips
 -- each. The paper found a mean error of 10 % of the largest displacement; the metric coarse.mean_difference_pct says
--- it of these two (below 3; with extensions = false for the coarse one too it is above 20, and two meshes of 238 and 245
--- nodes are 3 apart). What each costs is for calot bench to say.
+-- it of these two: below 3. (With extensions = false for the coarse one too it is above 20; two meshes of 238 and 245
+-- nodes are 3 apart.) What each costs is for calot bench to say.
 
 local calot = require "calot"
 local mm, s, kPa = calot.units.mm, calot.units.s, calot.units.kPa

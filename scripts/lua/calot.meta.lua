@@ -96,7 +96,7 @@
 ---@class calot.support
 ---@field point? calot.point a point on it; default { 0, 0, 0 }
 ---@field normal? calot.point its unit normal, pointing out of the solid; default { 0, 0, 1 }
----@field friction? number coefficient of friction of the skin on it; default 0; 0 to 1
+---@field friction? number coefficient of friction of the skin on it; 0 to 0.3 for wet tissue; default 0; 0 to 1
 
 ---An instrument through a port.
 ---@class calot.instrument
@@ -105,7 +105,7 @@
 ---@field force_limit? number tip force above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
----@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; default 0; 0 to 1
+---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
 
 ---The camera and its light.
 ---@class calot.laparoscope
@@ -133,6 +133,8 @@
 ---@field wall? calot.wall its wall
 ---@field bile? calot.bile what fills it
 ---@field held? calot.held[] elastic attachments; a list given here replaces the anatomy's own
+---@field extensions? boolean false: no structural extensions on this organ; default true
+---@field compared_with? string another organ of the same shape; the metrics mean_difference_pct and largest_difference_pct then say how far this one's skin is from moving like that one's
 
 ---The organ's wall.
 ---@class calot.wall
