@@ -1,6 +1,5 @@
--- Section 6 of Moutsopoulos and Gillies (1997): "In our comparisons we used a finite element model with 245 nodal
--- points. For comparable levels of structural resolution the virtual structure model would require a coarse structure
--- with 61 nodes and three structural extensions." Both are here, side by side, and pressed alike by three blunt tips
+-- The comparison of section 6 of Moutsopoulos and Gillies (1997): a coarse structure of 61 nodes with three structural
+-- extensions against a uniform one of 245 nodes. Both are here, side by side, and pressed alike by three blunt tips
 -- each. The paper found a mean error of 10 % of the largest displacement; the metric coarse.mean_difference_pct says
 -- it of these two: below 3. (With extensions = false for the coarse one too it is above 20; two meshes of 238 and 245
 -- nodes are 3 apart.) What each costs is for calot bench to say.

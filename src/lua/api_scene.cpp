@@ -78,9 +78,8 @@ std::vector<ApiTable> organ_tables() {
            list("held", "held", "elastic attachments; a list given here replaces the anatomy's own"),
            flag("extensions", "true", "false: no structural extensions on this organ"),
            text("compared_with", "",
-                "another organ of the same shape; the metrics mean_difference_pct and largest_difference_pct "
-                "then "
-                "say how far this one's skin is from moving like that one's")}),
+                "another organ of the same shape; the metrics mean_difference_pct and "
+                "largest_difference_pct then say how far this one's skin is from moving like that one's")}),
       make("wall", "The organ's wall.",
            {length("thickness", 0.1 * mm, 10 * mm, wall.thickness, "2 to 3 mm is usual"),
             number("shear_modulus", quantity::pressure, 1 * kPa, 100e3 * kPa,
