@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <map>
 
+#include "fem/lanes.h"
+
 namespace calot {
 namespace {
 
-constexpr int few_points = 6, most_points = 12;  // of a cell: an element matrix is made for either
+constexpr int face_points = 6;   // of a face split into four
+constexpr int most_points = 28;  // of a cell
 
 double tetra_volume(const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)) / 6.0; }
 
@@ -33,7 +36,7 @@ Result<BileSurface> extrapolated(const Tessellation& surface, int faces) {
     for (int t = 4 * f; t < 4 * f + 4; ++t)
       for (int p : surface.triangles[t])
         if (uses[p] == 1 && corner < 3) whole.corners[corner++] = p;
-    if (uses.size() != few_points || corner != 3)
+    if (uses.size() != face_points || corner != 3)
       return fail(FailureKind::internal,
                   fmt::format("face {} of the bile's surface is not a split triangle", f));
     cell.push_back(whole);
@@ -56,12 +59,12 @@ Result<Bile> Bile::create(const BileSurface& surface, double specific_weight, co
     const std::vector<int> points = bile.add_parts(surface.cells[c]);
     if (points.size() > most_points)
       return fail(FailureKind::internal, fmt::format("cell {} of the bile has {} points", c, points.size()));
-    cell.points = points.size() > few_points ? most_points : few_points;
+    cell.points = static_cast<int>(points.size());
     for (int p : points)
       cell.nodes.nodes.insert(cell.nodes.nodes.end(), table.node.begin() + table.begin[p],
                               table.node.begin() + table.begin[p + 1]);
     cell.nodes.finish();
-    if (cell.nodes.padded > max_face_nodes)
+    if (cell.nodes.count() > max_face_nodes)
       return fail(FailureKind::scenario,
                   fmt::format("cell {} of the bile depends on {} nodes", c, cell.nodes.nodes.size()),
                   "remesh: a vertex has too many neighbours");
@@ -111,35 +114,62 @@ double Bile::value(const VecX& x) const {
   return 0.25 * specific_weight_ * sum;  // the fourth corner of each tetrahedron is the datum, at height 0
 }
 
-double Bile::add_volume_gradient(const VecX& x, VecX& gradient) const {
+Bile::PointForces Bile::point_forces(const VecX& x, double multiplier) const {
   const std::vector<Vec3> at = positions(x);
-  std::vector<Vec3> by_point(at.size(), Vec3::Zero());
-  double sum = 0;
-  for (const auto& [t, local, w] : parts_) {
-    const Vec3 &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
-    sum += w * tetra_volume(a, b, c);
-    by_point[t[0]] += w / 6.0 * b.cross(c);
-    by_point[t[1]] += w / 6.0 * c.cross(a);
-    by_point[t[2]] += w / 6.0 * a.cross(b);
-  }
-  spread(points_, by_point, gradient);
-  return sum;
-}
-
-void Bile::add_load(const VecX& x, double multiplier, VecX& gradient) const {
-  const std::vector<Vec3> at = positions(x);
-  std::vector<Vec3> by_point(at.size(), Vec3::Zero());
+  PointForces out;
+  out.load.assign(at.size(), Vec3::Zero());
+  out.by_volume.assign(at.size(), Vec3::Zero());
   const double g4 = 0.25 * specific_weight_;
   for (const auto& [t, local, w] : parts_) {
     const Vec3 &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
-    const double s = w * (g4 * up_.dot(a + b + c) - multiplier) / 6.0;
-    const Vec3 same = w * g4 * tetra_volume(a, b, c) * up_;
-    by_point[t[0]] += s * b.cross(c) + same;
-    by_point[t[1]] += s * c.cross(a) + same;
-    by_point[t[2]] += s * a.cross(b) + same;
+    const Vec3 by[3] = {w / 6.0 * b.cross(c), w / 6.0 * c.cross(a), w / 6.0 * a.cross(b)};
+    const double volume = a.dot(by[0]), s = g4 * up_.dot(a + b + c) - multiplier;
+    const Vec3 same = g4 * volume * up_;
+    out.volume += volume;
+    for (int k = 0; k < 3; ++k) {
+      out.by_volume[t[k]] += by[k];
+      out.load[t[k]] += s * by[k] + same;
+    }
   }
-  spread(points_, by_point, gradient);
+  return out;
 }
+
+double Bile::add_volume_gradient(const VecX& x, VecX& gradient) const {
+  const PointForces forces = point_forces(x, 0);
+  spread(points_, forces.by_volume, gradient);
+  return forces.volume;
+}
+
+void Bile::add_load(const VecX& x, double multiplier, VecX& gradient) const {
+  spread(points_, point_forces(x, multiplier).load, gradient);
+}
+
+double Bile::add_load_and_volume_gradient(const VecX& x, double multiplier, VecX& load,
+                                          VecX& by_volume) const {
+  const PointForces forces = point_forces(x, multiplier);
+  spread(points_, forces.load, load);
+  spread(points_, forces.by_volume, by_volume);
+  return forces.volume;
+}
+
+/// Second derivatives by a cell's points, kept by component pairs: at[pair][i * points + j] by component c of point
+/// i and component d of point j.
+struct Bile::CellHessian {
+  int points = 0;
+  bool coupled[most_points * most_points];
+  double at[6][most_points * most_points];
+
+  void reset(int count) {
+    points = count;
+    std::fill(coupled, coupled + count * count, false);
+    for (auto& pair : at) std::fill(pair, pair + count * count, 0.0);
+  }
+  void add(int i, int j, const Mat3& block) {
+    coupled[i * points + j] = true;
+    for (int pair = 0; pair < 6; ++pair)
+      at[pair][i * points + j] += block(component_pairs[pair][0], component_pairs[pair][1]);
+  }
+};
 
 namespace {
 
@@ -149,47 +179,56 @@ template <class CellHessian>
 void add_triangle_hessian(const Vec3* corner, const int* local, double weight, double g4, const Vec3& up,
                           double multiplier, CellHessian& h) {
   const double s = weight * (g4 * up.dot(corner[0] + corner[1] + corner[2]) - multiplier) / 6.0;
-  Vec3 by[3];  // gradient of V, weighed
-  for (int i = 0; i < 3; ++i) by[i] = weight / 6.0 * corner[(i + 1) % 3].cross(corner[(i + 2) % 3]);
+  Vec3 by[3];  // gradient of g4 V, weighed
+  for (int i = 0; i < 3; ++i) by[i] = g4 * weight / 6.0 * corner[(i + 1) % 3].cross(corner[(i + 2) % 3]);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      Mat3 block = g4 * (by[i] * up.transpose() + up * by[j].transpose());
+      Mat3 block = by[i] * up.transpose() + up * by[j].transpose();
       // d2V by (i, i + 1) = -[third corner] / 6, by (i + 1, i) its transpose.
       if (j == (i + 1) % 3) block -= s * cross_matrix(corner[(i + 2) % 3]);
       if (i == (j + 1) % 3) block += s * cross_matrix(corner[(j + 2) % 3]);
-      h.template block<3, 3>(3 * local[i], 3 * local[j]) += block;
+      h.add(local[i], local[j], block);
     }
   }
 }
 
 }  // namespace
 
-template <int Points>
-void Bile::add_cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double multiplier,
-                            BlockMatrix& matrix) const {
-  const double g4 = 0.25 * specific_weight_;
-  Eigen::Matrix<double, 3 * Points, 3 * Points> h;
-  h.setZero();
+void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double multiplier, CellHessian& h) const {
+  h.reset(cells_[cell].points);
   const std::size_t end =
       cell + 1 < cells_.size() ? static_cast<std::size_t>(cells_[cell + 1].first_part) : parts_.size();
   for (std::size_t k = cells_[cell].first_part; k < end; ++k) {
     const Part& part = parts_[k];
     const Vec3 corner[3] = {at[part.corners[0]], at[part.corners[1]], at[part.corners[2]]};
-    add_triangle_hessian(corner, part.local, part.weight, g4, up_, multiplier, h);
+    add_triangle_hessian(corner, part.local, part.weight, 0.25 * specific_weight_, up_, multiplier, h);
   }
-  ElementMatrix element;
-  element.reset(cells_[cell].nodes.padded);
-  element.add<Points>(weights_.data() + cells_[cell].weights, h);
-  element.scatter(cells_[cell].nodes, matrix);
 }
 
 void Bile::add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
   const std::vector<Vec3> at = positions(x);
+  ElementMatrix element;
+  CellHessian h;
+  double products[most_points * max_face_nodes];
   for (std::size_t c = 0; c < cells_.size(); ++c) {
-    if (cells_[c].points == few_points)
-      add_cell_hessian<few_points>(c, at, multiplier, matrix);
-    else
-      add_cell_hessian<most_points>(c, at, multiplier, matrix);
+    const int points = cells_[c].points, n = cells_[c].nodes.padded;
+    const double* weights = weights_.data() + cells_[c].weights;
+    assemble(c, at, multiplier, h);
+    element.reset(n);
+    for (int pair = 0; pair < 6; ++pair) {
+      for (int i = 0; i < points; ++i) {
+        double* row = products + i * n;
+        std::fill(row, row + n, 0.0);
+        for (int j = 0; j < points; ++j) {
+          if (!h.coupled[i * points + j]) continue;
+          const Lanes value = all_lanes(h.at[pair][i * points + j]);
+          for (int a = 0; a < n; a += lane_count)
+            store_lanes(fused(value, load_lanes(weights + j * n + a), load_lanes(row + a)), row + a);
+        }
+      }
+      element.add(pair, points, weights, products);
+    }
+    element.scatter(cells_[c].nodes, matrix);
   }
 }
 

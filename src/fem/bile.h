@@ -18,7 +18,7 @@ struct BileSurface {
     double weight = 1;  ///< parts of one weight form a closed surface
   };
   StencilTable points;                   ///< positions only
-  std::vector<std::vector<Part>> cells;  ///< parts that share points, at most 12 different ones a cell
+  std::vector<std::vector<Part>> cells;  ///< parts that share points, at most 28 different ones a cell
 };
 
 /// The extrapolated rule on a closed tessellation with 4 consecutive triangles a face (tessellate(2)). Fails
@@ -41,6 +41,8 @@ class Bile {
   /// Adds the gradient of weight - multiplier * volume (N): the load of pressure multiplier - weight *
   /// height.
   void add_load(const VecX& x, double multiplier, VecX& gradient) const;
+  /// Both: add_load to `load`, add_volume_gradient to `by_volume`, for little more than one.
+  double add_load_and_volume_gradient(const VecX& x, double multiplier, VecX& load, VecX& by_volume) const;
   /// Adds the exact Hessian of weight - multiplier * volume (N/m).
   void add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const;
 
@@ -57,23 +59,29 @@ class Bile {
   };
   const std::vector<Part>& parts() const { return parts_; }
 
+  const StencilTable& points() const { return points_; }
   double specific_weight() const { return specific_weight_; }
   std::vector<std::vector<int>> cliques() const;
 
  private:
   std::vector<Vec3> positions(const VecX& x) const;
+  /// Forces on the surface's points.
+  struct PointForces {
+    std::vector<Vec3> load, by_volume;
+    double volume = 0;
+  };
+  PointForces point_forces(const VecX& x, double multiplier) const;
   /// Adds the parts of a cell; returns its points.
   std::vector<int> add_parts(const std::vector<BileSurface::Part>& parts);
-  template <int Points>
-  void add_cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double multiplier,
-                        BlockMatrix& matrix) const;
+  struct CellHessian;
+  void assemble(std::size_t cell, const std::vector<Vec3>& at, double multiplier, CellHessian& h) const;
 
   StencilTable points_;
   double specific_weight_ = 0;
   Vec3 up_ = Vec3::UnitZ(), datum_ = Vec3::Zero();
   struct Cell {
     FaceNodes nodes;
-    int points = 0;      ///< rows of weights, some of them empty: 6 or 12
+    int points = 0;      ///< rows of weights
     int first_part = 0;  ///< in parts_, up to that of the next cell
     int weights = 0;     ///< offset in weights_ of the rows of padded weights
   };

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 
+#include "fem/lanes.h"
+
 namespace calot {
 
 void FaceNodes::finish() {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const int count = static_cast<int>(nodes.size());
-  padded = count;
-  for (int size : {4, 8, 12, 16, 20, 24, 32, 40, 64, max_face_nodes}) {
-    if (count > size) continue;
-    padded = size;
-    break;
-  }
+  padded = (count() + lane_count - 1) / lane_count * lane_count;
 }
 
 std::vector<FaceNodes> gather_faces(const StencilTable& table, const std::vector<int>& face_of_row,
@@ -30,35 +26,80 @@ std::vector<FaceNodes> gather_faces(const StencilTable& table, const std::vector
 void dense_weights(const StencilTable& table, const std::vector<double>& weights, int r,
                    const FaceNodes& face, double* out) {
   std::fill(out, out + face.padded, 0.0);
+  std::size_t place = 0;  // both lists increase
   for (int e = table.begin[r]; e < table.begin[r + 1]; ++e) {
-    const auto found = std::lower_bound(face.nodes.begin(), face.nodes.end(), table.node[e]);
-    out[found - face.nodes.begin()] = weights[e];
+    while (face.nodes[place] != table.node[e]) ++place;
+    out[place] = weights[e];
   }
 }
 
 void ElementMatrix::reset(int padded) {
   padded_ = padded;
-  values_.assign(6 * padded * padded, 0.0);
+  values_.assign(6 * static_cast<std::size_t>(padded) * padded, 0.0);
+}
+
+namespace {
+
+/// Rows b .. b + 3 and `Wide` lanes from column a of K += W' Q: as many sums as the processor has registers for.
+template <int Wide>
+void add_tile(int rows, int padded, const double* weights, const double* products, int b, int a, double* k) {
+  Lanes sum[lane_count][Wide] = {};
+  for (int r = 0; r < rows; ++r) {
+    const double* w = weights + r * padded + b;
+    const double* q = products + r * padded + a;
+    Lanes column[Wide];
+    for (int j = 0; j < Wide; ++j) column[j] = load_lanes(q + lane_count * j);
+    for (int i = 0; i < lane_count; ++i)
+      for (int j = 0; j < Wide; ++j) sum[i][j] = fused(all_lanes(w[i]), column[j], sum[i][j]);
+  }
+  for (int i = 0; i < lane_count; ++i) {
+    for (int j = 0; j < Wide; ++j) {
+      double* at = k + (b + i) * padded + a + lane_count * j;
+      store_lanes(load_lanes(at) + sum[i][j], at);
+    }
+  }
+}
+
+}  // namespace
+
+void ElementMatrix::add(int pair, int rows, const double* weights, const double* products) {
+  constexpr int wide = 2;
+  const bool half = component_pairs[pair][0] == component_pairs[pair][1];
+  double* k = values_.data() + static_cast<std::size_t>(pair) * padded_ * padded_;
+  for (int b = 0; b < padded_; b += lane_count) {
+    int a = half ? b : 0;
+    for (; a + wide * lane_count <= padded_; a += wide * lane_count)
+      add_tile<wide>(rows, padded_, weights, products, b, a, k);
+    if (a < padded_) add_tile<1>(rows, padded_, weights, products, b, a, k);
+  }
 }
 
 void ElementMatrix::scatter(const FaceNodes& face, BlockMatrix& matrix) const {
-  static constexpr int pair_of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   const int n = padded_;
-  const int count = static_cast<int>(face.nodes.size());
+  const int count = face.count();
+  const double* pairs[6];
+  for (int p = 0; p < 6; ++p) pairs[p] = values_.data() + static_cast<std::size_t>(p) * n * n;
   int slots[max_face_nodes];
   for (int b = 0; b < count; ++b) {
     const int j = face.nodes[b];
     const int step = matrix.stride(j);
     matrix.slots(std::span(face.nodes).subspan(b), slots + b);
     for (int a = b; a < count; ++a) {
-      const int at = slots[a];
-      for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) {
-          // Entry (component r of node a, component c of node b); pairs below the diagonal are transposes.
-          const double* k = values_.data() + pair_of[r][c] * n * n;
-          matrix.values()[at + c * step + r] += r <= c ? k[a * n + b] : k[b * n + a];
-        }
-      }
+      // Column c holds entries (component r of node a, component c of node b); pairs r > c are the transposes of
+      // those that are kept.
+      const int here = b * n + a, turned = a * n + b;
+      double* column = matrix.values() + slots[a];
+      column[0] += pairs[0][here];
+      column[1] += pairs[1][here];
+      column[2] += pairs[2][here];
+      column += step;
+      column[0] += pairs[1][turned];
+      column[1] += pairs[3][here];
+      column[2] += pairs[4][here];
+      column += step;
+      column[0] += pairs[2][turned];
+      column[1] += pairs[4][turned];
+      column[2] += pairs[5][here];
     }
   }
 }

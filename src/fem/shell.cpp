@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,124 +22,6 @@ std::vector<QuadraturePoint> six_point_rule() {
           {b, b, wb}, {1 - 2 * b, b, wb}, {b, 1 - 2 * b, wb}};
 }
 
-/// The surface at a quadrature point: derivatives d[0..4] = du, dv, duu, duv, dvv, forms and normal.
-struct Shell::Local {
-  Vec3 d[5];
-  SurfaceTensor metric, curvature;
-  Vec3 normal;
-  double jacobian = 0;
-
-  void finish() {
-    metric = {d[0].dot(d[0]), d[0].dot(d[1]), d[1].dot(d[1])};
-    const Vec3 m = d[0].cross(d[1]);
-    jacobian = m.norm();
-    normal = m / jacobian;
-    curvature = {d[2].dot(normal), d[3].dot(normal), d[4].dot(normal)};
-  }
-
-  /// Gradient of the normal-direction products w . n by (d0, d1), for w constant.
-  void normal_gradient(const Vec3& w, Vec3& by_u, Vec3& by_v) const {
-    const Vec3 g = (w - normal * normal.dot(w)) / jacobian;
-    by_u = d[1].cross(g);
-    by_v = g.cross(d[0]);
-  }
-};
-
-namespace {
-
-using Matrix15 = Eigen::Matrix<double, 15, 15>;
-using Matrix15x3 = Eigen::Matrix<double, 15, 3>;
-
-/// Rows of the three metric components by the 15 derivatives: only d0, d1 take part.
-void metric_rows(const Vec3* d, Eigen::Matrix<double, 6, 3>& rows) {
-  rows.col(0) << 2 * d[0], Vec3::Zero();
-  rows.col(1) << d[1], d[0];
-  rows.col(2) << Vec3::Zero(), 2 * d[1];
-}
-
-void add_membrane(const Vec3* d, const MembraneSample& s, double area, Matrix15& h) {
-  Eigen::Matrix<double, 6, 3> rows;
-  metric_rows(d, rows);
-  h.topLeftCorner<6, 6>() += area * (rows * s.hessian * rows.transpose());
-  h.block<3, 3>(0, 0).diagonal().array() += area * 2 * s.gradient[0];
-  h.block<3, 3>(3, 3).diagonal().array() += area * 2 * s.gradient[2];
-  h.block<3, 3>(0, 3).diagonal().array() += area * s.gradient[1];
-  h.block<3, 3>(3, 0).diagonal().array() += area * s.gradient[1];
-}
-
-/// Second derivatives of w . n (w constant) by (d0, d1), and of w . n by (w, d0 or d1).
-/// f(m) = w . m / |m|, m = d0 x d1: Hess f = -(Pw n' + n (Pw)' + f P) / |m|^2, grad f = Pw / |m|.
-void add_normal_hessian(const Vec3* d, const Vec3& normal, double jacobian, const Vec3& w, Matrix15& h) {
-  const Mat3 projector = Mat3::Identity() - normal * normal.transpose();
-  const Vec3 pw = projector * w;
-  const Mat3 by_m = -(pw * normal.transpose() + normal * pw.transpose() + w.dot(normal) * projector) /
-                    (jacobian * jacobian);
-  // dm = -[d1] du + [d0] dv.
-  const Mat3 mu = -cross_matrix(d[1]), mv = cross_matrix(d[0]);
-  h.block<3, 3>(0, 0) += mu.transpose() * by_m * mu;
-  h.block<3, 3>(3, 3) += mv.transpose() * by_m * mv;
-  // d2m(du, dv) = du x dv, so grad . (du x dv) = du' [.] dv with -[grad].
-  const Mat3 cross = mu.transpose() * by_m * mv - cross_matrix(pw / jacobian);
-  h.block<3, 3>(0, 3) += cross;
-  h.block<3, 3>(3, 0) += cross.transpose();
-}
-
-}  // namespace
-
-Shell::Local Shell::local(const Point& point, const VecX& x) const {
-  const FaceNodes& face = faces_[point.face];
-  const double* w = weights_.data() + point.weights;
-  Local out;
-  for (Vec3& d : out.d) d.setZero();
-  const int count = static_cast<int>(face.nodes.size());
-  for (int a = 0; a < count; ++a) {
-    const Vec3 p = x.segment<3>(3 * face.nodes[a]);
-    for (int k = 0; k < 5; ++k) out.d[k] += w[k * face.padded + a] * p;
-  }
-  out.finish();
-  return out;
-}
-
-void Shell::lay_fibres(const FibreLayout& layout, const Local& at, Point& point) {
-  const Vec3 axis = layout.axis.normalized();
-  const Vec3 along = axis - at.normal * at.normal.dot(axis);
-  Fibres fibres;
-  fibres.share = along.squaredNorm();
-  // At a pole, where `along` is zero, it stays zero when normalised: then I4 is 0 and the fibres are slack.
-  const Vec3 u = along.normalized(), v = at.normal.cross(u);
-  for (int k = 0; k < 2; ++k) {
-    const Vec3 m = std::cos(layout.angle) * u + (k == 0 ? 1 : -1) * std::sin(layout.angle) * v;
-    const double by_u = m.dot(at.d[0]), by_v = m.dot(at.d[1]);
-    const SurfaceTensor& inverse = point.rest_inverse;
-    fibres.directions[k] =
-        fibre_direction(inverse[0] * by_u + inverse[1] * by_v, inverse[1] * by_u + inverse[2] * by_v);
-  }
-  point.fibres = static_cast<int>(fibres_.size());
-  fibres_.push_back(fibres);
-}
-
-double Shell::membrane_energy(const Point& point, const SurfaceTensor& metric) const {
-  double energy = material_.membrane.energy(point.rest_inverse, point.rest_determinant, metric);
-  if (point.fibres < 0) return energy;
-  const Fibres& fibres = fibres_[point.fibres];
-  for (const SurfaceTensor& direction : fibres.directions)
-    energy += fibres.share * material_.fibres->family.energy(direction, metric);
-  return energy;
-}
-
-MembraneSample Shell::membrane(const Point& point, const SurfaceTensor& metric) const {
-  MembraneSample sum = material_.membrane.sample(point.rest_inverse, point.rest_determinant, metric);
-  if (point.fibres < 0) return sum;
-  const Fibres& fibres = fibres_[point.fibres];
-  for (const SurfaceTensor& direction : fibres.directions) {
-    const MembraneSample family = material_.fibres->family.sample(direction, metric);
-    sum.energy += fibres.share * family.energy;
-    sum.gradient += fibres.share * family.gradient;
-    sum.hessian += fibres.share * family.hessian;
-  }
-  return sum;
-}
-
 Quadrature face_by_face(StencilTable table, const std::vector<QuadraturePoint>& rule) {
   Quadrature out;
   const int per_face = static_cast<int>(rule.size());
@@ -150,150 +33,298 @@ Quadrature face_by_face(StencilTable table, const std::vector<QuadraturePoint>& 
   return out;
 }
 
-Result<Shell> Shell::create(const Quadrature& quadrature, const VecX& rest, const ShellMaterial& material) {
+namespace {
+
+SurfaceTensor tensor(const Lanes* components, int lane) {
+  return {components[0][lane], components[1][lane], components[2][lane]};
+}
+Vec3 vector(const Lanes3& v, int lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
+void set(const Vec3& from, int lane, Lanes* to) {
+  for (int k = 0; k < 3; ++k) to[k][lane] = from[k];
+}
+/// The upper half of a symmetric form.
+void set(const Mat3& from, int lane, LanesForm& to) {
+  for (int pair = 0; pair < 6; ++pair)
+    to.at[pair][lane] = from(component_pairs[pair][0], component_pairs[pair][1]);
+}
+
+}  // namespace
+
+Result<Shell> Shell::create(const Quadrature& quadrature, const VecX& rest, const ShellMaterial& material,
+                            const Shell* known, std::span<const int> known_rows) {
   if (material.fibres && !(material.fibres->axis.norm() > 0))
     return fail(FailureKind::scenario, "the wall's fibres have no axis", "give a direction that is not zero");
   Shell shell;
   shell.material_ = material;
-  const StencilTable& table = quadrature.stencils;
-  shell.faces_ = gather_faces(table, quadrature.element, quadrature.elements());
-  const std::vector<double>* orders[5] = {&table.du, &table.dv, &table.duu, &table.duv, &table.dvv};
-  for (int r = 0; r < table.rows(); ++r) {
-    Point point;
-    point.face = quadrature.element[r];
-    const FaceNodes& face = shell.faces_[point.face];
-    if (face.padded > max_face_nodes)
-      return fail(FailureKind::scenario,
-                  fmt::format("face {} depends on {} nodes", point.face, face.nodes.size()),
+  const int rows = quadrature.stencils.rows();
+  shell.faces_ = gather_faces(quadrature.stencils, quadrature.element, quadrature.elements());
+  for (const FaceNodes& face : shell.faces_)
+    if (face.count() > max_face_nodes)
+      return fail(FailureKind::scenario, fmt::format("a face depends on {} nodes", face.count()),
                   "remesh: a vertex has too many neighbours");
-    point.weights = static_cast<int>(shell.weights_.size());
-    shell.weights_.resize(shell.weights_.size() + 5 * face.padded, 0.0);
-    for (int k = 0; k < (material.bends ? 5 : 2); ++k)
-      dense_weights(table, *orders[k], r, face, shell.weights_.data() + point.weights + k * face.padded);
-    const Local at = shell.local(point, rest);
-    const double det = at.jacobian * at.jacobian;
-    if (!(det > 0) || !std::isfinite(det))
-      return fail(FailureKind::scenario, fmt::format("the rest surface is degenerate in face {}", point.face),
+  for (int row = 0; row < rows;) {
+    Points points;
+    points.face = quadrature.element[row];
+    points.first = row;
+    while (points.used < lane_count && row < rows && quadrature.element[row] == points.face)
+      ++points.used, ++row;
+    points.weights = shell.weights_.size();
+    if (known != nullptr && known_rows[points.first] >= 0) {
+      shell.take_over(*known, known_rows[points.first], points);
+      shell.points_.push_back(points);
+      continue;
+    }
+    shell.lay_weights(quadrature, points.first, points);
+    if (!shell.lay_points(rest, quadrature.weights, points))
+      return fail(FailureKind::scenario,
+                  fmt::format("the rest surface is degenerate in face {}", points.face),
                   "check the control mesh for flat or repeated triangles");
-    point.area = quadrature.weights[r] * at.jacobian;
-    point.rest_determinant = det;
-    point.rest_inverse = Vec3(at.metric[2], -at.metric[1], at.metric[0]) / det;
-    point.rest_curvature = at.curvature;
-    if (material.bends) point.bending = material.bending.hessian(point.rest_inverse);
-    if (material.fibres) shell.lay_fibres(*material.fibres, at, point);
-    shell.points_.push_back(point);
+    shell.points_.push_back(points);
   }
   return shell;
 }
 
-double Shell::value(const VecX& x) const {
-  double sum = 0;
-  for (const Point& point : points_) {
-    const Local at = local(point, x);
-    double energy = membrane_energy(point, at.metric);
-    if (!std::isfinite(energy)) return std::numeric_limits<double>::infinity();
-    if (material_.bends) {
-      const Vec3 k = at.curvature - point.rest_curvature;
-      energy += 0.5 * k.dot(point.bending * k);
+void Shell::take_over(const Shell& known, int row, Points& points) {
+  const Points& from = *std::lower_bound(known.points_.begin(), known.points_.end(), row,
+                                         [](const Points& p, int r) { return p.first < r; });
+  const Points place = points;
+  points = from;
+  points.face = place.face, points.first = place.first, points.weights = place.weights;
+  const auto weights = known.weights_.begin() + static_cast<std::ptrdiff_t>(from.weights);
+  weights_.insert(weights_.end(), weights, weights + faces_[place.face].count());
+  if (known.fibres_.empty()) return;
+  const auto fibres = known.fibres_.begin() + from.first;
+  fibres_.insert(fibres_.end(), fibres, fibres + from.used);
+}
+
+void Shell::lay_weights(const Quadrature& quadrature, int row, Points& points) {
+  const StencilTable& table = quadrature.stencils;
+  const FaceNodes& face = faces_[points.face];
+  const std::vector<double>* orders[5] = {&table.du, &table.dv, &table.duu, &table.duv, &table.dvv};
+  weights_.resize(weights_.size() + face.nodes.size(), NodeWeights{});
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const int r = row + std::min(lane, points.used - 1);
+    std::size_t place = 0;  // nodes increase in the face as in the row
+    for (int e = table.begin[r]; e < table.begin[r + 1]; ++e) {
+      while (face.nodes[place] != table.node[e]) ++place;
+      for (int k = 0; k < (material_.bends ? 5 : 2); ++k)
+        weights_[points.weights + place].row[k][lane] = (*orders[k])[e];
     }
-    sum += point.area * energy;
+  }
+}
+
+bool Shell::lay_points(const VecX& rest, const std::vector<double>& weights, Points& points) {
+  const ShellPoint at = local(points, rest);
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const double det = at.jacobian[lane] * at.jacobian[lane];
+    if (!(det > 0) || !std::isfinite(det)) return false;
+    const SurfaceTensor metric = tensor(at.metric, lane);
+    const SurfaceTensor inverse = Vec3(metric[2], -metric[1], metric[0]) / det;
+    points.rest_determinant[lane] = det;
+    set(inverse, lane, points.rest_inverse);
+    set(tensor(at.curvature, lane), lane, points.rest_curvature);
+    if (material_.bends) set(material_.bending.hessian(inverse), lane, points.bending);
+    if (lane >= points.used) continue;
+    points.area[lane] = weights[points.first + lane] * at.jacobian[lane];
+    if (material_.fibres) lay_fibres(at, points, lane);
+  }
+  return true;
+}
+
+void Shell::lay_fibres(const ShellPoint& at, const Points& points, int lane) {
+  const FibreLayout& layout = *material_.fibres;
+  const Vec3 axis = layout.axis.normalized(), normal = vector(at.normal, lane);
+  const Vec3 along = axis - normal * normal.dot(axis);
+  const SurfaceTensor inverse = tensor(points.rest_inverse, lane);
+  Fibres fibres;
+  fibres.share = along.squaredNorm();
+  // At a pole, where `along` is zero, it stays zero when normalised: then I4 is 0 and the fibres are slack.
+  const Vec3 u = along.normalized(), v = normal.cross(u);
+  for (int k = 0; k < 2; ++k) {
+    const Vec3 m = std::cos(layout.angle) * u + (k == 0 ? 1 : -1) * std::sin(layout.angle) * v;
+    const double by_u = m.dot(vector(at.d[0], lane)), by_v = m.dot(vector(at.d[1], lane));
+    fibres.directions[k] =
+        fibre_direction(inverse[0] * by_u + inverse[1] * by_v, inverse[1] * by_u + inverse[2] * by_v);
+  }
+  fibres_.push_back(fibres);
+}
+
+ShellPoint Shell::local(const Points& points, const VecX& x) const {
+  const FaceNodes& face = faces_[points.face];
+  const NodeWeights* weights = weights_.data() + points.weights;
+  ShellPoint out;
+  // Derivatives in two goes: their sums then stay in the processor's registers.
+  Lanes3 first[2] = {}, second[3] = {};
+  for (std::size_t a = 0; a < face.nodes.size(); ++a) {
+    const double* p = x.data() + 3 * face.nodes[a];
+    for (int k = 0; k < 2; ++k)
+      for (int c = 0; c < 3; ++c) first[k][c] = fused(weights[a].row[k], all_lanes(p[c]), first[k][c]);
+  }
+  for (std::size_t a = 0; a < face.nodes.size() && material_.bends; ++a) {
+    const double* p = x.data() + 3 * face.nodes[a];
+    for (int k = 0; k < 3; ++k)
+      for (int c = 0; c < 3; ++c) second[k][c] = fused(weights[a].row[2 + k], all_lanes(p[c]), second[k][c]);
+  }
+  for (int k = 0; k < 2; ++k) out.d[k] = first[k];
+  for (int k = 0; k < 3; ++k) out.d[2 + k] = second[k];
+  out.finish();
+  return out;
+}
+
+double Shell::membrane_energy(const Points& points, int lane, const SurfaceTensor& metric) const {
+  double energy =
+      material_.membrane.energy(tensor(points.rest_inverse, lane), points.rest_determinant[lane], metric);
+  if (fibres_.empty()) return energy;
+  const Fibres& fibres = fibres_[points.first + lane];
+  for (const SurfaceTensor& direction : fibres.directions)
+    energy += fibres.share * material_.fibres->family.energy(direction, metric);
+  return energy;
+}
+
+MembraneSample Shell::membrane(const Points& points, int lane, const SurfaceTensor& metric) const {
+  MembraneSample sum =
+      material_.membrane.sample(tensor(points.rest_inverse, lane), points.rest_determinant[lane], metric);
+  if (fibres_.empty()) return sum;
+  const Fibres& fibres = fibres_[points.first + lane];
+  for (const SurfaceTensor& direction : fibres.directions) {
+    const MembraneSample family = material_.fibres->family.sample(direction, metric);
+    sum.energy += fibres.share * family.energy;
+    sum.gradient += fibres.share * family.gradient;
+    sum.hessian += fibres.share * family.hessian;
   }
   return sum;
 }
 
-void Shell::add_gradient(const VecX& x, VecX& gradient) const {
-  for (const Point& point : points_) {
-    const Local at = local(point, x);
-    const MembraneSample s = membrane(point, at.metric);
-    Vec3 g[5];
-    g[0] = 2 * s.gradient[0] * at.d[0] + s.gradient[1] * at.d[1];
-    g[1] = 2 * s.gradient[2] * at.d[1] + s.gradient[1] * at.d[0];
-    int rows = 2;
+double Shell::value(const VecX& x) const {
+  double sum = 0;
+  for (const Points& points : points_) {
+    const ShellPoint at = local(points, x);
+    Lanes energy = {};
+    for (int lane = 0; lane < points.used; ++lane) {
+      energy[lane] = membrane_energy(points, lane, tensor(at.metric, lane));
+      if (!std::isfinite(energy[lane])) return std::numeric_limits<double>::infinity();
+    }
     if (material_.bends) {
-      rows = 5;
-      const Vec3 moment = point.bending * (at.curvature - point.rest_curvature);
-      const Vec3 w = moment[0] * at.d[2] + moment[1] * at.d[3] + moment[2] * at.d[4];
-      Vec3 by_u, by_v;
-      at.normal_gradient(w, by_u, by_v);
-      g[0] += by_u;
-      g[1] += by_v;
-      for (int k = 0; k < 3; ++k) g[2 + k] = moment[k] * at.normal;
+      Lanes bent[3];
+      for (int k = 0; k < 3; ++k) bent[k] = at.curvature[k] - points.rest_curvature[k];
+      for (int k = 0; k < 3; ++k) energy += 0.5 * bent[k] * points.bending.times(bent, k);
     }
-    const FaceNodes& face = faces_[point.face];
-    const double* weights = weights_.data() + point.weights;
-    for (std::size_t a = 0; a < face.nodes.size(); ++a) {
-      Vec3 sum = Vec3::Zero();
-      for (int k = 0; k < rows; ++k) sum += weights[k * face.padded + static_cast<int>(a)] * g[k];
-      gradient.segment<3>(3 * face.nodes[a]) += point.area * sum;
+    sum += sum_of(points.area * energy);
+  }
+  return sum;
+}
+
+/// Times the points' areas.
+ShellStress Shell::stress(const Points& points, const ShellPoint& at) const {
+  ShellStress out;
+  for (Lanes& component : out.membrane) component = Lanes{};
+  out.membrane_stiffness = {};
+  for (int lane = 0; lane < points.used; ++lane) {
+    const MembraneSample sample = membrane(points, lane, tensor(at.metric, lane));
+    set(sample.gradient, lane, out.membrane);
+    set(sample.hessian, lane, out.membrane_stiffness);
+  }
+  for (Lanes& component : out.membrane) component *= points.area;
+  for (Lanes& component : out.membrane_stiffness.at) component *= points.area;
+  if (!material_.bends) return out;
+  Lanes bent[3];
+  for (int k = 0; k < 3; ++k) bent[k] = at.curvature[k] - points.rest_curvature[k];
+  for (int i = 0; i < 6; ++i) out.bending_stiffness.at[i] = points.area * points.bending.at[i];
+  for (int k = 0; k < 3; ++k) out.moment[k] = out.bending_stiffness.times(bent, k);
+  return out;
+}
+
+template <bool Bends>
+void Shell::add_gradient(const Points& points, const VecX& x, VecX& gradient) const {
+  constexpr int rows = Bends ? 5 : 2;
+  const ShellPoint at = local(points, x);
+  Lanes3 by[5];
+  shell_gradient<Bends>(at, stress(points, at), by);
+  const FaceNodes& face = faces_[points.face];
+  const NodeWeights* weights = weights_.data() + points.weights;
+  for (std::size_t a = 0; a < face.nodes.size(); ++a) {
+    Lanes3 force;
+    for (int k = 0; k < rows; ++k)
+      for (int c = 0; c < 3; ++c) force[c] = fused(weights[a].row[k], by[k][c], force[c]);
+    double* node = gradient.data() + 3 * face.nodes[a];
+    for (int c = 0; c < 3; ++c) node[c] += sum_of(force[c]);
+  }
+}
+
+void Shell::add_gradient(const VecX& x, VecX& gradient) const {
+  for (const Points& points : points_)
+    material_.bends ? add_gradient<true>(points, x, gradient) : add_gradient<false>(points, x, gradient);
+}
+
+template <bool Bends>
+void Shell::add_hessian(const Points& points, const VecX& x, ElementMatrix& element) const {
+  constexpr int derivatives = Bends ? 5 : 2;
+  const ShellPoint at = local(points, x);
+  ShellHessian h;
+  shell_hessian<Bends>(at, stress(points, at), h);
+  const int n = element.padded(), count = faces_[points.face].count();
+  // Rows of weights, derivative k of point p at row p * derivatives + k, over the nodes.
+  double weights[lane_count * derivatives * max_face_nodes],
+      products[lane_count * derivatives * max_face_nodes];
+  for (int p = 0; p < points.used; ++p) {
+    for (int k = 0; k < derivatives; ++k) {
+      double* row = weights + (p * derivatives + k) * n;
+      for (int a = 0; a < count; ++a) row[a] = weights_[points.weights + a].row[k][p];
+      for (int a = count; a < n; ++a) row[a] = 0;
     }
+  }
+  for (int pair = 0; pair < 6; ++pair) {
+    for (int p = 0; p < points.used; ++p) {
+      const double* w = weights + p * derivatives * n;
+      for (int k = 0; k < derivatives; ++k) {
+        double* row = products + (p * derivatives + k) * n;
+        for (int a = 0; a < n; a += lane_count) {
+          Lanes sum = {};
+          for (int l = 0; l < derivatives; ++l)
+            sum = fused(all_lanes(h.at[pair][k][l][p]), load_lanes(w + l * n + a), sum);
+          store_lanes(sum, row + a);
+        }
+      }
+    }
+    element.add(pair, points.used * derivatives, weights, products);
   }
 }
 
 void Shell::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   ElementMatrix element;
   int current = -1;
-  Matrix15 h;
-  for (const Point& point : points_) {
-    if (point.face != current) {
+  for (const Points& points : points_) {
+    if (points.face != current) {
       if (current >= 0) element.scatter(faces_[current], matrix);
-      current = point.face;
+      current = points.face;
       element.reset(faces_[current].padded);
     }
-    const Local at = local(point, x);
-    const MembraneSample s = membrane(point, at.metric);
-    h.setZero();
-    add_membrane(at.d, s, point.area, h);
-    const double* weights = weights_.data() + point.weights;
-    if (!material_.bends) {
-      element.add<2>(weights, h.topLeftCorner<6, 6>());
-      continue;
-    }
-    // b_k = d[2 + k] . n; its gradient by all 15.
-    Matrix15x3 rows;
-    rows.setZero();
-    for (int k = 0; k < 3; ++k) {
-      Vec3 by_u, by_v;
-      at.normal_gradient(at.d[2 + k], by_u, by_v);
-      rows.col(k).segment<3>(0) = by_u;
-      rows.col(k).segment<3>(3) = by_v;
-      rows.col(k).segment<3>(6 + 3 * k) = at.normal;
-    }
-    const Mat3 bending = point.area * point.bending;
-    const Vec3 moment = bending * (at.curvature - point.rest_curvature);
-    h.noalias() += rows * bending * rows.transpose();
-    const Vec3 w = moment[0] * at.d[2] + moment[1] * at.d[3] + moment[2] * at.d[4];
-    add_normal_hessian(at.d, at.normal, at.jacobian, w, h);
-    // Mixed by w_k and (d0, d1): moment_k P / |m| times dm.
-    const Mat3 projector = (Mat3::Identity() - at.normal * at.normal.transpose()) / at.jacobian;
-    const Mat3 pu = -projector * cross_matrix(at.d[1]), pv = projector * cross_matrix(at.d[0]);
-    for (int k = 0; k < 3; ++k) {
-      const int row = 6 + 3 * k;
-      h.block<3, 3>(row, 0) += moment[k] * pu;
-      h.block<3, 3>(row, 3) += moment[k] * pv;
-      h.block<3, 3>(0, row) += moment[k] * pu.transpose();
-      h.block<3, 3>(3, row) += moment[k] * pv.transpose();
-    }
-    element.add<5>(weights, h);
+    material_.bends ? add_hessian<true>(points, x, element) : add_hessian<false>(points, x, element);
   }
   if (current >= 0) element.scatter(faces_[current], matrix);
 }
 
 double Shell::rest_area() const {
   double sum = 0;
-  for (const Point& point : points_) sum += point.area;
+  for (double area : point_areas()) sum += area;
   return sum;
 }
 
 std::vector<double> Shell::point_areas() const {
   std::vector<double> out;
-  for (const Point& point : points_) out.push_back(point.area);
+  for (const Points& points : points_)
+    for (int lane = 0; lane < points.used; ++lane) out.push_back(points.area[lane]);
   return out;
 }
 
 double Shell::max_stretch(const VecX& x) const {
   double largest = 0;
-  for (const Point& point : points_)
-    largest = std::max(largest, largest_stretch(point.rest_inverse, local(point, x).metric));
+  for (const Points& points : points_) {
+    const ShellPoint at = local(points, x);
+    for (int lane = 0; lane < points.used; ++lane)
+      largest =
+          std::max(largest, largest_stretch(tensor(points.rest_inverse, lane), tensor(at.metric, lane)));
+  }
   return largest;
 }
 

@@ -5,11 +5,13 @@
 // refined faces differ in nothing else.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/status.h"
 #include "fem/element_layout.h"
 #include "fem/membrane_material.h"
+#include "fem/shell_point.h"
 
 namespace calot {
 
@@ -58,8 +60,11 @@ Quadrature face_by_face(StencilTable table, const std::vector<QuadraturePoint>& 
 class Shell {
  public:
   /// `rest` are 3 * nodes coordinates, m. Fails (scenario) where the rest surface is degenerate, where an
-  /// element depends on too many nodes, and when fibres have no axis.
-  static Result<Shell> create(const Quadrature& quadrature, const VecX& rest, const ShellMaterial& material);
+  /// element depends on too many nodes, and when fibres have no axis. Rows of an element that stands in `known`, a shell
+  /// of the same material and rest, under other numbers may be taken from there: known_rows[r] is r's row there, for
+  /// all rows of the element; -1 where it is not.
+  static Result<Shell> create(const Quadrature& quadrature, const VecX& rest, const ShellMaterial& material,
+                              const Shell* known = nullptr, std::span<const int> known_rows = {});
 
   /// Wall energy, J; infinite where the surface is degenerate.
   double value(const VecX& x) const;
@@ -76,31 +81,45 @@ class Shell {
   std::vector<std::vector<int>> cliques() const;
 
  private:
-  struct Point {
+  /// Weights of one node for the derivatives du, dv, duu, duv, dvv at four points.
+  struct NodeWeights {
+    Lanes row[5];
+  };
+  /// Up to four points of one element. Lanes that are not used repeat the last point and have no area.
+  struct Points {
     int face = 0;
-    int weights = 0;  ///< offset in weights_: 5 rows (du, dv, duu, duv, dvv) of padded length
-    double area = 0;  ///< rest area of the point, m^2
-    SurfaceTensor rest_inverse = Vec3::Zero(), rest_curvature = Vec3::Zero();
-    double rest_determinant = 1;
-    int fibres = -1;  ///< index in fibres_, -1: none
-    Mat3 bending = Mat3::Zero();
+    int used = 0;
+    int first = 0;            ///< number of its first point
+    std::size_t weights = 0;  ///< offset in weights_: one for each of the face's nodes
+    Lanes area = {};          ///< rest area, m^2
+    Lanes rest_inverse[3], rest_curvature[3], rest_determinant;
+    LanesForm bending = {};
   };
   /// The fibres at a point: their families' directions and |p|^2.
   struct Fibres {
     SurfaceTensor directions[2];
     double share = 0;
   };
-  struct Local;
-  Local local(const Point& point, const VecX& x) const;
-  void lay_fibres(const FibreLayout& layout, const Local& at, Point& point);
-  double membrane_energy(const Point& point, const SurfaceTensor& metric) const;
-  MembraneSample membrane(const Point& point, const SurfaceTensor& metric) const;
+  /// The points from `row` on of `known`, which become those from points.first on.
+  void take_over(const Shell& known, int row, Points& points);
+  void lay_weights(const Quadrature& quadrature, int row, Points& points);
+  /// False where the rest surface is degenerate.
+  bool lay_points(const VecX& rest, const std::vector<double>& weights, Points& points);
+  void lay_fibres(const ShellPoint& at, const Points& points, int lane);
+  ShellPoint local(const Points& points, const VecX& x) const;
+  double membrane_energy(const Points& points, int lane, const SurfaceTensor& metric) const;
+  MembraneSample membrane(const Points& points, int lane, const SurfaceTensor& metric) const;
+  ShellStress stress(const Points& points, const ShellPoint& at) const;
+  template <bool Bends>
+  void add_gradient(const Points& points, const VecX& x, VecX& gradient) const;
+  template <bool Bends>
+  void add_hessian(const Points& points, const VecX& x, ElementMatrix& element) const;
 
   ShellMaterial material_;
   std::vector<FaceNodes> faces_;
-  std::vector<Point> points_;
-  std::vector<Fibres> fibres_;
-  std::vector<double> weights_;
+  std::vector<Points> points_;
+  std::vector<Fibres> fibres_;  ///< of each point; none without
+  std::vector<NodeWeights> weights_;
 };
 
 }  // namespace calot

@@ -53,12 +53,14 @@ void evaluate(const ConstrainedEnergy& problem, const VecX& x, double multiplier
               NewtonResult& result) {
   const Timed timed(result.assembly_s);
   double largest_internal = 0;
-  problem.gradient(x, state.gradient, largest_internal);
-  state.residual = state.gradient;
   state.constraint = 0;
   if (problem.constrained()) {
-    state.constraint = problem.constraint(x, state.constraint_gradient);
-    state.residual -= multiplier * state.constraint_gradient;
+    state.constraint =
+        problem.gradient_and_constraint(x, state.gradient, largest_internal, state.constraint_gradient);
+    state.residual = state.gradient - multiplier * state.constraint_gradient;
+  } else {
+    problem.gradient(x, state.gradient, largest_internal);
+    state.residual = state.gradient;
   }
   state.relative_residual = largest_node(state.residual) / std::max(largest_internal, 1e-12);
   state.constraint_error =

@@ -29,6 +29,12 @@ class ConstrainedEnergy {
   /// Constraint and its gradient; not called when unconstrained.
   virtual double constraint(const VecX& x, VecX& gradient) const = 0;
   virtual double constraint_value(const VecX& x) const = 0;
+  /// gradient() and constraint() at once, for where they share what they are made of.
+  virtual double gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
+                                         VecX& of_constraint) const {
+    gradient(x, of_energy, largest_internal);
+    return constraint(x, of_constraint);
+  }
   /// Scale of the constraint (the kept volume), > 0.
   virtual double constraint_scale() const = 0;
   /// How many of the first nodes of x are places, if not all; the others are displacements added to them.

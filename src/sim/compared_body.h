@@ -40,7 +40,7 @@ struct ComparedSurface {
 
 inline constexpr double contact_stiffness = 1000;  ///< N/m, of all springs of a place
 inline constexpr double contact_spread = 2.5e-3;   ///< m
-/// The bed: an elastic foundation about the lowest point.
+/// The bed: an elastic foundation about the lowest point, none beyond three spreads.
 inline constexpr double bed_stiffness = 2e6;  ///< N/m per m^2 in its middle
 inline constexpr double bed_spread = 8e-3;    ///< m
 inline constexpr double compared_fill = 1.1;  ///< kept volume over the rest volume

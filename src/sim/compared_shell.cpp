@@ -29,6 +29,12 @@ class SpringProblem : public ConstrainedEnergy {
   }
   double constraint(const VecX& x, VecX& gradient) const override { return body_.constraint(x, gradient); }
   double constraint_value(const VecX& x) const override { return body_.constraint_value(x); }
+  double gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
+                                 VecX& of_constraint) const override {
+    const double out = body_.gradient_and_constraint(x, of_energy, largest_internal, of_constraint);
+    springs_.add_gradient(points_, x, of_energy);
+    return out;
+  }
   double constraint_scale() const override { return body_.constraint_scale(); }
   double length_scale() const override { return body_.length_scale(); }
   int places() const override { return body_.places(); }
@@ -175,8 +181,9 @@ VirtualStructure::Setup setup_of(const TriMesh& control, double radius, int leve
   setup.bile = BileDefinition{};
   setup.levels = levels;
   setup.foundation = [radius](const Vec3& x) {
+    constexpr double reach = 3;
     const double far = (x + radius * Vec3::UnitZ()).norm() / bed_spread;
-    return bed_stiffness * std::exp(-0.5 * far * far);
+    return far < reach ? bed_stiffness * std::exp(-0.5 * far * far) : 0.0;
   };
   return setup;
 }
@@ -222,6 +229,7 @@ Result<std::unique_ptr<ComparedBody>> extended_shell(const ComparedSurface& surf
                                                      const std::vector<Vec3>& places, int levels) {
   Result<Rested> coarse = filled(surface.control, surface.radius, levels);
   if (!coarse) return coarse.failure();
+  coarse->body.keep_in_equilibrium(coarse->state);  // as the simulator's organs
   std::vector<Extension> extensions;
   for (const Vec3& place : places)
     extensions.push_back(

@@ -48,22 +48,44 @@ double BodyProblem::value(const VecX& x) const {
   return sum;
 }
 
-void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
-  gradient.setZero(x.size());
+void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   body_.shell().add_gradient(x, gradient);
   largest_internal = largest_node(gradient);
   body_.foundation().add_gradient(body_.bed_points(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
   field_.friction.add_gradient(body_.skin().stencils, x, gradient);
-  if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
     const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
     spread(body_.skin().stencils, pair.row, force * d.gradient, gradient);
   });
-  // A body at rest carries no force yet: then the loads on it are the scale.
-  largest_internal = std::max(largest_internal, 1e-3 * largest_node(gradient));
+}
+
+namespace {
+
+/// A body at rest carries no force yet: then the loads on it are the scale.
+double force_scale(double largest_internal, const VecX& gradient) {
+  return std::max(largest_internal, 1e-3 * largest_node(gradient));
+}
+
+}  // namespace
+
+void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
+  gradient.setZero(x.size());
+  add_dry_gradient(x, gradient, largest_internal);
+  if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
+  largest_internal = force_scale(largest_internal, gradient);
+}
+
+double BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
+                                            VecX& of_constraint) const {
+  of_energy.setZero(x.size());
+  of_constraint.setZero(x.size());
+  add_dry_gradient(x, of_energy, largest_internal);
+  const double volume = body_.add_weight_and_volume_gradient(x, of_energy, of_constraint);
+  largest_internal = force_scale(largest_internal, of_energy);
+  return volume - volume_;
 }
 
 void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {

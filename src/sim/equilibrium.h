@@ -27,6 +27,8 @@ class BodyProblem : public ConstrainedEnergy {
   void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override;
   double constraint(const VecX& x, VecX& gradient) const override;
   double constraint_value(const VecX& x) const override;
+  double gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
+                                 VecX& of_constraint) const override;
   double constraint_scale() const override { return volume_; }
   double length_scale() const override { return body_.size(); }
   int places() const override { return body_.coarse_nodes(); }
@@ -35,6 +37,8 @@ class BodyProblem : public ConstrainedEnergy {
  private:
   /// How far any node, and so any skin point, is from where the solve began, m.
   double moved(const VecX& x) const;
+  /// Gradient but for the bile's part.
+  void add_dry_gradient(const VecX& x, VecX& gradient, double& largest_internal) const;
   /// Calls use(pair, skin point) for the pairs whose distance at x is below the barrier's range.
   template <class Use>
   void for_touching(const VecX& x, const Use& use) const;

@@ -109,6 +109,11 @@ TEST(Bile, LoadAndVolumeGradientAreTheDerivativesOfTheirEnergies) {
         1e-7);
     EXPECT_LT(test::relative_error(volume_gradient(body.bile, x), test::difference_gradient(volume, x, 1e-6)),
               1e-7);
+    VecX both_load = VecX::Zero(x.size()), both_gradient = both_load;
+    EXPECT_NEAR(body.bile.add_load_and_volume_gradient(x, multiplier, both_load, both_gradient),
+                body.bile.volume(x), 1e-13 * body.bile.volume(x));  // the same sum, rounded otherwise
+    EXPECT_EQ(both_load, load(body.bile, x, multiplier));
+    EXPECT_EQ(both_gradient, volume_gradient(body.bile, x));
   }
 }
 

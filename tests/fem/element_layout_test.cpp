@@ -35,11 +35,11 @@ TEST(ElementLayout, DenseWeightsStandAtTheirNodesAndZeroElsewhere) {
 }
 
 TEST(ElementLayout, ElementMatrixIsTheCongruenceOfItsRows) {
-  const FaceNodes face{{0, 2, 3, 5, 6}, 8};
+  const FaceNodes face{{0, 2, 3, 5, 6, 8, 9, 11, 12}, 12};  // tiles of one lane and of two
   Rng rng(1);
   constexpr int rows = 2;
   std::vector<double> weights(rows * face.padded, 0.0);
-  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3 * rows, 21);
+  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3 * rows, 39);
   for (int k = 0; k < rows; ++k)
     for (std::size_t a = 0; a < face.nodes.size(); ++a) {
       const double value = rng.uniform(-1, 1);
@@ -50,11 +50,19 @@ TEST(ElementLayout, ElementMatrixIsTheCongruenceOfItsRows) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j <= i; ++j) h(i, j) = h(j, i) = rng.uniform(-1, 1);
 
-  BlockMatrix matrix(7, std::vector<std::vector<int>>{face.nodes});
+  BlockMatrix matrix(13, std::vector<std::vector<int>>{face.nodes});
+  // Twice: the matrix adds up.
   ElementMatrix element;
   element.reset(face.padded);
-  element.add<rows>(weights.data(), h);
-  element.add<rows>(weights.data(), h);
+  for (int pair : {0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5}) {
+    const auto [c, d] = component_pairs[pair];
+    std::vector<double> products(rows * face.padded, 0.0);
+    for (int k = 0; k < rows; ++k)
+      for (int l = 0; l < rows; ++l)
+        for (int a = 0; a < face.padded; ++a)
+          products[k * face.padded + a] += h(3 * k + c, 3 * l + d) * weights[l * face.padded + a];
+    element.add(pair, rows, weights.data(), products.data());
+  }
   element.scatter(face, matrix);
   EXPECT_LT(test::relative_error(test::dense(matrix), 2.0 * w.transpose() * h * w), 1e-14);
 }

@@ -108,6 +108,13 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
     VecX gradient;
     double internal = 0;
     problem.gradient(touched.x, gradient, internal);
+    VecX with_constraint, of_constraint, of_constraint_alone;
+    double internal_too = 0;
+    EXPECT_EQ(problem.gradient_and_constraint(touched.x, with_constraint, internal_too, of_constraint),
+              problem.constraint(touched.x, of_constraint_alone));
+    EXPECT_EQ(with_constraint, gradient);
+    EXPECT_EQ(internal_too, internal);
+    EXPECT_EQ(of_constraint, of_constraint_alone);
     BlockMatrix hessian = touched.organ.body.pattern();
     problem.hessian(touched.x, 0.0, hessian);
     Rng rng(10 + seed);
