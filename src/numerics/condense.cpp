@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 namespace calot {
 
@@ -12,43 +11,50 @@ Condensation::Condensation(const BlockMatrix& pattern, int kept)
 }
 
 void Condensation::find_groups(const BlockMatrix& pattern) {
-  const int count = pattern.size() - kept_;
+  // By nodes: their three unknowns are in one group and meet the same others.
+  const int kept = kept_ / 3, count = pattern.nodes() - kept;
   std::vector<int> leader(count);
   for (int i = 0; i < count; ++i) leader[i] = i;
   const auto find = [&](int i) {
     while (leader[i] != i) i = leader[i] = leader[leader[i]];
     return i;
   };
-  std::vector<std::set<int>> outer(count);
-  for (int column = 0; column < pattern.size(); ++column) {
-    for (int e = pattern.column_starts()[column]; e < pattern.column_starts()[column + 1]; ++e) {
-      const int row = pattern.rows()[e] - kept_;
+  std::vector<std::vector<int>> outer(count);  // kept nodes, increasing
+  for (int column = 0; column < pattern.nodes(); ++column) {
+    const int end = pattern.column_starts()[3 * column + 1];
+    for (int e = pattern.column_starts()[3 * column]; e < end; e += 3) {
+      const int row = pattern.rows()[e] / 3 - kept;
       if (row < 0) continue;
-      if (column < kept_)
-        outer[row].insert(column);
-      else {
-        const int a = find(row), b = find(column - kept_);
+      if (column < kept) {
+        outer[row].push_back(column);
+      } else {
+        const int a = find(row), b = find(column - kept);
         leader[std::max(a, b)] = std::min(a, b);
       }
     }
   }
-  group_of_.assign(count, -1);
-  place_in_.assign(count, -1);
-  std::vector<std::set<int>> meets;
+  group_of_.assign(3 * count, -1);
+  place_in_.assign(3 * count, -1);
+  std::vector<std::vector<char>> meets;
   for (int i = 0; i < count; ++i) {
     const int first = find(i);
     if (first == i) {
-      group_of_[i] = static_cast<int>(groups_.size());
+      group_of_[3 * i] = static_cast<int>(groups_.size());
       groups_.emplace_back();
-      meets.emplace_back();
+      meets.emplace_back(kept, 0);
     }
-    group_of_[i] = group_of_[first];
-    Group& group = groups_[group_of_[i]];
-    place_in_[i] = static_cast<int>(group.inner.size());
-    group.inner.push_back(kept_ + i);
-    meets[group_of_[i]].insert(outer[i].begin(), outer[i].end());
+    const int number = group_of_[3 * first];
+    Group& group = groups_[number];
+    for (int unknown = 3 * i; unknown < 3 * i + 3; ++unknown) {
+      group_of_[unknown] = number;
+      place_in_[unknown] = static_cast<int>(group.inner.size());
+      group.inner.push_back(kept_ + unknown);
+    }
+    for (int node : outer[i]) meets[number][node] = 1;
   }
-  for (std::size_t g = 0; g < groups_.size(); ++g) groups_[g].outer.assign(meets[g].begin(), meets[g].end());
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (int unknown = 0; unknown < kept_; ++unknown)
+      if (meets[g][unknown / 3]) groups_[g].outer.push_back(unknown);
 }
 
 void Condensation::gather(const BlockMatrix& matrix) {
