@@ -12,46 +12,28 @@ namespace {
 
 /// The rule's points on each whole face, in the parameters of the coarse faces, and their weights. Leaves that an
 /// extension split have one point each: four in a face for three, which costs half and errs no more (0.26 % near a
-/// contact, with three in each 0.35 %).
+/// contact, with three in each 0.35 %). Those of one parent are one element.
 struct RulePoints {
   std::vector<FacePoint> at;
-  Quadrature quadrature;  ///< without stencils
+  std::vector<int> first_rows;  ///< of each coarse face, and their number
+  Quadrature quadrature;        ///< without stencils
 
   RulePoints(const SurfaceLevels& levels, const FaceTree& tree, const std::vector<QuadraturePoint>& rule) {
-    for (std::size_t k = 0; k < tree.leaves.size(); ++k) {
+    const std::vector<QuadraturePoint> middle = one_point_rule();
+    int element = -1, face = 0;
+    for (int k = 0; k < static_cast<int>(tree.leaves.size()); ++k) {
       const FaceTree::Leaf& leaf = tree.leaves[k];
-      for (const QuadraturePoint& q : leaf.level == 0 ? rule : one_point_rule()) {
+      if (k == 0 || !leaf.sibling_of(tree.leaves[k - 1])) ++element;
+      if (k == tree.first[face]) first_rows.push_back(static_cast<int>(at.size())), ++face;
+      for (const QuadraturePoint& q : leaf.level == 0 ? rule : middle) {
         at.push_back(levels.on_coarse(leaf.level, {leaf.face, q.u, q.v}));
-        quadrature.element.push_back(static_cast<int>(k));
+        quadrature.element.push_back(element);
         quadrature.weights.push_back(std::ldexp(q.weight, -2 * leaf.level));
       }
     }
+    first_rows.push_back(static_cast<int>(at.size()));
   }
 };
-
-/// Coarse columns of the rule's points; those of faces that are not split are known.
-StencilTable coarse_rows(const SurfaceLevels& levels, const FaceTree& tree, const RulePoints& points,
-                         const StencilTable& unsplit) {
-  if (tree.leaves.size() == levels.faces(0).size()) return unsplit;
-  std::vector<FacePoint> at;
-  for (std::size_t k = 0; k < points.at.size(); ++k)
-    if (tree.leaves[points.quadrature.element[k]].level > 0) at.push_back(points.at[k]);
-  const StencilTable split = levels.evaluate(0, at, 2);
-  StencilTable out;
-  reserve_as(unsplit, 1.0, out);
-  const int per_face = unsplit.rows() / static_cast<int>(levels.faces(0).size());
-  int done = 0;
-  for (std::size_t k = 0; k < points.at.size(); ++k) {
-    const FaceTree::Leaf& leaf = tree.leaves[points.quadrature.element[k]];
-    if (leaf.level > 0) {
-      append_rows(split, done, done + 1, out);
-      ++done;
-    } else if (k == 0 || points.quadrature.element[k] != points.quadrature.element[k - 1]) {
-      append_rows(unsplit, per_face * leaf.face, per_face * (leaf.face + 1), out);
-    }
-  }
-  return out;
-}
 
 std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
   std::vector<double> areas(points.size(), 0.0);
@@ -60,6 +42,12 @@ std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vec
     for (int p : t) areas[p] += area / 3.0;
   }
   return areas;
+}
+
+/// Place of a value in an increasing list, -1: none.
+int index_of(int value, const std::vector<int>& list) {
+  const auto found = std::lower_bound(list.begin(), list.end(), value);
+  return found != list.end() && *found == value ? static_cast<int>(found - list.begin()) : -1;
 }
 
 double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
@@ -116,8 +104,6 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
   for (int level = 1; level <= setup.levels; ++level)
     base.skin_by_level.push_back(base.levels.evaluate(level, base.skin.at, 1));
-  const RulePoints rule(base.levels, FaceTree(base.levels, {}), setup.rule);
-  base.quadrature = base.levels.evaluate(0, rule.at, 2);
   std::vector<FacePoint> places;
   for (int node = 0; node < base.levels.nodes(setup.levels); ++node)
     places.push_back(base.levels.place(node));
@@ -127,15 +113,15 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   for (const Vec3& p : base.skin_rest) box.extend(p);
   base.size = box.diagonal().norm();
   base.middle = box.center();
-  if (setup.foundation) lay_bed(rest, rule.at, rule.quadrature.weights, base);
+  if (setup.foundation) lay_bed(rest, base);
   VirtualStructure body(std::make_shared<const Base>(std::move(base)), {});
-  if (std::optional<Failure> failure = body.build()) return *failure;
+  if (std::optional<Failure> failure = body.build(nullptr)) return *failure;
   return body;
 }
 
-void VirtualStructure::lay_bed(const VecX& rest, const std::vector<FacePoint>& places,
-                               const std::vector<double>& weights, Base& base) {
-  const StencilTable& table = base.quadrature;
+void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
+  const RulePoints points(base.levels, FaceTree(base.levels, {}), base.setup.rule);
+  const StencilTable table = base.levels.evaluate(0, points.at, 1);
   for (int r = 0; r < table.rows(); ++r) {
     const Vec3 at = blend(table, table.value, r, rest);
     const double jacobian = blend(table, table.du, r, rest).cross(blend(table, table.dv, r, rest)).norm();
@@ -150,7 +136,7 @@ void VirtualStructure::lay_bed(const VecX& rest, const std::vector<FacePoint>& p
 
 Result<VirtualStructure> VirtualStructure::with_details(std::vector<int> details) const {
   VirtualStructure out(base_, std::move(details));
-  if (std::optional<Failure> failure = out.build()) return *failure;
+  if (std::optional<Failure> failure = out.build(this)) return *failure;
   out.kept_ = kept_;
   out.make_good();
   return out;
@@ -178,25 +164,19 @@ void VirtualStructure::make_good() {
   if (bile_) kept_volume_ = bile_->volume(x) - state.volume;
 }
 
-std::optional<Failure> VirtualStructure::build() {
-  const FaceTree tree(base_->levels, basis_.details());
-  rest_ = VecX::Zero(3 * Eigen::Index{basis_.nodes()});
-  rest_.head(3 * Eigen::Index{coarse_nodes()}) = to_coordinates(control().points);
-  RulePoints points(base_->levels, tree, base_->setup.rule);
-  points.quadrature.stencils =
-      basis_.extend(coarse_rows(base_->levels, tree, points, base_->quadrature), points.at, 2);
-  Result<Shell> shell = Shell::create(points.quadrature, rest_, base_->setup.material);
-  if (!shell) return shell.failure();
-  shell_ = std::move(shell).value();
-  quadrature_ = std::move(points.quadrature.stencils);
+DetailedSurface VirtualStructure::detailed(const SurfaceLevels& levels, std::vector<int> details) {
+  FaceTree tree(levels, details);
+  return {DetailBasis(levels, std::move(details)), std::move(tree)};
+}
 
-  skin_.at = base_->skin.at;
-  skin_.triangles = base_->skin.triangles;
-  skin_.stencils = basis_.extend(base_->skin.stencils, skin_.at, base_->skin_by_level);
-  skin_faces_ = base_->skin_faces;
-  std::vector<char> seen(details().size(), 0);
-  for (std::size_t f = 0; f < skin_faces_.size(); ++f)
-    if (basis_.reaches(static_cast<int>(f))) add_nodes(skin_.stencils, coarse_nodes(), seen, skin_faces_[f]);
+std::optional<Failure> VirtualStructure::build(const VirtualStructure* before) {
+  std::optional<SharedRows> shared;
+  if (before != nullptr) shared.emplace(before->surface_, surface_);
+  const SharedRows* rows = shared ? &*shared : nullptr;
+  rest_ = VecX::Zero(3 * Eigen::Index{surface_.basis.nodes()});
+  rest_.head(3 * Eigen::Index{coarse_nodes()}) = to_coordinates(control().points);
+  if (std::optional<Failure> failure = build_shell(before, rows)) return failure;
+  build_skin();
   edge_lengths_ = shortest_edges(control());
   for (int detail : details()) {
     double shortest = base_->size;
@@ -204,40 +184,81 @@ std::optional<Failure> VirtualStructure::build() {
       shortest = std::min(shortest, edge_lengths_[node]);
     edge_lengths_.push_back(std::ldexp(shortest, -base_->levels.level_of(detail)));
   }
-
   std::vector<std::vector<int>> cliques = shell_.cliques();
   if (base_->setup.bile) {
-    if (Result<bool> built = build_bile(tree); !built) return built.failure();
+    if (Result<bool> built = build_bile(before, rows); !built) return built.failure();
     for (std::vector<int>& clique : bile_->cliques()) cliques.push_back(std::move(clique));
   }
   for (const SkinFace& face : skin_faces_) cliques.push_back(face.nodes);
-  bed_points_ = basis_.evaluate(base_->bed_places, 0);
+  build_bed(before, rows);
   constant_ = BlockMatrix(nodes(), cliques);
   foundation().add_hessian(bed_points_, constant_);
   return std::nullopt;
 }
 
-Result<bool> VirtualStructure::build_bile(const FaceTree& tree) {
+std::optional<Failure> VirtualStructure::build_shell(const VirtualStructure* before,
+                                                     const SharedRows* shared) {
+  RulePoints points(base_->levels, surface_.tree, base_->setup.rule);
+  first_rows_ = std::move(points.first_rows);
+  std::vector<int> known(points.at.size(), -1);
+  for (int face = 0; shared && face < static_cast<int>(first_rows_.size()) - 1; ++face)
+    for (int row = first_rows_[face]; shared->same(face) && row < first_rows_[face + 1]; ++row)
+      known[row] = before->first_rows_[face] + row - first_rows_[face];
+  points.quadrature.stencils =
+      shared ? shared->rows(points.at, 2, before->quadrature_, known) : surface_.basis.evaluate(points.at, 2);
+  Result<Shell> shell = Shell::create(points.quadrature, rest_, base_->setup.material,
+                                      before ? &before->shell_ : nullptr, known);
+  if (!shell) return shell.failure();
+  shell_ = std::move(shell).value();
+  quadrature_ = std::move(points.quadrature.stencils);
+  return std::nullopt;
+}
+
+void VirtualStructure::build_skin() {
+  skin_.at = base_->skin.at;
+  skin_.triangles = base_->skin.triangles;
+  skin_.stencils = surface_.basis.extend(base_->skin.stencils, skin_.at, base_->skin_by_level);
+  skin_faces_ = base_->skin_faces;
+  std::vector<char> seen(details().size(), 0);
+  for (std::size_t f = 0; f < skin_faces_.size(); ++f)
+    if (surface_.basis.reaches(static_cast<int>(f)))
+      add_nodes(skin_.stencils, coarse_nodes(), seen, skin_faces_[f]);
+}
+
+void VirtualStructure::build_bed(const VirtualStructure* before, const SharedRows* shared) {
+  std::vector<int> known(base_->bed_places.size(), -1);
+  for (int k = 0; shared && k < static_cast<int>(known.size()); ++k)
+    if (shared->same(base_->bed_places[k].face)) known[k] = k;
+  bed_points_ = shared ? shared->rows(base_->bed_places, 0, before->bed_points_, known)
+                       : surface_.basis.evaluate(base_->bed_places, 0);
+}
+
+Result<bool> VirtualStructure::build_bile(const VirtualStructure* before, const SharedRows* shared) {
   const SurfaceLevels& levels = base_->levels;
   BileSurface surface;
-  std::vector<int> nodes;
-  for (const FaceTree::Leaf& leaf : tree.leaves) {
-    std::vector<BileSurface::Part> cell;
-    for (const Triangle& t : cover(levels, leaf, true)) cell.push_back({t, 4.0 / 3.0});
-    for (const Triangle& t : cover(levels, leaf, false)) cell.push_back({t, -1.0 / 3.0});
-    for (const BileSurface::Part& part : cell)
-      nodes.insert(nodes.end(), part.corners.begin(), part.corners.end());
-    surface.cells.push_back(std::move(cell));
+  const std::vector<FaceTree::Leaf>& leaves = surface_.tree.leaves;
+  for (std::size_t k = 0; k < leaves.size(); ++k) {
+    if (k == 0 || !leaves[k].sibling_of(leaves[k - 1])) surface.cells.emplace_back();
+    std::vector<BileSurface::Part>& cell = surface.cells.back();
+    for (const Triangle& t : cover(levels, leaves[k], true)) cell.push_back({t, 4.0 / 3.0});
+    for (const Triangle& t : cover(levels, leaves[k], false)) cell.push_back({t, -1.0 / 3.0});
   }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  for (const std::vector<BileSurface::Part>& cell : surface.cells)
+    for (const BileSurface::Part& part : cell)
+      bile_nodes_.insert(bile_nodes_.end(), part.corners.begin(), part.corners.end());
+  std::sort(bile_nodes_.begin(), bile_nodes_.end());
+  bile_nodes_.erase(std::unique(bile_nodes_.begin(), bile_nodes_.end()), bile_nodes_.end());
   std::vector<FacePoint> places;
-  for (int node : nodes) places.push_back(levels.place(node));
-  surface.points = basis_.evaluate(places, 0);
+  std::vector<int> known;
+  for (int node : bile_nodes_) {
+    places.push_back(levels.place(node));
+    known.push_back(shared && shared->same(places.back().face) ? index_of(node, before->bile_nodes_) : -1);
+  }
+  surface.points =
+      shared ? shared->rows(places, 0, before->bile_->points(), known) : surface_.basis.evaluate(places, 0);
   for (std::vector<BileSurface::Part>& cell : surface.cells)
     for (BileSurface::Part& part : cell)
-      for (int& corner : part.corners)
-        corner = static_cast<int>(std::lower_bound(nodes.begin(), nodes.end(), corner) - nodes.begin());
+      for (int& corner : part.corners) corner = index_of(corner, bile_nodes_);
   const double weight = base_->setup.bile->density * units::standard_gravity;
   Result<Bile> bile = Bile::create(surface, weight, base_->setup.up, base_->middle);
   if (!bile) return bile.failure();

@@ -13,7 +13,7 @@
 #include "fem/shell.h"
 #include "geometry/tri_mesh.h"
 #include "numerics/newton.h"
-#include "skin/detail_basis.h"
+#include "skin/shared_rows.h"
 
 namespace calot {
 
@@ -60,8 +60,12 @@ class VirtualStructure {
   double add_volume_gradient(const VecX& x, VecX& gradient) const {
     return bile_->add_volume_gradient(x, gradient) - kept_volume_;
   }
-  const std::vector<int>& details() const { return basis_.details(); }
-  const DetailBasis& basis() const { return basis_; }
+  /// The same with the load of the bile's weight added to `load`.
+  double add_weight_and_volume_gradient(const VecX& x, VecX& load, VecX& gradient) const {
+    return bile_->add_load_and_volume_gradient(x, 0, load, gradient) - kept_volume_;
+  }
+  const std::vector<int>& details() const { return surface_.basis.details(); }
+  const DetailBasis& basis() const { return surface_.basis; }
   const SurfaceLevels& levels() const { return base_->levels; }
   /// Where the nodes of all levels lie on the surface at rest, m.
   const std::vector<Vec3>& node_rest() const { return base_->node_rest; }
@@ -75,7 +79,7 @@ class VirtualStructure {
 
   const std::string& name() const { return base_->setup.name; }
   int nodes() const { return static_cast<int>(rest_.size()) / 3; }
-  int coarse_nodes() const { return basis_.coarse_nodes(); }
+  int coarse_nodes() const { return surface_.basis.coarse_nodes(); }
   const VecX& rest() const { return rest_; }
   const TriMesh& control() const { return base_->setup.control; }
   const Shell& shell() const { return shell_; }
@@ -122,7 +126,6 @@ class VirtualStructure {
     SurfaceLevels levels;
     Tessellation skin{};
     std::vector<StencilTable> skin_by_level{};  ///< of levels 1, 2, ...
-    StencilTable quadrature{};                  ///< of the coarse faces
     std::vector<Vec3> skin_rest{}, node_rest{};
     std::vector<double> skin_areas{};
     std::vector<SkinFace> skin_faces{};  ///< with the coarse nodes
@@ -132,12 +135,16 @@ class VirtualStructure {
     Vec3 middle = Vec3::Zero();
   };
   VirtualStructure(std::shared_ptr<const Base> base, std::vector<int> details)
-      : base_(std::move(base)), basis_(base_->levels, std::move(details)) {}
+      : base_(std::move(base)), surface_(detailed(base_->levels, std::move(details))) {}
+  static DetailedSurface detailed(const SurfaceLevels& levels, std::vector<int> details);
   /// The bed holds on to the coarse rule's points.
-  static void lay_bed(const VecX& rest, const std::vector<FacePoint>& places,
-                      const std::vector<double>& weights, Base& base);
-  std::optional<Failure> build();
-  Result<bool> build_bile(const FaceTree& tree);
+  static void lay_bed(const VecX& rest, Base& base);
+  /// What is the same in `before`, of the same base, is taken from there.
+  std::optional<Failure> build(const VirtualStructure* before);
+  std::optional<Failure> build_shell(const VirtualStructure* before, const SharedRows* shared);
+  void build_skin();
+  Result<bool> build_bile(const VirtualStructure* before, const SharedRows* shared);
+  void build_bed(const VirtualStructure* before, const SharedRows* shared);
 
   struct Kept {
     BodyState state;
@@ -152,7 +159,7 @@ class VirtualStructure {
   std::shared_ptr<const Kept> kept_;
   VecX kept_load_;
   double kept_volume_ = 0;
-  DetailBasis basis_;
+  DetailedSurface surface_;
   VecX rest_;
   Shell shell_;
   std::optional<Bile> bile_;
@@ -160,6 +167,8 @@ class VirtualStructure {
   std::vector<double> edge_lengths_;
   BlockMatrix constant_{0, {}};
   StencilTable quadrature_, bed_points_;
+  std::vector<int> first_rows_;  ///< of quadrature_: each coarse face's first, and their number
+  std::vector<int> bile_nodes_;  ///< of all levels, where the bile's points are: increasing
   std::vector<SkinFace> skin_faces_;
 };
 

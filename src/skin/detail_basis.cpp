@@ -6,7 +6,7 @@
 namespace calot {
 
 DetailBasis::DetailBasis(const SurfaceLevels& levels, std::vector<int> details)
-    : levels_(&levels), details_(std::move(details)) {
+    : levels_(&levels), details_(std::move(details)), details_on_(levels.faces(0).size()) {
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const int level = levels.level_of(details_[i]);
     if (active_.empty() || active_.back().level != level) {
@@ -14,13 +14,11 @@ DetailBasis::DetailBasis(const SurfaceLevels& levels, std::vector<int> details)
           {level, std::vector<int>(levels.nodes(level), -1), std::vector<char>(levels.faces(0).size(), 0)});
     }
     active_.back().column[details_[i]] = coarse_nodes() + static_cast<int>(i);
-    for (int face : levels.support(level, details_[i])) active_.back().touched[face] = 1;
+    for (int face : levels.support(level, details_[i])) {
+      active_.back().touched[face] = 1;
+      details_on_[face].push_back(details_[i]);
+    }
   }
-}
-
-bool DetailBasis::reaches(int face) const {
-  return std::any_of(active_.begin(), active_.end(),
-                     [&](const Level& level) { return level.touched[face] != 0; });
 }
 
 StencilTable DetailBasis::evaluate(std::span<const FacePoint> points, int order) const {
@@ -125,26 +123,36 @@ bool is_split(const Splits& split, int level, int face) {
   return level < static_cast<int>(split.size()) && split[level][face];
 }
 
-void add_leaves(const SurfaceLevels& levels, const Splits& split, int level, int face,
-                std::vector<FaceTree::Leaf>& out) {
-  if (is_split(split, level, face)) {
-    for (int child = 0; child < 4; ++child) add_leaves(levels, split, level + 1, 4 * face + child, out);
-    return;
-  }
+FaceTree::Leaf leaf_of(const SurfaceLevels& levels, const Splits& split, int level, int face) {
   FaceTree::Leaf leaf{level, face, {}};
   if (level < static_cast<int>(split.size()))
     for (int edge = 0; edge < 3; ++edge)
       for (int near : levels.faces_at_edge(level, levels.edge_node(level, face, edge)))
         if (near >= 0 && split[level][near]) leaf.hanging[edge] = true;
-  out.push_back(leaf);
+  return leaf;
+}
+
+/// Those of a face that is split: first of its children that are not, then within the others.
+void add_leaves(const SurfaceLevels& levels, const Splits& split, int level, int face,
+                std::vector<FaceTree::Leaf>& out) {
+  for (int child = 4 * face; child < 4 * face + 4; ++child)
+    if (!is_split(split, level + 1, child)) out.push_back(leaf_of(levels, split, level + 1, child));
+  for (int child = 4 * face; child < 4 * face + 4; ++child)
+    if (is_split(split, level + 1, child)) add_leaves(levels, split, level + 1, child, out);
 }
 
 }  // namespace
 
 FaceTree::FaceTree(const SurfaceLevels& levels, std::span<const int> details) {
   const Splits split = balanced_splits(levels, details);
-  for (std::size_t f = 0; f < levels.faces(0).size(); ++f)
-    add_leaves(levels, split, 0, static_cast<int>(f), leaves);
+  for (int face = 0; face < static_cast<int>(levels.faces(0).size()); ++face) {
+    first.push_back(static_cast<int>(leaves.size()));
+    if (is_split(split, 0, face))
+      add_leaves(levels, split, 0, face, leaves);
+    else
+      leaves.push_back(leaf_of(levels, split, 0, face));
+  }
+  first.push_back(static_cast<int>(leaves.size()));
 }
 
 namespace {

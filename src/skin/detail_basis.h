@@ -19,8 +19,9 @@ class DetailBasis {
   int nodes() const { return coarse_nodes() + static_cast<int>(details_.size()); }
   const std::vector<int>& details() const { return details_; }
 
-  /// Whether any detail's function is not zero somewhere on a coarse face.
-  bool reaches(int face) const;
+  /// Details whose functions are not zero somewhere on a coarse face: increasing.
+  const std::vector<int>& details_on(int face) const { return details_on_[face]; }
+  bool reaches(int face) const { return !details_on_[face].empty(); }
 
   /// Stencils at points of coarse faces, with derivatives by the coarse parameters.
   StencilTable evaluate(std::span<const FacePoint> points, int order) const;
@@ -43,6 +44,7 @@ class DetailBasis {
     std::vector<char> touched;  ///< coarse faces on which an active function is not zero
   };
   std::vector<Level> active_;  ///< increasing
+  std::vector<std::vector<int>> details_on_;
 };
 
 /// Faces as far split as the details on them ask: a detail splits the faces whose edge carries it, and neighbours
@@ -51,9 +53,17 @@ struct FaceTree {
   struct Leaf {
     int level = 0, face = 0;
     std::array<bool, 3> hanging = {};  ///< the neighbour at this edge is split, so that a node hangs on it
-  };
-  std::vector<Leaf> leaves;  ///< by coarse face
 
+    bool operator==(const Leaf&) const = default;
+    /// Whether both are parts of one face of the level before.
+    bool sibling_of(const Leaf& other) const {
+      return level > 0 && other.level == level && other.face / 4 == face / 4;
+    }
+  };
+  std::vector<Leaf> leaves;  ///< by coarse face, those of one parent next to each other
+  std::vector<int> first;    ///< leaf of each coarse face, and their number
+
+  FaceTree() = default;
   FaceTree(const SurfaceLevels& levels, std::span<const int> details);
 };
 

@@ -82,6 +82,48 @@ TEST(StructuralExtension, AThousandInsertedAndRemovedUnderLoadLeaveTheStateWitho
   EXPECT_LT(furthest(before, pulled.skin()), 1e-8) << "m; equilibria are met to 1e-9";
 }
 
+/// Everything that a solve reads of a structure, at a state where all its details move.
+std::vector<double> fingerprint(const VirtualStructure& body, const BodyState& rest) {
+  Rng rng(3);
+  VecX x = VecX::Zero(body.rest().size());
+  x.head(rest.x.size()) = rest.x;
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += rng.uniform(-0.5e-3, 0.5e-3);
+  const Surroundings nothing;
+  const BodyProblem problem(body, nothing, {}, {x, rest.multiplier, rest.volume});
+  VecX gradient, of_constraint;
+  double internal = 0;
+  std::vector<double> out = {problem.value(x),
+                             problem.gradient_and_constraint(x, gradient, internal, of_constraint), internal};
+  NewtonWorkspace work(body.pattern(), body.coarse_nodes());
+  problem.hessian(x, rest.multiplier, work.matrix);
+  const VecX solution =
+      work.factor.factorise(work.matrix) == FactorStatus::ok ? work.factor.solve(gradient) : VecX();
+  for (const VecX& v : {gradient, of_constraint, solution, body.kept_load()})
+    out.insert(out.end(), v.data(), v.data() + v.size());
+  out.insert(out.end(), work.matrix.entries().begin(), work.matrix.entries().end());
+  for (const Vec3& p : body.skin_positions(x)) out.insert(out.end(), p.data(), p.data() + 3);
+  return out;
+}
+
+TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
+  Field field = test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, 2);
+  const Organ& organ = field.organs[0];
+  const VirtualStructure& bare = organ.body;
+  const auto about = [&](const std::vector<int>& rows) {
+    std::vector<Extension> extensions;
+    for (int row : rows) extensions.push_back({0, row});
+    return details_around(bare, extensions);
+  };
+  const std::vector<int> first = about({10, 700}), second = about({700, 1200}),
+                         third = about({15, 1200, 1500});
+  const VirtualStructure a = bare.with_details(first).value(), b = a.with_details(second).value(),
+                         c = b.with_details(third).value(), gone = c.with_details({}).value();
+  EXPECT_EQ(fingerprint(b, organ.state), fingerprint(bare.with_details(second).value(), organ.state));
+  EXPECT_EQ(fingerprint(c, organ.state), fingerprint(bare.with_details(third).value(), organ.state));
+  EXPECT_EQ(fingerprint(gone, organ.state), fingerprint(bare, organ.state));
+  EXPECT_NE(fingerprint(b, organ.state), fingerprint(a, organ.state));
+}
+
 TEST(StructuralExtension, AnOrganAtRestDoesNotMoveWhenItIsExtended) {
   Field field = test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   Organ& organ = field.organs[0];
