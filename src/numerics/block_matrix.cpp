@@ -7,45 +7,67 @@
 
 namespace calot {
 
+namespace {
+
+/// Up to this many nodes (0.4 MB) a table says at once where a block is.
+constexpr int table_nodes = 320;
+
+}  // namespace
+
 BlockMatrix::BlockMatrix(int nodes, std::span<const std::vector<int>> cliques) {
   std::vector<std::vector<int>> cliques_of(nodes);
   for (std::size_t k = 0; k < cliques.size(); ++k)
     for (int j : cliques[k]) cliques_of[j].push_back(static_cast<int>(k));
   std::vector<int> seen_by(nodes, -1), column;
-  block_start_.push_back(0);
-  column_starts_.push_back(0);
+  auto made = std::make_shared<Pattern>();
+  made->block_start.push_back(0);
+  made->column_starts.push_back(0);
   for (int j = 0; j < nodes; ++j) {
     column.assign(1, j);
     for (int k : cliques_of[j])
       for (int i : cliques[k])
         if (i > j && std::exchange(seen_by[i], j) != j) column.push_back(i);
     std::sort(column.begin(), column.end());
-    block_row_.insert(block_row_.end(), column.begin(), column.end());
-    block_start_.push_back(static_cast<int>(block_row_.size()));
+    made->block_row.insert(made->block_row.end(), column.begin(), column.end());
+    made->block_start.push_back(static_cast<int>(made->block_row.size()));
     for (int c = 0; c < 3; ++c) {
       for (int i : column)
-        for (int r = 0; r < 3; ++r) rows_.push_back(3 * i + r);
-      column_starts_.push_back(static_cast<int>(rows_.size()));
+        for (int r = 0; r < 3; ++r) made->rows.push_back(3 * i + r);
+      made->column_starts.push_back(static_cast<int>(made->rows.size()));
     }
   }
-  values_.assign(rows_.size(), 0.0);
+  values_.assign(made->rows.size(), 0.0);
+  pattern_ = made;
+  if (nodes > table_nodes) return;
+  made->slots.assign(static_cast<std::size_t>(nodes) * nodes, -1);
+  for (int j = 0; j < nodes; ++j)
+    for (int b = made->block_start[j]; b < made->block_start[j + 1]; ++b)
+      made->slots[static_cast<std::size_t>(j) * nodes + made->block_row[b]] =
+          made->column_starts[3 * j] + 3 * (b - made->block_start[j]);
 }
 
-int BlockMatrix::slot(int i, int j) const {
-  const auto first = block_row_.begin() + block_start_[j];
-  const auto last = block_row_.begin() + block_start_[j + 1];
+int BlockMatrix::search(int i, int j) const {
+  const auto first = pattern_->block_row.begin() + pattern_->block_start[j];
+  const auto last = pattern_->block_row.begin() + pattern_->block_start[j + 1];
   const auto found = std::lower_bound(first, last, i);
   if (found == last || *found != i) return -1;
-  return column_starts_[3 * j] + 3 * static_cast<int>(found - first);
+  return pattern_->column_starts[3 * j] + 3 * static_cast<int>(found - first);
 }
 
 void BlockMatrix::slots(std::span<const int> nodes, int* out) const {
+  const Pattern& pattern = *pattern_;
   const int j = nodes.front();
-  int block = block_start_[j];
+  if (!pattern.slots.empty()) {
+    const int* column = pattern.slots.data() + static_cast<std::size_t>(j) * this->nodes();
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      if ((out[k] = column[nodes[k]]) < 0) std::abort();  // as in add()
+    return;
+  }
+  int block = pattern.block_start[j];
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    while (block_row_[block] != nodes[k])
-      if (++block == block_start_[j + 1]) std::abort();  // as in add()
-    out[k] = column_starts_[3 * j] + 3 * (block - block_start_[j]);
+    while (pattern.block_row[block] != nodes[k])
+      if (++block == pattern.block_start[j + 1]) std::abort();
+    out[k] = pattern.column_starts[3 * j] + 3 * (block - pattern.block_start[j]);
   }
 }
 
@@ -59,16 +81,16 @@ void BlockMatrix::add(int i, int j, const Mat3& block) {
 
 void BlockMatrix::add_to_diagonal(double shift) {
   for (int j = 0; j < nodes(); ++j)
-    for (int c = 0; c < 3; ++c) values_[column_starts_[3 * j + c] + c] += shift;
+    for (int c = 0; c < 3; ++c) values_[column_starts()[3 * j + c] + c] += shift;
 }
 
 void BlockMatrix::hold_all_but(int first, int last) {
   const double mean = diagonal_mean();
   const auto is_free = [&](int unknown) { return unknown >= 3 * first && unknown < 3 * last; };
   for (int column = 0; column < size(); ++column) {
-    for (int e = column_starts_[column]; e < column_starts_[column + 1]; ++e) {
-      if (is_free(column) && is_free(rows_[e])) continue;
-      values_[e] = rows_[e] == column ? mean : 0.0;
+    for (int e = column_starts()[column]; e < column_starts()[column + 1]; ++e) {
+      if (is_free(column) && is_free(rows()[e])) continue;
+      values_[e] = rows()[e] == column ? mean : 0.0;
     }
   }
 }
@@ -76,7 +98,7 @@ void BlockMatrix::hold_all_but(int first, int last) {
 double BlockMatrix::diagonal_mean() const {
   double sum = 0;
   for (int j = 0; j < nodes(); ++j)
-    for (int c = 0; c < 3; ++c) sum += std::abs(values_[column_starts_[3 * j + c] + c]);
+    for (int c = 0; c < 3; ++c) sum += std::abs(values_[column_starts()[3 * j + c] + c]);
   return sum / size();
 }
 
@@ -87,8 +109,8 @@ bool BlockMatrix::all_finite() const {
 VecX BlockMatrix::multiply(const VecX& x) const {
   VecX y = VecX::Zero(size());
   for (int column = 0; column < size(); ++column) {
-    for (int e = column_starts_[column]; e < column_starts_[column + 1]; ++e) {
-      const int row = rows_[e];
+    for (int e = column_starts()[column]; e < column_starts()[column + 1]; ++e) {
+      const int row = rows()[e];
       if (row < column) continue;  // upper entries of a diagonal block
       y[row] += values_[e] * x[column];
       if (row > column) y[column] += values_[e] * x[row];

@@ -3,6 +3,7 @@
 // for good: assembly writes values only.
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,7 @@ class BlockMatrix {
   /// `cliques`: groups of nodes coupled with each other (an element's nodes). Every diagonal block exists.
   BlockMatrix(int nodes, std::span<const std::vector<int>> cliques);
 
-  int nodes() const { return static_cast<int>(block_start_.size()) - 1; }
+  int nodes() const { return static_cast<int>(pattern_->block_start.size()) - 1; }
   int size() const { return 3 * nodes(); }
   void set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
   /// Starts from a constant part: `values` as entries() returned them from a matrix of the same pattern.
@@ -25,10 +26,13 @@ class BlockMatrix {
 
   /// Offset of entry (0, 0) of block (i, j), i >= j; -1 when the pattern does not hold it. Entry (r, c) lies
   /// at slot + c * stride(j) + r.
-  int slot(int i, int j) const;
+  int slot(int i, int j) const {
+    return pattern_->slots.empty() ? search(i, j)
+                                   : pattern_->slots[static_cast<std::size_t>(j) * nodes() + i];
+  }
   /// slot(nodes[k], nodes[0]) for each of the increasing `nodes`, which the pattern must hold.
   void slots(std::span<const int> nodes, int* out) const;
-  int stride(int j) const { return 3 * (block_start_[j + 1] - block_start_[j]); }
+  int stride(int j) const { return 3 * (pattern_->block_start[j + 1] - pattern_->block_start[j]); }
   double* values() { return values_.data(); }
 
   /// Adds to block (i, j), i >= j, which the pattern must hold.
@@ -42,14 +46,21 @@ class BlockMatrix {
   VecX multiply(const VecX& x) const;
 
   /// Compressed columns for CHOLMOD: size() + 1 starts, row of each value (increasing in a column).
-  const std::vector<int>& column_starts() const { return column_starts_; }
-  const std::vector<int>& rows() const { return rows_; }
+  const std::vector<int>& column_starts() const { return pattern_->column_starts; }
+  const std::vector<int>& rows() const { return pattern_->rows; }
   const std::vector<double>& entries() const { return values_; }
 
  private:
-  std::vector<int> block_start_;  ///< nodes + 1, into block_row_
-  std::vector<int> block_row_;
-  std::vector<int> column_starts_, rows_;
+  /// Shared by the copies of a matrix.
+  struct Pattern {
+    std::vector<int> block_start;  ///< nodes + 1, into block_row
+    std::vector<int> block_row;
+    std::vector<int> column_starts, rows;
+    std::vector<int> slots;  ///< of every pair (i, j) at j * nodes + i, for few nodes
+  };
+  int search(int i, int j) const;
+
+  std::shared_ptr<const Pattern> pattern_;
   std::vector<double> values_;
 };
 

@@ -35,6 +35,23 @@ TEST(BlockMatrix, BlocksAddUpAtTheirSlots) {
                   expected(3 * i + r, 3 * j + c));
 }
 
+TEST(BlockMatrix, SlotsAreTheSameWithATableAndWithout) {
+  const std::vector<std::vector<int>> cliques = {{0, 3, 7, 8}, {1, 3, 4}, {4, 9}};
+  const BlockMatrix few(10, cliques), many(1000, cliques);  // too many nodes for a table
+  const std::vector<int> nodes = {0, 3, 8};
+  int of_few[3], of_many[3];
+  few.slots(nodes, of_few);
+  many.slots(nodes, of_many);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(of_few[k], few.slot(nodes[k], 0));
+    EXPECT_EQ(of_many[k], of_few[k]);
+  }
+  for (int j = 0; j < 10; ++j)
+    for (int i = j; i < 10; ++i) EXPECT_EQ(few.slot(i, j), many.slot(i, j)) << i << " " << j;
+  EXPECT_EQ(few.slot(2, 0), -1);
+  EXPECT_GT(few.slot(9, 4), 0);
+}
+
 TEST(BlockMatrix, PatternHoldsTheCliquesAndEveryDiagonalBlockOnly) {
   const std::vector<std::vector<int>> cliques = {{3, 0}, {1, 3, 4}, {3, 0}};
   const BlockMatrix matrix(6, cliques);
