@@ -60,10 +60,7 @@ Result<Bile> Bile::create(const BileSurface& surface, double specific_weight, co
     if (points.size() > most_points)
       return fail(FailureKind::internal, fmt::format("cell {} of the bile has {} points", c, points.size()));
     cell.points = static_cast<int>(points.size());
-    for (int p : points)
-      cell.nodes.nodes.insert(cell.nodes.nodes.end(), table.node.begin() + table.begin[p],
-                              table.node.begin() + table.begin[p + 1]);
-    cell.nodes.finish();
+    for (int p : points) cell.nodes.add_row(table, p);
     if (cell.nodes.count() > max_face_nodes)
       return fail(FailureKind::scenario,
                   fmt::format("cell {} of the bile depends on {} nodes", c, cell.nodes.nodes.size()),
@@ -164,44 +161,79 @@ struct Bile::CellHessian {
     std::fill(coupled, coupled + count * count, false);
     for (auto& pair : at) std::fill(pair, pair + count * count, 0.0);
   }
-  void add(int i, int j, const Mat3& block) {
-    coupled[i * points + j] = true;
-    for (int pair = 0; pair < 6; ++pair)
-      at[pair][i * points + j] += block(component_pairs[pair][0], component_pairs[pair][1]);
-  }
 };
 
 namespace {
 
-/// Second derivatives of weight V (g4 up . (a + b + c) - m) by the corners, added to `h` at local points
-/// `local`.
-template <class CellHessian>
-void add_triangle_hessian(const Vec3* corner, const int* local, double weight, double g4, const Vec3& up,
-                          double multiplier, CellHessian& h) {
-  const double s = weight * (g4 * up.dot(corner[0] + corner[1] + corner[2]) - multiplier) / 6.0;
-  Vec3 by[3];  // gradient of g4 V, weighed
-  for (int i = 0; i < 3; ++i) by[i] = g4 * weight / 6.0 * corner[(i + 1) % 3].cross(corner[(i + 2) % 3]);
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      Mat3 block = by[i] * up.transpose() + up * by[j].transpose();
-      // d2V by (i, i + 1) = -[third corner] / 6, by (i + 1, i) its transpose.
-      if (j == (i + 1) % 3) block -= s * cross_matrix(corner[(i + 2) % 3]);
-      if (i == (j + 1) % 3) block += s * cross_matrix(corner[(j + 2) % 3]);
-      h.add(local[i], local[j], block);
-    }
+/// Four triangles side by side; lanes that are not used have no weight.
+struct Triangles {
+  Lanes3 corner[3];
+  Lanes weight = {};
+};
+
+/// Second derivatives of weight V (g4 up . (a + b + c) - m) by the corners i and j, by component pairs.
+struct CornerBlock {
+  Lanes at[6];
+};
+
+/// What the blocks of four triangles have in common.
+struct TriangleDerivatives {
+  const Vec3& up;
+  const Lanes3* corner;
+  Lanes3 by[3];  ///< gradient of g4 V by each corner, weighed
+  Lanes s;
+
+  TriangleDerivatives(const Triangles& t, double g4, const Vec3& upwards, double multiplier)
+      : up(upwards), corner(t.corner) {
+    const Lanes3 sum = t.corner[0] + t.corner[1] + t.corner[2];
+    s = t.weight / 6.0 * (g4 * (up[0] * sum[0] + up[1] * sum[1] + up[2] * sum[2]) - multiplier);
+    for (int i = 0; i < 3; ++i)
+      by[i] = g4 / 6.0 * t.weight * cross(t.corner[(i + 1) % 3], t.corner[(i + 2) % 3]);
   }
-}
+
+  CornerBlock block(int i, int j) const {
+    CornerBlock out;
+    for (int pair = 0; pair < 6; ++pair) {
+      const int c = component_pairs[pair][0], d = component_pairs[pair][1];
+      out.at[pair] = by[i][c] * up[d] + up[c] * by[j][d];
+    }
+    if (i == j) return out;
+    // d2V by (i, i + 1) = -[third corner] / 6, by (i + 1, i) its transpose.
+    const Lanes3 turn = (j == (i + 1) % 3 ? -s : s) * corner[3 - i - j];
+    out.at[1] -= turn[2];
+    out.at[2] += turn[1];
+    out.at[4] -= turn[0];
+    return out;
+  }
+};
 
 }  // namespace
 
 void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double multiplier, CellHessian& h) const {
-  h.reset(cells_[cell].points);
-  const std::size_t end =
-      cell + 1 < cells_.size() ? static_cast<std::size_t>(cells_[cell + 1].first_part) : parts_.size();
-  for (std::size_t k = cells_[cell].first_part; k < end; ++k) {
-    const Part& part = parts_[k];
-    const Vec3 corner[3] = {at[part.corners[0]], at[part.corners[1]], at[part.corners[2]]};
-    add_triangle_hessian(corner, part.local, part.weight, 0.25 * specific_weight_, up_, multiplier, h);
+  const int points = cells_[cell].points;
+  h.reset(points);
+  const int end = cell + 1 < cells_.size() ? cells_[cell + 1].first_part : static_cast<int>(parts_.size());
+  for (int first = cells_[cell].first_part; first < end; first += lane_count) {
+    const int used = std::min(lane_count, end - first);
+    Triangles t;
+    for (int lane = 0; lane < used; ++lane) {
+      const Part& part = parts_[first + lane];
+      t.weight[lane] = part.weight;
+      for (int k = 0; k < 3; ++k)
+        for (int c = 0; c < 3; ++c) t.corner[k][c][lane] = at[part.corners[k]][c];
+    }
+    const TriangleDerivatives derivatives(t, 0.25 * specific_weight_, up_, multiplier);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const CornerBlock block = derivatives.block(i, j);
+        for (int lane = 0; lane < used; ++lane) {
+          const Part& part = parts_[first + lane];
+          const int place = part.local[i] * points + part.local[j];
+          h.coupled[place] = true;
+          for (int pair = 0; pair < 6; ++pair) h.at[pair][place] += block.at[pair][lane];
+        }
+      }
+    }
   }
 }
 
@@ -214,16 +246,20 @@ void Bile::add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) co
     const int points = cells_[c].points, n = cells_[c].nodes.padded;
     const double* weights = weights_.data() + cells_[c].weights;
     assemble(c, at, multiplier, h);
+    int others[most_points][most_points], count[most_points] = {};  // that each point is coupled with
+    for (int i = 0; i < points; ++i)
+      for (int j = 0; j < points; ++j)
+        if (h.coupled[i * points + j]) others[i][count[i]++] = j;
     element.reset(n);
     for (int pair = 0; pair < 6; ++pair) {
       for (int i = 0; i < points; ++i) {
-        double* row = products + i * n;
-        std::fill(row, row + n, 0.0);
-        for (int j = 0; j < points; ++j) {
-          if (!h.coupled[i * points + j]) continue;
-          const Lanes value = all_lanes(h.at[pair][i * points + j]);
-          for (int a = 0; a < n; a += lane_count)
-            store_lanes(fused(value, load_lanes(weights + j * n + a), load_lanes(row + a)), row + a);
+        for (int a = 0; a < n; a += lane_count) {
+          Lanes sum = {};
+          for (int k = 0; k < count[i]; ++k) {
+            const int j = others[i][k];
+            sum = fused(all_lanes(h.at[pair][i * points + j]), load_lanes(weights + j * n + a), sum);
+          }
+          store_lanes(sum, products + i * n + a);
         }
       }
       element.add(pair, points, weights, products);

@@ -1,25 +1,28 @@
 #include "fem/element_layout.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "fem/lanes.h"
 
 namespace calot {
 
-void FaceNodes::finish() {
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+void FaceNodes::add_row(const StencilTable& table, int r) {
+  const auto first = table.node.begin() + table.begin[r], last = table.node.begin() + table.begin[r + 1];
+  if (!std::includes(nodes.begin(), nodes.end(), first, last)) {
+    std::vector<int> all;
+    all.reserve(nodes.size() + static_cast<std::size_t>(last - first));
+    std::set_union(nodes.begin(), nodes.end(), first, last, std::back_inserter(all));
+    nodes = std::move(all);
+  }
   padded = (count() + lane_count - 1) / lane_count * lane_count;
 }
 
 std::vector<FaceNodes> gather_faces(const StencilTable& table, const std::vector<int>& face_of_row,
                                     int faces) {
   std::vector<FaceNodes> out(faces);
-  for (int r = 0; r < table.rows(); ++r) {
-    std::vector<int>& nodes = out[face_of_row[r]].nodes;
-    nodes.insert(nodes.end(), table.node.begin() + table.begin[r], table.node.begin() + table.begin[r + 1]);
-  }
-  for (FaceNodes& face : out) face.finish();
+  for (int r = 0; r < table.rows(); ++r) out[face_of_row[r]].add_row(table, r);
   return out;
 }
 

@@ -18,8 +18,8 @@ struct FaceNodes {
   std::vector<int> nodes;  ///< increasing
   int padded = 0;          ///< length of a row of weights over them, zero filled
 
-  /// Sorts the nodes, drops repeats and sets padded: their number, rounded up to a multiple of 4.
-  void finish();
+  /// Takes in the nodes of row r of a table; padded follows: their number, rounded up to a multiple of 4.
+  void add_row(const StencilTable& table, int r);
   int count() const { return static_cast<int>(nodes.size()); }
 };
 
