@@ -50,6 +50,14 @@ int index_of(int value, const std::vector<int>& list) {
   return found != list.end() && *found == value ? static_cast<int>(found - list.begin()) : -1;
 }
 
+StencilTable without_derivatives(const StencilTable& table) {
+  StencilTable out;
+  out.begin = table.begin;
+  out.node = table.node;
+  out.value = table.value;
+  return out;
+}
+
 double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
   double widest = 0;
   for (const Triangle& t : triangles)
@@ -104,6 +112,9 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
   for (int level = 1; level <= setup.levels; ++level)
     base.skin_by_level.push_back(base.levels.evaluate(level, base.skin.at, 1));
+  base.skin_places = without_derivatives(base.skin.stencils);
+  for (const StencilTable& table : base.skin_by_level)
+    base.skin_places_by_level.push_back(without_derivatives(table));
   std::vector<FacePoint> places;
   for (int node = 0; node < base.levels.nodes(setup.levels); ++node)
     places.push_back(base.levels.place(node));
@@ -217,7 +228,7 @@ std::optional<Failure> VirtualStructure::build_shell(const VirtualStructure* bef
 void VirtualStructure::build_skin() {
   skin_.at = base_->skin.at;
   skin_.triangles = base_->skin.triangles;
-  skin_.stencils = surface_.basis.extend(base_->skin.stencils, skin_.at, base_->skin_by_level);
+  skin_.stencils = surface_.basis.extend(base_->skin_places, skin_.at, base_->skin_places_by_level);
   skin_faces_ = base_->skin_faces;
   std::vector<char> seen(details().size(), 0);
   for (std::size_t f = 0; f < skin_faces_.size(); ++f)
@@ -315,8 +326,9 @@ std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
 }
 
 std::vector<Vec3> VirtualStructure::skin_normals(const VecX& x) const {
-  const std::vector<Vec3> u = blend_all(skin_.stencils, skin_.stencils.du, x);
-  const std::vector<Vec3> v = blend_all(skin_.stencils, skin_.stencils.dv, x);
+  const StencilTable table =
+      surface_.basis.extend(base_->skin.stencils, base_->skin.at, base_->skin_by_level);
+  const std::vector<Vec3> u = blend_all(table, table.du, x), v = blend_all(table, table.dv, x);
   std::vector<Vec3> normals(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) normals[i] = u[i].cross(v[i]).normalized();
   return normals;

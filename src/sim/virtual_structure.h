@@ -126,6 +126,9 @@ class VirtualStructure {
     SurfaceLevels levels;
     Tessellation skin{};
     std::vector<StencilTable> skin_by_level{};  ///< of levels 1, 2, ...
+    /// The same places without derivatives, which only drawing asks for.
+    StencilTable skin_places{};
+    std::vector<StencilTable> skin_places_by_level{};
     std::vector<Vec3> skin_rest{}, node_rest{};
     std::vector<double> skin_areas{};
     std::vector<SkinFace> skin_faces{};  ///< with the coarse nodes
