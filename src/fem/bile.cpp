@@ -111,21 +111,47 @@ double Bile::value(const VecX& x) const {
   return 0.25 * specific_weight_ * sum;  // the fourth corner of each tetrahedron is the datum, at height 0
 }
 
+/// Triangles side by side; lanes that are not used have no weight.
+struct Bile::Triangles {
+  Lanes3 corner[3];
+  Lanes weight = {};
+};
+
+Bile::Triangles Bile::triangles(int first, int used, const std::vector<Vec3>& at) const {
+  Triangles out;
+  for (int lane = 0; lane < used; ++lane) {
+    const Part& part = parts_[first + lane];
+    out.weight[lane] = part.weight;
+    for (int k = 0; k < 3; ++k)
+      for (int c = 0; c < 3; ++c) out.corner[k][c][lane] = at[part.corners[k]][c];
+  }
+  return out;
+}
+
 Bile::PointForces Bile::point_forces(const VecX& x, double multiplier) const {
   const std::vector<Vec3> at = positions(x);
   PointForces out;
   out.load.assign(at.size(), Vec3::Zero());
   out.by_volume.assign(at.size(), Vec3::Zero());
   const double g4 = 0.25 * specific_weight_;
-  for (const auto& [t, local, w] : parts_) {
-    const Vec3 &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
-    const Vec3 by[3] = {w / 6.0 * b.cross(c), w / 6.0 * c.cross(a), w / 6.0 * a.cross(b)};
-    const double volume = a.dot(by[0]), s = g4 * up_.dot(a + b + c) - multiplier;
-    const Vec3 same = g4 * volume * up_;
-    out.volume += volume;
+  const int count = static_cast<int>(parts_.size());
+  for (int first = 0; first < count; first += lane_count) {
+    const int used = std::min(lane_count, count - first);
+    const Triangles t = triangles(first, used, at);
+    const Lanes3 sum = t.corner[0] + t.corner[1] + t.corner[2];
+    const Lanes s = g4 * (up_[0] * sum[0] + up_[1] * sum[1] + up_[2] * sum[2]) - multiplier;
+    const Lanes share = t.weight / 6.0, volume = share * dot(t.corner[0], cross(t.corner[1], t.corner[2]));
+    out.volume += sum_of(volume);
     for (int k = 0; k < 3; ++k) {
-      out.by_volume[t[k]] += by[k];
-      out.load[t[k]] += s * by[k] + same;
+      const Lanes3 by = share * cross(t.corner[(k + 1) % 3], t.corner[(k + 2) % 3]);
+      for (int c = 0; c < 3; ++c) {
+        const Lanes load = s * by[c] + g4 * up_[c] * volume;
+        for (int lane = 0; lane < used; ++lane) {
+          const int point = parts_[first + lane].corners[k];
+          out.by_volume[point][c] += by[c][lane];
+          out.load[point][c] += load[lane];
+        }
+      }
     }
   }
   return out;
@@ -163,21 +189,12 @@ struct Bile::CellHessian {
   }
 };
 
-namespace {
+/// Second derivatives of weight V (g4 up . (a + b + c) - m) of four triangles.
+struct Bile::TriangleDerivatives {
+  struct Block {
+    Lanes at[6];  ///< by component pairs
+  };
 
-/// Four triangles side by side; lanes that are not used have no weight.
-struct Triangles {
-  Lanes3 corner[3];
-  Lanes weight = {};
-};
-
-/// Second derivatives of weight V (g4 up . (a + b + c) - m) by the corners i and j, by component pairs.
-struct CornerBlock {
-  Lanes at[6];
-};
-
-/// What the blocks of four triangles have in common.
-struct TriangleDerivatives {
   const Vec3& up;
   const Lanes3* corner;
   Lanes3 by[3];  ///< gradient of g4 V by each corner, weighed
@@ -191,8 +208,9 @@ struct TriangleDerivatives {
       by[i] = g4 / 6.0 * t.weight * cross(t.corner[(i + 1) % 3], t.corner[(i + 2) % 3]);
   }
 
-  CornerBlock block(int i, int j) const {
-    CornerBlock out;
+  /// By the corners i and j.
+  Block block(int i, int j) const {
+    Block out;
     for (int pair = 0; pair < 6; ++pair) {
       const int c = component_pairs[pair][0], d = component_pairs[pair][1];
       out.at[pair] = by[i][c] * up[d] + up[c] * by[j][d];
@@ -207,25 +225,17 @@ struct TriangleDerivatives {
   }
 };
 
-}  // namespace
-
 void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double multiplier, CellHessian& h) const {
   const int points = cells_[cell].points;
   h.reset(points);
   const int end = cell + 1 < cells_.size() ? cells_[cell + 1].first_part : static_cast<int>(parts_.size());
   for (int first = cells_[cell].first_part; first < end; first += lane_count) {
     const int used = std::min(lane_count, end - first);
-    Triangles t;
-    for (int lane = 0; lane < used; ++lane) {
-      const Part& part = parts_[first + lane];
-      t.weight[lane] = part.weight;
-      for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) t.corner[k][c][lane] = at[part.corners[k]][c];
-    }
+    const Triangles t = triangles(first, used, at);
     const TriangleDerivatives derivatives(t, 0.25 * specific_weight_, up_, multiplier);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        const CornerBlock block = derivatives.block(i, j);
+        const TriangleDerivatives::Block block = derivatives.block(i, j);
         for (int lane = 0; lane < used; ++lane) {
           const Part& part = parts_[first + lane];
           const int place = part.local[i] * points + part.local[j];

@@ -65,6 +65,9 @@ class Bile {
 
  private:
   std::vector<Vec3> positions(const VecX& x) const;
+  struct Triangles;
+  struct TriangleDerivatives;
+  Triangles triangles(int first, int used, const std::vector<Vec3>& at) const;
   /// Forces on the surface's points.
   struct PointForces {
     std::vector<Vec3> load, by_volume;

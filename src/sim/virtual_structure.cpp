@@ -136,12 +136,12 @@ void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
   for (int r = 0; r < table.rows(); ++r) {
     const Vec3 at = blend(table, table.value, r, rest);
     const double jacobian = blend(table, table.du, r, rest).cross(blend(table, table.dv, r, rest)).norm();
-    const double stiffness = base.setup.foundation(at) * weights[r] * jacobian;
+    const double stiffness = base.setup.foundation(at) * points.quadrature.weights[r] * jacobian;
     if (stiffness <= 0) continue;
     base.bed.row.push_back(static_cast<int>(base.bed_places.size()));
     base.bed.target.push_back(at);
     base.bed.stiffness.push_back(stiffness);
-    base.bed_places.push_back(places[r]);
+    base.bed_places.push_back(points.at[r]);
   }
 }
 
@@ -247,7 +247,10 @@ void VirtualStructure::build_bed(const VirtualStructure* before, const SharedRow
 Result<bool> VirtualStructure::build_bile(const VirtualStructure* before, const SharedRows* shared) {
   const SurfaceLevels& levels = base_->levels;
   BileSurface surface;
-  const std::vector<FaceTree::Leaf>& leaves = surface_.tree.leaves;
+  // The rule splits each face in four itself: with one split less errors near a contact are the same to 0.04 % of the
+  // displacement (1.03 % become 0.99, 0.61 stay), at half the cost.
+  const FaceTree tree(levels, details(), true);
+  const std::vector<FaceTree::Leaf>& leaves = tree.leaves;
   for (std::size_t k = 0; k < leaves.size(); ++k) {
     if (k == 0 || !leaves[k].sibling_of(leaves[k - 1])) surface.cells.emplace_back();
     std::vector<BileSurface::Part>& cell = surface.cells.back();

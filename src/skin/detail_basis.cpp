@@ -97,6 +97,19 @@ namespace {
 /// Split faces of each level, children of split faces only.
 using Splits = std::vector<std::vector<char>>;
 
+/// Splits what children of split faces and neighbours by one split at most ask for.
+void balance(const SurfaceLevels& levels, Splits& split) {
+  for (int level = static_cast<int>(split.size()) - 1; level > 0; --level) {
+    for (std::size_t f = 0; f < split[level].size(); ++f) {
+      if (!split[level][f]) continue;
+      split[level - 1][f / 4] = 1;
+      for (int edge = 0; edge < 3; ++edge)
+        for (int near : levels.faces_at_edge(level, levels.edge_node(level, static_cast<int>(f), edge)))
+          if (near >= 0) split[level - 1][near / 4] = 1;
+    }
+  }
+}
+
 Splits balanced_splits(const SurfaceLevels& levels, std::span<const int> details) {
   Splits split;
   int deepest = 0;
@@ -107,16 +120,20 @@ Splits balanced_splits(const SurfaceLevels& levels, std::span<const int> details
     for (int face : levels.faces_at_edge(level, detail))
       if (face >= 0) split[level][face] = 1;
   }
-  for (int level = deepest - 1; level > 0; --level) {
+  balance(levels, split);
+  return split;
+}
+
+/// Only faces that have a child that is split stay so.
+void merge(Splits& split) {
+  for (std::size_t level = 0; level < split.size(); ++level) {
     for (std::size_t f = 0; f < split[level].size(); ++f) {
+      if (level + 1 == split.size()) split[level][f] = 0;
       if (!split[level][f]) continue;
-      split[level - 1][f / 4] = 1;
-      for (int edge = 0; edge < 3; ++edge)
-        for (int near : levels.faces_at_edge(level, levels.edge_node(level, static_cast<int>(f), edge)))
-          if (near >= 0) split[level - 1][near / 4] = 1;
+      const auto first = split[level + 1].begin() + static_cast<std::ptrdiff_t>(4 * f);
+      split[level][f] = std::any_of(first, first + 4, [](char child) { return child != 0; });
     }
   }
-  return split;
 }
 
 bool is_split(const Splits& split, int level, int face) {
@@ -143,8 +160,12 @@ void add_leaves(const SurfaceLevels& levels, const Splits& split, int level, int
 
 }  // namespace
 
-FaceTree::FaceTree(const SurfaceLevels& levels, std::span<const int> details) {
-  const Splits split = balanced_splits(levels, details);
+FaceTree::FaceTree(const SurfaceLevels& levels, std::span<const int> details, bool merged) {
+  Splits split = balanced_splits(levels, details);
+  if (merged) {
+    merge(split);
+    balance(levels, split);
+  }
   for (int face = 0; face < static_cast<int>(levels.faces(0).size()); ++face) {
     first.push_back(static_cast<int>(leaves.size()));
     if (is_split(split, 0, face))

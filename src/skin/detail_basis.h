@@ -64,7 +64,8 @@ struct FaceTree {
   std::vector<int> first;    ///< leaf of each coarse face, and their number
 
   FaceTree() = default;
-  FaceTree(const SurfaceLevels& levels, std::span<const int> details);
+  /// `merged`: one split less, leaves that are all the children of a face make way for it where neighbours allow.
+  FaceTree(const SurfaceLevels& levels, std::span<const int> details, bool merged = false);
 };
 
 /// Triangles that cover a leaf, corners as node numbers of any level: without cracks beside those of its

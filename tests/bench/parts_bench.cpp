@@ -4,15 +4,16 @@
 
 #include "sim/instrument.h"
 #include "sim/organ.h"
+#include "sim/structural_extension.h"
 
 namespace {
 
 using namespace calot;
 
-Organ gallbladder(int nodes) {
+Organ gallbladder(int nodes, int levels = 0) {
   OrganDefinition definition = named_anatomy("standard")->organs[0];
   definition.nodes = nodes;
-  return make_organ(definition, {}, Vec3::UnitZ(), 1e-6).value();
+  return make_organ(definition, {}, Vec3::UnitZ(), 1e-6, levels).value();
 }
 
 void shell_hessian(benchmark::State& state) {
@@ -72,6 +73,18 @@ void solve(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(organ.work.factor.solve(right));
 }
 
+/// A second extension of twelve nodes beside one that is there, and its matrix and factor's workspace.
+void laying_an_extension(benchmark::State& state) {
+  const Organ organ = gallbladder(static_cast<int>(state.range(0)), 1);
+  const int fundus = organ.landmarks.at("fundus"), neck = organ.landmarks.at("neck");
+  const VirtualStructure one = organ.body.with_details(details_around(organ.body, {{0, fundus}})).value();
+  const std::vector<int> both = details_around(organ.body, {{0, fundus}, {1, neck}});
+  for (auto _ : state) {
+    const VirtualStructure two = one.with_details(both).value();
+    benchmark::DoNotOptimize(NewtonWorkspace(two.pattern(), two.coarse_nodes()));
+  }
+}
+
 void nodes(benchmark::internal::Benchmark* part) {
   part->ArgName("nodes")->Arg(61)->Arg(180)->Unit(benchmark::kMicrosecond);
 }
@@ -81,5 +94,6 @@ BENCHMARK(energy_and_gradient)->Apply(nodes);
 BENCHMARK(contact_search)->Apply(nodes);
 BENCHMARK(factorisation)->Apply(nodes);
 BENCHMARK(solve)->Apply(nodes);
+BENCHMARK(laying_an_extension)->Apply(nodes);
 
 }  // namespace

@@ -176,33 +176,61 @@ std::size_t open_edges(const std::vector<Triangle>& triangles) {
       std::count_if(count.begin(), count.end(), [](const auto& c) { return c.second != 0; }));
 }
 
+/// Up to 20 details of levels 1 to 3.
+std::vector<int> random_details(const SurfaceLevels& levels, int count, Rng& rng) {
+  std::set<int> details;
+  for (int k = 0; k < count; ++k) {
+    const int level = 1 + static_cast<int>(rng.uniform(0, 2.999));
+    const std::vector<int> odd = odd_nodes(levels, level);
+    details.insert(odd[static_cast<std::size_t>(rng.uniform(0, 0.999) * static_cast<double>(odd.size()))]);
+  }
+  return {details.begin(), details.end()};
+}
+
+void expect_no_cracks(const SurfaceLevels& levels, const FaceTree& tree) {
+  double area = 0;
+  std::vector<Triangle> fine, coarse;
+  for (const FaceTree::Leaf& leaf : tree.leaves) {
+    area += std::ldexp(1.0, -2 * leaf.level);
+    for (const Triangle& t : cover(levels, leaf, true)) fine.push_back(t);
+    for (const Triangle& t : cover(levels, leaf, false)) coarse.push_back(t);
+  }
+  EXPECT_EQ(area, static_cast<double>(levels.faces(0).size()));
+  EXPECT_EQ(open_edges(fine), 0u);
+  EXPECT_EQ(open_edges(coarse), 0u);
+}
+
 TEST(FaceTree, ItsLeavesCoverTheSurfaceWithoutCracks) {
   const SurfaceLevels levels = SurfaceLevels::create(closed_meshes()[1].mesh, 3).value();
   Rng rng(3);
   for (int round = 0; round < 20; ++round) {
-    std::set<int> details;
-    for (int k = 0; k < 1 + round; ++k) {
-      const int level = 1 + static_cast<int>(rng.uniform(0, 2.999));
-      const std::vector<int> odd = odd_nodes(levels, level);
-      details.insert(odd[static_cast<std::size_t>(rng.uniform(0, 0.999) * static_cast<double>(odd.size()))]);
-    }
-    const FaceTree tree(levels, std::vector<int>(details.begin(), details.end()));
-    double area = 0;
-    std::vector<Triangle> fine, coarse;
-    for (const FaceTree::Leaf& leaf : tree.leaves) {
-      area += std::ldexp(1.0, -2 * leaf.level);
-      for (const Triangle& t : cover(levels, leaf, true)) fine.push_back(t);
-      for (const Triangle& t : cover(levels, leaf, false)) coarse.push_back(t);
-    }
-    EXPECT_EQ(area, static_cast<double>(levels.faces(0).size()));
+    const std::vector<int> details = random_details(levels, 1 + round, rng);
+    const FaceTree tree(levels, details);
+    expect_no_cracks(levels, tree);
     EXPECT_GT(tree.leaves.size(), levels.faces(0).size());
-    EXPECT_EQ(open_edges(fine), 0u);
-    EXPECT_EQ(open_edges(coarse), 0u);
     for (int detail : details) {
       // Both faces at a detail's edge are split.
       const int level = levels.level_of(detail) - 1;
       for (int face : levels.faces_at_edge(level, detail))
         for (const FaceTree::Leaf& leaf : tree.leaves) EXPECT_FALSE(leaf.level == level && leaf.face == face);
+    }
+  }
+}
+
+TEST(FaceTree, OneSplitLessMakesParentsOfAllTheirLeaves) {
+  const SurfaceLevels levels = SurfaceLevels::create(closed_meshes()[1].mesh, 3).value();
+  Rng rng(4);
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<int> details = random_details(levels, 1 + round, rng);
+    const FaceTree whole(levels, details), merged(levels, details, true);
+    expect_no_cracks(levels, merged);
+    EXPECT_LT(merged.leaves.size(), whole.leaves.size());
+    std::set<std::pair<int, int>> leaves;
+    for (const FaceTree::Leaf& leaf : whole.leaves) leaves.insert({leaf.level, leaf.face});
+    for (const FaceTree::Leaf& leaf : merged.leaves) {
+      if (leaves.count({leaf.level, leaf.face}) > 0) continue;
+      for (int child = 4 * leaf.face; child < 4 * leaf.face + 4; ++child)
+        EXPECT_EQ(leaves.count({leaf.level + 1, child}), 1u);
     }
   }
 }
