@@ -31,14 +31,18 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x, int places
   return motions;
 }
 
-/// A rigid motion that meets no resistance: its stiffness is rounding beside the matrix. Rigid motions keep
-/// the volume, so the border cannot hold them either.
+/// A rigid motion that meets no resistance: the forces it causes are rounding beside the matrix. Rigid motions keep
+/// the volume, so the border cannot hold them either. Its stiffness alone would not do: far from balance a motion that
+/// is softly held may meet forces that do no work on it.
 bool has_mechanism(const BlockMatrix& matrix, const VecX& x, int places) {
   const auto motions = rigid_motions(x, places);
-  Eigen::Matrix<double, 6, 6> stiffness;
-  for (int c = 0; c < 6; ++c) stiffness.col(c) = motions.transpose() * matrix.multiply(motions.col(c));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(stiffness, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().cwiseAbs().minCoeff() < 1e-9 * matrix.diagonal_mean();
+  Eigen::Matrix<double, Eigen::Dynamic, 6> forces(x.size(), 6);
+  for (int c = 0; c < 6; ++c) forces.col(c) = matrix.multiply(motions.col(c));
+  const Eigen::Matrix<double, 6, 6> stiffness = motions.transpose() * forces;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(stiffness);
+  Eigen::Index softest = 0;
+  const double least = eigen.eigenvalues().cwiseAbs().minCoeff(&softest), scale = matrix.diagonal_mean();
+  return least < 1e-9 * scale && (forces * eigen.eigenvectors().col(softest)).norm() < 1e-8 * scale;
 }
 
 struct State {
