@@ -31,10 +31,10 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const VecX& x, int places
   return motions;
 }
 
-/// A rigid motion that meets no resistance: the forces it causes are rounding beside the matrix. Rigid motions keep
-/// the volume, so the border cannot hold them either. Its stiffness alone would not do: far from balance a motion that
-/// is softly held may meet forces that do no work on it.
-bool has_mechanism(const BlockMatrix& matrix, const VecX& x, int places) {
+/// A rigid motion that meets no resistance: its stiffness and the forces it causes, but for what the multiplier takes
+/// up, are rounding beside the matrix. (The stiffness alone may change its sign where a motion is held softly.) Rigid
+/// motions keep the volume, so the border cannot hold them.
+bool has_mechanism(const BlockMatrix& matrix, const VecX& border, const VecX& x, int places) {
   const auto motions = rigid_motions(x, places);
   Eigen::Matrix<double, Eigen::Dynamic, 6> forces(x.size(), 6);
   for (int c = 0; c < 6; ++c) forces.col(c) = matrix.multiply(motions.col(c));
@@ -42,7 +42,10 @@ bool has_mechanism(const BlockMatrix& matrix, const VecX& x, int places) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(stiffness);
   Eigen::Index softest = 0;
   const double least = eigen.eigenvalues().cwiseAbs().minCoeff(&softest), scale = matrix.diagonal_mean();
-  return least < 1e-9 * scale && (forces * eigen.eigenvectors().col(softest)).norm() < 1e-8 * scale;
+  if (least >= 1e-9 * scale) return false;
+  VecX met = forces * eigen.eigenvectors().col(softest);
+  if (border.size() > 0) met -= border.dot(met) / border.squaredNorm() * border;
+  return met.norm() < 1e-8 * scale;
 }
 
 struct State {
@@ -87,7 +90,8 @@ NewtonStatus factorise(NewtonWorkspace& work, const VecX& x, int places, NewtonR
   FactorStatus status = work.factor.factorise(work.matrix);
   const bool doubtful = status == FactorStatus::not_positive_definite ||
                         (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12);
-  if (doubtful && has_mechanism(work.matrix, x, places)) return NewtonStatus::mechanism;
+  if (doubtful && has_mechanism(work.matrix, work.constraint_gradient, x, places))
+    return NewtonStatus::mechanism;
   double shift = 1e-4 * work.matrix.diagonal_mean();
   while (status == FactorStatus::not_positive_definite) {
     work.matrix.add_to_diagonal(shift);
