@@ -95,7 +95,8 @@ TEST(Vibration, AStiffBallOnSpringsSwaysAtTheRootOfSpringOverMass) {
 /// Lowest frequency, Hz, from all eigenvalues on a basis of the motions that keep the volume; and whether K has a
 /// negative one on all motions.
 std::pair<double, bool> by_brute_force(const Organ& organ, const BodyMass& mass) {
-  const BodyProblem problem(organ.body, {}, {}, organ.state);
+  const Surroundings nothing;
+  const BodyProblem problem(organ.body, nothing, {}, organ.state);
   BlockMatrix matrix = organ.body.pattern();
   problem.hessian(organ.state.x, organ.state.multiplier, matrix);
   VecX gradient;
