@@ -25,4 +25,39 @@ void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMat
       matrix.add(table.node[a], table.node[b], table.value[a] * table.value[b] * h);
 }
 
+bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix) {
+  struct Node {
+    int node;
+    Eigen::Vector4d weight = Eigen::Vector4d::Zero();
+  };
+  std::vector<Node> nodes;
+  for (int k = 0; k < 4; ++k) {
+    if (rows[k] < 0) continue;
+    for (int e = table.begin[rows[k]]; e < table.begin[rows[k] + 1]; ++e) {
+      const auto at = std::lower_bound(nodes.begin(), nodes.end(), table.node[e],
+                                       [](const Node& n, int node) { return n.node < node; });
+      const auto place =
+          at != nodes.end() && at->node == table.node[e] ? at : nodes.insert(at, {table.node[e]});
+      place->weight[k] = table.value[e];
+    }
+  }
+  bool complete = true;
+  for (std::size_t j = 0; j < nodes.size(); ++j) {
+    Eigen::Matrix<double, 12, 3> column = Eigen::Matrix<double, 12, 3>::Zero();
+    for (int k = 0; k < 4; ++k)
+      if (nodes[j].weight[k] != 0) column += nodes[j].weight[k] * hessian.middleCols<3>(3 * k);
+    for (std::size_t i = j; i < nodes.size(); ++i) {
+      Mat3 block = Mat3::Zero();
+      for (int k = 0; k < 4; ++k)
+        if (nodes[i].weight[k] != 0) block += nodes[i].weight[k] * column.middleRows<3>(3 * k);
+      if (matrix.slot(nodes[i].node, nodes[j].node) < 0)
+        complete = false;
+      else
+        matrix.add(nodes[i].node, nodes[j].node, block);
+    }
+  }
+  return complete;
+}
+
 }  // namespace calot

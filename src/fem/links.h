@@ -21,4 +21,9 @@ struct Links {
 /// Adds weight_a weight_b h to every node pair of row r.
 void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMatrix& matrix);
 
+/// Adds a Hessian by up to four points (`rows`, unused ones negative) to their nodes' pairs by all their weights.
+/// Couplings that the pattern does not hold are left out: then false.
+bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix);
+
 }  // namespace calot

@@ -71,6 +71,30 @@ void BlockMatrix::slots(std::span<const int> nodes, int* out) const {
   }
 }
 
+BlockMatrix BlockMatrix::widened(std::span<const std::vector<int>> cliques) const {
+  std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
+  for (int j = 0; j < nodes(); ++j)
+    for (int k = pattern_->block_start[j]; k < pattern_->block_start[j + 1]; ++k) all.push_back({j, pattern_->block_row[k]});
+  BlockMatrix out(nodes(), all);
+  out.assign(*this);
+  return out;
+}
+
+void BlockMatrix::assign(const BlockMatrix& part) {
+  if (values_.size() == part.values_.size()) return assign(part.values_);
+  set_zero();
+  for (int j = 0; j < nodes(); ++j) {
+    for (int k = part.pattern_->block_start[j]; k < part.pattern_->block_start[j + 1]; ++k) {
+      const int from = part.pattern_->column_starts[3 * j] + 3 * (k - part.pattern_->block_start[j]);
+      const int to = slot(part.pattern_->block_row[k], j);
+      if (to < 0) std::abort();  // as in add()
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+          values_[to + c * stride(j) + r] = part.values_[from + c * part.stride(j) + r];
+    }
+  }
+}
+
 void BlockMatrix::add(int i, int j, const Mat3& block) {
   const int at = slot(i, j);
   if (at < 0) std::abort();  // the pattern is built from the same stencils: a miss is a defect of ours

@@ -24,6 +24,11 @@ class BlockMatrix {
   /// Starts from a constant part: `values` as entries() returned them from a matrix of the same pattern.
   void assign(const std::vector<double>& values) { values_ = values; }
 
+  /// The same values with room for the couplings of further cliques.
+  BlockMatrix widened(std::span<const std::vector<int>> cliques) const;
+  /// Starts from a matrix whose pattern this one's holds.
+  void assign(const BlockMatrix& part);
+
   /// Offset of entry (0, 0) of block (i, j), i >= j; -1 when the pattern does not hold it. Entry (r, c) lies
   /// at slot + c * stride(j) + r.
   int slot(int i, int j) const {

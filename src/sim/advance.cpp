@@ -122,12 +122,13 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   {
     const Timed timed(statistics.contact_s);
     pairs = organ.search.pairs(organ.body, organ.state.x, now, travel);
+    organ.search.own.prepare(organ.body, organ.state.x, organ.work);
   }
   bool loaded = false;
   const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
   out.dx = VecX::Zero(organ.state.x.size());
   if (loaded) {
-    const BodyProblem problem(organ.body, now, pairs, organ.state);
+    const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search.own);
     const NewtonResult factored =
         factorise_tangent(problem, organ.work, organ.state.x, organ.state.multiplier, fresh);
     count(factored, statistics);
@@ -146,6 +147,7 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
     }
   }
   const Timed timed(statistics.contact_s);
+  out.share = organ.search.own.safe_share(organ.body, organ.state.x, out.dx, contact_keep, out.share);
   const Poses partly = between(from, to, out.share);
   out.share *= share_kept_apart(field, organ, now, pairs, out.share * out.dx, from, partly);
   return out;

@@ -4,6 +4,7 @@
 #include "collision/barrier.h"
 #include "collision/shapes.h"
 #include "sim/friction_load.h"
+#include "sim/self_contact.h"
 #include "sim/virtual_structure.h"
 
 namespace calot {
@@ -36,6 +37,8 @@ class ContactSearch {
  public:
   std::vector<ContactPair> pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                  double extra);
+
+  SelfContact own;  ///< the skin's with itself
 
  private:
   std::vector<ContactPair> near_;  ///< distances as they were then

@@ -9,14 +9,16 @@
 
 namespace calot {
 BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field,
-                         std::vector<ContactPair> pairs, const BodyState& start, bool fixed_pressure)
+                         std::vector<ContactPair> pairs, const BodyState& start, bool fixed_pressure,
+                         SelfContact* own)
     : body_(body),
       field_(field),
       pairs_(std::move(pairs)),
       start_(start.x),
       volume_(start.volume),
       multiplier_(start.multiplier),
-      fixed_pressure_(fixed_pressure) {}
+      fixed_pressure_(fixed_pressure),
+      own_(own) {}
 
 double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
 
@@ -45,6 +47,7 @@ double BodyProblem::value(const VecX& x) const {
     const double distance = signed_distance(field_.shapes[pair.shape], at);
     sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
   });
+  if (own_) sum += own_->value(body_, field_.barrier, x);
   return sum;
 }
 
@@ -60,6 +63,7 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
     const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
     spread(body_.skin().stencils, pair.row, force * d.gradient, gradient);
   });
+  if (own_) own_->add_gradient(body_, field_.barrier, x, gradient);
 }
 
 namespace {
@@ -89,7 +93,7 @@ double BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, doub
 }
 
 void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
-  matrix.assign(body_.pattern().entries());
+  matrix.assign(body_.pattern());
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
   field_.friction.add_hessian(body_.skin().stencils, x, matrix);
@@ -101,6 +105,7 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
     add_point_hessian(body_.skin().stencils, pair.row, h, matrix);
   });
+  if (own_) own_->add_hessian(body_, field_.barrier, x, matrix);
 }
 
 double BodyProblem::constraint(const VecX& x, VecX& gradient) const {
@@ -134,7 +139,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
     share *= calot::safe_share(at, motion, shape, contact_keep);
   }
-  return share;
+  return own_ ? own_->safe_share(body_, x, step, contact_keep, share) : share;
 }
 
 NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
@@ -149,18 +154,21 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
     {
       const Timed timed(gathering_s);
       pairs = search.pairs(body, state.x, field, 0.0);
+      search.own.prepare(body, state.x, work);
     }
     const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
     const auto problem = [&](const BodyState& start, bool at_pressure) {
-      return std::make_unique<BodyProblem>(body, field, pairs, start, at_pressure);
+      return std::make_unique<BodyProblem>(body, field, pairs, start, at_pressure, &search.own);
     };
     const NewtonResult result =
         staged ? solve_in_stages(body, problem, settings, work, state)
-               : solve_equilibrium(BodyProblem(body, field, pairs, state, fixed_pressure), settings, work,
-                                   state.x, state.multiplier);
+               : solve_equilibrium(BodyProblem(body, field, pairs, state, fixed_pressure, &search.own),
+                                   settings, work, state.x, state.multiplier);
     total.add(result);
     total.safety_s += gathering_s;
-    const bool moved = (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;
+    // Walls that met without couplings in the matrix have them in the next round.
+    const bool moved =
+        (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin || search.own.lacking();
     const bool cut_short =
         result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
     if (!cut_short || !moved) break;

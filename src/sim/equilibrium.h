@@ -17,9 +17,10 @@ inline constexpr int settle_iterations = 1000;
 
 class BodyProblem : public ConstrainedEnergy {
  public:
-  /// `fixed_pressure`: the multiplier is prescribed and the volume free.
+  /// `fixed_pressure`: the multiplier is prescribed and the volume free. `own`: contact of the skin with itself,
+  /// where that is asked for; it must outlive the problem.
   BodyProblem(const VirtualStructure& body, const Surroundings& field, std::vector<ContactPair> pairs,
-              const BodyState& start, bool fixed_pressure = false);
+              const BodyState& start, bool fixed_pressure = false, SelfContact* own = nullptr);
 
   bool constrained() const override { return body_.bile().has_value() && !fixed_pressure_; }
   double value(const VecX& x) const override;
@@ -49,6 +50,7 @@ class BodyProblem : public ConstrainedEnergy {
   VecX start_;
   double volume_, multiplier_;
   bool fixed_pressure_;
+  SelfContact* own_;
 };
 
 /// Equilibrium in a field at rest, however far from `state` it is: where a solve ends at the margin, the next

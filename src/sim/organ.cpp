@@ -158,6 +158,15 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
   return true;
 }
 
+/// Whether filling blows up a shape of ours, which brings no wall nearer to another: then there is nothing to look for
+/// on the long steps of filling.
+bool swells(const Organ& organ) {
+  const BileDefinition& bile = organ.definition.bile;
+  if (std::holds_alternative<MeshFile>(organ.definition.shape)) return false;
+  return bile.fill_pressure ? *bile.fill_pressure >= 0
+                            : bile.fill_volume.value_or(organ.state.volume) >= organ.state.volume;
+}
+
 /// Contact is felt at skin points: they must stand closer than half a jaw is wide, or it would slip in
 /// between.
 std::optional<Failure> check_skin_spacing(const VirtualStructure& body) {
@@ -235,7 +244,9 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
                     "move the organ up or the plane down", {"", 0, "scene.anatomy.support.point"});
   NewtonSettings settings;
   settings.tolerance = tolerance;
+  organ.search.own.active = !swells(organ);
   Result<bool> filled = fill(organ, field, settings);
+  organ.search.own.active = true;
   if (!filled) return filled.failure();
   organ.body.keep_in_equilibrium(organ.state);
   return organ;

@@ -75,6 +75,12 @@ bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::ve
   });
 }
 
+/// Whether no wall passes through another as the details that are left out go. Those that are new move nothing yet.
+bool clear_of_itself(Organ& organ, const VirtualStructure& before, const VecX& x) {
+  const VecX going = organ.body.coordinates_in(before, organ.state.x) - x;
+  return organ.search.own.safe_share(before, x, going, contact_keep, 1.0) == 1.0;
+}
+
 }  // namespace
 
 std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
@@ -151,7 +157,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   std::swap(organ.work, work);
   const VecX start = organ.state.x;
   ++statistics.extensions_changed;
-  if (clear_of_tools(organ, now, near) &&
+  if (clear_of_tools(organ, now, near) && clear_of_itself(organ, next.value(), before.state.x) &&
       settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged()) {
     organ.refused_details.reset();
     return;

@@ -180,7 +180,9 @@ Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mas
 Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
                                 const BodyState& state, const BodyMass& mass) {
   NewtonWorkspace work(body.pattern());
-  const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
+  SelfContact own;
+  own.prepare(body, state.x, work);
+  const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state, false, &own);
   const NewtonResult factored = factorise_tangent(problem, work, state.x, state.multiplier, true);
   if (!factored.converged())
     return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),

@@ -1,14 +1,10 @@
 #pragma once
 // Shapes of an instrument's size in random attitudes, and points around them.
 
-#include "base/rng.h"
 #include "collision/shapes.h"
+#include "support/random.h"
 
 namespace calot::test {
-
-inline Vec3 random_vector(Rng& rng, double reach) {
-  return {rng.uniform(-reach, reach), rng.uniform(-reach, reach), rng.uniform(-reach, reach)};
-}
 
 inline Vec3 random_direction(Rng& rng) {
   Vec3 v = random_vector(rng, 1.0);

@@ -96,6 +96,22 @@ TEST(BlockMatrix, StartsFromAssignedValuesOrZero) {
   EXPECT_EQ(test::stored(matrix), test::stored(copy));
 }
 
+TEST(BlockMatrix, AWidenedMatrixIsTheSameWithRoomForMore) {
+  const std::vector<std::vector<int>> few{{0, 1}, {2, 3}}, more{{1, 3}};
+  BlockMatrix matrix(4, few);
+  for (int k = 0; k < static_cast<int>(matrix.entries().size()); ++k) matrix.values()[k] = 1 + k;
+  BlockMatrix wide = matrix.widened(more);
+  Rng rng(4);
+  const VecX x = test::random_coordinates(rng, 12, 1.0);
+  EXPECT_EQ(wide.multiply(x), matrix.multiply(x));
+  EXPECT_LT(matrix.slot(3, 1), 0);
+  ASSERT_GE(wide.slot(3, 1), 0);
+  wide.add(3, 1, Mat3::Identity());
+  EXPECT_NE(wide.multiply(x), matrix.multiply(x));
+  wide.assign(matrix);  // what is not in the narrower is zero again
+  EXPECT_EQ(wide.multiply(x), matrix.multiply(x));
+}
+
 TEST(BlockMatrix, OneValueThatIsNotFiniteIsFound) {
   Rng rng(6);
   for (double bad : {std::nan(""), HUGE_VAL}) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "field_rig.h"
 #include "rig.h"
 #include "sim/hold.h"
@@ -68,14 +70,16 @@ TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
     for (const auto& [depth, jaw] : {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}})
       ASSERT_EQ(test::move_tip(field, fundus + depth * out, jaw), "");
     ASSERT_TRUE(field.tools[0].jaw_stopped);
-    int sliding = 0;
+    int sliding = 0, held = grip_count(field.organs[0], 0);
     for (int k = 1; k <= 60 && field.tools[0].jaw_stopped; ++k) {
       ASSERT_EQ(test::move_tip(field, fundus + (0.2 * k - 4) * 1e-3 * out, 0.0, 1), "");
       const double force = pad_pull(field, 0).norm();
       EXPECT_LE(force, 1.001 * limit) << nodes << " nodes: the friction cone is never left";
+      const int before = std::exchange(held, grip_count(field.organs[0], 0));
       if (!field.tools[0].slipping || !field.tools[0].jaw_stopped) continue;
       ++sliding;
-      EXPECT_GT(force, 0.8 * limit) << nodes << " nodes: sliding friction holds on";
+      // Skin that has slid off the pads took its share of the pull with it.
+      EXPECT_GT(force, 0.8 * limit * held / before) << nodes << " nodes: sliding friction holds on";
     }
     EXPECT_GT(sliding, 2) << nodes;
   }

@@ -3,10 +3,10 @@
 
 #include <cstdlib>
 
-#include "base/rng.h"
 #include "geometry/shapes.h"
 #include "geometry/stencil.h"
 #include "skin/subdivision.h"
+#include "support/random.h"
 
 namespace calot::test {
 
@@ -34,10 +34,6 @@ inline std::vector<FacePoint> at_all_faces(int faces, const std::vector<Vec2>& p
   return points;
 }
 
-inline Vec3 random_vector(Rng& rng, double reach) {
-  const double x = rng.uniform(-reach, reach), y = rng.uniform(-reach, reach);
-  return {x, y, rng.uniform(-reach, reach)};
-}
 inline Pose random_motion(Rng& rng, double reach) {
   const Vec3 axis = random_vector(rng, 1.0).normalized(), shift = random_vector(rng, reach);
   return Eigen::Translation3d(shift) * Eigen::AngleAxisd(rng.uniform(-3.0, 3.0), axis);

@@ -1,0 +1,281 @@
+#include "sim/self_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace calot {
+namespace {
+
+/// How far pairs are remembered, and groups of points, m. Only points in near groups are looked at when pairs are
+/// gathered, and only how these move against each other ages the pairs: a fold that is pulled along keeps its own.
+/// More reach means fewer searches and more to look at between them: these were the fastest of nine in a grasp.
+constexpr double close_reach = 0.8e-3, group_reach = 3e-3;
+/// Walls that are nearer than the first of these may touch in the next solve, and are coupled in its matrix; beyond
+/// the second they are not any more.
+constexpr double couple_below = 1.25 * self_range, uncouple_above = 1.5 * self_range;
+
+/// Bound on how much any two skin points that hang on `nodes` move against each other when the nodes move by `dx`, m:
+/// what the coarse nodes' motions differ by, and the details' of each level.
+double relative_motion(const VirtualStructure& body, const VecX& dx, const std::vector<int>& nodes) {
+  Eigen::AlignedBox3d coarse;
+  std::vector<double> of_level(body.levels_used() + 1, 0.0);
+  for (int node : nodes) {
+    const Vec3 move = dx.segment<3>(Eigen::Index{3} * node);
+    if (node < body.coarse_nodes()) {
+      coarse.extend(move);
+    } else {
+      double& largest = of_level[body.levels().level_of(body.details()[node - body.coarse_nodes()])];
+      largest = std::max(largest, move.norm());
+    }
+  }
+  double sum = coarse.isEmpty() ? 0.0 : coarse.sizes().norm();
+  for (double largest : of_level) sum += 2 * largest;
+  return sum;
+}
+
+double relative_motion(const VirtualStructure& body, const VecX& dx) {
+  std::vector<int> all(body.nodes());
+  std::iota(all.begin(), all.end(), 0);
+  return relative_motion(body, dx, all);
+}
+
+std::array<Vec3, 3> corners_of(const Triangle& t, const std::vector<Vec3>& points) {
+  return {points[t[0]], points[t[1]], points[t[2]]};
+}
+
+/// What the pair leaves of a share of the motion. Few of those that are looked at could meet at all.
+double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>& at,
+              const std::vector<Vec3>& motion, double keep, double share) {
+  const Triangle& t = net.triangles[pair.triangle];
+  const Vec3 p = at[pair.row], q = at[t[0]];
+  const double triangle = std::max((at[t[1]] - q).norm(), (at[t[2]] - q).norm());
+  std::array<Vec3, 3> motions = corners_of(t, motion);
+  double longest = 0;
+  for (Vec3& m : motions) longest = std::max(longest, (m - motion[pair.row]).squaredNorm());
+  if (share * std::sqrt(longest) < (1.0 - keep) * ((p - q).norm() - triangle)) return share;
+  for (Vec3& m : motions) m *= share;
+  return share * calot::safe_share(at[pair.row], share * motion[pair.row], corners_of(t, at), motions, keep);
+}
+
+}  // namespace
+
+const SkinNet& SelfContact::net(const VirtualStructure& body) {
+  if (!net_) net_.emplace(body);
+  return *net_;
+}
+
+void SelfContact::refresh_groups(const VirtualStructure& body, const VecX& x, double need) {
+  // A group is near by its triangles' corners: these come nearer by what moves, and edges lengthen by that.
+  constexpr double by_motion = 1.6;
+  if (groups_known_ && groups_x_.size() == x.size() && groups_details_ == body.details() &&
+      need + by_motion * relative_motion(body, x - groups_x_) <= group_reach)
+    return;
+  groups_x_ = x;
+  groups_details_ = body.details();
+  const std::vector<Vec3> points = body.skin_positions(x);
+  groups_ = near_groups(net(body), points, group_reach);
+  std::vector<char> used(points.size(), 0), on_face(body.skin_faces().size(), 0), hangs(body.nodes(), 0);
+  for (const auto& [a, b] : groups_)
+    for (int group : {a, b})
+      for (int k = net_->nodes[group].first; k < net_->nodes[group].last; ++k) {
+        const int point = net_->order[k];
+        for (int t = net_->begin[point]; t < net_->begin[point + 1]; ++t)
+          for (int corner : net_->triangles[net_->around[t]]) used[corner] = 1;
+      }
+  rows_.clear();
+  nodes_.clear();
+  for (std::size_t row = 0; row < used.size(); ++row) {
+    if (!used[row]) continue;
+    rows_.push_back(static_cast<int>(row));
+    on_face[body.skin().at[row].face] = 1;
+  }
+  for (std::size_t f = 0; f < on_face.size(); ++f)
+    if (on_face[f])
+      for (int node : body.skin_faces()[f].nodes) hangs[node] = 1;
+  for (int node = 0; node < body.nodes(); ++node)
+    if (hangs[node]) nodes_.push_back(node);
+  groups_known_ = true;
+  pairs_known_ = false;
+}
+
+double SelfContact::refresh(const VirtualStructure& body, const VecX& x, double need) {
+  if (!active || !x.allFinite()) {
+    near_.clear();
+    groups_known_ = pairs_known_ = false;
+    return 0;
+  }
+  refresh_groups(body, x, need);
+  if (groups_.empty()) {
+    near_.clear();
+    return 0;
+  }
+  if (pairs_known_) {
+    const double approach = relative_motion(body, x - pairs_x_, nodes_);
+    if (need + approach <= close_reach) return approach;
+  }
+  refresh_groups(body, x, close_reach);
+  pairs_known_ = true;
+  pairs_x_ = x;
+  near_.clear();
+  nearest_ = close_reach;
+  look_up(body, x, at_);
+  near_ = near_pairs(*net_, {at_, nullptr, close_reach, 1}, groups_);
+  for (const SelfPair& pair : near_) nearest_ = std::min(nearest_, pair.distance);
+  return 0;
+}
+
+void SelfContact::look_up(const VirtualStructure& body, const VecX& x, std::vector<Vec3>& points) const {
+  points.resize(body.skin_rest().size());
+  for (int row : rows_) points[row] = body.skin_point(row, x);
+}
+
+std::vector<SelfTouch> SelfContact::touching(const VirtualStructure& body, const VecX& x) {
+  const double near = self_range + refresh(body, x, self_range);
+  std::vector<SelfTouch> out;
+  if (near_.empty() || nearest_ >= near) return out;
+  look_up(body, x, at_);
+  std::vector<Triangle> faces;
+  for (std::size_t first = 0, last = 0; first < near_.size(); first = last) {
+    const int row = near_[first].row;
+    faces.clear();
+    for (; last < near_.size() && near_[last].row == row; ++last) {
+      if (near_[last].distance >= near) continue;
+      const Triangle& t = net_->triangles[near_[last].triangle];
+      if (nearest_point(at_[row], corners_of(t, at_)).distance < self_range) faces.push_back(t);
+    }
+    if (faces.empty()) continue;
+    for (const SurfacePart& part : surface_parts(at_[row], faces, at_, self_range)) {
+      std::array<Vec3, 3> corners;
+      for (int k = 0; k < part.corners; ++k) corners[k] = at_[part.corner[k]];
+      const FlatSample sample =
+          sample_flat(at_[row], {corners.data(), static_cast<std::size_t>(part.corners)});
+      out.push_back({row, part, sample, 0.5 * part.times * body.skin_areas()[row]});
+    }
+  }
+  return out;
+}
+
+double SelfContact::value(const VirtualStructure& body, const Barrier& barrier, const VecX& x) {
+  const Barrier own{self_range, barrier.stiffness};
+  double sum = 0;
+  for (const SelfTouch& touch : touching(body, x))
+    sum += touch.area * own.sample(touch.sample.distance).energy;
+  return sum;
+}
+
+void SelfContact::add_gradient(const VirtualStructure& body, const Barrier& barrier, const VecX& x,
+                               VecX& gradient) {
+  const Barrier own{self_range, barrier.stiffness};
+  const StencilTable& skin = body.skin().stencils;
+  for (const SelfTouch& touch : touching(body, x)) {
+    const Vec3 force = touch.area * own.sample(touch.sample.distance).derivative * touch.sample.normal;
+    spread(skin, touch.row, force, gradient);
+    for (int k = 0; k < touch.part.corners; ++k)
+      spread(skin, touch.part.corner[k], touch.sample.weight[k + 1] * force, gradient);
+  }
+}
+
+void SelfContact::add_hessian(const VirtualStructure& body, const Barrier& barrier, const VecX& x,
+                              BlockMatrix& matrix) {
+  const Barrier own{self_range, barrier.stiffness};
+  lacking_ = false;
+  for (const SelfTouch& touch : touching(body, x)) {
+    const BarrierSample b = own.sample(touch.sample.distance);
+    std::array<Vec3, 3> corners;
+    std::array<int, 4> rows{touch.row, -1, -1, -1};
+    Eigen::Matrix<double, 12, 1> slope;
+    for (int k = 0; k < 4; ++k) slope.segment<3>(3 * k) = touch.sample.weight[k] * touch.sample.normal;
+    for (int k = 0; k < touch.part.corners; ++k) {
+      rows[k + 1] = touch.part.corner[k];
+      corners[k] = body.skin_point(touch.part.corner[k], x);
+    }
+    const std::span<const Vec3> used(corners.data(), touch.part.corners);
+    const Eigen::Matrix<double, 12, 12> bend = flat_hessian(used, touch.sample);
+    const bool complete =
+        add_points_hessian(body.skin().stencils, rows,
+                           touch.area * (b.second * slope * slope.transpose() + b.derivative * bend), matrix);
+    lacking_ |= !complete;
+  }
+}
+
+double SelfContact::safe_share(const VirtualStructure& body, const VecX& x, const VecX& step, double keep,
+                               double share) {
+  if (!active || !step.allFinite() || !x.allFinite()) return share;
+  // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
+  // way would be everything: that is gone in parts.
+  const double far = share * relative_motion(body, step) / (1.0 - keep);
+  const int parts = 1 + static_cast<int>(far / (0.5 * group_reach));
+  const double part = share / parts;
+  for (int k = 0; k < parts; ++k) {
+    const double safe = safe_part(body, x + k * part * step, part * step, keep);
+    if (safe < 1.0) return (k + safe) * part;
+  }
+  return share;
+}
+
+double SelfContact::safe_part(const VirtualStructure& body, const VecX& x, const VecX& step, double keep) {
+  const double lost = 1.0 - keep;
+  const double anywhere = relative_motion(body, step) / lost;
+  refresh_groups(body, x, anywhere);
+  if (groups_.empty()) return 1.0;
+  const double far = relative_motion(body, step, nodes_) / lost;
+  double share = 1.0;
+  if (far <= close_reach) {
+    const double near = far + refresh(body, x, far);
+    if (near_.empty() || nearest_ >= near) return share;
+    look_up(body, x, at_);
+    look_up(body, step, way_);
+    for (const SelfPair& pair : near_)
+      if (pair.distance < near) share = cut_by(*net_, pair, at_, way_, keep, share);
+    return share;
+  }
+  look_up(body, x, at_);
+  look_up(body, step, way_);
+  for (const SelfPair& pair : near_pairs(*net_, {at_, &way_, 0, lost}, groups_))
+    share = cut_by(*net_, pair, at_, way_, keep, share);
+  return share;
+}
+
+bool SelfContact::any_nearer(const VirtualStructure& body, const VecX& x, double distance) {
+  const double near = distance + refresh(body, x, distance);
+  if (near_.empty() || nearest_ >= near) return false;
+  look_up(body, x, at_);
+  return std::any_of(near_.begin(), near_.end(), [&](const SelfPair& pair) {
+    return pair.distance < near &&
+           nearest_point(at_[pair.row], corners_of(net_->triangles[pair.triangle], at_)).distance < distance;
+  });
+}
+
+void SelfContact::prepare(const VirtualStructure& body, const VecX& x, NewtonWorkspace& work) {
+  const BlockMatrix& own = body.pattern();
+  const bool widened = work.matrix.entries().size() != own.entries().size();
+  if (!any_nearer(body, x, widened ? uncouple_above : couple_below)) {
+    if (widened) work = NewtonWorkspace(own, body.coarse_nodes());
+    return;
+  }
+  std::vector<std::array<int, 4>> groups;  // faces of a point and of a triangle's corners
+  for (const SelfPair& pair : near_) {
+    const Triangle& t = net_->triangles[pair.triangle];
+    const auto face_of = [&](int row) { return body.skin().at[row].face; };
+    groups.push_back({face_of(pair.row), face_of(t[0]), face_of(t[1]), face_of(t[2])});
+  }
+  std::sort(groups.begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  std::vector<std::vector<int>> cliques;
+  bool missing = false;
+  for (const std::array<int, 4>& group : groups) {
+    std::vector<int> clique;
+    for (int face : group)
+      clique.insert(clique.end(), body.skin_faces()[face].nodes.begin(), body.skin_faces()[face].nodes.end());
+    std::sort(clique.begin(), clique.end());
+    clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
+    for (int j : clique)
+      for (int i : clique) missing |= i > j && work.matrix.slot(i, j) < 0;
+    cliques.push_back(std::move(clique));
+  }
+  if (missing) work = NewtonWorkspace(own.widened(cliques), body.coarse_nodes());
+}
+
+}  // namespace calot

@@ -1,0 +1,87 @@
+#pragma once
+// Contact of an organ's skin with itself, so that walls squeezed flat or folded do not pass through each other.
+//
+// Each skin point is kept off the triangles of the same skin that are no neighbours of it on the wall, by the barrier
+// of all contacts over a smaller range, on the distance itself: inner and outer faces meet alike, as no side is asked
+// for. Points of both walls are kept off the other, each for half, so wall presses on wall as an instrument does.
+// A force and what answers it lie on one line and share out by the weights of the nearest point: what the wall does
+// to itself sums to no force and no torque. That edges cross with no point near is left to the barrier, whose
+// range is wide against what the skin bulges between its points.
+
+#include <optional>
+
+#include "collision/barrier.h"
+#include "collision/simplex_distance.h"
+#include "collision/surface_parts.h"
+#include "sim/self_search.h"
+
+namespace calot {
+
+/// Distance below which walls press on each other, m: less than the 0.7 mm that jaws leave between the two skins of
+/// a fold they hold (what holds them there is the grip).
+inline constexpr double self_range = 0.4e-3;
+
+/// A skin point and a part of the skin that press on each other.
+struct SelfTouch {
+  int row = 0;
+  SurfacePart part;
+  FlatSample sample;
+  double area = 0;  ///< m^2 that it counts for; negative where the part counts so
+};
+
+/// Finds what is near and remembers it until other things could have come near; what it remembers is no part of any
+/// result. For one organ.
+class SelfContact {
+ public:
+  /// Without contact where false: to show what it does.
+  bool active = true;
+
+  /// All that touches at x, ordered by row, then part.
+  std::vector<SelfTouch> touching(const VirtualStructure& body, const VecX& x);
+  /// Energy (J) and derivatives; `barrier` gives the stiffness.
+  double value(const VirtualStructure& body, const Barrier& barrier, const VecX& x);
+  void add_gradient(const VirtualStructure& body, const Barrier& barrier, const VecX& x, VecX& gradient);
+  /// Couplings that the matrix' pattern does not hold are left out: Newton then converges more slowly.
+  void add_hessian(const VirtualStructure& body, const Barrier& barrier, const VecX& x, BlockMatrix& matrix);
+  /// Whether the last add_hessian left some out.
+  bool lacking() const { return lacking_; }
+
+  /// The largest part of `share` of the step on which no point and triangle lose more than 1 - keep of their
+  /// distance; of a long step, gone in parts, in none of these.
+  double safe_share(const VirtualStructure& body, const VecX& x, const VecX& step, double keep, double share);
+  /// Gives the workspace a pattern that holds the couplings of what is near at x, and the body's own once that has
+  /// moved apart.
+  void prepare(const VirtualStructure& body, const VecX& x, NewtonWorkspace& work);
+
+ private:
+  /// Sees to it that near_ holds all pairs nearer than `need` at x, at most close_reach. Returns how much of their
+  /// distance its pairs may have lost since it was gathered, m.
+  double refresh(const VirtualStructure& body, const VecX& x, double need);
+  /// safe_share() of a step no longer than groups are remembered.
+  double safe_part(const VirtualStructure& body, const VecX& x, const VecX& step, double keep);
+  /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
+  void refresh_groups(const VirtualStructure& body, const VecX& x, double need);
+  /// Whether walls are nearer than this (at most close_reach) at x.
+  bool any_nearer(const VirtualStructure& body, const VecX& x, double distance);
+  /// Places (at x) or motions of the skin points in rows_; the others mean nothing.
+  void look_up(const VirtualStructure& body, const VecX& x, std::vector<Vec3>& points) const;
+  const SkinNet& net(const VirtualStructure& body);
+
+  std::optional<SkinNet> net_;
+  // Groups of points that were near at groups_x_, their points and those of the triangles around them, and all nodes
+  // that these hang on.
+  bool groups_known_ = false;
+  VecX groups_x_;
+  std::vector<int> groups_details_;
+  std::vector<GroupPair> groups_;
+  std::vector<int> rows_, nodes_;
+  // Pairs among these that were near at pairs_x_.
+  bool pairs_known_ = false;
+  VecX pairs_x_;
+  std::vector<SelfPair> near_;
+  double nearest_ = 0;  ///< m, of these pairs
+  bool lacking_ = false;
+  std::vector<Vec3> at_, way_;  ///< room for look_up()
+};
+
+}  // namespace calot

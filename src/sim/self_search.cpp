@@ -1,0 +1,247 @@
+#include "sim/self_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "collision/simplex_distance.h"
+
+namespace calot {
+namespace {
+
+/// What a triangle's corners differ by, m^2: their places at most and their motions.
+struct Differences {
+  double places = 0, motions = 0;
+  Differences(const Triangle& t, const SkinMotion& skin) {
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      places = std::max(places, (skin.points[a] - skin.points[b]).squaredNorm());
+      if (skin.motion) motions = std::max(motions, ((*skin.motion)[a] - (*skin.motion)[b]).squaredNorm());
+    }
+  }
+  /// How near another point must be to a corner for the pair to be looked for: within what a place in the triangle
+  /// can be from its nearest corner (1 / sqrt(3) of the longest edge) and, on a way, what the motions differ by: a
+  /// pair that loses the share `lost` has a corner that comes so far nearer, but for that difference.
+  double reach(const SkinMotion& skin) const {
+    return skin.reach + std::sqrt(places / 3) + std::sqrt(motions) / skin.lost;
+  }
+};
+
+/// Distance of two points less what they can lose of it.
+double least_distance(const SkinMotion& skin, int p, int q) {
+  const double distance = (skin.points[p] - skin.points[q]).norm();
+  if (!skin.motion) return distance;
+  return distance - ((*skin.motion)[p] - (*skin.motion)[q]).norm() / skin.lost;
+}
+
+bool one_piece(const SkinNet& net, int p, int q) {
+  return (net.rest[p] - net.rest[q]).squaredNorm() < net.apart * net.apart;
+}
+
+/// How near others must be to points and to groups of them, found when asked for.
+class Reaches {
+ public:
+  Reaches(const SkinNet& net, const SkinMotion& skin)
+      : net_(net),
+        skin_(skin),
+        point_(net.rest.size(), -1),
+        group_(net.nodes.size(), -1),
+        box_(net.nodes.size()) {}
+
+  double of_point(int p) {
+    if (point_[p] < 0)
+      for (int k = net_.begin[p]; k < net_.begin[p + 1]; ++k)
+        point_[p] = std::max(point_[p], Differences(net_.triangles[net_.around[k]], skin_).reach(skin_));
+    return point_[p];
+  }
+  /// Whether all of one group is too far from all of the other, as they stand; on a way nothing is said.
+  bool apart(int a, int b) {
+    if (skin_.motion) return false;
+    const double near = std::max(of_group(a), of_group(b));
+    return box_[a].squaredExteriorDistance(box_[b]) >= near * near;
+  }
+
+ private:
+  double of_group(int n) {
+    if (group_[n] >= 0) return group_[n];
+    for (int k = net_.nodes[n].first; k < net_.nodes[n].last; ++k) {
+      box_[n].extend(skin_.points[net_.order[k]]);
+      group_[n] = std::max(group_[n], of_point(net_.order[k]));
+    }
+    return group_[n];
+  }
+
+  const SkinNet& net_;
+  const SkinMotion& skin_;
+  std::vector<double> point_, group_;
+  std::vector<Eigen::AlignedBox3d> box_;
+};
+
+/// The nodes' boxes as the skin is now.
+class Boxes {
+ public:
+  Boxes(const SkinNet& net, const SkinMotion& skin)
+      : net_(net),
+        skin_(skin),
+        reach_(net.rest.size(), 0.0),
+        now_(net.nodes.size()),
+        shift_(net.nodes.size()),
+        near_(net.nodes.size(), 0.0) {
+    for (const Triangle& t : net.triangles) {
+      const double reach = Differences(t, skin).reach(skin);
+      for (int p : t) reach_[p] = std::max(reach_[p], reach);
+    }
+    Eigen::AlignedBox3d all;
+    for (const Vec3& p : skin.points) all.extend(p);
+    scale_ = all.diagonal().norm() / net.nodes[0].rest.diagonal().norm();
+    for (int n = static_cast<int>(net.nodes.size()) - 1; n >= 0; --n) {
+      const SkinNet::Node& node = net.nodes[n];
+      if (node.left >= 0) {
+        now_[n] = now_[node.left].merged(now_[node.right]);
+        shift_[n] = shift_[node.left].merged(shift_[node.right]);
+        near_[n] = std::max(near_[node.left], near_[node.right]);
+        continue;
+      }
+      for (int k = node.first; k < node.last; ++k) {
+        now_[n].extend(skin.points[net.order[k]]);
+        shift_[n].extend(skin.points[net.order[k]] - scale_ * net.rest[net.order[k]]);
+        near_[n] = std::max(near_[n], reach_[net.order[k]]);
+      }
+    }
+  }
+
+  void visit(int a, int b, std::vector<GroupPair>& out) const {
+    const SkinNet::Node &p = net_.nodes[a], &q = net_.nodes[b];
+    if (p.rest.merged(q.rest).sizes().squaredNorm() < net_.apart * net_.apart) return;
+    const double near = std::max(near_[a], near_[b]);
+    if (now_[a].squaredExteriorDistance(now_[b]) >= near * near) return;
+    // Most of the wall has moved as one piece, but for being blown up: what was apart there still is.
+    if (shift_[a].merged(shift_[b]).sizes().norm() <= scale_ * net_.apart - near) return;
+    if (p.left < 0 && q.left < 0) {
+      if (any_near(p, q)) out.emplace_back(a, b);
+    } else if (a == b) {
+      visit(p.left, p.left, out);
+      visit(p.left, p.right, out);
+      visit(p.right, p.right, out);
+    } else if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first)) {
+      visit(p.left, b, out);
+      visit(p.right, b, out);
+    } else {
+      visit(a, q.left, out);
+      visit(a, q.right, out);
+    }
+  }
+
+ private:
+  bool any_near(const SkinNet::Node& a, const SkinNet::Node& b) const {
+    for (int i = a.first; i < a.last; ++i) {
+      for (int j = b.first; j < b.last; ++j) {
+        const int p = net_.order[i], q = net_.order[j];
+        if (!one_piece(net_, p, q) && least_distance(skin_, p, q) < std::max(reach_[p], reach_[q]))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  const SkinNet& net_;
+  const SkinMotion& skin_;
+  std::vector<double> reach_;                     ///< of points
+  double scale_ = 1;                              ///< of the whole, against rest
+  std::vector<Eigen::AlignedBox3d> now_, shift_;  ///< places, and motions since rest that the scale leaves
+  std::vector<double> near_;                      ///< the largest of a node's reaches
+};
+
+}  // namespace
+
+SkinNet::SkinNet(const VirtualStructure& body)
+    : rest(body.skin_rest()),
+      triangles(body.skin().triangles),
+      begin(rest.size() + 1, 0),
+      order(rest.size()) {
+  constexpr double one_piece = 6e-3;  // m
+  apart = std::max(one_piece, 2 * body.widest_skin_gap());
+  for (Triangle& t : triangles) {
+    std::sort(t.begin(), t.end());
+    for (int p : t) ++begin[p + 1];
+  }
+  for (std::size_t p = 1; p < begin.size(); ++p) begin[p] += begin[p - 1];
+  around.resize(3 * triangles.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int p : triangles[t]) around[next[p]++] = static_cast<int>(t);
+  std::iota(order.begin(), order.end(), 0);
+  nodes.push_back({0, static_cast<int>(rest.size()), -1, -1, {}});
+  for (std::size_t n = 0; n < nodes.size(); ++n) split(static_cast<int>(n));
+}
+
+void SkinNet::split(int n) {
+  constexpr int few = 6;  // points
+  Node node = nodes[n];
+  for (int k = node.first; k < node.last; ++k) node.rest.extend(rest[order[k]]);
+  if (node.last - node.first > few) {
+    int axis = 0;
+    node.rest.sizes().maxCoeff(&axis);
+    const int middle = (node.first + node.last) / 2;
+    std::nth_element(
+        order.begin() + node.first, order.begin() + middle, order.begin() + node.last,
+        [&](int a, int b) { return rest[a][axis] != rest[b][axis] ? rest[a][axis] < rest[b][axis] : a < b; });
+    node.left = static_cast<int>(nodes.size());
+    node.right = node.left + 1;
+    nodes.push_back({node.first, middle, -1, -1, {}});
+    nodes.push_back({middle, node.last, -1, -1, {}});
+  }
+  nodes[n] = node;
+}
+
+bool SkinNet::neighbours(int row, int triangle) const {
+  const Triangle& t = triangles[triangle];
+  return std::any_of(t.begin(), t.end(),
+                     [&](int p) { return (rest[row] - rest[p]).squaredNorm() < apart * apart; });
+}
+
+std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach) {
+  std::vector<GroupPair> out;
+  const SkinMotion still{points, nullptr, reach, 1};
+  Boxes(net, still).visit(0, 0, out);
+  return out;
+}
+
+std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
+                                 std::span<const GroupPair> groups) {
+  std::vector<std::pair<int, int>> found;
+  Reaches reaches(net, skin);
+  const auto meet = [&](int row, int corner, double distance) {
+    if (distance >= reaches.of_point(corner)) return;
+    for (int k = net.begin[corner]; k < net.begin[corner + 1]; ++k) found.emplace_back(row, net.around[k]);
+  };
+  for (const auto& [a, b] : groups) {
+    if (reaches.apart(a, b)) continue;
+    for (int i = net.nodes[a].first; i < net.nodes[a].last; ++i) {
+      for (int j = a == b ? i + 1 : net.nodes[b].first; j < net.nodes[b].last; ++j) {
+        const int p = net.order[i], q = net.order[j];
+        if (one_piece(net, p, q)) continue;
+        const double distance = least_distance(skin, p, q);
+        meet(p, q, distance);
+        meet(q, p, distance);
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::vector<SelfPair> pairs;
+  for (const auto& [row, triangle] : found) {
+    if (net.neighbours(row, triangle)) continue;
+    if (skin.motion) {
+      pairs.push_back({row, triangle, 0});
+      continue;
+    }
+    const Triangle& t = net.triangles[triangle];
+    const std::array<Vec3, 3> corners{skin.points[t[0]], skin.points[t[1]], skin.points[t[2]]};
+    const double distance = nearest_point(skin.points[row], corners).distance;
+    if (distance < skin.reach) pairs.push_back({row, triangle, distance});
+  }
+  return pairs;
+}
+
+}  // namespace calot
