@@ -257,6 +257,13 @@ std::vector<double> shortest_edges(const TriMesh& mesh) {
   return shortest;
 }
 
+int nearest_of(const std::vector<Vec3>& points, const Vec3& place) {
+  const auto nearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - place).squaredNorm() < (b - place).squaredNorm();
+  };
+  return static_cast<int>(std::min_element(points.begin(), points.end(), nearer) - points.begin());
+}
+
 TriMesh split_edges(const TriMesh& mesh) {
   TriMesh result{mesh.points, {}};
   std::map<Edge, int> middle;

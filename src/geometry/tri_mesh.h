@@ -30,6 +30,9 @@ double enclosed_volume(const TriMesh& mesh);
 /// Length of the shortest edge at each point, m; infinite at a point of no triangle.
 std::vector<double> shortest_edges(const TriMesh& mesh);
 
+/// Index of the point that lies nearest to a place, the first of equals; there must be one.
+int nearest_of(const std::vector<Vec3>& points, const Vec3& place);
+
 /// One split of every triangle into four with new points at edge midpoints (points stay first, in order).
 TriMesh split_edges(const TriMesh& mesh);
 

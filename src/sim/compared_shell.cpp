@@ -233,7 +233,7 @@ Result<std::unique_ptr<ComparedBody>> extended_shell(const ComparedSurface& surf
   std::vector<Extension> extensions;
   for (const Vec3& place : places)
     extensions.push_back(
-        {static_cast<int>(extensions.size()), coarse->body.nearest_skin_point(surface.radius * place)});
+        {static_cast<int>(extensions.size()), nearest_of(coarse->body.skin_rest(), surface.radius * place)});
   const Result<Rested> before = extended(coarse.value(), std::span(extensions).first(places.size() - 1));
   if (!before) return before.failure();
   constexpr int repeats = 5;

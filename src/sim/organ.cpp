@@ -234,7 +234,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))
-    organ.landmarks[name] = organ.body.nearest_skin_point(place);
+    organ.landmarks[name] = nearest_of(organ.body.skin_rest(), place);
   for (const Shape& shape : field.shapes)
     for (const Vec3& p : organ.body.skin_rest())
       if (signed_distance(shape, p) <= 0)

@@ -314,14 +314,6 @@ double VirtualStructure::largest_motion(const VecX& dx) const {
   return sum;
 }
 
-int VirtualStructure::nearest_skin_point(const Vec3& place) const {
-  const auto nearer = [&](const Vec3& a, const Vec3& b) {
-    return (a - place).squaredNorm() < (b - place).squaredNorm();
-  };
-  return static_cast<int>(std::min_element(skin_rest().begin(), skin_rest().end(), nearer) -
-                          skin_rest().begin());
-}
-
 double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }
 
 std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
@@ -329,8 +321,11 @@ std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
 }
 
 std::vector<Vec3> VirtualStructure::skin_normals(const VecX& x) const {
-  const StencilTable table =
-      surface_.basis.extend(base_->skin.stencils, base_->skin.at, base_->skin_by_level);
+  // Only the base has derivatives: details are added to a copy of it, where there are any.
+  std::optional<StencilTable> extended;
+  if (!details().empty())
+    extended = surface_.basis.extend(base_->skin.stencils, base_->skin.at, base_->skin_by_level);
+  const StencilTable& table = extended ? *extended : base_->skin.stencils;
   const std::vector<Vec3> u = blend_all(table, table.du, x), v = blend_all(table, table.dv, x);
   std::vector<Vec3> normals(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) normals[i] = u[i].cross(v[i]).normalized();

@@ -88,8 +88,6 @@ class VirtualStructure {
   /// Rest area that each skin point stands for, m^2.
   const std::vector<double>& skin_areas() const { return base_->skin_areas; }
   const std::vector<Vec3>& skin_rest() const { return base_->skin_rest; }
-  /// The skin point that lies nearest to a place at rest, the first of equals.
-  int nearest_skin_point(const Vec3& place) const;
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const;
   /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe
