@@ -1,5 +1,7 @@
 #include "app/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace calot {
@@ -8,7 +10,15 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-extern "C" void calot_on_interrupt(int) { interrupted = true; }
+constexpr char announcement[] =
+    "\nStopping in order; interrupt again to end at once and lose what is not written.\n";
+
+extern "C" void calot_on_interrupt(int) {
+  interrupted = true;
+  // What runs may take seconds to end. Nothing can be done about a message that can't be written.
+  const ssize_t written = write(STDERR_FILENO, announcement, sizeof announcement - 1);
+  static_cast<void>(written);
+}
 
 }  // namespace
 

@@ -4,8 +4,8 @@
 
 namespace calot {
 
-/// From now on the first SIGINT or SIGTERM sets the returned flag, so that a session can end in order; the
-/// second ends the process at once.
+/// From now on the first SIGINT or SIGTERM sets the returned flag, so that a session can end in order, and
+/// says so on stderr; the second ends the process at once.
 const std::atomic<bool>& interrupt_flag();
 
 }  // namespace calot
