@@ -74,7 +74,8 @@ void BlockMatrix::slots(std::span<const int> nodes, int* out) const {
 BlockMatrix BlockMatrix::widened(std::span<const std::vector<int>> cliques) const {
   std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
   for (int j = 0; j < nodes(); ++j)
-    for (int k = pattern_->block_start[j]; k < pattern_->block_start[j + 1]; ++k) all.push_back({j, pattern_->block_row[k]});
+    for (int k = pattern_->block_start[j]; k < pattern_->block_start[j + 1]; ++k)
+      all.push_back({j, pattern_->block_row[k]});
   BlockMatrix out(nodes(), all);
   out.assign(*this);
   return out;
@@ -101,6 +102,10 @@ void BlockMatrix::add(int i, int j, const Mat3& block) {
   const int step = stride(j);
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) values_[at + c * step + r] += block(r, c);
+}
+
+void BlockMatrix::add(const std::vector<double>& values) {
+  for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += values[k];
 }
 
 void BlockMatrix::add_to_diagonal(double shift) {

@@ -24,6 +24,9 @@ class BlockMatrix {
   /// Starts from a constant part: `values` as entries() returned them from a matrix of the same pattern.
   void assign(const std::vector<double>& values) { values_ = values; }
 
+  /// Adds values as entries() returned them from a matrix of the same pattern.
+  void add(const std::vector<double>& values);
+
   /// The same values with room for the couplings of further cliques.
   BlockMatrix widened(std::span<const std::vector<int>> cliques) const;
   /// Starts from a matrix whose pattern this one's holds.

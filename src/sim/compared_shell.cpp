@@ -10,29 +10,40 @@
 namespace calot {
 namespace {
 
+/// Springs on surface points, and where their ends are at `share` of their travels.
+struct Springs {
+  Links links;
+  std::vector<Vec3> from, travel;
+  std::vector<double> hessian;  ///< entries in the body's pattern: linear springs have one for good
+
+  void move_to(double share) {
+    for (std::size_t i = 0; i < from.size(); ++i) links.target[i] = from[i] + share * travel[i];
+  }
+};
+
 /// A body under springs on surface points of any kind.
 class SpringProblem : public ConstrainedEnergy {
  public:
   SpringProblem(const VirtualStructure& body, const Surroundings& nothing, const StencilTable& points,
-                const Links& springs, const BodyState& start, bool fixed_pressure = false)
+                const Springs& springs, const BodyState& start, bool fixed_pressure = false)
       : body_(body, nothing, {}, start, fixed_pressure), points_(points), springs_(springs) {}
 
   bool constrained() const override { return body_.constrained(); }
-  double value(const VecX& x) const override { return body_.value(x) + springs_.value(points_, x); }
+  double value(const VecX& x) const override { return body_.value(x) + springs_.links.value(points_, x); }
   void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override {
     body_.gradient(x, gradient, largest_internal);
-    springs_.add_gradient(points_, x, gradient);
+    springs_.links.add_gradient(points_, x, gradient);
   }
   void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override {
     body_.hessian(x, multiplier, matrix);
-    springs_.add_hessian(points_, matrix);
+    matrix.add(springs_.hessian);
   }
   double constraint(const VecX& x, VecX& gradient) const override { return body_.constraint(x, gradient); }
   double constraint_value(const VecX& x) const override { return body_.constraint_value(x); }
   double gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
                                  VecX& of_constraint) const override {
     const double out = body_.gradient_and_constraint(x, of_energy, largest_internal, of_constraint);
-    springs_.add_gradient(points_, x, of_energy);
+    springs_.links.add_gradient(points_, x, of_energy);
     return out;
   }
   double constraint_scale() const override { return body_.constraint_scale(); }
@@ -43,17 +54,7 @@ class SpringProblem : public ConstrainedEnergy {
  private:
   BodyProblem body_;
   const StencilTable& points_;
-  const Links& springs_;
-};
-
-/// Where the springs' ends are at `share` of their travels.
-struct Springs {
-  Links links;
-  std::vector<Vec3> from, travel;
-
-  void move_to(double share) {
-    for (std::size_t i = 0; i < from.size(); ++i) links.target[i] = from[i] + share * travel[i];
-  }
+  const Springs& springs_;
 };
 
 /// A body that is filled and at rest.
@@ -90,6 +91,10 @@ class ComparedShell : public ComparedBody {
       }
     }
     springs_.links.target = springs_.from;
+    BlockMatrix stiffness = body_.pattern();
+    stiffness.set_zero();
+    springs_.links.add_hessian(points_, stiffness);
+    springs_.hessian = stiffness.entries();
     return {};
   }
 
@@ -128,15 +133,14 @@ class ComparedShell : public ComparedBody {
   }
 
  private:
-  SpringProblem problem() const { return {body_, nothing_, points_, springs_.links, state_}; }
+  SpringProblem problem() const { return {body_, nothing_, points_, springs_, state_}; }
 
   NewtonResult settle() {
     if (staged_)
       return solve_in_stages(
           body_,
           [&](const BodyState& start, bool fixed_pressure) {
-            return std::make_unique<SpringProblem>(body_, nothing_, points_, springs_.links, start,
-                                                   fixed_pressure);
+            return std::make_unique<SpringProblem>(body_, nothing_, points_, springs_, start, fixed_pressure);
           },
           NewtonSettings{}, work_, state_);
     return solve_equilibrium(problem(), NewtonSettings{}, work_, state_.x, state_.multiplier);

@@ -96,6 +96,17 @@ TEST(BlockMatrix, StartsFromAssignedValuesOrZero) {
   EXPECT_EQ(test::stored(matrix), test::stored(copy));
 }
 
+TEST(BlockMatrix, EntriesOfAnotherAddUpWithItsOwn) {
+  Rng rng(9);
+  BlockMatrix sum = test::random_matrix(rng, 12);
+  BlockMatrix other = sum;
+  for (double* value = other.values(); value != other.values() + other.entries().size(); ++value)
+    *value = rng.uniform(-1, 1);
+  const Eigen::MatrixXd expected = test::stored(sum) + test::stored(other);
+  sum.add(other.entries());
+  EXPECT_EQ(test::stored(sum), expected);
+}
+
 TEST(BlockMatrix, AWidenedMatrixIsTheSameWithRoomForMore) {
   const std::vector<std::vector<int>> few{{0, 1}, {2, 3}}, more{{1, 3}};
   BlockMatrix matrix(4, few);
