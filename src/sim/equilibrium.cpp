@@ -47,7 +47,7 @@ double BodyProblem::value(const VecX& x) const {
     const double distance = signed_distance(field_.shapes[pair.shape], at);
     sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
   });
-  if (own_) sum += own_->value(body_, field_.barrier, x);
+  if (own_) sum += own_->value(body_, x);
   return sum;
 }
 
@@ -63,7 +63,7 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
     const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
     spread(body_.skin().stencils, pair.row, force * d.gradient, gradient);
   });
-  if (own_) own_->add_gradient(body_, field_.barrier, x, gradient);
+  if (own_) own_->add_gradient(body_, x, gradient);
 }
 
 namespace {
@@ -105,7 +105,7 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
     add_point_hessian(body_.skin().stencils, pair.row, h, matrix);
   });
-  if (own_) own_->add_hessian(body_, field_.barrier, x, matrix);
+  if (own_) own_->add_hessian(body_, x, matrix);
 }
 
 double BodyProblem::constraint(const VecX& x, VecX& gradient) const {

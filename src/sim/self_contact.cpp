@@ -14,7 +14,7 @@ namespace {
 constexpr double close_reach = 0.8e-3, group_reach = 3e-3;
 /// Walls that are nearer than the first of these may touch in the next solve, and are coupled in its matrix; beyond
 /// the second they are not any more.
-constexpr double couple_below = 1.25 * self_range, uncouple_above = 1.5 * self_range;
+constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
 
 /// Bound on how much any two skin points that hang on `nodes` move against each other when the nodes move by `dx`, m:
 /// what the coarse nodes' motions differ by, and the details' of each level.
@@ -132,7 +132,7 @@ void SelfContact::look_up(const VirtualStructure& body, const VecX& x, std::vect
 }
 
 std::vector<SelfTouch> SelfContact::touching(const VirtualStructure& body, const VecX& x) {
-  const double near = self_range + refresh(body, x, self_range);
+  const double near = self_barrier.range + refresh(body, x, self_barrier.range);
   std::vector<SelfTouch> out;
   if (near_.empty() || nearest_ >= near) return out;
   look_up(body, x, at_);
@@ -143,10 +143,10 @@ std::vector<SelfTouch> SelfContact::touching(const VirtualStructure& body, const
     for (; last < near_.size() && near_[last].row == row; ++last) {
       if (near_[last].distance >= near) continue;
       const Triangle& t = net_->triangles[near_[last].triangle];
-      if (nearest_point(at_[row], corners_of(t, at_)).distance < self_range) faces.push_back(t);
+      if (nearest_point(at_[row], corners_of(t, at_)).distance < self_barrier.range) faces.push_back(t);
     }
     if (faces.empty()) continue;
-    for (const SurfacePart& part : surface_parts(at_[row], faces, at_, self_range)) {
+    for (const SurfacePart& part : surface_parts(at_[row], faces, at_, self_barrier.range)) {
       std::array<Vec3, 3> corners;
       for (int k = 0; k < part.corners; ++k) corners[k] = at_[part.corner[k]];
       const FlatSample sample =
@@ -157,32 +157,28 @@ std::vector<SelfTouch> SelfContact::touching(const VirtualStructure& body, const
   return out;
 }
 
-double SelfContact::value(const VirtualStructure& body, const Barrier& barrier, const VecX& x) {
-  const Barrier own{self_range, barrier.stiffness};
+double SelfContact::value(const VirtualStructure& body, const VecX& x) {
   double sum = 0;
   for (const SelfTouch& touch : touching(body, x))
-    sum += touch.area * own.sample(touch.sample.distance).energy;
+    sum += touch.area * self_barrier.sample(touch.sample.distance).energy;
   return sum;
 }
 
-void SelfContact::add_gradient(const VirtualStructure& body, const Barrier& barrier, const VecX& x,
-                               VecX& gradient) {
-  const Barrier own{self_range, barrier.stiffness};
+void SelfContact::add_gradient(const VirtualStructure& body, const VecX& x, VecX& gradient) {
   const StencilTable& skin = body.skin().stencils;
   for (const SelfTouch& touch : touching(body, x)) {
-    const Vec3 force = touch.area * own.sample(touch.sample.distance).derivative * touch.sample.normal;
+    const Vec3 force =
+        touch.area * self_barrier.sample(touch.sample.distance).derivative * touch.sample.normal;
     spread(skin, touch.row, force, gradient);
     for (int k = 0; k < touch.part.corners; ++k)
       spread(skin, touch.part.corner[k], touch.sample.weight[k + 1] * force, gradient);
   }
 }
 
-void SelfContact::add_hessian(const VirtualStructure& body, const Barrier& barrier, const VecX& x,
-                              BlockMatrix& matrix) {
-  const Barrier own{self_range, barrier.stiffness};
+void SelfContact::add_hessian(const VirtualStructure& body, const VecX& x, BlockMatrix& matrix) {
   lacking_ = false;
   for (const SelfTouch& touch : touching(body, x)) {
-    const BarrierSample b = own.sample(touch.sample.distance);
+    const BarrierSample b = self_barrier.sample(touch.sample.distance);
     std::array<Vec3, 3> corners;
     std::array<int, 4> rows{touch.row, -1, -1, -1};
     Eigen::Matrix<double, 12, 1> slope;

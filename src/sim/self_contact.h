@@ -1,8 +1,8 @@
 #pragma once
 // Contact of an organ's skin with itself, so that walls squeezed flat or folded do not pass through each other.
 //
-// Each skin point is kept off the triangles of the same skin that are no neighbours of it on the wall, by the barrier
-// of all contacts over a smaller range, on the distance itself: inner and outer faces meet alike, as no side is asked
+// Each skin point is kept off the triangles of the same skin that are no neighbours of it on the wall, by a
+// barrier of the distance itself: inner and outer faces meet alike, as no side is asked
 // for. Points of both walls are kept off the other, each for half, so wall presses on wall as an instrument does.
 // A force and what answers it lie on one line and share out by the weights of the nearest point: what the wall does
 // to itself sums to no force and no torque. That edges cross with no point near is left to the barrier, whose
@@ -17,9 +17,9 @@
 
 namespace calot {
 
-/// Distance below which walls press on each other, m: less than the 0.7 mm that jaws leave between the two skins of
-/// a fold they hold (what holds them there is the grip).
-inline constexpr double self_range = 0.4e-3;
+/// How walls press on each other: over less than the 0.7 mm that jaws leave between the two skins of a fold they hold
+/// (what holds them there is the grip).
+inline constexpr Barrier self_barrier{0.4e-3, 20e3};
 
 /// A skin point and a part of the skin that press on each other.
 struct SelfTouch {
@@ -38,11 +38,11 @@ class SelfContact {
 
   /// All that touches at x, ordered by row, then part.
   std::vector<SelfTouch> touching(const VirtualStructure& body, const VecX& x);
-  /// Energy (J) and derivatives; `barrier` gives the stiffness.
-  double value(const VirtualStructure& body, const Barrier& barrier, const VecX& x);
-  void add_gradient(const VirtualStructure& body, const Barrier& barrier, const VecX& x, VecX& gradient);
+  /// Energy (J) and derivatives.
+  double value(const VirtualStructure& body, const VecX& x);
+  void add_gradient(const VirtualStructure& body, const VecX& x, VecX& gradient);
   /// Couplings that the matrix' pattern does not hold are left out: Newton then converges more slowly.
-  void add_hessian(const VirtualStructure& body, const Barrier& barrier, const VecX& x, BlockMatrix& matrix);
+  void add_hessian(const VirtualStructure& body, const VecX& x, BlockMatrix& matrix);
   /// Whether the last add_hessian left some out.
   bool lacking() const { return lacking_; }
 

@@ -124,14 +124,13 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   const VirtualStructure& body = field.organs[0].body;
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
-  const Barrier barrier;
   const std::vector<SelfTouch> touches = own.touching(body, x);
   std::array<int, 4> kinds{};
   for (const SelfTouch& touch : touches) ++kinds[touch.part.corners];
   EXPECT_GT(kinds[2], 0);
   EXPECT_GT(kinds[3], 0);
   VecX g = VecX::Zero(x.size());
-  own.add_gradient(body, barrier, x, g);
+  own.add_gradient(body, x, g);
   ASSERT_GT(g.norm(), 0.01);
   // Rounding of places a few cm from the origin against distances of 0.1 mm.
   // Details are displacements: a force on the whole is one on its places.
@@ -142,22 +141,21 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   own.prepare(body, x, work);
   BlockMatrix h = work.matrix;
   h.set_zero();
-  own.add_hessian(body, barrier, x, h);
+  own.add_hessian(body, x, h);
   EXPECT_FALSE(own.lacking());
   BlockMatrix narrow = body.pattern();
-  own.add_hessian(body, barrier, x, narrow);
+  own.add_hessian(body, x, narrow);
   EXPECT_TRUE(own.lacking());
   const auto gradient_at = [&](const VecX& at) {
     VecX out = VecX::Zero(at.size());
-    own.add_gradient(body, barrier, at, out);
+    own.add_gradient(body, at, out);
     return out;
   };
   Rng rng(5);
   for (int k = 0; k < 5; ++k) {
     const VecX d = test::random_coordinates(rng, static_cast<int>(x.size()), 1.0);
     constexpr double step = 1e-9;  // m: a hundred-thousandth of the distances, so few parts change within it
-    const double by_value =
-        (own.value(body, barrier, x + step * d) - own.value(body, barrier, x - step * d)) / (2 * step);
+    const double by_value = (own.value(body, x + step * d) - own.value(body, x - step * d)) / (2 * step);
     const VecX by_gradient = (gradient_at(x + step * d) - gradient_at(x - step * d)) / (2 * step);
     EXPECT_NEAR(g.dot(d), by_value, 1e-5 * g.norm() * d.norm());
     EXPECT_LT((h.multiply(d) - by_gradient).norm(), 1e-4 * by_gradient.norm());
@@ -170,7 +168,7 @@ TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   VecX g = VecX::Zero(x.size());
-  own.add_gradient(body, Barrier{}, x, g);
+  own.add_gradient(body, x, g);
   ASSERT_GT(g.norm(), 0.01);
   EXPECT_LT(test::net_torque(x, g, Vec3(0, 0, 20e-3)).norm(), 1e-12 * body.size() * g.lpNorm<1>());
 }
@@ -186,9 +184,8 @@ TEST(SelfContact, MemoryLeavesNoTrace) {
     const double s = 0.5 - 0.5 * std::cos(0.7 * k);
     const VecX x = far + s * (near - far), step = (k % 2 ? 1.2 : 0.02) * (near - x);
     SelfContact fresh;
-    const Barrier barrier;
-    const double value = fresh.value(organ.body, barrier, x);
-    EXPECT_EQ(kept.value(organ.body, barrier, x), value);
+    const double value = fresh.value(organ.body, x);
+    EXPECT_EQ(kept.value(organ.body, x), value);
     touched |= value != 0;
     parted |= value == 0;
     const double share = SelfContact().safe_share(organ.body, x, step, 0.2, 1.0);
