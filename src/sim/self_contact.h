@@ -1,9 +1,9 @@
 #pragma once
 // Contact of an organ's skin with itself, so that walls squeezed flat or folded do not pass through each other.
 //
-// Each skin point is kept off the triangles of the same skin that are no neighbours of it on the wall, by a
-// barrier of the distance itself: inner and outer faces meet alike, as no side is asked
-// for. Points of both walls are kept off the other, each for half, so wall presses on wall as an instrument does.
+// Each skin point is kept off the triangles of the same skin that are no neighbours of it on the wall, by a barrier of the
+// distance itself: inner and outer faces meet alike, as no side is asked for. Points of both walls are kept off the
+// other, each for half, so wall presses on wall as an instrument does.
 // A force and what answers it lie on one line and share out by the weights of the nearest point: what the wall does
 // to itself sums to no force and no torque. That edges cross with no point near is left to the barrier, whose
 // range is wide against what the skin bulges between its points.

@@ -40,17 +40,8 @@ TEST(Balance, ForceOnTheToolIsWhatBedAndWeightLeave) {
   expect_balance("lifted");
 }
 
-OrganDefinition ball() {
-  OrganDefinition organ;
-  organ.shape = SphereShape{20e-3};
-  organ.nodes = 61;
-  organ.neck = {0, 0, 0.6e-3};
-  organ.fundus = {0, 0, 40.6e-3};
-  return organ;
-}
-
 TEST(Balance, PlaneAndHeldPoleCarryTheWeightTogether) {
-  OrganDefinition organ = ball();
+  OrganDefinition organ = test::ball({0, 0, 0.6e-3});
   organ.held = {
       {"top", "fundus", 8e-3, 1e3}};  // soft: the ball sinks onto the plane and is kept from rolling
   const Vec3 vertical = Vec3::UnitZ();
@@ -71,7 +62,7 @@ TEST(Balance, PlaneAndHeldPoleCarryTheWeightTogether) {
 
 TEST(Balance, BallThatNothingHoldsIsAMechanism) {
   SceneDefinition scene;
-  scene.anatomy.organs = {ball()};
+  scene.anatomy.organs = {test::ball({0, 0, 0.6e-3})};
   for (bool on_plane : {false, true}) {
     if (on_plane) scene.anatomy.support = SupportDefinition{};  // frictionless: free to roll
     const Result<World> world = World::create(scene);

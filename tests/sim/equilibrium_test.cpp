@@ -14,16 +14,6 @@
 namespace calot {
 namespace {
 
-OrganDefinition ball() {
-  OrganDefinition organ;
-  organ.shape = SphereShape{20e-3};
-  organ.nodes = 61;
-  organ.neck = {0, 0, 0};
-  organ.fundus = {0, 0, 40e-3};
-  organ.held = {{"base", "neck", 10e-3, 1e6}};
-  return organ;
-}
-
 /// `shape_at` the way out at which its distance to the nearest skin point is `gap`.
 Shape at_gap(const std::vector<Vec3>& skin, double gap, const std::function<Shape(double way)>& shape_at) {
   double way = 0;
@@ -45,7 +35,7 @@ struct Touched {
 
   /// With `levels` the ball has extensions where it is touched.
   explicit Touched(std::uint64_t seed, int levels = 0)
-      : field(test::make_field(ball(), 1e-6, Vec3::UnitZ(), {}, levels)), organ(field.organs[0]) {
+      : field(test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ(), {}, levels)), organ(field.organs[0]) {
     Rng rng(seed);
     if (levels > 0) {
       const std::vector<Vec3>& rest = organ.body.skin_rest();

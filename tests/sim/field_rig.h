@@ -8,6 +8,22 @@
 
 namespace calot::test {
 
+/// A ball of 20 mm radius with 61 nodes whose lowest point is the neck.
+inline OrganDefinition ball(const Vec3& neck = Vec3::Zero()) {
+  OrganDefinition organ;
+  organ.shape = SphereShape{20e-3};
+  organ.nodes = 61;
+  organ.neck = neck;
+  organ.fundus = neck + Vec3(0, 0, 40e-3);
+  return organ;
+}
+/// The same, grown on by its base.
+inline OrganDefinition held_ball() {
+  OrganDefinition organ = ball();
+  organ.held = {{"base", "neck", 10e-3, 1e6}};
+  return organ;
+}
+
 /// One organ and, at `trocar`, one grasper pulled far back.
 inline Field make_field(const OrganDefinition& definition, double tolerance, const Vec3& up,
                         const std::optional<Plane>& support = {}, int levels = 0) {

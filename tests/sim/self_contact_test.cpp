@@ -13,16 +13,6 @@
 namespace calot {
 namespace {
 
-OrganDefinition ball() {
-  OrganDefinition organ;
-  organ.shape = SphereShape{20e-3};
-  organ.nodes = 61;
-  organ.neck = {0, 0, 0};
-  organ.fundus = {0, 0, 40e-3};
-  organ.held = {{"base", "neck", 10e-3, 1e6}};
-  return organ;
-}
-
 /// A ball of skin pressed flat between two fields of springs, its bile free to leave.
 struct Pinched {
   Field field;
@@ -31,7 +21,7 @@ struct Pinched {
   Vec3 middle = Vec3::Zero();
 
   explicit Pinched(bool contact)
-      : field(test::make_field(ball(), 1e-6, Vec3::UnitZ())), organ(field.organs[0]) {
+      : field(test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ())), organ(field.organs[0]) {
     organ.search.own.active = contact;
     const std::vector<Vec3>& rest = organ.body.skin_rest();
     for (const Vec3& p : rest) middle += p / static_cast<double>(rest.size());
@@ -113,7 +103,7 @@ VecX dented(const Organ& organ, double gap) {
 
 /// With details on both dented sides.
 Field ball_with_details() {
-  Field field = test::make_field(ball(), 1e-6, Vec3::UnitZ(), {}, 2);
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ(), {}, 2);
   Organ& organ = field.organs[0];
   test::extend(organ, {farthest(organ, Vec3(1, 0.1, 0.1)), farthest(organ, Vec3(-1, 0.1, -0.1))});
   return field;
@@ -163,7 +153,7 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
 }
 
 TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
-  Field field = test::make_field(ball(), 1e-6, Vec3::UnitZ());
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
   const VirtualStructure& body = field.organs[0].body;
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
@@ -198,7 +188,7 @@ TEST(SelfContact, MemoryLeavesNoTrace) {
 }
 
 TEST(SelfContact, NoStepTakesWallsThroughEachOther) {
-  Field field = test::make_field(ball(), 1e-6, Vec3::UnitZ());
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
   const Organ& organ = field.organs[0];
   const VecX x = dented(organ, 1.5e-3);
   const SkinNet net(organ.body);
@@ -247,7 +237,7 @@ struct PressedThrough {
       if (why.empty()) why = test::move_tip(field, Vec3(0, 0, height), 0.0);
   }
   static OrganDefinition slack() {
-    OrganDefinition organ = ball();
+    OrganDefinition organ = test::held_ball();
     organ.bile.fill_volume = 22e-6;
     return organ;
   }

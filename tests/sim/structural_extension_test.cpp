@@ -14,13 +14,9 @@ namespace calot {
 namespace {
 
 /// The paper's ball, filled to a gallbladder's pressure, its lower half on a bed.
-OrganDefinition ball() {
-  OrganDefinition organ;
+OrganDefinition bedded_ball() {
+  OrganDefinition organ = test::ball({-80e-3, 70e-3, -150e-3});
   organ.name = "ball";
-  organ.shape = SphereShape{20e-3};
-  organ.nodes = 61;
-  organ.neck = {-80e-3, 70e-3, -150e-3};
-  organ.fundus = {-80e-3, 70e-3, -110e-3};
   organ.held = {{"base", "neck", 22e-3, 1e6}};
   organ.bile.fill_pressure = 1600;
   return organ;
@@ -39,7 +35,7 @@ struct Pulled {
   Surroundings around;
 
   explicit Pulled(int levels)
-      : field(test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, levels)), organ(field.organs[0]) {
+      : field(test::make_field(bedded_ball(), 1e-9, Vec3::UnitZ(), {}, levels)), organ(field.organs[0]) {
     const Vec3 top = organ.body.skin_rest()[organ.landmarks.at("fundus")];
     const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
     for (std::size_t i = 0; i < skin.size(); ++i) {
@@ -106,7 +102,7 @@ std::vector<double> fingerprint(const VirtualStructure& body, const BodyState& r
 }
 
 TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
-  Field field = test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, 2);
+  Field field = test::make_field(bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   const Organ& organ = field.organs[0];
   const VirtualStructure& bare = organ.body;
   const auto about = [&](const std::vector<int>& rows) {
@@ -125,7 +121,7 @@ TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
 }
 
 TEST(StructuralExtension, AnOrganAtRestDoesNotMoveWhenItIsExtended) {
-  Field field = test::make_field(ball(), 1e-9, Vec3::UnitZ(), {}, 2);
+  Field field = test::make_field(bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   Organ& organ = field.organs[0];
   const std::vector<Vec3> before = organ.body.skin_positions(organ.state.x);
   const double multiplier = organ.state.multiplier;
@@ -201,7 +197,7 @@ struct Pressed {
 
   static SceneDefinition scene(int levels) {
     SceneDefinition out;
-    out.anatomy.organs = {ball()};
+    out.anatomy.organs = {bedded_ball()};
     out.anatomy.table_head_up = out.anatomy.table_left_down = 0;
     out.laparoscope.look_at = "ball.fundus";
     out.solver.rate = 1000;
