@@ -26,8 +26,8 @@ return calot.exercise {
             fundus = { -50 * mm, 110 * mm, -80 * mm },
             liver_side = { -1, 0, 0 },
             bile = { fill_pressure = 0.8 * kPa },
-            -- A ball on a smooth plane would roll: it grows on it.
-            held = { { name = "base", landmark = "neck", radius = 10 * mm, stiffness = 1e6 } },
+            -- A ball on a smooth plane would roll: it grows on it, firmly enough not to lean.
+            held = { { name = "base", landmark = "neck", radius = 10 * mm, stiffness = 4e6 } },
           },
         },
       },

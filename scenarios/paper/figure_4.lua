@@ -24,8 +24,8 @@ return calot.exercise {
             neck = { -50 * mm, 110 * mm, -120 * mm },
             fundus = { -50 * mm, 110 * mm, -80 * mm },
             bile = { fill_pressure = 0.8 * kPa },
-            -- A ball on a smooth plane would roll: it grows on it.
-            held = { { name = "base", landmark = "neck", radius = 10 * mm, stiffness = 1e6 } },
+            -- A ball on a smooth plane would roll: it grows on it, firmly enough not to lean.
+            held = { { name = "base", landmark = "neck", radius = 10 * mm, stiffness = 4e6 } },
           },
         },
       },

@@ -1,8 +1,8 @@
 -- The comparison of section 6 of Moutsopoulos and Gillies (1997): a coarse structure of 61 nodes with three structural
 -- extensions against a uniform one of 245 nodes. Both are here, side by side, and pressed alike by three blunt tips
 -- each. The paper found a mean error of 10 % of the largest displacement; the metric coarse.mean_difference_pct says
--- it of these two: below 3. (With extensions = false for the coarse one too it is above 20; two meshes of 238 and 245
--- nodes are 3 apart.) What each costs is for calot bench to say.
+-- it of these two: below 5. (With extensions = false for the coarse one too it is above 20; two uniform meshes of 238
+-- and 245 nodes are 4 apart.) What each costs is for calot bench to say.
 
 local calot = require "calot"
 local mm, s, kPa = calot.units.mm, calot.units.s, calot.units.kPa
@@ -101,7 +101,8 @@ return calot.exercise {
   end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "coarse.mean_difference_pct", novice = 10, expert = 2 }, weight = 1 },
+    -- From 61 nodes without extensions to a uniform mesh as fine.
+    { calot.score.benchmark { metric = "coarse.mean_difference_pct", novice = 20, expert = 4 }, weight = 1 },
   },
   golden = { at = { 0, 3.2 * s } },
 }

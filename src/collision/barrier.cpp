@@ -7,6 +7,11 @@ namespace calot {
 
 BarrierSample Barrier::sample(double distance) const {
   if (distance >= range) return {};
+  if (const double start = soft_share * range; distance < start) {
+    const BarrierSample at = sample(start);
+    const double beyond = distance - start, slope = at.derivative + beyond * at.second;
+    return {at.energy + beyond * (at.derivative + 0.5 * beyond * at.second), slope, at.second};
+  }
   if (distance <= 0) {
     const double infinity = std::numeric_limits<double>::infinity();
     return {infinity, -infinity, infinity};

@@ -16,9 +16,12 @@ struct BarrierSample {
 struct Barrier {
   double range = 0.5e-3;    ///< m; distance below which skin and shape press on each other
   double stiffness = 20e3;  ///< Pa; scales the pressure
+  /// Share of the range below which the barrier goes on as a parabola, C2: then it is finite everywhere, inside the
+  /// shape too, and a solver may pass through places that no state may keep. 0: infinite at 0.
+  double soft_share = 0;
   /// b(d) = -stiffness / range * (d - range)^2 ln(d / range): the pressure at d = range/2 is 1.2 stiffness.
-  /// At d <= 0 energy and second derivative are +infinity and the derivative is -infinity: not an error but a
-  /// state no accepted step may reach; a line search sees it as a rejected trial.
+  /// Without a soft share, at d <= 0 energy and second derivative are +infinity and the derivative is
+  /// -infinity: not an error but a state no accepted step may reach; a line search sees it as a rejected trial.
   BarrierSample sample(double distance) const;
 };
 

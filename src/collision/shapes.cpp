@@ -138,6 +138,14 @@ double distance_change(const Shape& a, const Shape& b) {
       a, b);
 }
 
+Shape offset(const Shape& shape, double by) {
+  Shape out = shape;
+  if (auto* plane = std::get_if<Plane>(&out)) plane->point += by * plane->normal;
+  if (auto* capsule = std::get_if<Capsule>(&out)) capsule->radius += by;
+  if (auto* box = std::get_if<RoundedBox>(&out)) box->radius += by;
+  return out;
+}
+
 Bounds bounds(const Shape& shape) {
   return std::visit([](const auto& one) { return bounds_of(one); }, shape);
 }

@@ -45,6 +45,10 @@ DistanceSample sample_distance(const Shape& shape, const Vec3& x);
 /// moved and the radius changed (the shapes are convex). Infinite for different kinds or different planes.
 double distance_change(const Shape& a, const Shape& b);
 
+/// The shape grown by `by` on all sides, shrunk where it is negative (by less than its radius): its signed distance is
+/// that of `shape` less `by`, everywhere.
+Shape offset(const Shape& shape, double by);
+
 /// Smallest axis-aligned box around the shape: lower and upper corner. A plane has infinite bounds.
 struct Bounds {
   Vec3 lower, upper;

@@ -49,16 +49,16 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
                  const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
   VecX load = VecX::Zero(organ.state.x.size());
   loaded = false;
-  const StencilTable& stencils = organ.body.skin().stencils;
+  const StencilTable& stencils = organ.body.contact_points();
   for (const ContactPair& pair : pairs) {
     if (pair.distance >= field.barrier.range) continue;
     const int tool = pair.shape / shapes_per_tool;
     if (tool >= static_cast<int>(field.tools.size())) continue;  // the support stays
     if (from[tool] == to[tool]) continue;
-    const Vec3 at = organ.body.skin_point(pair.row, organ.state.x);
+    const Vec3 at = organ.body.contact_point(pair.row, organ.state.x);
     const DistanceSample d = sample_distance(field_now.shapes[pair.shape], at);
     const BarrierSample b = field.barrier.sample(d.distance);
-    const Mat3 h = organ.body.skin_areas()[pair.row] *
+    const Mat3 h = organ.body.contact_areas()[pair.row] *
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
     const Pose motion = part_motion(field.tools[tool], from[tool], to[tool], pair.shape % shapes_per_tool);
     spread(stencils, pair.row, h * carried(motion, at), load);
@@ -76,7 +76,7 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
   const FrictionLoad carried_on = friction_load(field, organ, to);
   for (std::size_t i = 0; i < carried_on.points.size(); ++i) {
     const RubbingPoint& point = field_now.friction.points[i];
-    const FrictionSample now = point.hold.sample(organ.body.skin_point(point.row, organ.state.x));
+    const FrictionSample now = point.hold.sample(organ.body.contact_point(point.row, organ.state.x));
     spread(stencils, point.row, now.hessian * (carried_on.points[i].hold.anchor - point.hold.anchor), load);
   }
   return load;
@@ -90,20 +90,22 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
   std::vector<double> travel;
   for (std::size_t i = 0; i < from.size(); ++i)
     travel.push_back(travel_bound(field.tools[i], from[i], to[i]));
+  std::vector<Shape> cores;
+  for (const Shape& shape : now.shapes) cores.push_back(offset(shape, -contact_guard));
   double share = 1.0;
   for (const ContactPair& pair : pairs) {
     const int tool = pair.shape / shapes_per_tool;
     const bool stays = tool >= static_cast<int>(field.tools.size());  // the support
     const double approach = longest + (stays ? 0.0 : travel[tool]);
-    if (share * approach < (1.0 - contact_keep) * pair.distance) continue;
-    const Vec3 at = organ.body.skin_point(pair.row, organ.state.x);
-    const Vec3 motion = organ.body.skin_point(pair.row, dx);
+    if (share * approach < (1.0 - contact_keep) * (pair.distance + contact_guard)) continue;
+    const Vec3 at = organ.body.contact_point(pair.row, organ.state.x);
+    const Vec3 motion = organ.body.contact_point(pair.row, dx);
     if (stays) {
-      share *= safe_share(at, share * motion, *field.support, contact_keep);
+      share *= safe_share(at, share * motion, cores[pair.shape], contact_keep);
       continue;
     }
     const InstrumentPose until = interpolate(from[tool], to[tool], share);
-    share *= joint_share(field.tools[tool], pair.shape % shapes_per_tool, now.shapes[pair.shape], from[tool],
+    share *= joint_share(field.tools[tool], pair.shape % shapes_per_tool, cores[pair.shape], from[tool],
                          until, at, share * motion, contact_keep);
   }
   return share;
@@ -309,6 +311,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     Poses here = between(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (field.tools[i].jaw_stopped) here[i].jaw = field.tools[i].pose.jaw;
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (here[i].jaw < field.tools[i].pose.jaw) make_room(field, static_cast<int>(i), here[i].jaw);
     Result<bool> moved = follow(field, here, slipped_before, events, statistics);
     if (!moved) return moved.failure();
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -341,14 +345,15 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
   };
   for (const Organ& organ : field.organs) {
     const Surroundings now = surroundings(field, organ, poses);
-    const std::vector<ContactPair> touching = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
+    const std::vector<ContactPair> touching =
+        organ.search.pairs(organ.body, organ.state.x, now, -contact_margin);
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
       const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
       if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
     }
     for (const RubbingPoint& point : now.friction.points) {
       const std::size_t tool = static_cast<std::size_t>(point.shape) / shapes_per_tool;
-      const Vec3 at = organ.body.skin_point(point.row, organ.state.x);
+      const Vec3 at = organ.body.contact_point(point.row, organ.state.x);
       // The point is counted where it presses.
       if (tool >= loads.size()) continue;
       loads[tool].force += point.hold.sample(at).gradient;
@@ -373,19 +378,22 @@ Result<bool> check_clear(const Field& field) {
 }
 
 double deepest_penetration(const Field& field) {
+  constexpr int parts = 4;  // twice as fine as what is felt
   double deepest = 0;
   for (const Tool& tool : field.tools) {
     for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {
       const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
-      const auto sample = [&](const Vec3& p) {
-        if (box.contains(p)) deepest = std::max(deepest, -signed_distance(shape, p));
-      };
       for (const Organ& organ : field.organs) {
         const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
-        for (const Vec3& p : skin) sample(p);
         for (const Triangle& t : organ.body.skin().triangles) {
-          for (int k = 0; k < 3; ++k) sample(0.5 * (skin[t[k]] + skin[t[(k + 1) % 3]]));
-          sample((skin[t[0]] + skin[t[1]] + skin[t[2]]) / 3.0);
+          Eigen::AlignedBox3d around;
+          for (int corner : t) around.extend(skin[corner]);
+          if (!around.intersects(box)) continue;
+          for (int i = 0; i <= parts; ++i)
+            for (int j = 0; i + j <= parts; ++j) {
+              const Vec3 at = (i * skin[t[0]] + j * skin[t[1]] + (parts - i - j) * skin[t[2]]) / parts;
+              deepest = std::max(deepest, -signed_distance(shape, at));
+            }
         }
       }
     }

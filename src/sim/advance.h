@@ -34,7 +34,7 @@ std::vector<ToolLoad> tool_loads(const Field& field);
 /// Fails (scenario) when a tool starts inside an organ.
 Result<bool> check_clear(const Field& field);
 
-/// Deepest point of any skin inside a tool, m, on the skin's triangles split once more.
+/// Deepest point of any skin inside a tool as it is made, m, on the skin's triangles split into four along each edge.
 double deepest_penetration(const Field& field);
 
 }  // namespace calot

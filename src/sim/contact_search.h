@@ -9,38 +9,58 @@
 
 namespace calot {
 
+/// Skin that is touched lies within this of the true surface, m, on either side.
+inline constexpr double contact_gap = 0.05e-3;
+/// Contact acts on shapes that are smaller than what they stand for by this, m: a little less than contact_gap, as the
+/// hardest pressed points go a little way below them.
+inline constexpr double contact_inset = 0.04e-3;
+/// Presses by 14 kPa 0.037 mm before the true surface, by 0.32 MPa there, by 4.3 MPa 0.035 mm below and, from 11 MPa on,
+/// by 5.7 MPa more for every um. Soft where it begins, as friction follows what presses; at the end stiffer than the
+/// grips of a fold, which press it into the jaws where they are at odds; no stiffer, as each halving of the soft share
+/// takes Newton's method another iteration to come out of what a tool has moved into.
+inline constexpr Barrier contact_barrier{
+    .range = contact_gap + contact_inset, .stiffness = 200e3, .soft_share = 0.02};
+/// No trial of a solver goes deeper than this below a contact shape, m: less than the thinnest of them has to its
+/// middle, beyond which it would be pushed out on the wrong side.
+inline constexpr double contact_guard = 0.3e-3;
+
 /// The field that acts on an organ during one solve; shapes do not move within it.
 struct Surroundings {
-  std::vector<Shape> shapes;
-  Barrier barrier;
+  std::vector<Shape> shapes;  ///< contact shapes: what they are in truth, inset
+  Barrier barrier = contact_barrier;
   Links grip;             ///< rows of the skin's stencils
-  FrictionLoad friction;  ///< of the same rows
+  FrictionLoad friction;  ///< rows: contact points
 };
 
-/// A skin point near enough to a shape to meet it within a solve.
+/// A contact point near enough to a shape to meet it within a solve.
 struct ContactPair {
-  int row = 0;          ///< skin point
+  int row = 0;          ///< contact point
   int shape = 0;        ///< index into Surroundings::shapes
   double distance = 0;  ///< m, when it was gathered
 };
 
 /// How far outside the contact range pairs are gathered, m; no solve may move a node further than this.
-inline constexpr double contact_margin = 5e-3;
+inline constexpr double contact_margin = 2.5e-3;
 
 /// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then face, then point.
 std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                       double extra);
 
 /// The same pairs with less work: points a little further away are remembered, and only these are looked at
-/// until the skin and the shapes have moved so far that others could have come near. For one organ.
+/// until the skin and the shapes have moved so far that others could have come near. Distances beyond `exact` are lower
+/// bounds, so some pairs beyond the reach are among them. For one organ.
 class ContactSearch {
  public:
+  static constexpr double exact = 0.5e-3;  ///< m
   std::vector<ContactPair> pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                  double extra);
 
   SelfContact own;  ///< the skin's with itself
 
  private:
+  /// Measures what is remembered again where it is now, nothing having come nearer than by `approach`, m.
+  void look_again(const VirtualStructure& body, const VecX& x, const Surroundings& field, double approach);
+
   std::vector<ContactPair> near_;  ///< distances as they were then
   std::vector<Shape> shapes_;
   VecX x_;

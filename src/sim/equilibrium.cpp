@@ -18,7 +18,9 @@ BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field
       volume_(start.volume),
       multiplier_(start.multiplier),
       fixed_pressure_(fixed_pressure),
-      own_(own) {}
+      own_(own) {
+  for (const Shape& shape : field.shapes) cores_.push_back(offset(shape, -contact_guard));
+}
 
 double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
 
@@ -27,7 +29,7 @@ void BodyProblem::for_touching(const VecX& x, const Use& use) const {
   const double far = field_.barrier.range + moved(x);
   for (const ContactPair& pair : pairs_) {
     if (pair.distance >= far) continue;
-    const Vec3 at = body_.skin_point(pair.row, x);
+    const Vec3 at = body_.contact_point(pair.row, x);
     if (signed_distance(field_.shapes[pair.shape], at) < field_.barrier.range) use(pair, at);
   }
 }
@@ -37,7 +39,7 @@ double BodyProblem::value(const VecX& x) const {
   if (!std::isfinite(sum)) return sum;
   sum += body_.foundation().value(body_.bed_points(), x);
   sum += field_.grip.value(body_.skin().stencils, x);
-  sum += field_.friction.value(body_.skin().stencils, x);
+  sum += field_.friction.value(body_.contact_points(), x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
     if (fixed_pressure_) sum -= multiplier_ * body_.volume(x);
@@ -45,7 +47,7 @@ double BodyProblem::value(const VecX& x) const {
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const double distance = signed_distance(field_.shapes[pair.shape], at);
-    sum += body_.skin_areas()[pair.row] * field_.barrier.sample(distance).energy;
+    sum += body_.contact_areas()[pair.row] * field_.barrier.sample(distance).energy;
   });
   if (own_) sum += own_->value(body_, x);
   return sum;
@@ -56,12 +58,12 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
   largest_internal = largest_node(gradient);
   body_.foundation().add_gradient(body_.bed_points(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
-  field_.friction.add_gradient(body_.skin().stencils, x, gradient);
+  field_.friction.add_gradient(body_.contact_points(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
-    const double force = body_.skin_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
-    spread(body_.skin().stencils, pair.row, force * d.gradient, gradient);
+    const double force = body_.contact_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
+    spread(body_.contact_points(), pair.row, force * d.gradient, gradient);
   });
   if (own_) own_->add_gradient(body_, x, gradient);
 }
@@ -96,14 +98,14 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   matrix.assign(body_.pattern());
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
-  field_.friction.add_hessian(body_.skin().stencils, x, matrix);
+  field_.friction.add_hessian(body_.contact_points(), x, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
     const BarrierSample b = field_.barrier.sample(d.distance);
-    const Mat3 h = body_.skin_areas()[pair.row] *
+    const Mat3 h = body_.contact_areas()[pair.row] *
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
-    add_point_hessian(body_.skin().stencils, pair.row, h, matrix);
+    add_point_hessian(body_.contact_points(), pair.row, h, matrix);
   });
   if (own_) own_->add_hessian(body_, x, matrix);
 }
@@ -127,15 +129,16 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     const Vec3 gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
     if (!field_.shapes.empty() && (gone + share * move).norm() > margin) {
       const double left = margin - gone.norm();
-      share = std::min(share, std::max(0.0, left) / length);
+      if (left < 0.5 * margin) return 0;  // better gather anew than go on in ever shorter steps
+      share = std::min(share, left / length);
     }
   }
   const double gone = moved(x), longest = body_.largest_motion(step);
   for (const ContactPair& pair : pairs_) {
-    if (share * longest < (1.0 - contact_keep) * (pair.distance - gone)) continue;
-    const Shape& shape = field_.shapes[pair.shape];
-    const Vec3 motion = share * body_.skin_point(pair.row, step);
-    const Vec3 at = body_.skin_point(pair.row, x);
+    if (share * longest < (1.0 - contact_keep) * (pair.distance + contact_guard - gone)) continue;
+    const Shape& shape = cores_[pair.shape];
+    const Vec3 motion = share * body_.contact_point(pair.row, step);
+    const Vec3 at = body_.contact_point(pair.row, x);
     if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
     share *= calot::safe_share(at, motion, shape, contact_keep);
   }
@@ -180,11 +183,11 @@ std::vector<ContactForce> contact_forces(const VirtualStructure& body, const Vec
                                          const Surroundings& field, const std::vector<ContactPair>& pairs) {
   std::vector<ContactForce> out;
   for (const ContactPair& pair : pairs) {
-    const Vec3 at = body.skin_point(pair.row, x);
+    const Vec3 at = body.contact_point(pair.row, x);
     const DistanceSample d = sample_distance(field.shapes[pair.shape], at);
     if (d.distance >= field.barrier.range) continue;
     const double pressure = field.barrier.sample(d.distance).derivative;
-    out.push_back({pair.shape, at, body.skin_areas()[pair.row] * pressure * d.gradient});
+    out.push_back({pair.shape, at, body.contact_areas()[pair.row] * pressure * d.gradient});
   }
   return out;
 }

@@ -9,7 +9,8 @@
 
 namespace calot {
 
-/// No step takes a skin point nearer to a shape than this share of its distance before it.
+/// No step takes a contact point nearer to a shape's core (contact_guard below it) than this share of its distance
+/// before it.
 inline constexpr double contact_keep = 0.2;
 
 /// No equilibrium takes more Newton iterations, whatever its rounds: one that needs them is blocked.
@@ -47,6 +48,7 @@ class BodyProblem : public ConstrainedEnergy {
   const VirtualStructure& body_;
   const Surroundings& field_;
   std::vector<ContactPair> pairs_;
+  std::vector<Shape> cores_;  ///< of the shapes: what no trial may reach
   VecX start_;
   double volume_, multiplier_;
   bool fixed_pressure_;

@@ -15,9 +15,9 @@ Surroundings surroundings(const Field& field, const Organ& organ, const std::vec
   Surroundings out;
   out.barrier = field.barrier;
   for (std::size_t i = 0; i < field.tools.size(); ++i)
-    for (Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
-      out.shapes.push_back(std::move(shape));
-  if (field.support) out.shapes.push_back(*field.support);
+    for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
+      out.shapes.push_back(offset(shape, -contact_inset));
+  if (field.support) out.shapes.push_back(offset(*field.support, -contact_inset));
   out.grip = grip_links(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
   return out;

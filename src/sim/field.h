@@ -21,7 +21,7 @@ struct Field {
   std::vector<Tool> tools;
   std::optional<Plane> support;
   double support_friction = 0;  ///< Coulomb's
-  Barrier barrier;
+  Barrier barrier = contact_barrier;
   double tolerance = 1e-6;
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;

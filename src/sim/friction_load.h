@@ -1,5 +1,5 @@
 #pragma once
-// Friction of an organ's skin points during one solve.
+// Friction of an organ's contact points during one solve.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 namespace calot {
 
 struct RubbingPoint {
-  int row = 0;    ///< skin point
+  int row = 0;    ///< contact point
   int shape = 0;  ///< index into Surroundings::shapes
   StickSlip hold;
 };

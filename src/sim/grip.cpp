@@ -9,9 +9,11 @@ namespace {
 
 /// Two walls between the pads, squeezed to this share of their thickness.
 constexpr double fold_squeeze = 0.6;
+/// How far before a pad its teeth take hold, m (d).
+constexpr double pad_reach = 0.5e-3;
 
 bool faces_pad(const Vec3& local, const InstrumentGeometry& g, double range) {
-  return local.x() < 0 && local.x() > -range && before_pad(local, g);
+  return local.x() < contact_inset && local.x() > -range && before_pad(local, g);
 }
 
 }  // namespace
@@ -32,13 +34,20 @@ void take_hold(Field& field, int instrument) {
       if (held[p]) continue;
       const Vec3 local[2] = {to_local[0] * skin[p], to_local[1] * skin[p]};
       const int jaw = local[0].x() >= local[1].x() ? 0 : 1;  // the nearer pad
-      if (faces_pad(local[jaw], tool.geometry, field.barrier.range))
+      if (faces_pad(local[jaw], tool.geometry, pad_reach))
         organ.grips.push_back({instrument, jaw, static_cast<int>(p), local[jaw], grip_stiffness});
     }
     std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
       return std::tie(a.instrument, a.jaw, a.row) < std::tie(b.instrument, b.jaw, b.row);
     });
   }
+}
+
+void make_room(Field& field, int instrument, double jaw) {
+  for (Organ& organ : field.organs)
+    for (GripPoint& grip : organ.grips)
+      if (grip.instrument == instrument)
+        grip.local.x() = std::max(grip.local.x(), -grip.local.z() * std::tan(0.5 * jaw));
 }
 
 int grip_count(const Organ& organ, int instrument) {

@@ -5,15 +5,20 @@
 
 namespace calot {
 
-/// Stiffness of a held skin point, N/m: some thousand times the wall's, so that 5 N on a single point move it
-/// by 10 um.
-inline constexpr double grip_stiffness = 5e5;
+/// Stiffness of a held skin point, N/m: a hundred times the wall's, so that 5 N on the tens of points of a fold move it
+/// by some um. Well below a contact point's: a fold's wall, which cannot bend between its nodes, sets its grips against
+/// each other and against the jaws, and stiffer ones would push it into them.
+inline constexpr double grip_stiffness = 3e4;
 
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);
 
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
 bool fold_fills_jaws(const Field& field, int instrument);
+
+/// Before jaws that hold some skin close further, to `jaw` (rad): each pad keeps what it holds within its half of the
+/// gap, out of the other's way.
+void make_room(Field& field, int instrument, double jaw);
 
 /// Skin points of the organ that tool `instrument` grips.
 int grip_count(const Organ& organ, int instrument);

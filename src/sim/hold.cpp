@@ -94,7 +94,7 @@ Vec3 pad_pull(const Field& field, int instrument) {
       if (organ.grips[g].instrument == instrument)
         pull += now.grip.stiffness[g] *
                 (organ.body.skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
-    const auto touching = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
+    const auto touching = organ.search.pairs(organ.body, organ.state.x, now, -contact_margin);
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching))
       if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
         pull += contact.on_shape;

@@ -2,7 +2,7 @@
 // The shape of the jaws on what they hold (the paper, section 5.3): where pads grip a fold, the skin that is DRAWN is
 // moved onto their surface, and out into the window of a fenestrated jaw, by a free-form deformation in the frame of
 // the jaws. It changes pictures only: no force, no contact and no state hash knows of it, and it moves skin by less
-// than the contact's range (plus the bulge in a window). The pads' teeth, 1 mm apart, are finer than the skin's points
+// than the pads' reach (plus the bulge in a window). The pads' teeth, 1 mm apart, are finer than the skin's points
 // and leave no mark.
 
 #include <optional>

@@ -240,7 +240,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
       if (signed_distance(shape, p) <= 0)
         return fail(FailureKind::scenario,
                     fmt::format("organ '{}' starts {:.2g} mm inside the supporting plane", definition.name,
-                                -1e3 * signed_distance(shape, p)),
+                                1e3 * (contact_inset - signed_distance(shape, p))),
                     "move the organ up or the plane down", {"", 0, "scene.anatomy.support.point"});
   NewtonSettings settings;
   settings.tolerance = tolerance;

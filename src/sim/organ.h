@@ -29,7 +29,7 @@ struct Organ {
   VirtualStructure body;
   BodyState state;
   NewtonWorkspace work;
-  ContactSearch search;
+  mutable ContactSearch search;  ///< remembers where it looked last: what it finds does not depend on it
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
   std::vector<Extension> extensions;     ///< ordered by shape

@@ -79,9 +79,9 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   for (const ContactPair& pair : organ.search.pairs(organ.body, organ.state.x, around, 0.0)) {
     const double mu = coefficient(field, pair.shape);
     if (pair.distance >= around.barrier.range || mu <= 0 || is_holding_jaw(holding, pair.shape)) continue;
-    const double area = organ.body.skin_areas()[pair.row];
+    const double area = organ.body.contact_areas()[pair.row];
     const DistanceSample d =
-        sample_distance(around.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x));
+        sample_distance(around.shapes[pair.shape], organ.body.contact_point(pair.row, organ.state.x));
     StickSlip hold;
     hold.normal = d.gradient;
     hold.limit = -mu * area * around.barrier.sample(d.distance).derivative;
@@ -89,7 +89,7 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
     const RubbingPoint* old = organ.friction.find(pair.shape, pair.row);
     hold.anchor = frames[pair.shape] * (old ? old->hold.anchor
                                             : shape_frame(field, from, pair.shape).inverse() *
-                                                  organ.body.skin_point(pair.row, before));
+                                                  organ.body.contact_point(pair.row, before));
     now.points.push_back({pair.row, pair.shape, hold});
   }
   std::sort(now.points.begin(), now.points.end(), [](const RubbingPoint& a, const RubbingPoint& b) {
@@ -110,7 +110,7 @@ void keep_friction(const Field& field, Organ& organ, const std::vector<Instrumen
   const std::vector<Pose> frames = shape_frames(field, poses);
   organ.friction.points.clear();
   for (RubbingPoint point : friction.points) {
-    point.hold.anchor = point.hold.anchor_after(organ.body.skin_point(point.row, organ.state.x));
+    point.hold.anchor = point.hold.anchor_after(organ.body.contact_point(point.row, organ.state.x));
     point.hold = point.hold.carried(frames[point.shape].inverse());
     organ.friction.points.push_back(point);
   }

@@ -11,10 +11,11 @@
 
 namespace calot {
 
-/// Tangential stiffness of a sticking area, Pa/m: at 5 kPa of shear it gives by 20 um, several times less
-/// than shear through a wall of 2 mm and 100 kPa does, which the shell leaves out. A pressure, so that what
-/// sticks does not depend on how many points stand for an area (d).
-inline constexpr double stick_stiffness = 2.5e8;
+/// Tangential stiffness of a sticking area, Pa/m: at 20 kPa of shear it gives by 20 um, several times less
+/// than shear through a wall of 2 mm and 100 kPa does, which the shell leaves out. Contact is thin, so a rounded edge
+/// presses by tens of kPa: a softer hold would give by more than points slide before they leave it. A pressure, so that
+/// what sticks does not depend on how many points stand for an area (d).
+inline constexpr double stick_stiffness = 1e9;
 
 /// Normal forces agree when they changed, summed over all points as vectors, by less than this share of their
 /// sum in the last round; a sum of friction's limits below `least_friction` (N) is taken for that.

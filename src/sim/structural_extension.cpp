@@ -25,7 +25,8 @@ std::vector<Near> near_points(const Organ& organ, int shape, const std::vector<C
   if (!out.empty()) return out;  // what is held does not slide: it alone says where
   double nearest = std::numeric_limits<double>::infinity();
   for (const ContactPair& pair : pairs) {
-    if (pair.shape != shape || pair.distance > extension_behind) continue;
+    if (pair.shape != shape || pair.distance > extension_behind || !organ.body.is_skin_point(pair.row))
+      continue;
     out.push_back({pair.row, pair.distance});
     nearest = std::min(nearest, pair.distance);
   }
@@ -71,7 +72,8 @@ int middle_of(const VirtualStructure& body, const std::vector<Near>& points, dou
 
 bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::vector<ContactPair>& near) {
   return std::all_of(near.begin(), near.end(), [&](const ContactPair& pair) {
-    return signed_distance(field.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x)) > 0;
+    return signed_distance(field.shapes[pair.shape], organ.body.contact_point(pair.row, organ.state.x)) >
+           -contact_guard;
   });
 }
 
@@ -138,7 +140,11 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   std::vector<int> details;
   {
     const Timed timed(statistics.contact_s);
-    near = organ.search.pairs(organ.body, organ.state.x, now, 0.0);
+    near = organ.search.pairs(organ.body, organ.state.x, now, extension_behind - contact_margin);
+    for (ContactPair& pair : near)  // most distances are bounds
+      if (organ.body.is_skin_point(pair.row))
+        pair.distance =
+            signed_distance(now.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x));
     organ.extensions = wanted_extensions(field, organ, near);
     details = details_around(organ.body, organ.extensions);
   }

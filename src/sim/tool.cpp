@@ -34,13 +34,6 @@ double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentP
 
 namespace {
 
-Shape inflated(const Shape& shape, double by) {
-  Shape out = shape;
-  if (auto* capsule = std::get_if<Capsule>(&out)) capsule->radius += by;
-  if (auto* box = std::get_if<RoundedBox>(&out)) box->radius += by;
-  return out;
-}
-
 /// Chord error of a path of unit duration is at most an eighth of its largest acceleration: turning about the
 /// trocar (lever rho) and the hinge, and turning while moving.
 double path_bend(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b, const Vec3& x,
@@ -66,7 +59,7 @@ double joint_share(const Tool& tool, int part, const Shape& shape, const Instrum
   const double bend = path_bend(tool, from, until, x, share * motion.norm());
   const Vec3 path = part_motion(tool, from, until, part).inverse() * (x + share * motion) - x;
   if (path.norm() + bend < (1.0 - keep) * gap) return share;
-  return share * safe_share(x, path, inflated(shape, bend), keep);
+  return share * safe_share(x, path, offset(shape, bend), keep);
 }
 
 std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid) {

@@ -77,24 +77,25 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
   }
 }
 
-/// Adds the nodes from `first` on that a face's skin points depend on; before them its nodes are known.
-void add_nodes(const StencilTable& skin, int first, std::vector<char>& seen,
+/// Adds the nodes from `first` on that a face's contact points depend on; before them its nodes are known.
+void add_nodes(const StencilTable& points, int first, std::vector<char>& seen,
                VirtualStructure::SkinFace& face) {
   const std::size_t known = face.nodes.size();
   for (int r : face.rows) {
     // Nodes increase within a row: those looked for are its last.
-    for (int e = skin.begin[r + 1] - 1; e >= skin.begin[r] && skin.node[e] >= first; --e)
-      if (!std::exchange(seen[skin.node[e] - first], 1)) face.nodes.push_back(skin.node[e]);
+    for (int e = points.begin[r + 1] - 1; e >= points.begin[r] && points.node[e] >= first; --e)
+      if (!std::exchange(seen[points.node[e] - first], 1)) face.nodes.push_back(points.node[e]);
   }
   for (std::size_t k = known; k < face.nodes.size(); ++k) seen[face.nodes[k] - first] = 0;
   std::sort(face.nodes.begin() + static_cast<std::ptrdiff_t>(known), face.nodes.end());
 }
 
-std::vector<VirtualStructure::SkinFace> faces_of(const Tessellation& skin, int faces, int nodes) {
+std::vector<VirtualStructure::SkinFace> faces_of(const ContactPoints& points, const StencilTable& rows,
+                                                 int faces, int nodes) {
   std::vector<VirtualStructure::SkinFace> out(faces);
-  for (int r = 0; r < skin.stencils.rows(); ++r) out[skin.at[r].face].rows.push_back(r);
+  for (int r = 0; r < rows.rows(); ++r) out[points.face[r]].rows.push_back(r);
   std::vector<char> seen(nodes, 0);
-  for (VirtualStructure::SkinFace& face : out) add_nodes(skin.stencils, 0, seen, face);
+  for (VirtualStructure::SkinFace& face : out) add_nodes(rows, 0, seen, face);
   return out;
 }
 
@@ -107,9 +108,12 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   Base base{setup, std::move(levels).value()};
   base.skin = close_skin(base.levels.surface(), rest);
   base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
-  base.skin_faces =
-      faces_of(base.skin, static_cast<int>(setup.control.triangles.size()), base.levels.nodes(0));
+  base.contact =
+      calot::contact_points(base.skin, static_cast<int>(setup.control.triangles.size()), base.skin_rest);
   base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
+  base.contact_rows = contact_stencils(base.contact, base.skin.stencils);
+  base.skin_faces = faces_of(base.contact, base.contact_rows,
+                             static_cast<int>(setup.control.triangles.size()), base.levels.nodes(0));
   for (int level = 1; level <= setup.levels; ++level)
     base.skin_by_level.push_back(base.levels.evaluate(level, base.skin.at, 1));
   base.skin_places = without_derivatives(base.skin.stencils);
@@ -229,11 +233,13 @@ void VirtualStructure::build_skin() {
   skin_.at = base_->skin.at;
   skin_.triangles = base_->skin.triangles;
   skin_.stencils = surface_.basis.extend(base_->skin_places, skin_.at, base_->skin_places_by_level);
+  contact_ = contact_stencils(base_->contact, skin_.stencils, base_->contact_rows,
+                              [this](int face) { return surface_.basis.reaches(face); });
   skin_faces_ = base_->skin_faces;
   std::vector<char> seen(details().size(), 0);
   for (std::size_t f = 0; f < skin_faces_.size(); ++f)
     if (surface_.basis.reaches(static_cast<int>(f)))
-      add_nodes(skin_.stencils, coarse_nodes(), seen, skin_faces_[f]);
+      add_nodes(contact_, coarse_nodes(), seen, skin_faces_[f]);
 }
 
 void VirtualStructure::build_bed(const VirtualStructure* before, const SharedRows* shared) {

@@ -13,6 +13,7 @@
 #include "fem/shell.h"
 #include "geometry/tri_mesh.h"
 #include "numerics/newton.h"
+#include "sim/contact_points.h"
 #include "skin/shared_rows.h"
 
 namespace calot {
@@ -87,6 +88,11 @@ class VirtualStructure {
   const Tessellation& skin() const { return skin_; }
   /// Rest area that each skin point stands for, m^2.
   const std::vector<double>& skin_areas() const { return base_->skin_areas; }
+  /// Where the skin is felt: rows of its points and, after them, of what lies between.
+  const StencilTable& contact_points() const { return contact_; }
+  /// Rest area that each contact point stands for, m^2.
+  const std::vector<double>& contact_areas() const { return base_->contact.areas; }
+  bool is_skin_point(int contact_point) const { return contact_point < skin_.stencils.rows(); }
   const std::vector<Vec3>& skin_rest() const { return base_->skin_rest; }
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const;
@@ -95,7 +101,7 @@ class VirtualStructure {
   const std::vector<double>& edge_lengths() const { return edge_lengths_; }
   double size() const { return base_->size; }  ///< m, diagonal of the rest shape's box
 
-  /// Skin points of one control face (each point belongs to one face) and the nodes they depend on. As the
+  /// Contact points of one control face (each point belongs to one face) and the nodes they depend on. As the
   /// weights are not negative the points lie in the box of the coarse ones among these nodes, widened by half
   /// of each detail's length, whatever the state.
   struct SkinFace {
@@ -115,6 +121,7 @@ class VirtualStructure {
   Vec3 skin_point(int row, const VecX& x) const {
     return blend(skin_.stencils, skin_.stencils.value, row, x);
   }
+  Vec3 contact_point(int row, const VecX& x) const { return blend(contact_, contact_.value, row, x); }
   std::vector<Vec3> skin_normals(const VecX& x) const;  ///< unit, outward
 
  private:
@@ -129,6 +136,8 @@ class VirtualStructure {
     std::vector<StencilTable> skin_places_by_level{};
     std::vector<Vec3> skin_rest{}, node_rest{};
     std::vector<double> skin_areas{};
+    ContactPoints contact{};
+    StencilTable contact_rows{};         ///< with the coarse nodes
     std::vector<SkinFace> skin_faces{};  ///< with the coarse nodes
     Links bed{};
     std::vector<FacePoint> bed_places{};
@@ -165,6 +174,7 @@ class VirtualStructure {
   Shell shell_;
   std::optional<Bile> bile_;
   Tessellation skin_;
+  StencilTable contact_;
   std::vector<double> edge_lengths_;
   BlockMatrix constant_{0, {}};
   StencilTable quadrature_, bed_points_;

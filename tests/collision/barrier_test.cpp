@@ -61,6 +61,24 @@ TEST(Barrier, PushesHarderTheCloserWithoutBound) {
   EXPECT_GT(-before.derivative, 1e9 * barrier.stiffness);
 }
 
+TEST(Barrier, WithASoftShareGoesOnSmoothlyAndPushesOutFromInside) {
+  const Barrier hard, soft{.soft_share = 0.1};
+  const double start = soft.soft_share * soft.range, h = 1e-6 * soft.range;
+  for (double d = start; d < 1.1 * soft.range; d += 0.01 * soft.range) {
+    EXPECT_EQ(soft.sample(d).energy, hard.sample(d).energy);
+    EXPECT_EQ(soft.sample(d).second, hard.sample(d).second);
+  }
+  for (double d = start - h; d > -10 * soft.range; d -= 0.1 * soft.range) {
+    const BarrierSample at = soft.sample(d), ahead = soft.sample(d + h / 2), behind = soft.sample(d - h / 2);
+    // A parabola's central differences are exact, to the rounding of energies.
+    EXPECT_NEAR((ahead.energy - behind.energy) / h / at.derivative, 1, 1e-8);
+    EXPECT_NEAR((ahead.derivative - behind.derivative) / h / at.second, 1, 1e-8);
+    EXPECT_EQ(at.second, hard.sample(start).second);
+  }
+  EXPECT_NEAR(soft.sample(start - h).derivative / hard.sample(start).derivative, 1, 1e-4);
+  EXPECT_NEAR(soft.sample(start - h).energy / hard.sample(start).energy, 1, 1e-4);
+}
+
 TEST(Barrier, IsInfiniteAtTouchAndInside) {
   for (const double d : {0.0, -1e-6, -infinity}) {
     const BarrierSample at = Barrier{}.sample(d);

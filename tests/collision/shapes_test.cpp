@@ -241,5 +241,18 @@ TEST(Shapes, PlacesWithoutADirectionOutwardStayFinite) {
   }
 }
 
+TEST(Offset, ChangesTheDistanceByAsMuchEverywhere) {
+  Rng rng(21);
+  int inside = 0;
+  for (int trial = 0; trial < 300; ++trial)
+    for (const Shape& shape : random_shapes(rng))
+      for (double by : {0.2e-3, -0.2e-3}) {
+        const Vec3 x = random_vector(rng, 15e-3);
+        inside += signed_distance(shape, x) < 0;
+        EXPECT_NEAR(signed_distance(offset(shape, by), x), signed_distance(shape, x) - by, 1e-16);
+      }
+  EXPECT_GT(inside, 50);
+}
+
 }  // namespace
 }  // namespace calot

@@ -33,7 +33,7 @@ TEST_P(Scenario, KeepsTheInstrumentsOutOfTheSkinAndTheBileIn) {
   const SessionResult played = run_session(world, *script.value(), script.value()->demo(), session);
   EXPECT_EQ(played.end, SessionEnd::steps_done) << to_text(played.failure);
   EXPECT_GT(strongest, 1.0) << "a scenario without traction tests nothing";
-  EXPECT_LT(deepest, 0.2e-3);
+  EXPECT_LT(deepest, 0.1e-3);
   EXPECT_LT(swelling, 1e-9);
   RecordProperty("deepest_um", static_cast<int>(1e6 * deepest));
 }

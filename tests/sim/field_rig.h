@@ -31,7 +31,7 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
   field.tolerance = tolerance;
   field.support = support;
   Surroundings still;
-  if (support) still.shapes.push_back(*support);
+  if (support) still.shapes.push_back(offset(*support, -contact_inset));
   field.organs.push_back(make_organ(definition, still, up, tolerance, levels).value());
   return field;
 }

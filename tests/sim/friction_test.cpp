@@ -53,7 +53,7 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
     for (const RubbingPoint& point : load.points)
       out.emplace_back(point.shape, point.row,
                        part_frame(tool, tool.pose, point.shape % shapes_per_tool).inverse() *
-                           slide.organ().body.skin_point(point.row, slide.organ().state.x),
+                           slide.organ().body.contact_point(point.row, slide.organ().state.x),
                        point.hold.limit);
     return out;
   };
@@ -61,7 +61,8 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
   ASSERT_GT(before.size(), 50u);
   ASSERT_EQ(slide.go(-4e-3, 3e-3, 3), "");
   const auto after = in_the_jaws();
-  double drift = 0, weight = 0;
+  double drift = 0, weight = 0, pressed = 0;
+  for (const auto& point : before) pressed += std::get<3>(point);
   for (const auto& [shape, row, place, limit] : before)
     for (const auto& [shape_now, row_now, place_now, limit_now] : after) {
       if (shape != shape_now || row != row_now) continue;
@@ -69,7 +70,9 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
       drift += limit * (place_now - place).tail<2>().norm();
       weight += limit;
     }
-  EXPECT_GT(weight, 0.8) << "N; most of what pressed still does";
+  EXPECT_GT(pressed, 0.5) << "N";
+  // Dragged along, the ball tilts: a fifth of it leaves the flat pad, others come to touch.
+  EXPECT_GT(weight, 0.75 * pressed) << "most of what pressed still does";
   EXPECT_LT(drift / weight, 60e-6) << "m, a fiftieth of the way: what springs give and the rim slips";
   EXPECT_LT(slide.contact().rubbing, 0.8 * slide.contact().normal);
 
@@ -163,7 +166,7 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
     Vec3 rub = Vec3::Zero(), push = Vec3::Zero();
     for (const RubbingPoint& point : now.friction.points)
       if (point.shape == shapes_per_tool)
-        rub += point.hold.sample(organ.body.skin_point(point.row, organ.state.x)).gradient;
+        rub += point.hold.sample(organ.body.contact_point(point.row, organ.state.x)).gradient;
     for (const ContactForce& force :
          contact_forces(organ.body, organ.state.x, now, gather_pairs(organ.body, organ.state.x, now, 0.0)))
       if (force.shape == shapes_per_tool) push += force.on_shape;

@@ -15,7 +15,7 @@ TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
   const StepReport& pressed = path.world.report();
   EXPECT_GT(pressed.instruments[0].tip_force.dot(path.out), 0.1) << "it is pushed back";
   EXPECT_GT(pressed.organs[0].pressure, pressure);
-  EXPECT_LT(path.world.deepest_penetration(), 0.2e-3);
+  EXPECT_LT(path.world.deepest_penetration(), 0.1e-3);
   // The wall has gone along: it covers the tip, within the contact's range and half a grid of the skin.
   double nearest = 1;
   for (const Vec3& p : path.world.skin_positions(0))
@@ -58,7 +58,7 @@ TEST(SemmGrasp, GripsLiftsAndLetsGo) {
   ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
   EXPECT_EQ(path.world.report().instruments[0].holds, "");
   EXPECT_EQ(path.driver.count("release"), 1);
-  EXPECT_LT(deepest, 0.2e-3);
+  EXPECT_LT(deepest, 0.1e-3);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace calot {
 namespace {
 
-constexpr double most_depth = 0.2e-3;  // m
+constexpr double most_depth = 0.1e-3;  // m
 constexpr int a_test = 10;
 
 struct Approach {

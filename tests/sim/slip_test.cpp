@@ -113,12 +113,30 @@ TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
   ASSERT_EQ(slow.pull(0.2e-3, 28), "");
   const std::vector<GripPoint>&a = fast.field.organs[0].grips, &b = slow.field.organs[0].grips;
   EXPECT_LT(a.size(), held) << "it slips, and some of it leaves the pads";
-  ASSERT_EQ(a.size(), b.size());
   // Slides stop between 95 and 100% of what the pads hold, some 20 N/m away from each other a fold's way.
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].row, b[i].row);
-    EXPECT_LT((a[i].local - b[i].local).norm(), 0.05e-3);
-  }
+  constexpr double apart = 0.05e-3;
+  const InstrumentGeometry& g = fast.field.tools[0].geometry;
+  const auto same_or_at_the_edge = [&](const std::vector<GripPoint>& some,
+                                       const std::vector<GripPoint>& others) {
+    int same = 0;
+    for (const GripPoint& grip : some) {
+      const auto found =
+          std::find_if(others.begin(), others.end(), [&](const GripPoint& o) { return o.row == grip.row; });
+      if (found != others.end()) {
+        ++same;
+        EXPECT_LT((found->local - grip.local).norm(), apart);
+        continue;
+      }
+      const Vec3 at = grip.local;
+      const double to_edge =
+          std::min({0.5 * g.jaw_width - std::abs(at.y()), at.z() - g.jaw_rounding, g.jaw_length - at.z()});
+      EXPECT_LT(to_edge, apart)
+          << "only what lies at a pad's edge may have left it in one and not in the other";
+    }
+    return same;
+  };
+  EXPECT_GT(same_or_at_the_edge(a, b), 20);
+  EXPECT_GT(same_or_at_the_edge(b, a), 20);
   const double limit = 2 * 0.5 * 0.8;
   EXPECT_NEAR(pad_pull(fast.field, 0).norm() / limit, pad_pull(slow.field, 0).norm() / limit, 0.05);
 }

@@ -88,10 +88,11 @@ TEST(World, UnfilledOrganKeepsItsUnstressedVolume) {
 
 TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   test::FundusPath path(test::grasper_scene(80));
-  // Closed jaws driven through the organ and out at its other side.
+  // Closed jaws driven along the organ to beyond its neck at 8 m/s: in five steps or more they push it aside and
+  // arrive, 0.06 mm deep in its skin at the most.
   ASSERT_TRUE(path.driver.go(path.fundus + 10e-3 * path.out, 0.0, 2));
   const Vec3 neck = path.world.landmark("gallbladder.neck");
-  path.driver.go(path.fundus + 2.0 * (neck - path.fundus), 0.0, 10);
+  path.driver.go(path.fundus + 2.0 * (neck - path.fundus), 0.0, 1);
   ASSERT_TRUE(path.driver.failure) << "the tool went through";
   const Failure failure = *path.driver.failure;
   EXPECT_EQ(failure.kind, FailureKind::simulation);

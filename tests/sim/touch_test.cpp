@@ -1,0 +1,140 @@
+// Where skin touches: on the instrument's surface, however hard it is pressed, and nowhere far inside it.
+
+#include <gtest/gtest.h>
+
+#include "field_rig.h"
+#include "rig.h"
+
+namespace calot {
+namespace {
+
+constexpr double most_gap = 0.05e-3, most_sinking = 0.1e-3;  // m, what the project asks for
+
+/// What was seen of all touched points after every part of a motion.
+struct Touch {
+  double lowest = 1, highest = -1;  ///< m, true distance from the instrument
+  double deepest = 0;               ///< m, of the skin between them too
+  int points = 0;
+};
+
+void look(const Field& field, Touch& touch) {
+  const Organ& organ = field.organs[0];
+  const Tool& tool = field.tools[0];
+  const Surroundings now = surroundings(field, organ, present_poses(field));
+  const std::vector<Shape> made = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
+  const auto pairs = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
+  for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, pairs)) {
+    const double distance = signed_distance(made[contact.shape], contact.at);
+    touch.lowest = std::min(touch.lowest, distance);
+    touch.highest = std::max(touch.highest, distance);
+    ++touch.points;
+  }
+  touch.deepest = std::max(touch.deepest, deepest_penetration(field));
+}
+
+/// A standard gallbladder and a grasper that comes along `out` from its fundus, or across it.
+struct Handled {
+  Field field;
+  Vec3 fundus, out, across;
+  Touch touch;
+
+  Handled(int levels, bool from_the_side) : field(make(levels)) {
+    const World world = World::create(test::grasper_scene()).value();
+    fundus = world.landmark("gallbladder.fundus");
+    out = world.landmark_normal("gallbladder.fundus");
+    across = out.unitOrthogonal();
+    test::add_grasper(
+        field, from_the_side ? Vec3(fundus + 20e-3 * out - 150e-3 * across) : Vec3(fundus + 150e-3 * out));
+  }
+  static Field make(int levels) {
+    const SceneDefinition scene = test::grasper_scene();
+    const World world = World::create(scene).value();
+    return test::make_field(scene.anatomy.organs[0], 1e-6, world.up(), {}, levels);
+  }
+  void go(const Vec3& tip, double jaw, int parts) {
+    for (int k = 1; k <= parts; ++k) {
+      const InstrumentPose to = pose_reaching(field.tools[0].trocar, tip, 0, jaw);
+      const InstrumentPose next = interpolate(field.tools[0].pose, to, 1.0 / (parts - k + 1));
+      SolveStatistics statistics;
+      const auto events = advance(field, {next}, statistics);
+      ASSERT_TRUE(events) << to_text(events.failure());
+      look(field, touch);
+    }
+  }
+  void expect_on_the_surface() const {
+    EXPECT_GT(touch.points, 50) << "nothing was touched";
+    EXPECT_GT(touch.lowest, -most_gap);
+    EXPECT_LT(touch.highest, most_gap);
+    EXPECT_LT(touch.deepest, most_sinking);
+  }
+};
+
+class TouchedPoints : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(WithLevels, TouchedPoints, ::testing::Values(0, 1));
+
+TEST_P(TouchedPoints, LieOnTheInstrumentThatPushesThem) {
+  Handled pushed(GetParam(), false);
+  pushed.go(pushed.fundus + 5e-3 * pushed.out, 0, 1);
+  pushed.go(pushed.fundus - 8e-3 * pushed.out, 0, 6);
+  pushed.go(pushed.fundus - 8e-3 * pushed.out + 4e-3 * pushed.across, 0, 4);
+  pushed.expect_on_the_surface();
+}
+
+TEST_P(TouchedPoints, LieOnTheShaftThatLiesAcrossThem) {
+  Handled crossed(GetParam(), true);
+  const Vec3 beyond = crossed.fundus + 50e-3 * crossed.across;
+  crossed.go(beyond + 20e-3 * crossed.out, 0, 2);
+  crossed.go(beyond - 4e-3 * crossed.out, 0, 8);
+  crossed.expect_on_the_surface();
+}
+
+TEST_P(TouchedPoints, LieOnTheJawsThatGraspThem) {
+  Handled grasped(GetParam(), false);
+  grasped.go(grasped.fundus + 15e-3 * grasped.out, test::open_jaw, 1);
+  grasped.go(grasped.fundus - 4e-3 * grasped.out, test::open_jaw, 5);
+  grasped.go(grasped.fundus - 4e-3 * grasped.out, 0, 6);
+  EXPECT_TRUE(grasped.field.tools[0].jaw_stopped);
+  grasped.go(grasped.fundus + 4e-3 * grasped.out, 0, 4);
+  grasped.expect_on_the_surface();
+}
+
+TEST(ContactPoints, StandForAllOfTheSkin) {
+  const Field field = Handled::make(0);
+  const VirtualStructure& body = field.organs[0].body;
+  double skin = 0, felt = 0;
+  for (const Triangle& t : body.skin().triangles)
+    skin += 0.5 * (body.skin_rest()[t[1]] - body.skin_rest()[t[0]])
+                      .cross(body.skin_rest()[t[2]] - body.skin_rest()[t[0]])
+                      .norm();
+  for (double area : body.contact_areas()) {
+    EXPECT_GT(area, 0);
+    felt += area;
+  }
+  EXPECT_NEAR(felt / skin, 1, 1e-12);  // rounding
+}
+
+TEST(ContactPoints, LieOnTheDrawnTriangles) {
+  Field field = Handled::make(1);
+  Organ& organ = field.organs[0];
+  test::extend(organ, {organ.landmarks.at("fundus")});
+  VecX x = organ.state.x;
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += 1e-3 * std::sin(static_cast<double>(i));
+  const std::vector<Vec3> skin = organ.body.skin_positions(x);
+  const int drawn = static_cast<int>(skin.size());
+  for (int r = 0; r < drawn; ++r) EXPECT_EQ(organ.body.contact_point(r, x), skin[r]);
+  // Each edge's middle once.
+  std::vector<Vec3> middles, felt;
+  for (const Triangle& t : organ.body.skin().triangles)
+    for (int k = 0; k < 3; ++k)
+      if (t[k] < t[(k + 1) % 3]) middles.push_back(0.5 * (skin[t[k]] + skin[t[(k + 1) % 3]]));
+  for (int r = drawn; r < organ.body.contact_points().rows(); ++r)
+    felt.push_back(organ.body.contact_point(r, x));
+  ASSERT_EQ(felt.size(), middles.size());
+  const auto by_place = [](const Vec3& a, const Vec3& b) { return a.x() < b.x(); };
+  std::sort(middles.begin(), middles.end(), by_place);
+  std::sort(felt.begin(), felt.end(), by_place);
+  for (std::size_t i = 0; i < felt.size(); ++i) EXPECT_LT((felt[i] - middles[i]).norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace calot
