@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/turn.h"
+
 namespace calot {
 namespace {
 
@@ -35,10 +37,22 @@ double relative_motion(const VirtualStructure& body, const VecX& dx, const std::
   return sum;
 }
 
-double relative_motion(const VirtualStructure& body, const VecX& dx) {
+std::vector<int> all_nodes(const VirtualStructure& body) {
   std::vector<int> all(body.nodes());
   std::iota(all.begin(), all.end(), 0);
-  return relative_motion(body, dx, all);
+  return all;
+}
+
+/// Bound on how much any two skin points have come nearer between two states, m: what their motions differ by but for
+/// a turn of the whole, which changes no distance.
+double approach_between(const VirtualStructure& body, const VecX& before, const VecX& now) {
+  const auto coarse = [&](const VecX& x) {
+    return Eigen::Map<const Eigen::Matrix3Xd>(x.data(), 3, body.coarse_nodes());
+  };
+  const Mat3 turn = best_turn(coarse(before), coarse(now));
+  VecX moved = now;
+  for (int i = 0; i < body.nodes(); ++i) moved.segment<3>(3 * i) -= turn * before.segment<3>(3 * i);
+  return relative_motion(body, moved, all_nodes(body));
 }
 
 std::array<Vec3, 3> corners_of(const Triangle& t, const std::vector<Vec3>& points) {
@@ -70,7 +84,7 @@ void SelfContact::refresh_groups(const VirtualStructure& body, const VecX& x, do
   // A group is near by its triangles' corners: these come nearer by what moves, and edges lengthen by that.
   constexpr double by_motion = 1.6;
   if (groups_known_ && groups_x_.size() == x.size() && groups_details_ == body.details() &&
-      need + by_motion * relative_motion(body, x - groups_x_) <= group_reach)
+      need + by_motion * approach_between(body, groups_x_, x) <= group_reach)
     return;
   groups_x_ = x;
   groups_details_ = body.details();
@@ -201,7 +215,7 @@ double SelfContact::safe_share(const VirtualStructure& body, const VecX& x, cons
   if (!active || !step.allFinite() || !x.allFinite()) return share;
   // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
   // way would be everything: that is gone in parts.
-  const double far = share * relative_motion(body, step) / (1.0 - keep);
+  const double far = share * relative_motion(body, step, all_nodes(body)) / (1.0 - keep);
   const int parts = 1 + static_cast<int>(far / (0.5 * group_reach));
   const double part = share / parts;
   for (int k = 0; k < parts; ++k) {
@@ -213,7 +227,7 @@ double SelfContact::safe_share(const VirtualStructure& body, const VecX& x, cons
 
 double SelfContact::safe_part(const VirtualStructure& body, const VecX& x, const VecX& step, double keep) {
   const double lost = 1.0 - keep;
-  const double anywhere = relative_motion(body, step) / lost;
+  const double anywhere = relative_motion(body, step, all_nodes(body)) / lost;
   refresh_groups(body, x, anywhere);
   if (groups_.empty()) return 1.0;
   const double far = relative_motion(body, step, nodes_) / lost;

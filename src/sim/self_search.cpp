@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "collision/simplex_distance.h"
+#include "geometry/turn.h"
 
 namespace calot {
 namespace {
@@ -91,9 +92,12 @@ class Boxes {
       const double reach = Differences(t, skin).reach(skin);
       for (int p : t) reach_[p] = std::max(reach_[p], reach);
     }
-    Eigen::AlignedBox3d all;
-    for (const Vec3& p : skin.points) all.extend(p);
-    scale_ = all.diagonal().norm() / net.nodes[0].rest.diagonal().norm();
+    const auto columns = [](const std::vector<Vec3>& points) {
+      return Eigen::Map<const Eigen::Matrix3Xd>(points[0].data(), 3,
+                                                static_cast<Eigen::Index>(points.size()));
+    };
+    const Mat3 turn = best_turn(columns(net.rest), columns(skin.points));
+    scale_ = spread_of(columns(skin.points)) / spread_of(columns(net.rest));
     for (int n = static_cast<int>(net.nodes.size()) - 1; n >= 0; --n) {
       const SkinNet::Node& node = net.nodes[n];
       if (node.left >= 0) {
@@ -104,7 +108,7 @@ class Boxes {
       }
       for (int k = node.first; k < node.last; ++k) {
         now_[n].extend(skin.points[net.order[k]]);
-        shift_[n].extend(skin.points[net.order[k]] - scale_ * net.rest[net.order[k]]);
+        shift_[n].extend(skin.points[net.order[k]] - scale_ * (turn * net.rest[net.order[k]]));
         near_[n] = std::max(near_[n], reach_[net.order[k]]);
       }
     }
@@ -115,7 +119,7 @@ class Boxes {
     if (p.rest.merged(q.rest).sizes().squaredNorm() < net_.apart * net_.apart) return;
     const double near = std::max(near_[a], near_[b]);
     if (now_[a].squaredExteriorDistance(now_[b]) >= near * near) return;
-    // Most of the wall has moved as one piece, but for being blown up: what was apart there still is.
+    // Most of the wall has moved and turned as one piece, but for being blown up: what was apart there still is.
     if (shift_[a].merged(shift_[b]).sizes().norm() <= scale_ * net_.apart - near) return;
     if (p.left < 0 && q.left < 0) {
       if (any_near(p, q)) out.emplace_back(a, b);
@@ -146,10 +150,11 @@ class Boxes {
 
   const SkinNet& net_;
   const SkinMotion& skin_;
-  std::vector<double> reach_;                     ///< of points
-  double scale_ = 1;                              ///< of the whole, against rest
-  std::vector<Eigen::AlignedBox3d> now_, shift_;  ///< places, and motions since rest that the scale leaves
-  std::vector<double> near_;                      ///< the largest of a node's reaches
+  std::vector<double> reach_;  ///< of points
+  double scale_ = 1;           ///< of the whole, against rest
+  std::vector<Eigen::AlignedBox3d> now_,
+      shift_;                 ///< places, and what scale and turn leave of motions since rest
+  std::vector<double> near_;  ///< the largest of a node's reaches
 };
 
 }  // namespace

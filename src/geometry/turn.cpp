@@ -1,0 +1,24 @@
+#include "geometry/turn.h"
+
+#include <Eigen/SVD>
+#include <cmath>
+
+namespace calot {
+
+Mat3 best_turn(const Points3& from, const Points3& to) {
+  const Vec3 from_middle = from.rowwise().mean(), to_middle = to.rowwise().mean();
+  Mat3 together = Mat3::Zero();
+  for (Eigen::Index i = 0; i < from.cols(); ++i)
+    together += (to.col(i) - to_middle) * (from.col(i) - from_middle).transpose();
+  const Eigen::JacobiSVD<Mat3> svd(together, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;  // the least of the three
+  return u * svd.matrixV().transpose();
+}
+
+double spread_of(const Points3& points) {
+  const Vec3 middle = points.rowwise().mean();
+  return std::sqrt((points.colwise() - middle).colwise().squaredNorm().mean());
+}
+
+}  // namespace calot
