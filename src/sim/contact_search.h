@@ -30,6 +30,9 @@ struct Surroundings {
   Barrier barrier = contact_barrier;
   Links grip;             ///< rows of the skin's stencils
   FrictionLoad friction;  ///< rows: contact points
+  /// N/m, springs that hold the details at rest, one each; none: all are free.
+  std::vector<double> detail_holds = {};
+  VecX load = {};  ///< N, 3 a node; empty: none
 };
 
 /// A contact point near enough to a shape to meet it within a solve.

@@ -25,6 +25,13 @@ BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field
 double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
 
 template <class Use>
+void BodyProblem::for_held_details(const Use& use) const {
+  const auto first = 3 * Eigen::Index{body_.coarse_nodes()};
+  for (std::size_t i = 0; i < field_.detail_holds.size(); ++i)
+    use(first + 3 * static_cast<Eigen::Index>(i), field_.detail_holds[i]);
+}
+
+template <class Use>
 void BodyProblem::for_touching(const VecX& x, const Use& use) const {
   const double far = field_.barrier.range + moved(x);
   for (const ContactPair& pair : pairs_) {
@@ -45,10 +52,13 @@ double BodyProblem::value(const VecX& x) const {
     if (fixed_pressure_) sum -= multiplier_ * body_.volume(x);
   }
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
+  if (field_.load.size() > 0) sum -= field_.load.dot(x);
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const double distance = signed_distance(field_.shapes[pair.shape], at);
     sum += body_.contact_areas()[pair.row] * field_.barrier.sample(distance).energy;
   });
+  for_held_details(
+      [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
   if (own_) sum += own_->value(body_, x);
   return sum;
 }
@@ -60,11 +70,14 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
   field_.friction.add_gradient(body_.contact_points(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
+  if (field_.load.size() > 0) gradient -= field_.load;
   for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
     const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
     const double force = body_.contact_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
     spread(body_.contact_points(), pair.row, force * d.gradient, gradient);
   });
+  for_held_details(
+      [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
   if (own_) own_->add_gradient(body_, x, gradient);
 }
 
@@ -106,6 +119,10 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
     const Mat3 h = body_.contact_areas()[pair.row] *
                    (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
     add_point_hessian(body_.contact_points(), pair.row, h, matrix);
+  });
+  for_held_details([&](Eigen::Index at, double stiffness) {
+    const int node = static_cast<int>(at / 3);
+    matrix.add(node, node, stiffness * Mat3::Identity());
   });
   if (own_) own_->add_hessian(body_, x, matrix);
 }

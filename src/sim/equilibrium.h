@@ -41,6 +41,9 @@ class BodyProblem : public ConstrainedEnergy {
   double moved(const VecX& x) const;
   /// Gradient but for the bile's part.
   void add_dry_gradient(const VecX& x, VecX& gradient, double& largest_internal) const;
+  /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
+  template <class Use>
+  void for_held_details(const Use& use) const;
   /// Calls use(pair, skin point) for the pairs whose distance at x is below the barrier's range.
   template <class Use>
   void for_touching(const VecX& x, const Use& use) const;

@@ -1,5 +1,6 @@
 #include "sim/field.h"
 
+#include "sim/detail_fading.h"
 #include "sim/grip.h"
 #include "sim/rubbing.h"
 
@@ -20,6 +21,8 @@ Surroundings surroundings(const Field& field, const Organ& organ, const std::vec
   if (field.support) out.shapes.push_back(offset(*field.support, -contact_inset));
   out.grip = grip_links(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
+  out.detail_holds = detail_holds(organ.body, organ.state.shares);
+  out.load = organ.state.fading_load;
   return out;
 }
 
@@ -30,6 +33,17 @@ void count(const NewtonResult& result, SolveStatistics& statistics) {
   statistics.solve_s += result.solve_s;
   statistics.contact_s += result.safety_s;
 }
+
+namespace {
+
+double largest_travel(const Field& field, const std::vector<InstrumentPose>& to) {
+  double travel = 0;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    travel = std::max(travel, travel_bound(field.tools[i], field.tools[i].pose, to[i]));
+  return travel;
+}
+
+}  // namespace
 
 Placement placement(const Organ& organ) { return {organ.state, organ.grips, organ.friction}; }
 
@@ -44,6 +58,7 @@ NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<In
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
+  fade_details(largest_travel(field, poses), organ.state);
   Surroundings around = surroundings(field, organ, poses);
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {

@@ -46,7 +46,8 @@ Placement placement(const Organ& organ);
 void give_back(Organ& organ, const Placement& placement);
 
 /// Brings one organ to rest with the tools at `poses`; on failure it is left at the last iterate. `before` is
-/// where it was at its last equilibrium, tools as field.tools stand: friction resists what moved since.
+/// where it was at its last equilibrium, tools as field.tools stand: friction resists what moved since, and details
+/// fade as far as the tools travel from there.
 NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
                           const VecX& before, int max_iterations, SolveStatistics& statistics);
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "base/timed.h"
+#include "sim/detail_fading.h"
 
 namespace calot {
 namespace {
@@ -83,6 +85,12 @@ bool clear_of_itself(Organ& organ, const VirtualStructure& before, const VecX& x
   return organ.search.own.safe_share(before, x, going, contact_keep, 1.0) == 1.0;
 }
 
+std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> out;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+  return out;
+}
+
 }  // namespace
 
 std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
@@ -137,7 +145,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   const std::vector<InstrumentPose> poses = present_poses(field);
   const Surroundings now = surroundings(field, organ, poses);
   std::vector<ContactPair> near;
-  std::vector<int> details;
+  std::vector<int> wanted, details;
   {
     const Timed timed(statistics.contact_s);
     near = organ.search.pairs(organ.body, organ.state.x, now, extension_behind - contact_margin);
@@ -146,9 +154,17 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
         pair.distance =
             signed_distance(now.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x));
     organ.extensions = wanted_extensions(field, organ, near);
-    details = details_around(organ.body, organ.extensions);
+    wanted = details_around(organ.body, organ.extensions);
+    details = united(wanted, lasting_details(organ.body, organ.state, wanted));
   }
-  if (details == organ.body.details() || details == organ.refused_details) return;
+  if (details == organ.refused_details) return;
+  const std::vector<int>& active = organ.body.details();
+  // What has faded goes with the next change or with the last that fades: a change costs as much as many details.
+  if (details == active ||
+      (details != wanted && std::includes(active.begin(), active.end(), wanted.begin(), wanted.end()))) {
+    organ.state.shares = shares_of(active, wanted, organ.body, organ.state.shares);
+    return;
+  }
   organ.refused_details = details;
   const Timed timed(statistics.extension_s);
   Result<VirtualStructure> next = organ.body.with_details(std::move(details));
@@ -159,6 +175,8 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   NewtonWorkspace work(next->pattern(), next->coarse_nodes());
   const Placement before = placement(organ);
   organ.state.x = organ.body.coordinates_in(next.value(), before.state.x);
+  organ.state.shares = shares_of(next->details(), wanted, organ.body, before.state.shares);
+  organ.state.fading_load = made_good(organ.body, before.state, next.value(), organ.state.x);
   std::swap(organ.body, next.value());  // what a failed change gives back
   std::swap(organ.work, work);
   const VecX start = organ.state.x;

@@ -24,7 +24,8 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
 /// Details of every level around the centres: odd nodes, increasing.
 std::vector<int> details_around(const VirtualStructure& body, const std::vector<Extension>& extensions);
 
-/// Lays, moves and takes away the organ's extensions for the tools where they stand, and brings it to rest again.
+/// Lays, moves and takes away the organ's extensions for the tools where they stand, and brings it to rest again: what
+/// is new begins held and what is left out goes when it has faded (detail_fading.h).
 /// Where the organ finds no rest with other details it keeps those that it has, which the statistics count.
 void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics);
 

@@ -165,6 +165,12 @@ VecX VirtualStructure::own_forces(const VecX& x, double multiplier) const {
   return out;
 }
 
+VecX VirtualStructure::forces(const VecX& x, double multiplier) const {
+  VecX out = own_forces(x, multiplier);
+  if (kept_load_.size() > 0) out -= kept_load_;
+  return out;
+}
+
 void VirtualStructure::keep_in_equilibrium(const BodyState& rest) {
   kept_ = std::make_shared<const Kept>(Kept{rest, own_forces(rest.x, rest.multiplier)});
 }
@@ -301,6 +307,14 @@ VecX VirtualStructure::coordinates_in(const VirtualStructure& other, const VecX&
 
 int VirtualStructure::levels_used() const {
   return details().empty() ? 0 : levels().level_of(details().back());
+}
+
+double VirtualStructure::detail_stiffness(int index) const {
+  const ShellMaterial& material = base_->setup.material;
+  // In membrane and in bending; the factors fit the diagonal of the Hessian at rest of a ball and a gallbladder, two
+  // levels each.
+  const double h = material.membrane.thickness, slope = h / edge_lengths_[coarse_nodes() + index];
+  return material.membrane.shear_modulus * h * (1.5 + 0.27 * slope * slope);
 }
 
 double VirtualStructure::largest_motion(const VecX& dx) const {

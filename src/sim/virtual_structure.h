@@ -22,10 +22,19 @@ namespace calot {
 /// round, then finds a point wherever it presses.
 inline constexpr double skin_spacing = 1.0e-3;
 
+/// How freely a detail moves (detail_fading.h).
+struct DetailShare {
+  double share = 1;      ///< 0: held at rest, 1: free
+  bool leaving = false;  ///< its share falls
+};
+
 struct BodyState {
   VecX x;                 ///< 3 a node, m: places of the control nodes, then displacements of the details
   double multiplier = 0;  ///< pressure at the datum's height, Pa
   double volume = 0;      ///< m^3, what the constraint keeps
+  std::vector<DetailShare> shares = {};  ///< one a detail; none: all are free
+  /// N, 3 a node: what a change of the details altered and is still made good; empty: nothing.
+  VecX fading_load = {};
 };
 
 class VirtualStructure {
@@ -55,6 +64,8 @@ class VirtualStructure {
   void keep_in_equilibrium(const BodyState& rest);
   /// That load, N, 3 a node; empty without details or before keep_in_equilibrium.
   const VecX& kept_load() const { return kept_load_; }
+  /// Gradient of the energies of wall, bed and bile less that load, N.
+  VecX forces(const VecX& x, double multiplier) const;
   /// Enclosed volume, m^3, of a structure with bile.
   double volume(const VecX& x) const { return bile_->volume(x) - kept_volume_; }
   /// The same, its gradient (m^2) added to `gradient`.
@@ -99,6 +110,8 @@ class VirtualStructure {
   /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe
   /// step there.
   const std::vector<double>& edge_lengths() const { return edge_lengths_; }
+  /// About the wall's own resistance to a detail (by its place among details()), N/m.
+  double detail_stiffness(int index) const;
   double size() const { return base_->size; }  ///< m, diagonal of the rest shape's box
 
   /// Contact points of one control face (each point belongs to one face) and the nodes they depend on. As the

@@ -60,6 +60,12 @@ std::uint64_t World::Impl::hash() const {
     hash.add(std::span<const double>(organ.state.x.data(), static_cast<std::size_t>(organ.state.x.size())));
     hash.add(organ.state.multiplier);
     hash.add(organ.state.volume);
+    for (const DetailShare& detail : organ.state.shares) {
+      hash.add(detail.share);
+      hash.add(detail.leaving);
+    }
+    const VecX& load = organ.state.fading_load;
+    hash.add(std::span<const double>(load.data(), static_cast<std::size_t>(load.size())));
     for (const GripPoint& grip : organ.grips) {
       hash.add(grip.instrument);
       hash.add(grip.jaw);

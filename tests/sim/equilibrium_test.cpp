@@ -25,8 +25,8 @@ Shape at_gap(const std::vector<Vec3>& skin, double gap, const std::function<Shap
   return shape_at(way);
 }
 
-/// A ball deformed at random, with a plane, a shaft and a jaw half the range of contact from its skin, a gripped point and two
-/// that rub.
+/// A ball deformed at random, with a plane, a shaft and a jaw half the range of contact from its skin, a gripped point,
+/// two that rub, springs on its details and a load.
 struct Touched {
   Field field;
   Organ& organ;
@@ -78,6 +78,10 @@ struct Touched {
     // One that sticks and one that slides.
     around.friction.points = {{a, 0, {skin[a] + 20e-6 * side, out[a], 0.1, 1e3}},
                               {b, 1, {skin[b] + 0.4e-3 * side, out[b], 0.1, 1e3}}};
+    for (std::size_t i = 0; i < organ.body.details().size(); ++i)
+      around.detail_holds.push_back(rng.uniform(0, 1e3));
+    around.load = VecX::Zero(x.size());
+    for (double& force : around.load) force = rng.uniform(-0.1, 0.1);
   }
   BodyProblem problem() {
     return {organ.body, around, gather_pairs(organ.body, x, around, 0.0), organ.state};
@@ -95,6 +99,18 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
                   .size(),
               5u);
     const BodyProblem problem = touched.problem();
+    Surroundings otherwise = touched.around;
+    otherwise.detail_holds.clear();
+    otherwise.load.resize(0);
+    const BodyProblem of_others(touched.organ.body, otherwise,
+                                gather_pairs(touched.organ.body, touched.x, otherwise, 0.0),
+                                touched.organ.state);
+    double held = -touched.around.load.dot(touched.x);
+    for (std::size_t i = 0; i < touched.around.detail_holds.size(); ++i) {
+      const Eigen::Index at = 3 * (touched.organ.body.coarse_nodes() + static_cast<Eigen::Index>(i));
+      held += 0.5 * touched.around.detail_holds[i] * touched.x.segment<3>(at).squaredNorm();
+    }
+    EXPECT_NEAR(problem.value(touched.x) - of_others.value(touched.x), held, 1e-9 * std::abs(held));
     VecX gradient;
     double internal = 0;
     problem.gradient(touched.x, gradient, internal);

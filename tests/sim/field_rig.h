@@ -42,6 +42,8 @@ inline void extend(Organ& organ, const std::vector<int>& centres) {
   for (int row : centres) organ.extensions.push_back({0, row});
   VirtualStructure next = organ.body.with_details(details_around(organ.body, organ.extensions)).value();
   organ.state.x = organ.body.coordinates_in(next, organ.state.x);
+  organ.state.shares.clear();  // free at once
+  organ.state.fading_load.resize(0);
   organ.body = std::move(next);
   organ.work = NewtonWorkspace(organ.body.pattern(), organ.body.coarse_nodes());
 }
