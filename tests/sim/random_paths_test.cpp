@@ -25,7 +25,7 @@ SceneDefinition ball_scene() {
   ball.nodes = 61;
   ball.neck = {-60e-3, 100e-3, -120e-3};
   ball.fundus = {-60e-3, 100e-3, -80e-3};
-  ball.held = {{"base", "neck", 10e-3, 1e6}};
+  ball.held = {{"base", "neck", 10e-3, 4e6}};  // firm: a softer one is near its buckling load
   scene.anatomy.organs = {ball};
   scene.laparoscope.look_at = "ball.fundus";
   InstrumentDefinition left;
