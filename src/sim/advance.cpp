@@ -91,7 +91,7 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
   for (std::size_t i = 0; i < from.size(); ++i)
     travel.push_back(travel_bound(field.tools[i], from[i], to[i]));
   std::vector<Shape> cores;
-  for (const Shape& shape : now.shapes) cores.push_back(offset(shape, -contact_guard));
+  for (const Shape& shape : now.shapes) cores.push_back(core_of(shape));
   double share = 1.0;
   for (const ContactPair& pair : pairs) {
     const int tool = pair.shape / shapes_per_tool;

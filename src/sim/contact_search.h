@@ -24,6 +24,11 @@ inline constexpr Barrier contact_barrier{
 /// middle, beyond which it would be pushed out on the wrong side.
 inline constexpr double contact_guard = 0.3e-3;
 
+/// What contact acts on for a shape as it is made.
+inline Shape contact_shape(const Shape& made) { return offset(made, -contact_inset); }
+/// What no trial may reach, of a contact shape.
+inline Shape core_of(const Shape& contact_shape) { return offset(contact_shape, -contact_guard); }
+
 /// The field that acts on an organ during one solve; shapes do not move within it.
 struct Surroundings {
   std::vector<Shape> shapes;  ///< contact shapes: what they are in truth, inset

@@ -19,7 +19,7 @@ BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field
       multiplier_(start.multiplier),
       fixed_pressure_(fixed_pressure),
       own_(own) {
-  for (const Shape& shape : field.shapes) cores_.push_back(offset(shape, -contact_guard));
+  for (const Shape& shape : field.shapes) cores_.push_back(core_of(shape));
 }
 
 double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }

@@ -17,8 +17,8 @@ Surroundings surroundings(const Field& field, const Organ& organ, const std::vec
   out.barrier = field.barrier;
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
-      out.shapes.push_back(offset(shape, -contact_inset));
-  if (field.support) out.shapes.push_back(offset(*field.support, -contact_inset));
+      out.shapes.push_back(contact_shape(shape));
+  if (field.support) out.shapes.push_back(contact_shape(*field.support));
   out.grip = grip_links(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
   out.detail_holds = detail_holds(organ.body, organ.state.shares);

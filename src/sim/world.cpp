@@ -198,7 +198,7 @@ Result<World> World::create(const SceneDefinition& scene) {
     impl->field.support_friction = support->friction;
   }
   Surroundings still;
-  if (impl->field.support) still.shapes.push_back(offset(*impl->field.support, -contact_inset));
+  if (impl->field.support) still.shapes.push_back(contact_shape(*impl->field.support));
   for (const OrganDefinition& definition : scene.anatomy.organs) {
     Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance,
                                      definition.extensions ? scene.solver.extension_levels : 0);

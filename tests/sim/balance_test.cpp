@@ -48,7 +48,7 @@ TEST(Balance, PlaneAndHeldPoleCarryTheWeightTogether) {
   const Field field = test::make_field(organ, tight, vertical, Plane{Vec3::Zero(), vertical});
   const Organ& placed = field.organs[0];
   Surroundings now;
-  now.shapes = {offset(*field.support, -contact_inset)};
+  now.shapes = {contact_shape(*field.support)};
   Vec3 push = Vec3::Zero();
   for (const ContactForce& contact :
        contact_forces(placed.body, placed.state.x, now, gather_pairs(placed.body, placed.state.x, now, 0.0)))

@@ -2,6 +2,7 @@
 // The field below the world: where held points, bed forces and supports can be looked at.
 
 #include "base/units.h"
+#include "rig.h"
 #include "sim/advance.h"
 #include "sim/grip.h"
 #include "sim/structural_extension.h"
@@ -31,7 +32,7 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
   field.tolerance = tolerance;
   field.support = support;
   Surroundings still;
-  if (support) still.shapes.push_back(offset(*support, -contact_inset));
+  if (support) still.shapes.push_back(contact_shape(*support));
   field.organs.push_back(make_organ(definition, still, up, tolerance, levels).value());
   return field;
 }
@@ -67,6 +68,31 @@ inline std::string move_tip(Field& field, const Vec3& tip, double jaw, int parts
   }
   return {};
 }
+
+/// A scene's first organ, and its first instrument outside of the fundus.
+struct FundusField {
+  Field field;
+  Vec3 fundus, out;  ///< and the way to the trocar
+
+  explicit FundusField(const SceneDefinition& scene) {
+    const World world = World::create(scene).value();  // for the landmark and up
+    field = make_field(scene.anatomy.organs[0], 1e-6, world.up());
+    add_grasper(field, world.port_position("right_subcostal"));
+    field.tools[0].definition = scene.instruments[0];
+    fundus = world.landmark("gallbladder.fundus");
+    out = (field.tools[0].trocar - fundus).normalized();
+  }
+  /// The tip to `height` (m) above the fundus, as move_tip.
+  std::string reach(double height, double jaw, int parts = 4) {
+    return move_tip(field, fundus + height * out, jaw, parts);
+  }
+  /// Open jaws come down on the fundus and close on it.
+  std::string grasp() {
+    for (const auto& [height, jaw] : {std::pair{15e-3, open_jaw}, {-4e-3, open_jaw}, {-4e-3, 0.0}})
+      if (const std::string why = reach(height, jaw); !why.empty()) return why;
+    return field.tools[0].jaw_stopped ? "" : "the jaws are empty";
+  }
+};
 
 /// Force of the bed and other held regions on the organ, N.
 inline Vec3 bed_force(const Organ& organ) {

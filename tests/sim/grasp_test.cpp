@@ -40,15 +40,9 @@ TEST(Grasp, PressureRisesAndForcePullsBackWhileLifted) {
 }
 
 TEST(Grasp, GraspedSkinStaysWithTheJaw) {
-  const SceneDefinition scene = test::grasper_scene();
-  World world = World::create(scene).value();  // for the landmark and up
-  Field field = test::make_field(scene.anatomy.organs[0], 1e-6, world.up());
-  test::add_grasper(field, world.port_position("right_subcostal"));
-  const Vec3 fundus = world.landmark("gallbladder.fundus");
-  const Vec3 out = (field.tools[0].trocar - fundus).normalized();
-  for (const auto& [depth, jaw] : {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}})
-    ASSERT_EQ(test::move_tip(field, fundus + depth * out, jaw), "");
-  ASSERT_TRUE(field.tools[0].jaw_stopped);
+  test::FundusField grasped(test::grasper_scene());
+  ASSERT_EQ(grasped.grasp(), "");
+  auto& [field, fundus, out] = grasped;
   const Organ& organ = field.organs[0];
   const auto in_the_jaws = [&] {
     std::vector<Vec3> local;

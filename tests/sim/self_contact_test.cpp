@@ -207,19 +207,14 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOther) {
 }
 
 TEST(SelfContact, NothingIsActiveInAnOrdinaryGrasp) {
-  const SceneDefinition scene = test::grasper_scene();
-  World world = World::create(scene).value();  // for the landmark and up
-  Field field = test::make_field(scene.anatomy.organs[0], 1e-6, world.up());
-  test::add_grasper(field, world.port_position("right_subcostal"));
-  const Vec3 fundus = world.landmark("gallbladder.fundus");
-  const Vec3 out = (field.tools[0].trocar - fundus).normalized();
-  Organ& organ = field.organs[0];
+  test::FundusField grasped(test::grasper_scene());
+  Organ& organ = grasped.field.organs[0];
   for (const auto& [depth, jaw] :
        {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}, {4e-3, 0.0}}) {
-    ASSERT_EQ(test::move_tip(field, fundus + depth * out, jaw), "");
+    ASSERT_EQ(grasped.reach(depth, jaw), "");
     EXPECT_TRUE(organ.search.own.touching(organ.body, organ.state.x).empty());
   }
-  ASSERT_TRUE(field.tools[0].jaw_stopped);
+  ASSERT_TRUE(grasped.field.tools[0].jaw_stopped);
   EXPECT_EQ(organ.work.matrix.entries().size(), organ.body.pattern().entries().size());
 }
 

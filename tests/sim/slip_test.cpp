@@ -60,19 +60,12 @@ TEST(Slip, BeginsWhereThePullExceedsTwiceFrictionTimesPinch) {
 TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
   const double limit = 2 * 0.8 * 0.5;
   for (int nodes : {120, 180}) {
-    const SceneDefinition scene = scene_with(0.5, 0.8, nodes);
-    World world = World::create(scene).value();
-    Field field = test::make_field(scene.anatomy.organs[0], 1e-6, world.up());
-    test::add_grasper(field, world.port_position("right_subcostal"));
-    field.tools[0].definition = scene.instruments[0];
-    const Vec3 fundus = world.landmark("gallbladder.fundus");
-    const Vec3 out = (field.tools[0].trocar - fundus).normalized();
-    for (const auto& [depth, jaw] : {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}})
-      ASSERT_EQ(test::move_tip(field, fundus + depth * out, jaw), "");
-    ASSERT_TRUE(field.tools[0].jaw_stopped);
+    test::FundusField grasped(scene_with(0.5, 0.8, nodes));
+    ASSERT_EQ(grasped.grasp(), "");
+    const Field& field = grasped.field;
     int sliding = 0, held = grip_count(field.organs[0], 0);
     for (int k = 1; k <= 60 && field.tools[0].jaw_stopped; ++k) {
-      ASSERT_EQ(test::move_tip(field, fundus + (0.2 * k - 4) * 1e-3 * out, 0.0, 1), "");
+      ASSERT_EQ(grasped.reach((0.2 * k - 4) * 1e-3, 0.0, 1), "");
       const double force = pad_pull(field, 0).norm();
       EXPECT_LE(force, 1.001 * limit) << nodes << " nodes: the friction cone is never left";
       const int before = std::exchange(held, grip_count(field.organs[0], 0));
@@ -86,23 +79,10 @@ TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
 }
 
 /// A fold of the fundus in weak jaws, taken hold of the same way whatever happens to it then.
-struct WeakGrip {
-  Field field;
-  Vec3 fundus, out;
-  WeakGrip() {
-    const SceneDefinition scene = scene_with(0.5, 0.8);
-    const World world = World::create(scene).value();
-    field = test::make_field(scene.anatomy.organs[0], 1e-6, world.up());
-    test::add_grasper(field, world.port_position("right_subcostal"));
-    field.tools[0].definition = scene.instruments[0];
-    fundus = world.landmark("gallbladder.fundus");
-    out = (field.tools[0].trocar - fundus).normalized();
-    for (const auto& [depth, jaw] : {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}})
-      EXPECT_EQ(test::move_tip(field, fundus + depth * out, jaw), "");
-    EXPECT_TRUE(field.tools[0].jaw_stopped);
-  }
+struct WeakGrip : test::FundusField {
+  WeakGrip() : FundusField(scene_with(0.5, 0.8)) { EXPECT_EQ(grasp(), ""); }
   /// Out to `way` (m) beyond the fundus.
-  std::string pull(double way, int steps) { return test::move_tip(field, fundus + way * out, 0.0, steps); }
+  std::string pull(double way, int steps) { return reach(way, 0.0, steps); }
 };
 
 TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
