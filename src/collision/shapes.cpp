@@ -32,56 +32,54 @@ SegmentFoot nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
   return {a + axis * (along / squared_length), true};
 }
 
-// The curvature of a round shape at distance r from its axis or centre acts across the gradient only.
-DistanceSample sample(const Capsule& capsule, const Vec3& x) {
-  const SegmentFoot foot = nearest_on_segment(capsule.a, capsule.b, x);
-  const Vec3 outward = x - foot.point;
+DistanceSlope slope(const Plane& plane, const Vec3& x) {
+  return {plane.normal.dot(x - plane.point), plane.normal};
+}
+DistanceSlope slope(const Capsule& capsule, const Vec3& x) {
+  const Vec3 outward = x - nearest_on_segment(capsule.a, capsule.b, x).point;
   const double r = outward.norm();
-  DistanceSample result;
-  result.distance = r - capsule.radius;
-  if (r < on_axis) {
-    result.gradient = any_perpendicular(capsule.b - capsule.a);
-    return result;
-  }
-  result.gradient = outward / r;
-  Mat3 across = Mat3::Identity() - result.gradient * result.gradient.transpose();
-  if (foot.on_side) {
+  return {r - capsule.radius, r < on_axis ? any_perpendicular(capsule.b - capsule.a) : Vec3(outward / r)};
+}
+
+// The curvature of a round shape at distance r from its axis or centre acts across the gradient only.
+Mat3 curvature(const Plane&, const Vec3&, const DistanceSlope&) { return Mat3::Zero(); }
+Mat3 curvature(const Capsule& capsule, const Vec3& x, const DistanceSlope& at) {
+  const double r = at.distance + capsule.radius;
+  if (r < on_axis) return Mat3::Zero();
+  Mat3 across = Mat3::Identity() - at.gradient * at.gradient.transpose();
+  if (nearest_on_segment(capsule.a, capsule.b, x).on_side) {
     const Vec3 along = (capsule.b - capsule.a).normalized();
     across -= along * along.transpose();
   }
-  result.hessian = across / r;
-  return result;
+  return across / r;
 }
 
-DistanceSample sample(const Plane& plane, const Vec3& x) {
-  return {plane.normal.dot(x - plane.point), plane.normal, Mat3::Zero()};
-}
-
-DistanceSample sample_in_inner_box(const RoundedBox& box, const Vec3& local, const Vec3& beyond) {
-  int face = 0;
-  DistanceSample result;
-  result.distance = beyond.maxCoeff(&face) - box.radius;
-  result.gradient = box.pose.linear().col(face) * sign_of(local[face]);
-  return result;
+Vec3 in_frame(const RoundedBox& box, const Vec3& x) {
+  return box.pose.linear().transpose() * (x - box.pose.translation());
 }
 
 // In the box's frame the inner box's nearest point differs from x only along the axes on which x is beyond
 // it: one such axis is a face (flat), two an edge (a cylinder), three a corner (a ball).
-DistanceSample sample(const RoundedBox& box, const Vec3& x) {
-  const Vec3 local = box.pose.inverse() * x;
-  const Vec3 beyond = local.cwiseAbs() - box.half;
+DistanceSlope slope(const RoundedBox& box, const Vec3& x) {
+  const Vec3 local = in_frame(box, x), beyond = local.cwiseAbs() - box.half;
   const double r = beyond.cwiseMax(0.0).norm();
-  if (r < on_axis) return sample_in_inner_box(box, local, beyond);
-  Vec3 normal = Vec3::Zero();
-  Mat3 across = Mat3::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (beyond[axis] <= 0) continue;
-    normal[axis] = beyond[axis] / r * sign_of(local[axis]);
-    across(axis, axis) = 1.0;
+  if (r < on_axis) {
+    int face = 0;
+    const double inside = beyond.maxCoeff(&face);
+    return {inside - box.radius, box.pose.linear().col(face) * sign_of(local[face])};
   }
-  const Mat3 rotation = box.pose.linear();
-  across -= normal * normal.transpose();
-  return {r - box.radius, rotation * normal, rotation * across * rotation.transpose() / r};
+  Vec3 normal = beyond.cwiseMax(0.0) / r;
+  for (int axis = 0; axis < 3; ++axis) normal[axis] *= sign_of(local[axis]);
+  return {r - box.radius, box.pose.linear() * normal};
+}
+Mat3 curvature(const RoundedBox& box, const Vec3& x, const DistanceSlope& at) {
+  const double r = at.distance + box.radius;
+  if (r < on_axis) return Mat3::Zero();
+  const Vec3 beyond = in_frame(box, x).cwiseAbs() - box.half;
+  Mat3 across = -at.gradient * at.gradient.transpose();
+  for (int axis = 0; axis < 3; ++axis)
+    if (beyond[axis] > 0) across += box.pose.linear().col(axis) * box.pose.linear().col(axis).transpose();
+  return across / r;
 }
 
 double change(const Plane& a, const Plane& b) {
@@ -121,12 +119,18 @@ double signed_distance(const Shape& shape, const Vec3& x) {
   if (const auto* capsule = std::get_if<Capsule>(&shape))
     return (x - nearest_on_segment(capsule->a, capsule->b, x).point).norm() - capsule->radius;
   const auto& box = std::get<RoundedBox>(shape);
-  const Vec3 beyond = (box.pose.inverse() * x).cwiseAbs() - box.half;
+  const Vec3 beyond = in_frame(box, x).cwiseAbs() - box.half;
   return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0) - box.radius;
 }
 
+DistanceSlope distance_slope(const Shape& shape, const Vec3& x) {
+  return std::visit([&](const auto& one) { return slope(one, x); }, shape);
+}
+
 DistanceSample sample_distance(const Shape& shape, const Vec3& x) {
-  return std::visit([&](const auto& one) { return sample(one, x); }, shape);
+  const DistanceSlope at = distance_slope(shape, x);
+  return {at.distance, at.gradient,
+          std::visit([&](const auto& one) { return curvature(one, x, at); }, shape)};
 }
 
 double distance_change(const Shape& a, const Shape& b) {

@@ -8,8 +8,6 @@
 
 namespace calot {
 
-std::vector<QuadraturePoint> one_point_rule() { return {{1.0 / 3.0, 1.0 / 3.0, 0.5}}; }
-
 std::vector<QuadraturePoint> three_point_rule() {
   const double a = 1.0 / 6.0, b = 2.0 / 3.0;
   return {{a, a, a}, {b, a, a}, {a, b, a}};

@@ -38,8 +38,6 @@ struct QuadraturePoint {
   double weight = 0;  ///< weights sum to 1/2, the triangle's parametric area
 };
 
-/// The middle, exact to degree 1.
-std::vector<QuadraturePoint> one_point_rule();
 /// Three points, exact to degree 2 (Strang and Fix).
 std::vector<QuadraturePoint> three_point_rule();
 /// Six points, exact to degree 4 (Dunavant 1985).

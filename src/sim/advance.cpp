@@ -49,36 +49,39 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
                  const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
   VecX load = VecX::Zero(organ.state.x.size());
   loaded = false;
-  const StencilTable& stencils = organ.body.contact_points();
-  for (const ContactPair& pair : pairs) {
-    if (pair.distance >= field.barrier.range) continue;
-    const int tool = pair.shape / shapes_per_tool;
-    if (tool >= static_cast<int>(field.tools.size())) continue;  // the support stays
-    if (from[tool] == to[tool]) continue;
-    const Vec3 at = organ.body.contact_point(pair.row, organ.state.x);
-    const DistanceSample d = sample_distance(field_now.shapes[pair.shape], at);
-    const BarrierSample b = field.barrier.sample(d.distance);
-    const Mat3 h = organ.body.contact_areas()[pair.row] *
-                   (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
-    const Pose motion = part_motion(field.tools[tool], from[tool], to[tool], pair.shape % shapes_per_tool);
-    spread(stencils, pair.row, h * carried(motion, at), load);
-    loaded = true;
+  ContactLoad pressed(organ.body.skin(), load);
+  std::vector<std::optional<Pose>> motions;  // of the shapes; the support stays
+  for (std::size_t shape = 0; shape < field_now.shapes.size(); ++shape) {
+    const std::size_t tool = shape / shapes_per_tool;
+    motions.emplace_back();
+    if (tool < field.tools.size() && from[tool] != to[tool])
+      motions.back() =
+          part_motion(field.tools[tool], from[tool], to[tool], static_cast<int>(shape % shapes_per_tool));
   }
+  const auto press = [&](int point, int shape, const Vec3& at, const DistanceSlope&) {
+    if (!motions[shape]) return;
+    pressed.add(point,
+                contact_hessian(organ.body, field_now, point, shape, at) * carried(*motions[shape], at));
+    loaded = true;
+  };
+  for_touching(organ.body, organ.state.x, field_now, pairs, 0.0, press);
   const Links target = grip_links(organ, field.tools, to);
   for (std::size_t i = 0; i < target.row.size(); ++i) {
     const int tool = organ.grips[i].instrument;
     if (from[tool] == to[tool]) continue;
-    spread(stencils, target.row[i], target.stiffness[i] * (target.target[i] - field_now.grip.target[i]),
-           load);
+    spread(organ.body.skin().stencils, target.row[i],
+           target.stiffness[i] * (target.target[i] - field_now.grip.target[i]), load);
     loaded = true;
   }
   // What rubs touches as well: it has been found loaded above.
   const FrictionLoad carried_on = friction_load(field, organ, to);
+  ContactPlaces places(organ.body.skin(), organ.state.x);
   for (std::size_t i = 0; i < carried_on.points.size(); ++i) {
-    const RubbingPoint& point = field_now.friction.points[i];
-    const FrictionSample now = point.hold.sample(organ.body.contact_point(point.row, organ.state.x));
-    spread(stencils, point.row, now.hessian * (carried_on.points[i].hold.anchor - point.hold.anchor), load);
+    const RubbingPoint& rubbing = field_now.friction.points[i];
+    const FrictionSample now = rubbing.hold.sample(places.at(rubbing.point));
+    pressed.add(rubbing.point, now.hessian * (carried_on.points[i].hold.anchor - rubbing.hold.anchor));
   }
+  pressed.finish();
   return load;
 }
 
@@ -92,21 +95,32 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
     travel.push_back(travel_bound(field.tools[i], from[i], to[i]));
   std::vector<Shape> cores;
   for (const Shape& shape : now.shapes) cores.push_back(core_of(shape));
+  ContactPlaces places(organ.body.skin(), organ.state.x), moves(organ.body.skin(), dx);
   double share = 1.0;
+  std::optional<PartPath> path;  // of this shape, by this share of the tools' motion
+  int path_shape = -1;
+  double path_share = 0;
   for (const ContactPair& pair : pairs) {
     const int tool = pair.shape / shapes_per_tool;
     const bool stays = tool >= static_cast<int>(field.tools.size());  // the support
+    const Shape& core = cores[pair.shape];
     const double approach = longest + (stays ? 0.0 : travel[tool]);
     if (share * approach < (1.0 - contact_keep) * (pair.distance + contact_guard)) continue;
-    const Vec3 at = organ.body.contact_point(pair.row, organ.state.x);
-    const Vec3 motion = organ.body.contact_point(pair.row, dx);
-    if (stays) {
-      share *= safe_share(at, share * motion, cores[pair.shape], contact_keep);
-      continue;
+    const Nearness near = places.nearness(pair.triangle, core);
+    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
+      if (share * approach < (1.0 - contact_keep) * near.of(point)) continue;
+      const Vec3 at = places.at(point), motion = share * moves.at(point);
+      if (stays) {
+        share *= safe_share(at, motion, core, contact_keep);
+        continue;
+      }
+      if (path_shape != pair.shape || path_share != share) {
+        path_shape = pair.shape, path_share = share;
+        path.emplace(field.tools[tool], pair.shape % shapes_per_tool, from[tool],
+                     interpolate(from[tool], to[tool], share));
+      }
+      share *= path->share_apart(core, at, motion, contact_keep);
     }
-    const InstrumentPose until = interpolate(from[tool], to[tool], share);
-    share *= joint_share(field.tools[tool], pair.shape % shapes_per_tool, cores[pair.shape], from[tool],
-                         until, at, share * motion, contact_keep);
   }
   return share;
 }
@@ -351,13 +365,14 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
       const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
       if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
     }
-    for (const RubbingPoint& point : now.friction.points) {
-      const std::size_t tool = static_cast<std::size_t>(point.shape) / shapes_per_tool;
-      const Vec3 at = organ.body.contact_point(point.row, organ.state.x);
+    ContactPlaces places(organ.body.skin(), organ.state.x);
+    for (const RubbingPoint& rubbing : now.friction.points) {
+      const std::size_t tool = static_cast<std::size_t>(rubbing.shape) / shapes_per_tool;
       // The point is counted where it presses.
       if (tool >= loads.size()) continue;
-      loads[tool].force += point.hold.sample(at).gradient;
-      loads[tool].moment += (at - field.tools[tool].trocar).cross(point.hold.sample(at).gradient);
+      const Vec3 at = places.at(rubbing.point), rub = rubbing.hold.sample(at).gradient;
+      loads[tool].force += rub;
+      loads[tool].moment += (at - field.tools[tool].trocar).cross(rub);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const Vec3 at = organ.body.skin_point(organ.grips[g].row, organ.state.x);
@@ -378,7 +393,7 @@ Result<bool> check_clear(const Field& field) {
 }
 
 double deepest_penetration(const Field& field) {
-  constexpr int parts = 4;  // twice as fine as what is felt
+  constexpr int parts = 4;  // other points than those that are felt
   double deepest = 0;
   for (const Tool& tool : field.tools) {
     for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {

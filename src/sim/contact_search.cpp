@@ -9,10 +9,10 @@ namespace {
 std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                       double reach) {
   std::vector<Eigen::AlignedBox3d> faces;
-  for (const VirtualStructure::SkinFace& face : body.skin_faces()) {
+  for (const std::vector<int>& nodes : body.face_nodes()) {
     Eigen::AlignedBox3d box;
     double details = 0;
-    for (int node : face.nodes) {
+    for (int node : nodes) {
       const Vec3 at = x.segment<3>(Eigen::Index{3} * node);
       if (node < body.coarse_nodes())
         box.extend(at);
@@ -22,18 +22,19 @@ std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& 
     const Vec3 wider = Vec3::Constant(details);
     faces.emplace_back(box.min() - wider, box.max() + wider);
   }
+  const int each = body.triangles_each();
   std::vector<ContactPair> pairs;
-  for (std::size_t k = 0; k < field.shapes.size(); ++k) {
-    const Bounds b = bounds(field.shapes[k]);
+  ContactPlaces places(body.skin(), x);
+  for (int shape = 0; shape < static_cast<int>(field.shapes.size()); ++shape) {
+    const Bounds b = bounds(field.shapes[shape]);
     const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
-    for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
       const double far = reach + 0.5 * faces[f].diagonal().norm();
-      if (!near.intersects(faces[f]) || signed_distance(field.shapes[k], faces[f].center()) > far) continue;
-      for (int row : body.skin_faces()[f].rows) {
-        const Vec3 at = body.contact_point(row, x);
-        if (!near.contains(at)) continue;
-        const double distance = signed_distance(field.shapes[k], at);
-        if (distance < reach) pairs.push_back({row, static_cast<int>(k), distance});
+      if (!near.intersects(faces[f]) || signed_distance(field.shapes[shape], faces[f].center()) > far)
+        continue;
+      for (int triangle = f * each; triangle < (f + 1) * each; ++triangle) {
+        const double distance = places.nearness(triangle, field.shapes[shape]).of_all();
+        if (distance < reach) pairs.push_back({triangle, shape, distance});
       }
     }
   }
@@ -53,8 +54,9 @@ std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& 
 
 void ContactSearch::look_again(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                double approach) {
+  ContactPlaces places(body.skin(), x);
   for (ContactPair& pair : near_)
-    pair.distance = signed_distance(field.shapes[pair.shape], body.contact_point(pair.row, x));
+    pair.distance = places.nearness(pair.triangle, field.shapes[pair.shape]).of_all();
   reach_ -= approach;
   shapes_ = field.shapes;
   x_ = x;
@@ -88,12 +90,13 @@ std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, cons
     approach.assign(approach.size(), 0.0);
   }
   std::vector<ContactPair> out;
+  ContactPlaces places(body.skin(), x);
   for (const ContactPair& pair : near_) {
     ContactPair now = pair;
     now.distance -= approach[pair.shape];
     if (now.distance >= reach) continue;
     if (now.distance < exact)
-      now.distance = signed_distance(field.shapes[pair.shape], body.contact_point(pair.row, x));
+      now.distance = places.nearness(pair.triangle, field.shapes[pair.shape]).of_all();
     if (now.distance < reach) out.push_back(now);
   }
   return out;

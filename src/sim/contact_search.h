@@ -1,5 +1,5 @@
 #pragma once
-// Which skin points may meet which shapes.
+// Which triangles of the skin may meet which shapes.
 
 #include "collision/barrier.h"
 #include "collision/shapes.h"
@@ -33,30 +33,51 @@ inline Shape core_of(const Shape& contact_shape) { return offset(contact_shape, 
 struct Surroundings {
   std::vector<Shape> shapes;  ///< contact shapes: what they are in truth, inset
   Barrier barrier = contact_barrier;
-  Links grip;             ///< rows of the skin's stencils
-  FrictionLoad friction;  ///< rows: contact points
+  Links grip;  ///< rows of the skin's stencils
+  FrictionLoad friction;
   /// N/m, springs that hold the details at rest, one each; none: all are free.
   std::vector<double> detail_holds = {};
   VecX load = {};  ///< N, 3 a node; empty: none
 };
 
-/// A contact point near enough to a shape to meet it within a solve.
+/// A triangle of the skin near enough to a shape to meet it within a solve.
 struct ContactPair {
-  int row = 0;          ///< contact point
+  int triangle = 0;
   int shape = 0;        ///< index into Surroundings::shapes
-  double distance = 0;  ///< m, when it was gathered
+  double distance = 0;  ///< m, when it was gathered: none of its points was nearer
 };
 
 /// How far outside the contact range pairs are gathered, m; no solve may move a node further than this.
 inline constexpr double contact_margin = 2.5e-3;
 
-/// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then face, then point.
+/// Calls use(contact point, index of the shape, its place, distance and gradient there) for the points of the pairs that are in range of
+/// the shapes when the nodes are at x, m. No pair has come nearer than by `approach` since it was gathered.
+template <class Use>
+void for_touching(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+                  const std::vector<ContactPair>& pairs, double approach, const Use& use) {
+  ContactPlaces places(body.skin(), x);
+  for (const ContactPair& pair : pairs) {
+    const double range = field.barrier.range;
+    if (pair.distance >= range + approach) continue;
+    const Shape& shape = field.shapes[pair.shape];
+    const Nearness near = places.nearness(pair.triangle, shape);
+    if (near.of_all() >= range) continue;
+    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
+      if (near.of(point) >= range) continue;
+      const Vec3 at = places.at(point);
+      const DistanceSlope d = distance_slope(shape, at);
+      if (d.distance < range) use(point, pair.shape, at, d);
+    }
+  }
+}
+
+/// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then triangle.
 std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
                                       double extra);
 
-/// The same pairs with less work: points a little further away are remembered, and only these are looked at
-/// until the skin and the shapes have moved so far that others could have come near. Distances beyond `exact` are lower
-/// bounds, so some pairs beyond the reach are among them. For one organ.
+/// The same pairs with less work: triangles a little further away are remembered, and only these are looked at
+/// until the skin and the shapes have moved so far that others could have come near. Distances beyond `exact` are
+/// bounds of bounds, so some pairs beyond the reach are among them. For one organ.
 class ContactSearch {
  public:
   static constexpr double exact = 0.5e-3;  ///< m

@@ -31,31 +31,20 @@ void BodyProblem::for_held_details(const Use& use) const {
     use(first + 3 * static_cast<Eigen::Index>(i), field_.detail_holds[i]);
 }
 
-template <class Use>
-void BodyProblem::for_touching(const VecX& x, const Use& use) const {
-  const double far = field_.barrier.range + moved(x);
-  for (const ContactPair& pair : pairs_) {
-    if (pair.distance >= far) continue;
-    const Vec3 at = body_.contact_point(pair.row, x);
-    if (signed_distance(field_.shapes[pair.shape], at) < field_.barrier.range) use(pair, at);
-  }
-}
-
 double BodyProblem::value(const VecX& x) const {
   double sum = body_.shell().value(x);
   if (!std::isfinite(sum)) return sum;
   sum += body_.foundation().value(body_.bed_points(), x);
   sum += field_.grip.value(body_.skin().stencils, x);
-  sum += field_.friction.value(body_.contact_points(), x);
+  sum += field_.friction.value(body_.skin(), x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
     if (fixed_pressure_) sum -= multiplier_ * body_.volume(x);
   }
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   if (field_.load.size() > 0) sum -= field_.load.dot(x);
-  for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
-    const double distance = signed_distance(field_.shapes[pair.shape], at);
-    sum += body_.contact_areas()[pair.row] * field_.barrier.sample(distance).energy;
+  for_touching(body_, x, field_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
+    sum += body_.contact_area(point) * field_.barrier.sample(d.distance).energy;
   });
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
@@ -68,14 +57,14 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
   largest_internal = largest_node(gradient);
   body_.foundation().add_gradient(body_.bed_points(), x, gradient);
   field_.grip.add_gradient(body_.skin().stencils, x, gradient);
-  field_.friction.add_gradient(body_.contact_points(), x, gradient);
+  field_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   if (field_.load.size() > 0) gradient -= field_.load;
-  for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
-    const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
-    const double force = body_.contact_areas()[pair.row] * field_.barrier.sample(d.distance).derivative;
-    spread(body_.contact_points(), pair.row, force * d.gradient, gradient);
+  ContactLoad pressed(body_.skin(), gradient);
+  for_touching(body_, x, field_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
+    pressed.add(point, body_.contact_area(point) * field_.barrier.sample(d.distance).derivative * d.gradient);
   });
+  pressed.finish();
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
   if (own_) own_->add_gradient(body_, x, gradient);
@@ -111,15 +100,14 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   matrix.assign(body_.pattern());
   body_.shell().add_hessian(x, matrix);
   field_.grip.add_hessian(body_.skin().stencils, matrix);
-  field_.friction.add_hessian(body_.contact_points(), x, matrix);
+  field_.friction.add_hessian(body_.skin(), x, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
-  for_touching(x, [&](const ContactPair& pair, const Vec3& at) {
-    const DistanceSample d = sample_distance(field_.shapes[pair.shape], at);
-    const BarrierSample b = field_.barrier.sample(d.distance);
-    const Mat3 h = body_.contact_areas()[pair.row] *
-                   (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
-    add_point_hessian(body_.contact_points(), pair.row, h, matrix);
-  });
+  ContactStiffness pressed(body_.skin(), matrix);
+  for_touching(body_, x, field_, pairs_, moved(x),
+               [&](int point, int shape, const Vec3& at, const DistanceSlope&) {
+                 pressed.add(point, contact_hessian(body_, field_, point, shape, at));
+               });
+  pressed.finish();
   for_held_details([&](Eigen::Index at, double stiffness) {
     const int node = static_cast<int>(at / 3);
     matrix.add(node, node, stiffness * Mat3::Identity());
@@ -151,13 +139,18 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     }
   }
   const double gone = moved(x), longest = body_.largest_motion(step);
+  ContactPlaces places(body_.skin(), x), moves(body_.skin(), step);
   for (const ContactPair& pair : pairs_) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance + contact_guard - gone)) continue;
     const Shape& shape = cores_[pair.shape];
-    const Vec3 motion = share * body_.contact_point(pair.row, step);
-    const Vec3 at = body_.contact_point(pair.row, x);
-    if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
-    share *= calot::safe_share(at, motion, shape, contact_keep);
+    const Nearness near = places.nearness(pair.triangle, shape);
+    if (share * longest < (1.0 - contact_keep) * near.of_all()) continue;
+    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
+      if (share * longest < (1.0 - contact_keep) * near.of(point)) continue;
+      const Vec3 motion = share * moves.at(point), at = places.at(point);
+      if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
+      share *= calot::safe_share(at, motion, shape, contact_keep);
+    }
   }
   return own_ ? own_->safe_share(body_, x, step, contact_keep, share) : share;
 }
@@ -199,14 +192,19 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
 std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
                                          const Surroundings& field, const std::vector<ContactPair>& pairs) {
   std::vector<ContactForce> out;
-  for (const ContactPair& pair : pairs) {
-    const Vec3 at = body.contact_point(pair.row, x);
-    const DistanceSample d = sample_distance(field.shapes[pair.shape], at);
-    if (d.distance >= field.barrier.range) continue;
+  for_touching(body, x, field, pairs, 0.0, [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
     const double pressure = field.barrier.sample(d.distance).derivative;
-    out.push_back({pair.shape, at, body.contact_areas()[pair.row] * pressure * d.gradient});
-  }
+    out.push_back({shape, point, at, body.contact_area(point) * pressure * d.gradient});
+  });
   return out;
+}
+
+Mat3 contact_hessian(const VirtualStructure& body, const Surroundings& field, int point, int shape,
+                     const Vec3& at) {
+  const DistanceSample d = sample_distance(field.shapes[shape], at);
+  const BarrierSample b = field.barrier.sample(d.distance);
+  return body.contact_area(point) *
+         (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
 }
 
 }  // namespace calot

@@ -44,10 +44,6 @@ class BodyProblem : public ConstrainedEnergy {
   /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
   template <class Use>
   void for_held_details(const Use& use) const;
-  /// Calls use(pair, skin point) for the pairs whose distance at x is below the barrier's range.
-  template <class Use>
-  void for_touching(const VecX& x, const Use& use) const;
-
   const VirtualStructure& body_;
   const Surroundings& field_;
   std::vector<ContactPair> pairs_;
@@ -67,11 +63,15 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
 
 struct ContactForce {
   int shape = 0;
-  Vec3 at = Vec3::Zero();        ///< skin point, m
+  int point = 0;                 ///< contact point
+  Vec3 at = Vec3::Zero();        ///< its place, m
   Vec3 on_shape = Vec3::Zero();  ///< N, of the skin on the shape
 };
-/// One for each pair in range.
+/// One for each contact point in range.
 std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
                                          const Surroundings& field, const std::vector<ContactPair>& pairs);
+/// Hessian, by its place, of a contact point's energy against a shape of the field, N/m.
+Mat3 contact_hessian(const VirtualStructure& body, const Surroundings& field, int point, int shape,
+                     const Vec3& at);
 
 }  // namespace calot

@@ -3,34 +3,37 @@
 #include <algorithm>
 #include <tuple>
 
-#include "fem/links.h"
-
 namespace calot {
 
-const RubbingPoint* FrictionLoad::find(int shape, int row) const {
-  const auto at = std::lower_bound(points.begin(), points.end(), std::tie(shape, row),
-                                   [](const RubbingPoint& point, const std::tuple<int, int>& key) {
-                                     return std::tie(point.shape, point.row) < key;
+const RubbingPoint* FrictionLoad::find(int shape, int point) const {
+  const auto at = std::lower_bound(points.begin(), points.end(), std::tie(shape, point),
+                                   [](const RubbingPoint& rubbing, const std::tuple<int, int>& key) {
+                                     return std::tie(rubbing.shape, rubbing.point) < key;
                                    });
-  return at != points.end() && at->shape == shape && at->row == row ? &*at : nullptr;
+  return at != points.end() && at->shape == shape && at->point == point ? &*at : nullptr;
 }
 
-double FrictionLoad::value(const StencilTable& table, const VecX& x) const {
+double FrictionLoad::value(const Tessellation& skin, const VecX& x) const {
+  ContactPlaces places(skin, x);
   double sum = 0;
-  for (const RubbingPoint& point : points)
-    sum += point.hold.sample(blend(table, table.value, point.row, x)).energy;
+  for (const RubbingPoint& rubbing : points) sum += rubbing.hold.sample(places.at(rubbing.point)).energy;
   return sum;
 }
 
-void FrictionLoad::add_gradient(const StencilTable& table, const VecX& x, VecX& gradient) const {
-  for (const RubbingPoint& point : points)
-    spread(table, point.row, point.hold.sample(blend(table, table.value, point.row, x)).gradient, gradient);
+void FrictionLoad::add_gradient(const Tessellation& skin, const VecX& x, VecX& gradient) const {
+  ContactPlaces places(skin, x);
+  ContactLoad load(skin, gradient);
+  for (const RubbingPoint& rubbing : points)
+    load.add(rubbing.point, rubbing.hold.sample(places.at(rubbing.point)).gradient);
+  load.finish();
 }
 
-void FrictionLoad::add_hessian(const StencilTable& table, const VecX& x, BlockMatrix& matrix) const {
-  for (const RubbingPoint& point : points)
-    add_point_hessian(table, point.row, point.hold.sample(blend(table, table.value, point.row, x)).hessian,
-                      matrix);
+void FrictionLoad::add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix) const {
+  ContactPlaces places(skin, x);
+  ContactStiffness stiffness(skin, matrix);
+  for (const RubbingPoint& rubbing : points)
+    stiffness.add(rubbing.point, rubbing.hold.sample(places.at(rubbing.point)).hessian);
+  stiffness.finish();
 }
 
 }  // namespace calot

@@ -4,26 +4,25 @@
 #include <vector>
 
 #include "collision/friction.h"
-#include "geometry/stencil.h"
-#include "numerics/block_matrix.h"
+#include "sim/contact_points.h"
 
 namespace calot {
 
 struct RubbingPoint {
-  int row = 0;    ///< contact point
+  int point = 0;  ///< contact point
   int shape = 0;  ///< index into Surroundings::shapes
   StickSlip hold;
 };
 
-/// Ordered by shape, then row; each pair occurs once.
+/// Ordered by shape, then point; each pair occurs once.
 struct FrictionLoad {
   std::vector<RubbingPoint> points;
 
   /// Null when the pair does not rub.
-  const RubbingPoint* find(int shape, int row) const;
-  double value(const StencilTable& table, const VecX& x) const;  ///< J
-  void add_gradient(const StencilTable& table, const VecX& x, VecX& gradient) const;
-  void add_hessian(const StencilTable& table, const VecX& x, BlockMatrix& matrix) const;
+  const RubbingPoint* find(int shape, int point) const;
+  double value(const Tessellation& skin, const VecX& x) const;  ///< J
+  void add_gradient(const Tessellation& skin, const VecX& x, VecX& gradient) const;
+  void add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix) const;
 };
 
 }  // namespace calot

@@ -8,7 +8,7 @@ namespace calot {
 /// Stiffness of a held skin point, N/m: a hundred times the wall's, so that 5 N on the tens of points of a fold move it
 /// by some um. Well below a contact point's: a fold's wall, which cannot bend between its nodes, sets its grips against
 /// each other and against the jaws, and stiffer ones would push it into them.
-inline constexpr double grip_stiffness = 3e4;
+inline constexpr double grip_stiffness = 4e4;
 
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);

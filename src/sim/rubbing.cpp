@@ -1,7 +1,6 @@
 #include "sim/rubbing.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace calot {
 namespace {
@@ -39,15 +38,15 @@ bool is_holding_jaw(const std::vector<bool>& holding, int shape) {
 /// Sum of the changes of the points' limits along their normals, over the sum of the limits.
 double change(const FrictionLoad& from, const FrictionLoad& to) {
   double changed = 0, sum = 0;
-  for (const RubbingPoint& point : to.points) {
-    Vec3 force = point.hold.limit * point.hold.normal;
-    sum += point.hold.limit;
-    if (const RubbingPoint* old = from.find(point.shape, point.row))
+  for (const RubbingPoint& rubbing : to.points) {
+    Vec3 force = rubbing.hold.limit * rubbing.hold.normal;
+    sum += rubbing.hold.limit;
+    if (const RubbingPoint* old = from.find(rubbing.shape, rubbing.point))
       force -= old->hold.limit * old->hold.normal;
     changed += force.norm();
   }
-  for (const RubbingPoint& point : from.points)
-    if (!to.find(point.shape, point.row)) changed += point.hold.limit;
+  for (const RubbingPoint& rubbing : from.points)
+    if (!to.find(rubbing.shape, rubbing.point)) changed += rubbing.hold.limit;
   return changed / std::max(sum, least_friction);
 }
 
@@ -64,9 +63,9 @@ FrictionLoad friction_load(const Field& field, const Organ& organ, const std::ve
   if (organ.friction.points.empty()) return out;
   const std::vector<Pose> frames = shape_frames(field, poses);
   const std::vector<bool> holding = holding_tools(field, organ);
-  for (const RubbingPoint& point : organ.friction.points)
-    if (!is_holding_jaw(holding, point.shape))
-      out.points.push_back({point.row, point.shape, point.hold.carried(frames[point.shape])});
+  for (const RubbingPoint& rubbing : organ.friction.points)
+    if (!is_holding_jaw(holding, rubbing.shape))
+      out.points.push_back({rubbing.point, rubbing.shape, rubbing.hold.carried(frames[rubbing.shape])});
   return out;
 }
 
@@ -76,30 +75,27 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   const std::vector<bool> holding = holding_tools(field, organ);
   const std::vector<InstrumentPose> from = present_poses(field);
   FrictionLoad now;
-  for (const ContactPair& pair : organ.search.pairs(organ.body, organ.state.x, around, 0.0)) {
-    const double mu = coefficient(field, pair.shape);
-    if (pair.distance >= around.barrier.range || mu <= 0 || is_holding_jaw(holding, pair.shape)) continue;
-    const double area = organ.body.contact_areas()[pair.row];
-    const DistanceSample d =
-        sample_distance(around.shapes[pair.shape], organ.body.contact_point(pair.row, organ.state.x));
+  ContactPlaces places_before(organ.body.skin(), before);
+  const auto rub = [&](int point, int shape, const Vec3&, const DistanceSlope& d) {
+    const double mu = coefficient(field, shape);
+    if (mu <= 0 || is_holding_jaw(holding, shape)) return;
+    const double area = organ.body.contact_area(point);
     StickSlip hold;
     hold.normal = d.gradient;
     hold.limit = -mu * area * around.barrier.sample(d.distance).derivative;
     hold.stiffness = stick_stiffness * area;
-    const RubbingPoint* old = organ.friction.find(pair.shape, pair.row);
-    hold.anchor = frames[pair.shape] * (old ? old->hold.anchor
-                                            : shape_frame(field, from, pair.shape).inverse() *
-                                                  organ.body.contact_point(pair.row, before));
-    now.points.push_back({pair.row, pair.shape, hold});
-  }
-  std::sort(now.points.begin(), now.points.end(), [](const RubbingPoint& a, const RubbingPoint& b) {
-    return std::tie(a.shape, a.row) < std::tie(b.shape, b.row);
-  });
+    const RubbingPoint* old = organ.friction.find(shape, point);
+    hold.anchor = frames[shape] * (old ? old->hold.anchor
+                                       : shape_frame(field, from, shape).inverse() * places_before.at(point));
+    now.points.push_back({point, shape, hold});
+  };
+  for_touching(organ.body, organ.state.x, around, organ.search.pairs(organ.body, organ.state.x, around, 0.0),
+               0.0, rub);
   const double changed = change(around.friction, now);
-  for (RubbingPoint& point : now.points) {
-    const RubbingPoint* old = around.friction.find(point.shape, point.row);
+  for (RubbingPoint& rubbing : now.points) {
+    const RubbingPoint* old = around.friction.find(rubbing.shape, rubbing.point);
     const double limit = old ? old->hold.limit : 0.0;
-    point.hold.limit = limit + share * (point.hold.limit - limit);
+    rubbing.hold.limit = limit + share * (rubbing.hold.limit - limit);
   }
   around.friction = std::move(now);
   return changed;
@@ -108,11 +104,12 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
 void keep_friction(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
                    const FrictionLoad& friction) {
   const std::vector<Pose> frames = shape_frames(field, poses);
+  ContactPlaces places(organ.body.skin(), organ.state.x);
   organ.friction.points.clear();
-  for (RubbingPoint point : friction.points) {
-    point.hold.anchor = point.hold.anchor_after(organ.body.contact_point(point.row, organ.state.x));
-    point.hold = point.hold.carried(frames[point.shape].inverse());
-    organ.friction.points.push_back(point);
+  for (RubbingPoint rubbing : friction.points) {
+    rubbing.hold.anchor = rubbing.hold.anchor_after(places.at(rubbing.point));
+    rubbing.hold = rubbing.hold.carried(frames[rubbing.shape].inverse());
+    organ.friction.points.push_back(rubbing);
   }
 }
 

@@ -90,7 +90,7 @@ void SelfContact::refresh_groups(const VirtualStructure& body, const VecX& x, do
   groups_details_ = body.details();
   const std::vector<Vec3> points = body.skin_positions(x);
   groups_ = near_groups(net(body), points, group_reach);
-  std::vector<char> used(points.size(), 0), on_face(body.skin_faces().size(), 0), hangs(body.nodes(), 0);
+  std::vector<char> used(points.size(), 0), on_face(body.face_nodes().size(), 0), hangs(body.nodes(), 0);
   for (const auto& [a, b] : groups_)
     for (int group : {a, b})
       for (int k = net_->nodes[group].first; k < net_->nodes[group].last; ++k) {
@@ -107,7 +107,7 @@ void SelfContact::refresh_groups(const VirtualStructure& body, const VecX& x, do
   }
   for (std::size_t f = 0; f < on_face.size(); ++f)
     if (on_face[f])
-      for (int node : body.skin_faces()[f].nodes) hangs[node] = 1;
+      for (int node : body.face_nodes()[f]) hangs[node] = 1;
   for (int node = 0; node < body.nodes(); ++node)
     if (hangs[node]) nodes_.push_back(node);
   groups_known_ = true;
@@ -278,7 +278,7 @@ void SelfContact::prepare(const VirtualStructure& body, const VecX& x, NewtonWor
   for (const std::array<int, 4>& group : groups) {
     std::vector<int> clique;
     for (int face : group)
-      clique.insert(clique.end(), body.skin_faces()[face].nodes.begin(), body.skin_faces()[face].nodes.end());
+      clique.insert(clique.end(), body.face_nodes()[face].begin(), body.face_nodes()[face].end());
     std::sort(clique.begin(), clique.end());
     clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
     for (int j : clique)

@@ -12,25 +12,24 @@
 namespace calot {
 namespace {
 
-/// A skin point near a part of a tool, or held by it (at no distance).
-struct Near {
-  int row = 0;
+/// A skin point near a shape, or held by it (at no distance, m).
+struct NearPoint {
+  int row = 0, shape = 0;
   double distance = 0;
 };
 
-std::vector<Near> near_points(const Organ& organ, int shape, const std::vector<ContactPair>& pairs) {
+std::vector<NearPoint> points_near(int shape, const Organ& organ, const std::vector<NearPoint>& near) {
   const bool served = std::any_of(organ.extensions.begin(), organ.extensions.end(),
                                   [&](const Extension& e) { return e.shape == shape; });
-  std::vector<Near> out;
+  std::vector<NearPoint> out;
   for (const GripPoint& grip : organ.grips)
-    if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.row, 0});
+    if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.row, shape, 0});
   if (!out.empty()) return out;  // what is held does not slide: it alone says where
   double nearest = std::numeric_limits<double>::infinity();
-  for (const ContactPair& pair : pairs) {
-    if (pair.shape != shape || pair.distance > extension_behind || !organ.body.is_skin_point(pair.row))
-      continue;
-    out.push_back({pair.row, pair.distance});
-    nearest = std::min(nearest, pair.distance);
+  for (const NearPoint& point : near) {
+    if (point.shape != shape) continue;
+    out.push_back(point);
+    nearest = std::min(nearest, point.distance);
   }
   if (nearest > (served ? extension_behind : extension_ahead)) out.clear();
   return out;
@@ -46,17 +45,18 @@ double coarse_edge(const VirtualStructure& body, int row) {
 
 /// Middle, at rest, of the points about the nearest one: weighed by how near they are, so that it moves evenly as
 /// the nearest point jumps from one to the next.
-int middle_of(const VirtualStructure& body, const std::vector<Near>& points, double radius) {
+int middle_of(const VirtualStructure& body, const std::vector<NearPoint>& points, double radius) {
   constexpr double depth = 1e-3;  // m beyond the nearest
-  const auto lead = std::min_element(points.begin(), points.end(),
-                                     [](const Near& a, const Near& b) { return a.distance < b.distance; });
+  const auto lead =
+      std::min_element(points.begin(), points.end(),
+                       [](const NearPoint& a, const NearPoint& b) { return a.distance < b.distance; });
   Vec3 sum = Vec3::Zero();
   double total = 0;
-  const auto counts = [&](const Near& p) {
+  const auto counts = [&](const NearPoint& p) {
     return p.distance < lead->distance + depth &&
            (body.skin_rest()[p.row] - body.skin_rest()[lead->row]).norm() < radius;
   };
-  for (const Near& p : points) {
+  for (const NearPoint& p : points) {
     if (!counts(p)) continue;
     const double share = 1 - (p.distance - lead->distance) / depth,
                  weight = share * share * body.skin_areas()[p.row];
@@ -65,7 +65,7 @@ int middle_of(const VirtualStructure& body, const std::vector<Near>& points, dou
   }
   const Vec3 middle = sum / total;
   int best = lead->row;
-  for (const Near& p : points)
+  for (const NearPoint& p : points)
     if (counts(p) &&
         (body.skin_rest()[p.row] - middle).squaredNorm() < (body.skin_rest()[best] - middle).squaredNorm())
       best = p.row;
@@ -73,10 +73,25 @@ int middle_of(const VirtualStructure& body, const std::vector<Near>& points, dou
 }
 
 bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::vector<ContactPair>& near) {
-  return std::all_of(near.begin(), near.end(), [&](const ContactPair& pair) {
-    return signed_distance(field.shapes[pair.shape], organ.body.contact_point(pair.row, organ.state.x)) >
-           -contact_guard;
-  });
+  bool clear = true;
+  for_touching(organ.body, organ.state.x, field, near, std::numeric_limits<double>::infinity(),
+               [&](int, int, const Vec3&, const DistanceSlope& d) { clear &= d.distance > -contact_guard; });
+  return clear;
+}
+
+/// Skin points of the pairs that are no further from their shapes than an extension is kept.
+std::vector<NearPoint> corners_near(const Organ& organ, const Surroundings& field,
+                                    const std::vector<ContactPair>& pairs) {
+  std::vector<int> seen(organ.body.skin_rest().size(), -1);  // the last shape that each was measured from
+  std::vector<NearPoint> out;
+  for (const ContactPair& pair : pairs)
+    for (int row : organ.body.skin().triangles[pair.triangle]) {
+      if (std::exchange(seen[row], pair.shape) == pair.shape) continue;
+      const double distance =
+          signed_distance(field.shapes[pair.shape], organ.body.skin_point(row, organ.state.x));
+      if (distance <= extension_behind) out.push_back({row, pair.shape, distance});
+    }
+  return out;
 }
 
 /// Whether no wall passes through another as the details that are left out go. Those that are new move nothing yet.
@@ -91,16 +106,16 @@ std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
   return out;
 }
 
-}  // namespace
-
+/// The extensions that the organ needs with the tools where they stand: one for each part of a tool that is `near`
+/// or holds on, two for a part that lies along the organ. Those that still serve stay as they are.
 std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
-                                         const std::vector<ContactPair>& near) {
+                                         const std::vector<NearPoint>& near) {
   constexpr int most_along_a_part = 2;
   const VirtualStructure& body = organ.body;
   std::vector<Extension> out;
   if (field.viewed && &field.organs[field.viewed->organ] == &organ) out.push_back({-1, field.viewed->row});
   for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
-    std::vector<Near> points = near_points(organ, shape, near);
+    std::vector<NearPoint> points = points_near(shape, organ, near);
     for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {
       const double edge = coarse_edge(body, points.front().row);
       Extension next{shape, middle_of(body, points, 0.5 * edge)};
@@ -111,7 +126,7 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
           next = present;
       out.push_back(next);
       // Another one only where the part touches too far away to be served.
-      std::erase_if(points, [&](const Near& p) {
+      std::erase_if(points, [&](const NearPoint& p) {
         return p.distance > field.barrier.range ||
                (body.skin_rest()[p.row] - body.skin_rest()[next.centre]).norm() < 1.5 * edge;
       });
@@ -119,6 +134,8 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
   }
   return out;
 }
+
+}  // namespace
 
 std::vector<int> details_around(const VirtualStructure& body, const std::vector<Extension>& extensions) {
   std::vector<int> out;
@@ -149,11 +166,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   {
     const Timed timed(statistics.contact_s);
     near = organ.search.pairs(organ.body, organ.state.x, now, extension_behind - contact_margin);
-    for (ContactPair& pair : near)  // most distances are bounds
-      if (organ.body.is_skin_point(pair.row))
-        pair.distance =
-            signed_distance(now.shapes[pair.shape], organ.body.skin_point(pair.row, organ.state.x));
-    organ.extensions = wanted_extensions(field, organ, near);
+    organ.extensions = wanted_extensions(field, organ, corners_near(organ, now, near));
     wanted = details_around(organ.body, organ.extensions);
     details = united(wanted, lasting_details(organ.body, organ.state, wanted));
   }

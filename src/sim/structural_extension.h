@@ -16,11 +16,6 @@ inline constexpr int details_per_level = 12;
 /// A shape that comes nearer than this gets its extension; one that goes further than the second loses it, m.
 inline constexpr double extension_ahead = 3.0e-3, extension_behind = 5.0e-3;
 
-/// The extensions that the organ needs with the tools where they stand: one for each part of a tool that is `near`
-/// or holds on, two for a part that lies along the organ. Those that still serve stay as they are.
-std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
-                                         const std::vector<ContactPair>& near);
-
 /// Details of every level around the centres: odd nodes, increasing.
 std::vector<int> details_around(const VirtualStructure& body, const std::vector<Extension>& extensions);
 

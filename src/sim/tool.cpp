@@ -46,20 +46,27 @@ double path_bend(const Tool& tool, const InstrumentPose& a, const InstrumentPose
 
 }  // namespace
 
-double joint_share(const Tool& tool, int part, const Shape& shape, const InstrumentPose& from,
-                   const InstrumentPose& to, const Vec3& x, const Vec3& motion, double keep) {
+PartPath::PartPath(const Tool& tool, int part, const InstrumentPose& from, const InstrumentPose& to)
+    : tool_(tool),
+      part_(part),
+      from_(from),
+      to_(to),
+      travel_(travel_bound(tool, from, to)),
+      back_(part_motion(tool, from, to, part).inverse()) {}
+
+double PartPath::share_apart(const Shape& shape, const Vec3& x, const Vec3& motion, double keep) const {
   const double gap = signed_distance(shape, x);
   if (gap <= 0) return 0;
-  if ((1.0 - keep) * gap > travel_bound(tool, from, to) + motion.norm()) return 1.0;
-  // The bend falls with the square of the share, so few halvings make it small beside the gap.
-  double share = 1.0;
-  while (path_bend(tool, from, interpolate(from, to, share), x, share * motion.norm()) > 0.25 * gap)
-    share *= 0.5;
-  const InstrumentPose until = interpolate(from, to, share);
-  const double bend = path_bend(tool, from, until, x, share * motion.norm());
-  const Vec3 path = part_motion(tool, from, until, part).inverse() * (x + share * motion) - x;
-  if (path.norm() + bend < (1.0 - keep) * gap) return share;
-  return share * safe_share(x, path, offset(shape, bend), keep);
+  if ((1.0 - keep) * gap > travel_ + motion.norm()) return 1.0;
+  const double bend = path_bend(tool_, from_, to_, x, motion.norm());
+  if (bend > 0.25 * gap) {
+    // It falls with the square of the share, so few halvings make it small beside the gap.
+    const PartPath half(tool_, part_, from_, interpolate(from_, to_, 0.5));
+    return 0.5 * half.share_apart(shape, x, 0.5 * motion, keep);
+  }
+  const Vec3 path = back_ * (x + motion) - x;
+  if (path.norm() + bend < (1.0 - keep) * gap) return 1.0;
+  return safe_share(x, path, offset(shape, bend), keep);
 }
 
 std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid) {

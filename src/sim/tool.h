@@ -28,12 +28,23 @@ Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part);
 /// another.
 Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part);
 
-/// Share (0 to 1] of the joint motion of a point (x to x + motion, m) and a tool's part (`shape`, from one
-/// pose to another) that keeps them further apart than `keep` times their present distance. Judged in the
-/// part's own frame, where a point that is carried along hardly moves; the path's departure from a straight
-/// line there is bounded by the turn squared and taken off the distance.
-double joint_share(const Tool& tool, int part, const Shape& shape, const InstrumentPose& from,
-                   const InstrumentPose& to, const Vec3& x, const Vec3& motion, double keep);
+/// The motion of a tool's part (as above) from one pose to another, beside many points. The tool must outlive it.
+class PartPath {
+ public:
+  PartPath(const Tool& tool, int part, const InstrumentPose& from, const InstrumentPose& to);
+  /// Share [0 to 1] of the joint motion of a point (x to x + motion, m) and the part (`shape`, where it begins) that
+  /// keeps them further apart than `keep` times their present distance. Judged in the part's own frame, where a point
+  /// that is carried along hardly moves; the path's departure from a straight line there is bounded by the turn squared
+  /// and taken off the distance. 0 where the point is inside already.
+  double share_apart(const Shape& shape, const Vec3& x, const Vec3& motion, double keep) const;
+
+ private:
+  const Tool& tool_;
+  int part_;
+  InstrumentPose from_, to_;
+  double travel_;  ///< m, bound on the part's
+  Pose back_;      ///< from the part's frame at the end to that at the start
+};
 
 /// Bound on the way that any point of a tool's part inside the field travels between two poses, m.
 double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b);

@@ -11,37 +11,58 @@ namespace calot {
 namespace {
 
 /// The rule's points on each whole face, in the parameters of the coarse faces, and their weights. Leaves that an
-/// extension split have one point each: four in a face for three, which costs half and errs no more (0.26 % near a
-/// contact, with three in each 0.35 %). Those of one parent are one element.
+/// extension split lie four in a parent: one element, with the six points of degree 4 on the parent. (One in each leaf
+/// errs hardly more under a constant load, but it leaves the wall soft in its shortest waves: a tool that was drawn over
+/// it felt it snap, by up to 4 % of its force; three in each cost twice as much and did no better.) A leaf whose siblings
+/// are split further has three.
 struct RulePoints {
   std::vector<FacePoint> at;
   std::vector<int> first_rows;  ///< of each coarse face, and their number
   Quadrature quadrature;        ///< without stencils
 
   RulePoints(const SurfaceLevels& levels, const FaceTree& tree, const std::vector<QuadraturePoint>& rule) {
-    const std::vector<QuadraturePoint> middle = one_point_rule();
+    const std::vector<QuadraturePoint> of_parent = six_point_rule(), of_leaf = three_point_rule();
+    const int leaves = static_cast<int>(tree.leaves.size());
     int element = -1, face = 0;
-    for (int k = 0; k < static_cast<int>(tree.leaves.size()); ++k) {
+    for (int k = 0; k < leaves; ++k) {
       const FaceTree::Leaf& leaf = tree.leaves[k];
       if (k == 0 || !leaf.sibling_of(tree.leaves[k - 1])) ++element;
       if (k == tree.first[face]) first_rows.push_back(static_cast<int>(at.size())), ++face;
-      for (const QuadraturePoint& q : leaf.level == 0 ? rule : middle) {
-        at.push_back(levels.on_coarse(leaf.level, {leaf.face, q.u, q.v}));
-        quadrature.element.push_back(element);
-        quadrature.weights.push_back(std::ldexp(q.weight, -2 * leaf.level));
+      if (k + 3 < leaves && leaf.sibling_of(tree.leaves[k + 3])) {  // all four
+        add(levels, leaf.level - 1, leaf.face / 4, of_parent, element);
+        k += 3;
+      } else {
+        add(levels, leaf.level, leaf.face, leaf.level == 0 ? rule : of_leaf, element);
       }
     }
     first_rows.push_back(static_cast<int>(at.size()));
   }
+
+ private:
+  void add(const SurfaceLevels& levels, int level, int face, const std::vector<QuadraturePoint>& rule,
+           int element) {
+    for (const QuadraturePoint& q : rule) {
+      at.push_back(levels.on_coarse(level, {face, q.u, q.v}));
+      quadrature.element.push_back(element);
+      quadrature.weights.push_back(std::ldexp(q.weight, -2 * level));
+    }
+  }
 };
 
-std::vector<double> lumped_areas(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  std::vector<double> areas(points.size(), 0.0);
-  for (const Triangle& t : triangles) {
-    const double area = 0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
-    for (int p : t) areas[p] += area / 3.0;
-  }
+std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<double> areas;
+  for (const Triangle& t : triangles)
+    areas.push_back(0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm());
   return areas;
+}
+
+/// Of each point, a third of each of its triangles'.
+std::vector<double> lumped(const std::vector<double>& areas, const std::vector<Triangle>& triangles,
+                           std::size_t points) {
+  std::vector<double> out(points, 0.0);
+  for (std::size_t k = 0; k < triangles.size(); ++k)
+    for (int p : triangles[k]) out[p] += areas[k] / 3.0;
+  return out;
 }
 
 /// Place of a value in an increasing list, -1: none.
@@ -77,25 +98,29 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
   }
 }
 
-/// Adds the nodes from `first` on that a face's contact points depend on; before them its nodes are known.
-void add_nodes(const StencilTable& points, int first, std::vector<char>& seen,
-               VirtualStructure::SkinFace& face) {
-  const std::size_t known = face.nodes.size();
-  for (int r : face.rows) {
+/// Adds the nodes from `first` on that skin points depend on to `nodes`, which has those before.
+void add_nodes(const StencilTable& skin, const std::vector<int>& points, int first, std::vector<char>& seen,
+               std::vector<int>& nodes) {
+  const std::size_t known = nodes.size();
+  for (int r : points) {
     // Nodes increase within a row: those looked for are its last.
-    for (int e = points.begin[r + 1] - 1; e >= points.begin[r] && points.node[e] >= first; --e)
-      if (!std::exchange(seen[points.node[e] - first], 1)) face.nodes.push_back(points.node[e]);
+    for (int e = skin.begin[r + 1] - 1; e >= skin.begin[r] && skin.node[e] >= first; --e)
+      if (!std::exchange(seen[skin.node[e] - first], 1)) nodes.push_back(skin.node[e]);
   }
-  for (std::size_t k = known; k < face.nodes.size(); ++k) seen[face.nodes[k] - first] = 0;
-  std::sort(face.nodes.begin() + static_cast<std::ptrdiff_t>(known), face.nodes.end());
+  for (std::size_t k = known; k < nodes.size(); ++k) seen[nodes[k] - first] = 0;
+  std::sort(nodes.begin() + static_cast<std::ptrdiff_t>(known), nodes.end());
 }
 
-std::vector<VirtualStructure::SkinFace> faces_of(const ContactPoints& points, const StencilTable& rows,
-                                                 int faces, int nodes) {
-  std::vector<VirtualStructure::SkinFace> out(faces);
-  for (int r = 0; r < rows.rows(); ++r) out[points.face[r]].rows.push_back(r);
-  std::vector<char> seen(nodes, 0);
-  for (VirtualStructure::SkinFace& face : out) add_nodes(rows, 0, seen, face);
+/// Points of each face's triangles, each once, increasing.
+std::vector<std::vector<int>> points_of_faces(const Tessellation& skin, std::size_t faces) {
+  const std::size_t each = skin.triangles.size() / faces;
+  std::vector<std::vector<int>> out(faces);
+  for (std::size_t k = 0; k < skin.triangles.size(); ++k)
+    out[k / each].insert(out[k / each].end(), skin.triangles[k].begin(), skin.triangles[k].end());
+  for (std::vector<int>& points : out) {
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  }
   return out;
 }
 
@@ -108,12 +133,12 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   Base base{setup, std::move(levels).value()};
   base.skin = close_skin(base.levels.surface(), rest);
   base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
-  base.contact =
-      calot::contact_points(base.skin, static_cast<int>(setup.control.triangles.size()), base.skin_rest);
-  base.skin_areas = lumped_areas(base.skin_rest, base.skin.triangles);
-  base.contact_rows = contact_stencils(base.contact, base.skin.stencils);
-  base.skin_faces = faces_of(base.contact, base.contact_rows,
-                             static_cast<int>(setup.control.triangles.size()), base.levels.nodes(0));
+  base.triangle_areas = areas_of(base.skin_rest, base.skin.triangles);
+  base.skin_areas = lumped(base.triangle_areas, base.skin.triangles, base.skin_rest.size());
+  base.face_points = points_of_faces(base.skin, setup.control.triangles.size());
+  std::vector<char> seen(base.levels.nodes(0), 0);
+  for (const std::vector<int>& points : base.face_points)
+    add_nodes(base.skin.stencils, points, 0, seen, base.face_nodes.emplace_back());
   for (int level = 1; level <= setup.levels; ++level)
     base.skin_by_level.push_back(base.levels.evaluate(level, base.skin.at, 1));
   base.skin_places = without_derivatives(base.skin.stencils);
@@ -210,7 +235,7 @@ std::optional<Failure> VirtualStructure::build(const VirtualStructure* before) {
     if (Result<bool> built = build_bile(before, rows); !built) return built.failure();
     for (std::vector<int>& clique : bile_->cliques()) cliques.push_back(std::move(clique));
   }
-  for (const SkinFace& face : skin_faces_) cliques.push_back(face.nodes);
+  cliques.insert(cliques.end(), face_nodes_.begin(), face_nodes_.end());
   build_bed(before, rows);
   constant_ = BlockMatrix(nodes(), cliques);
   foundation().add_hessian(bed_points_, constant_);
@@ -239,13 +264,10 @@ void VirtualStructure::build_skin() {
   skin_.at = base_->skin.at;
   skin_.triangles = base_->skin.triangles;
   skin_.stencils = surface_.basis.extend(base_->skin_places, skin_.at, base_->skin_places_by_level);
-  contact_ = contact_stencils(base_->contact, skin_.stencils, base_->contact_rows,
-                              [this](int face) { return surface_.basis.reaches(face); });
-  skin_faces_ = base_->skin_faces;
+  face_nodes_ = base_->face_nodes;
   std::vector<char> seen(details().size(), 0);
-  for (std::size_t f = 0; f < skin_faces_.size(); ++f)
-    if (surface_.basis.reaches(static_cast<int>(f)))
-      add_nodes(contact_, coarse_nodes(), seen, skin_faces_[f]);
+  for (std::size_t f = 0; f < face_nodes_.size() && !details().empty(); ++f)
+    add_nodes(skin_.stencils, base_->face_points[f], coarse_nodes(), seen, face_nodes_[f]);
 }
 
 void VirtualStructure::build_bed(const VirtualStructure* before, const SharedRows* shared) {

@@ -18,8 +18,8 @@
 
 namespace calot {
 
-/// The skin (drawn and touched) is split so that its points stand this close at rest, m: a jaw's edge, 0.8 mm
-/// round, then finds a point wherever it presses.
+/// The skin (drawn and touched) is split so that its points stand this close at rest, m: what is drawn follows a jaw's
+/// edge, 0.8 mm round.
 inline constexpr double skin_spacing = 1.0e-3;
 
 /// How freely a detail moves (detail_fading.h).
@@ -99,11 +99,10 @@ class VirtualStructure {
   const Tessellation& skin() const { return skin_; }
   /// Rest area that each skin point stands for, m^2.
   const std::vector<double>& skin_areas() const { return base_->skin_areas; }
-  /// Where the skin is felt: rows of its points and, after them, of what lies between.
-  const StencilTable& contact_points() const { return contact_; }
-  /// Rest area that each contact point stands for, m^2.
-  const std::vector<double>& contact_areas() const { return base_->contact.areas; }
-  bool is_skin_point(int contact_point) const { return contact_point < skin_.stencils.rows(); }
+  /// Rest area that a contact point (contact_points.h) stands for, m^2.
+  double contact_area(int point) const {
+    return base_->triangle_areas[point / contacts_each] / contacts_each;
+  }
   const std::vector<Vec3>& skin_rest() const { return base_->skin_rest; }
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const;
@@ -114,13 +113,11 @@ class VirtualStructure {
   double detail_stiffness(int index) const;
   double size() const { return base_->size; }  ///< m, diagonal of the rest shape's box
 
-  /// Contact points of one control face (each point belongs to one face) and the nodes they depend on. As the
-  /// weights are not negative the points lie in the box of the coarse ones among these nodes, widened by half
-  /// of each detail's length, whatever the state.
-  struct SkinFace {
-    std::vector<int> rows, nodes;
-  };
-  const std::vector<SkinFace>& skin_faces() const { return skin_faces_; }
+  /// Nodes that the skin of each control face depends on. As the weights are not negative it lies in the box of the
+  /// coarse ones among them, widened by half of each detail's length, whatever the state.
+  const std::vector<std::vector<int>>& face_nodes() const { return face_nodes_; }
+  /// Triangles of the skin on each control face, which follow each other: those of the first face first.
+  int triangles_each() const { return static_cast<int>(skin_.triangles.size() / face_nodes_.size()); }
 
   /// A matrix with this structure's pattern that holds the constant part of its Hessian (the bed).
   const BlockMatrix& pattern() const { return constant_; }
@@ -134,7 +131,6 @@ class VirtualStructure {
   Vec3 skin_point(int row, const VecX& x) const {
     return blend(skin_.stencils, skin_.stencils.value, row, x);
   }
-  Vec3 contact_point(int row, const VecX& x) const { return blend(contact_, contact_.value, row, x); }
   std::vector<Vec3> skin_normals(const VecX& x) const;  ///< unit, outward
 
  private:
@@ -148,10 +144,9 @@ class VirtualStructure {
     StencilTable skin_places{};
     std::vector<StencilTable> skin_places_by_level{};
     std::vector<Vec3> skin_rest{}, node_rest{};
-    std::vector<double> skin_areas{};
-    ContactPoints contact{};
-    StencilTable contact_rows{};         ///< with the coarse nodes
-    std::vector<SkinFace> skin_faces{};  ///< with the coarse nodes
+    std::vector<double> skin_areas{}, triangle_areas{};
+    std::vector<std::vector<int>> face_points{},
+        face_nodes{};  ///< skin points on each face, with the coarse nodes
     Links bed{};
     std::vector<FacePoint> bed_places{};
     double size = 0;
@@ -187,13 +182,12 @@ class VirtualStructure {
   Shell shell_;
   std::optional<Bile> bile_;
   Tessellation skin_;
-  StencilTable contact_;
   std::vector<double> edge_lengths_;
   BlockMatrix constant_{0, {}};
   StencilTable quadrature_, bed_points_;
   std::vector<int> first_rows_;  ///< of quadrature_: each coarse face's first, and their number
   std::vector<int> bile_nodes_;  ///< of all levels, where the bile's points are: increasing
-  std::vector<SkinFace> skin_faces_;
+  std::vector<std::vector<int>> face_nodes_;
 };
 
 }  // namespace calot

@@ -72,11 +72,11 @@ std::uint64_t World::Impl::hash() const {
       hash.add(grip.row);
       hash.add(std::span<const double>(grip.local.data(), 3));
     }
-    for (const RubbingPoint& point : organ.friction.points) {
-      hash.add(point.shape);
-      hash.add(point.row);
-      hash.add(point.hold.limit);
-      hash.add(std::span<const double>(point.hold.anchor.data(), 3));
+    for (const RubbingPoint& rubbing : organ.friction.points) {
+      hash.add(rubbing.shape);
+      hash.add(rubbing.point);
+      hash.add(rubbing.hold.limit);
+      hash.add(std::span<const double>(rubbing.hold.anchor.data(), 3));
     }
   }
   for (const Tool& tool : field.tools) {

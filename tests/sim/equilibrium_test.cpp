@@ -76,12 +76,24 @@ struct Touched {
     around.grip.target = {skin[around.grip.row[0]] + Vec3(0.2e-3, -0.1e-3, 0.3e-3)};
     around.grip.stiffness = {1e3};
     // One that sticks and one that slides.
-    around.friction.points = {{a, 0, {skin[a] + 20e-6 * side, out[a], 0.1, 1e3}},
-                              {b, 1, {skin[b] + 0.4e-3 * side, out[b], 0.1, 1e3}}};
+    ContactPlaces places(organ.body.skin(), x);
+    const auto hold = [&](int row, int shape, double away) {
+      const int point = contact_beside(row);
+      around.friction.points.push_back({point, shape, {places.at(point) + away * side, out[row], 0.1, 1e3}});
+    };
+    hold(a, 0, 20e-6);
+    hold(b, 1, 0.4e-3);
     for (std::size_t i = 0; i < organ.body.details().size(); ++i)
       around.detail_holds.push_back(rng.uniform(0, 1e3));
     around.load = VecX::Zero(x.size());
     for (double& force : around.load) force = rng.uniform(-0.1, 0.1);
+  }
+  /// A contact point of a triangle that has the skin point for a corner.
+  int contact_beside(int row) const {
+    const std::vector<Triangle>& triangles = organ.body.skin().triangles;
+    const auto has = [&](const Triangle& t) { return std::find(t.begin(), t.end(), row) != t.end(); };
+    const auto found = std::find_if(triangles.begin(), triangles.end(), has);
+    return static_cast<int>(found - triangles.begin()) * contacts_each;
   }
   BodyProblem problem() {
     return {organ.body, around, gather_pairs(organ.body, x, around, 0.0), organ.state};
@@ -147,15 +159,49 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
 
 TEST(Equilibrium, EveryPointThatCanTouchIsGatheredWhereverTheSkinGoes) {
   Touched touched(4);
-  const std::vector<ContactPair> pairs = gather_pairs(touched.organ.body, touched.x, touched.around, 0.0);
-  const StencilTable& points = touched.organ.body.contact_points();
-  const std::vector<Vec3> skin = blend_all(points, points.value, touched.x);
-  std::size_t near = 0;
-  for (const Shape& shape : touched.around.shapes)
-    for (const Vec3& p : skin)
-      near += signed_distance(shape, p) < touched.around.barrier.range + contact_margin;
+  const VirtualStructure& body = touched.organ.body;
+  const std::vector<ContactPair> pairs = gather_pairs(body, touched.x, touched.around, 0.0);
+  ContactPlaces places(body.skin(), touched.x);
+  std::size_t gathered = 0, near = 0;
+  for (int shape = 0; shape < 3; ++shape)
+    for (int triangle = 0; triangle < static_cast<int>(body.skin().triangles.size()); ++triangle) {
+      double nearest = 1;  // m
+      for (int point = triangle * contacts_each; point < (triangle + 1) * contacts_each; ++point)
+        nearest = std::min(nearest, signed_distance(touched.around.shapes[shape], places.at(point)));
+      const bool found =
+          gathered < pairs.size() && pairs[gathered].shape == shape && pairs[gathered].triangle == triangle;
+      if (found) {
+        EXPECT_LE(pairs[gathered].distance, nearest + 1e-15);  // m, rounding
+      }
+      gathered += found;
+      if (nearest >= touched.around.barrier.range + contact_margin) continue;
+      EXPECT_TRUE(found) << "triangle " << triangle << ", shape " << shape;
+      ++near;
+    }
+  EXPECT_EQ(gathered, pairs.size()) << "each once, in order";
   EXPECT_GT(near, 100u);
-  EXPECT_EQ(pairs.size(), near);
+  EXPECT_LT(static_cast<double>(gathered), 1.05 * static_cast<double>(near))
+      << "bounds are near what they bound";
+}
+
+TEST(Equilibrium, ATrianglesNearnessBoundsTheDistanceOfItsPoints) {
+  Touched touched(9);
+  ContactPlaces places(touched.organ.body.skin(), touched.x);
+  double widest = 0;  // of the bounds that matter, m
+  for (const Shape& shape : touched.around.shapes)
+    for (int triangle = 0; triangle < static_cast<int>(touched.organ.body.skin().triangles.size());
+         ++triangle) {
+      const Nearness near = places.nearness(triangle, shape);
+      for (int point = triangle * contacts_each; point < (triangle + 1) * contacts_each; ++point) {
+        const double distance = signed_distance(shape, places.at(point));
+        EXPECT_LE(near.of_all(), near.of(point));
+        EXPECT_LE(near.of(point), distance + 1e-15);  // m, rounding
+        if (distance < contact_barrier.range) widest = std::max(widest, distance - near.of(point));
+      }
+    }
+  EXPECT_GT(widest, 0);
+  // An edge 0.8 mm round falls away from its tangent plane by 0.2 mm within half a triangle.
+  EXPECT_LT(widest, 0.25e-3);
 }
 
 TEST(Equilibrium, TheSearchThatRemembersFindsTheSamePairsAsOneThatDoesNot) {
@@ -176,13 +222,13 @@ TEST(Equilibrium, TheSearchThatRemembersFindsTheSamePairsAsOneThatDoesNot) {
     ASSERT_GE(some.size(), all.size()) << "step " << step;
     std::size_t i = 0;
     for (const ContactPair& pair : some) {
-      const Vec3 at = touched.organ.body.contact_point(pair.row, touched.x);
-      const double distance = signed_distance(touched.around.shapes[pair.shape], at);
+      ContactPlaces places(touched.organ.body.skin(), touched.x);
+      const double distance = places.nearness(pair.triangle, touched.around.shapes[pair.shape]).of_all();
       EXPECT_LE(pair.distance, distance + 1e-15);
       if (pair.distance < ContactSearch::exact) {
         EXPECT_EQ(pair.distance, distance);
       }
-      if (i < all.size() && pair.row == all[i].row && pair.shape == all[i].shape) ++i;
+      if (i < all.size() && pair.triangle == all[i].triangle && pair.shape == all[i].shape) ++i;
     }
     EXPECT_EQ(i, all.size()) << "step " << step;
     found += all.size();

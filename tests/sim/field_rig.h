@@ -25,6 +25,15 @@ inline OrganDefinition held_ball() {
   return organ;
 }
 
+/// One that stands firmly under a grasper in its port: grown on by its lower half, well filled.
+inline OrganDefinition bedded_ball() {
+  OrganDefinition organ = ball({-80e-3, 70e-3, -150e-3});
+  organ.name = "ball";
+  organ.held = {{"base", "neck", 22e-3, 1e6}};
+  organ.bile.fill_pressure = 1600;
+  return organ;
+}
+
 /// One organ and, at `trocar`, one grasper pulled far back.
 inline Field make_field(const OrganDefinition& definition, double tolerance, const Vec3& up,
                         const std::optional<Plane>& support = {}, int levels = 0) {

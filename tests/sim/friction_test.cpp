@@ -50,11 +50,12 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
   const auto in_the_jaws = [&] {
     const FrictionLoad load = friction_load(slide.field, slide.organ(), present_poses(slide.field));
     std::vector<std::tuple<int, int, Vec3, double>> out;
-    for (const RubbingPoint& point : load.points)
-      out.emplace_back(point.shape, point.row,
-                       part_frame(tool, tool.pose, point.shape % shapes_per_tool).inverse() *
-                           slide.organ().body.contact_point(point.row, slide.organ().state.x),
-                       point.hold.limit);
+    ContactPlaces places(slide.organ().body.skin(), slide.organ().state.x);
+    for (const RubbingPoint& rubbing : load.points)
+      out.emplace_back(
+          rubbing.shape, rubbing.point,
+          part_frame(tool, tool.pose, rubbing.shape % shapes_per_tool).inverse() * places.at(rubbing.point),
+          rubbing.hold.limit);
     return out;
   };
   const auto before = in_the_jaws();
@@ -164,9 +165,9 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
     const Organ& organ = field.organs[0];
     const Surroundings now = surroundings(field, organ, present_poses(field));
     Vec3 rub = Vec3::Zero(), push = Vec3::Zero();
-    for (const RubbingPoint& point : now.friction.points)
-      if (point.shape == shapes_per_tool)
-        rub += point.hold.sample(organ.body.contact_point(point.row, organ.state.x)).gradient;
+    ContactPlaces places(organ.body.skin(), organ.state.x);
+    for (const RubbingPoint& rubbing : now.friction.points)
+      if (rubbing.shape == shapes_per_tool) rub += rubbing.hold.sample(places.at(rubbing.point)).gradient;
     for (const ContactForce& force :
          contact_forces(organ.body, organ.state.x, now, gather_pairs(organ.body, organ.state.x, now, 0.0)))
       if (force.shape == shapes_per_tool) push += force.on_shape;

@@ -60,7 +60,7 @@ struct Slide {
     return why.empty() ? go(-4e-3, 0, steps) : why;
   }
 
-  /// Sums over the skin points that touch.
+  /// Sums over the contact points that touch.
   struct Contact {
     double normal = 0;          ///< N, of the lengths
     double rubbing = 0;         ///< N, of the lengths
@@ -71,9 +71,9 @@ struct Slide {
   Contact contact() const {
     Contact out;
     const Surroundings now = surroundings(field, organ(), present_poses(field));
-    for (const ContactPair& pair : gather_pairs(organ().body, organ().state.x, now, -contact_margin)) {
-      const ContactForce force = contact_forces(organ().body, organ().state.x, now, {pair})[0];
-      const RubbingPoint* point = now.friction.find(pair.shape, pair.row);
+    const std::vector<ContactPair> pairs = gather_pairs(organ().body, organ().state.x, now, -contact_margin);
+    for (const ContactForce& force : contact_forces(organ().body, organ().state.x, now, pairs)) {
+      const RubbingPoint* point = now.friction.find(force.shape, force.point);
       const Vec3 rub = point ? point->hold.sample(force.at).gradient : Vec3(Vec3::Zero());
       out.normal += force.on_shape.norm();
       out.rubbing += rub.norm();

@@ -106,34 +106,71 @@ TEST(ContactPoints, StandForAllOfTheSkin) {
     skin += 0.5 * (body.skin_rest()[t[1]] - body.skin_rest()[t[0]])
                       .cross(body.skin_rest()[t[2]] - body.skin_rest()[t[0]])
                       .norm();
-  for (double area : body.contact_areas()) {
-    EXPECT_GT(area, 0);
-    felt += area;
+  for (int point = 0; point < contacts_each * static_cast<int>(body.skin().triangles.size()); ++point) {
+    EXPECT_GT(body.contact_area(point), 0);
+    felt += body.contact_area(point);
   }
   EXPECT_NEAR(felt / skin, 1, 1e-12);  // rounding
 }
 
-TEST(ContactPoints, LieOnTheDrawnTriangles) {
+TEST(ContactPoints, LieEvenlyOnTheirTriangles) {
   Field field = Handled::make(1);
   Organ& organ = field.organs[0];
   test::extend(organ, {organ.landmarks.at("fundus")});
   VecX x = organ.state.x;
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += 1e-3 * std::sin(static_cast<double>(i));
   const std::vector<Vec3> skin = organ.body.skin_positions(x);
-  const int drawn = static_cast<int>(skin.size());
-  for (int r = 0; r < drawn; ++r) EXPECT_EQ(organ.body.contact_point(r, x), skin[r]);
-  // Each edge's middle once.
-  std::vector<Vec3> middles, felt;
-  for (const Triangle& t : organ.body.skin().triangles)
-    for (int k = 0; k < 3; ++k)
-      if (t[k] < t[(k + 1) % 3]) middles.push_back(0.5 * (skin[t[k]] + skin[t[(k + 1) % 3]]));
-  for (int r = drawn; r < organ.body.contact_points().rows(); ++r)
-    felt.push_back(organ.body.contact_point(r, x));
-  ASSERT_EQ(felt.size(), middles.size());
-  const auto by_place = [](const Vec3& a, const Vec3& b) { return a.x() < b.x(); };
-  std::sort(middles.begin(), middles.end(), by_place);
-  std::sort(felt.begin(), felt.end(), by_place);
-  for (std::size_t i = 0; i < felt.size(); ++i) EXPECT_LT((felt[i] - middles[i]).norm(), 1e-15);
+  ContactPlaces places(organ.body.skin(), x);
+  // Half as far apart as the corners of the equal triangles that they are the middles of, at most.
+  const double apart = 0.5 * organ.body.widest_skin_gap() / contact_parts;
+  for (int triangle : {0, 777, static_cast<int>(organ.body.skin().triangles.size()) - 1}) {
+    const Triangle& t = organ.body.skin().triangles[triangle];
+    Vec3 sum = Vec3::Zero();
+    double least = 1;
+    for (int point = triangle * contacts_each; point < (triangle + 1) * contacts_each; ++point) {
+      const Vec3& weights = contact_weights(point);
+      EXPECT_GT(weights.minCoeff(), 0);
+      EXPECT_NEAR(weights.sum(), 1, 1e-15);
+      const Vec3 at = weights[0] * skin[t[0]] + weights[1] * skin[t[1]] + weights[2] * skin[t[2]];
+      EXPECT_LT((places.at(point) - at).norm(), 1e-15);  // m, rounding
+      sum += at / contacts_each;
+      for (int other = triangle * contacts_each; other < point; ++other)
+        least = std::min(least, (places.at(other) - at).norm());
+    }
+    EXPECT_LT((sum - (skin[t[0]] + skin[t[1]] + skin[t[2]]) / 3.0).norm(), 1e-15);
+    EXPECT_GT(least, 0.1 * apart);
+  }
+}
+
+TEST(ContactPoints, BringForcesToTheNodesWithTheirVirtualWork) {
+  Field field = Handled::make(1);
+  Organ& organ = field.organs[0];
+  test::extend(organ, {organ.landmarks.at("fundus")});
+  const VecX& x = organ.state.x;
+  Rng rng(3);
+  VecX move(x.size());
+  for (double& d : move) d = rng.uniform(-1e-3, 1e-3);
+  VecX nodes = VecX::Zero(x.size());
+  BlockMatrix matrix = organ.body.pattern();
+  matrix.set_zero();
+  ContactLoad load(organ.body.skin(), nodes);
+  ContactStiffness stiffness(organ.body.skin(), matrix);
+  ContactPlaces moves(organ.body.skin(), move);
+  double work = 0, squared = 0;
+  const int last = contacts_each * static_cast<int>(organ.body.skin().triangles.size());
+  for (int point = 5; point < last; point += point % 7 == 0 ? 1 : 211) {
+    const Vec3 force = test::random_vector(rng, 1.0), way = moves.at(point);
+    const Mat3 h = force * force.transpose() + 0.3 * Mat3::Identity();
+    load.add(point, force);
+    stiffness.add(point, h);
+    work += force.dot(way);
+    squared += way.dot(h * way);
+  }
+  load.finish();
+  stiffness.finish();
+  EXPECT_GT(std::abs(work), 1e-4);  // J
+  EXPECT_NEAR(nodes.dot(move), work, 1e-12);
+  EXPECT_NEAR(move.dot(matrix.multiply(move)), squared, 1e-12 * squared);
 }
 
 }  // namespace
