@@ -107,18 +107,27 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
     const double approach = longest + (stays ? 0.0 : travel[tool]);
     if (share * approach < (1.0 - contact_keep) * (pair.distance + contact_guard)) continue;
     const Nearness near = places.nearness(pair.triangle, core);
+    const auto refresh = [&] {
+      if (stays || (path_shape == pair.shape && path_share == share)) return;
+      path_shape = pair.shape, path_share = share;
+      path.emplace(field.tools[tool], pair.shape % shapes_per_tool, from[tool],
+                   interpolate(from[tool], to[tool], share));
+    };
+    refresh();
+    double way = 0;  // of the triangle's corners
+    for (int c = 0; c < 3; ++c) {
+      const Vec3 motion = share * moves.corners(pair.triangle).col(c);
+      way = std::max(way, stays ? motion.norm() : path->way(places.corners(pair.triangle).col(c), motion));
+    }
+    if (way < (1.0 - contact_keep) * near.of_all()) continue;
     for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
-      if (share * approach < (1.0 - contact_keep) * near.of(point)) continue;
+      if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 at = places.at(point), motion = share * moves.at(point);
       if (stays) {
         share *= safe_share(at, motion, core, contact_keep);
         continue;
       }
-      if (path_shape != pair.shape || path_share != share) {
-        path_shape = pair.shape, path_share = share;
-        path.emplace(field.tools[tool], pair.shape % shapes_per_tool, from[tool],
-                     interpolate(from[tool], to[tool], share));
-      }
+      refresh();
       share *= path->share_apart(core, at, motion, contact_keep);
     }
   }

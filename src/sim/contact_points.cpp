@@ -23,21 +23,23 @@ std::array<Vec3, contacts_each> middles_of_parts() {
 
 const std::array<Vec3, contacts_each> contact_rule = middles_of_parts();
 
-void ContactPlaces::look_at(int triangle) {
-  if (triangle == triangle_) return;
-  triangle_ = triangle;
-  for (int c = 0; c < 3; ++c)
-    corners_.col(c) = blend(skin_.stencils, skin_.stencils.value, skin_.triangles[triangle][c], x_);
+const Vec3& ContactPlaces::corner(int row) {
+  Corner& known = known_[static_cast<std::size_t>(row) % known_.size()];
+  if (known.row != row) known = {row, blend(skin_.stencils, skin_.stencils.value, row, x_)};
+  return known.at;
 }
 
-Vec3 ContactPlaces::at(int point) {
-  look_at(point / contacts_each);
-  return corners_ * contact_weights(point);
+const Mat3& ContactPlaces::corners(int triangle) {
+  if (triangle == triangle_) return corners_;
+  triangle_ = triangle;
+  for (int c = 0; c < 3; ++c) corners_.col(c) = corner(skin_.triangles[triangle][c]);
+  return corners_;
 }
+
+Vec3 ContactPlaces::at(int point) { return corners(point / contacts_each) * contact_weights(point); }
 
 Nearness ContactPlaces::nearness(int triangle, const Shape& shape) {
-  look_at(triangle);
-  const Vec3 middle = corners_.rowwise().mean();
+  const Vec3 middle = corners(triangle).rowwise().mean();
   const DistanceSlope d = distance_slope(shape, middle);
   return {d.distance, (corners_.colwise() - middle).transpose() * d.gradient};
 }

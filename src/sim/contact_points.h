@@ -39,13 +39,20 @@ class ContactPlaces {
  public:
   ContactPlaces(const Tessellation& skin, const VecX& x) : skin_(skin), x_(x) {}
   Vec3 at(int point);  ///< m
+  /// Columns, m.
+  const Mat3& corners(int triangle);
   Nearness nearness(int triangle, const Shape& shape);
 
  private:
-  void look_at(int triangle);
+  struct Corner {
+    int row = -1;  ///< skin point
+    Vec3 at;
+  };
+  const Vec3& corner(int row);
 
   const Tessellation& skin_;
   const VecX& x_;
+  std::array<Corner, 64> known_;  ///< the last ones looked at: neighbours share them
   int triangle_ = -1;
   Mat3 corners_ = Mat3::Zero();  ///< columns, m
 };

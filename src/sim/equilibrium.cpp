@@ -144,9 +144,10 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     if (share * longest < (1.0 - contact_keep) * (pair.distance + contact_guard - gone)) continue;
     const Shape& shape = cores_[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);
-    if (share * longest < (1.0 - contact_keep) * near.of_all()) continue;
+    const double way = share * std::sqrt(moves.corners(pair.triangle).colwise().squaredNorm().maxCoeff());
+    if (way < (1.0 - contact_keep) * near.of_all()) continue;
     for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
-      if (share * longest < (1.0 - contact_keep) * near.of(point)) continue;
+      if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 motion = share * moves.at(point), at = places.at(point);
       if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
       share *= calot::safe_share(at, motion, shape, contact_keep);

@@ -54,6 +54,10 @@ PartPath::PartPath(const Tool& tool, int part, const InstrumentPose& from, const
       travel_(travel_bound(tool, from, to)),
       back_(part_motion(tool, from, to, part).inverse()) {}
 
+double PartPath::way(const Vec3& x, const Vec3& motion) const {
+  return (back_ * (x + motion) - x).norm() + path_bend(tool_, from_, to_, x, motion.norm());
+}
+
 double PartPath::share_apart(const Shape& shape, const Vec3& x, const Vec3& motion, double keep) const {
   const double gap = signed_distance(shape, x);
   if (gap <= 0) return 0;

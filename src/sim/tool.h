@@ -37,6 +37,9 @@ class PartPath {
   /// that is carried along hardly moves; the path's departure from a straight line there is bounded by the turn squared
   /// and taken off the distance. 0 where the point is inside already.
   double share_apart(const Shape& shape, const Vec3& x, const Vec3& motion, double keep) const;
+  /// Bound on how far the point goes seen from the part, m: convex in x and motion, so that no point of a triangle goes
+  /// further than its corners may.
+  double way(const Vec3& x, const Vec3& motion) const;
 
  private:
   const Tool& tool_;

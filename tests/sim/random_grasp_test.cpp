@@ -1,4 +1,4 @@
-// Grasps at a hundred random places and orientations: the jaws stay out of the skin, the volume is kept, and
+// Grasps at fifty random places and orientations: the jaws stay out of the skin, the volume is kept, and
 // where the motion cannot be followed the failure says so. Ten a test, so that they can run side by side.
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ Approach random_approach(const World& rest, int number) {
 }
 
 class RandomGrasps : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Tens, RandomGrasps, ::testing::Range(0, 100 / a_test));
+INSTANTIATE_TEST_SUITE_P(Tens, RandomGrasps, ::testing::Range(0, 50 / a_test));
 
 TEST_P(RandomGrasps, StayOutOfTheSkinAndFailCleanlyIfAtAll) {
   SceneDefinition scene = test::grasper_scene(GetParam() % 2 == 0 ? 180 : 120);
