@@ -28,7 +28,7 @@ double safe_share(const Vec3& x, const Vec3& motion, const Shape& shape, double 
   constexpr double negligible = 1e-9;  // of the whole motion
   double share = 0, target = 0;
   for (int step = 0; step < max_steps; ++step) {
-    const DistanceSample now = sample_distance(shape, x + share * motion);
+    const DistanceSlope now = distance_slope(shape, x + share * motion);
     if (step == 0) target = keep * now.distance;
     const double room = now.distance - target;
     if (!(room > 0)) return share;

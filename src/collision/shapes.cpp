@@ -127,10 +127,13 @@ DistanceSlope distance_slope(const Shape& shape, const Vec3& x) {
   return std::visit([&](const auto& one) { return slope(one, x); }, shape);
 }
 
+Mat3 distance_hessian(const Shape& shape, const Vec3& x, const DistanceSlope& slope) {
+  return std::visit([&](const auto& one) { return curvature(one, x, slope); }, shape);
+}
+
 DistanceSample sample_distance(const Shape& shape, const Vec3& x) {
   const DistanceSlope at = distance_slope(shape, x);
-  return {at.distance, at.gradient,
-          std::visit([&](const auto& one) { return curvature(one, x, at); }, shape)};
+  return {at.distance, at.gradient, distance_hessian(shape, x, at)};
 }
 
 double distance_change(const Shape& a, const Shape& b) {

@@ -40,12 +40,13 @@ double signed_distance(const Shape& shape, const Vec3& x);
 /// depths) one of the candidates is returned, with a zero Hessian: values stay finite. All three shapes are
 /// convex, and so is their signed distance.
 DistanceSample sample_distance(const Shape& shape, const Vec3& x);
-/// The same distance and gradient; no Hessian.
+/// The same in two: distance and gradient, and the Hessian (1/m) where those are known already.
 struct DistanceSlope {
-  double distance = 0;
+  double distance = 0;  ///< m
   Vec3 gradient = Vec3::Zero();
 };
 DistanceSlope distance_slope(const Shape& shape, const Vec3& x);
+Mat3 distance_hessian(const Shape& shape, const Vec3& x, const DistanceSlope& slope);
 
 /// Bound on |signed_distance(a, x) - signed_distance(b, x)| over all x, m: how far the extreme points have
 /// moved and the radius changed (the shapes are convex). Infinite for different kinds or different planes.

@@ -58,10 +58,10 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
       motions.back() =
           part_motion(field.tools[tool], from[tool], to[tool], static_cast<int>(shape % shapes_per_tool));
   }
-  const auto press = [&](int point, int shape, const Vec3& at, const DistanceSlope&) {
+  const auto press = [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
     if (!motions[shape]) return;
     pressed.add(point,
-                contact_hessian(organ.body, field_now, point, shape, at) * carried(*motions[shape], at));
+                contact_hessian(organ.body, field_now, point, shape, at, d) * carried(*motions[shape], at));
     loaded = true;
   };
   for_touching(organ.body, organ.state.x, field_now, pairs, 0.0, press);
@@ -85,50 +85,65 @@ VecX motion_load(const Field& field, const Organ& organ, const Surroundings& fie
   return load;
 }
 
+/// How the shapes move with the tools, by a share of that. The support stays.
+class ShapePaths {
+ public:
+  ShapePaths(const Field& field, const Poses& from, const Poses& to) : field_(field), from_(from), to_(to) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      travel_.push_back(travel_bound(field.tools[i], from[i], to[i]));
+  }
+  bool stays(int shape) const { return shape / shapes_per_tool >= static_cast<int>(field_.tools.size()); }
+  /// Bound on its way, m.
+  double travel(int shape) const { return stays(shape) ? 0.0 : travel_[shape / shapes_per_tool]; }
+  /// Null: it stays. Valid until another one is asked for.
+  const PartPath* of(int shape, double share) {
+    if (stays(shape)) return nullptr;
+    if (shape != shape_ || share != share_) {
+      const int tool = shape / shapes_per_tool;
+      path_.emplace(field_.tools[tool], shape % shapes_per_tool, from_[tool],
+                    interpolate(from_[tool], to_[tool], share));
+      shape_ = shape, share_ = share;
+    }
+    return &*path_;
+  }
+
+ private:
+  const Field& field_;
+  const Poses &from_, &to_;
+  std::vector<double> travel_;  ///< of the tools
+  std::optional<PartPath> path_;
+  int shape_ = -1;
+  double share_ = 0;
+};
+
 /// Largest share of the joint motion of skin and tools that keeps them apart.
 double share_kept_apart(const Field& field, const Organ& organ, const Surroundings& now,
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
   const double longest = organ.body.largest_motion(dx);
-  std::vector<double> travel;
-  for (std::size_t i = 0; i < from.size(); ++i)
-    travel.push_back(travel_bound(field.tools[i], from[i], to[i]));
+  ShapePaths paths(field, from, to);
   std::vector<Shape> cores;
   for (const Shape& shape : now.shapes) cores.push_back(core_of(shape));
   ContactPlaces places(organ.body.skin(), organ.state.x), moves(organ.body.skin(), dx);
   double share = 1.0;
-  std::optional<PartPath> path;  // of this shape, by this share of the tools' motion
-  int path_shape = -1;
-  double path_share = 0;
   for (const ContactPair& pair : pairs) {
-    const int tool = pair.shape / shapes_per_tool;
-    const bool stays = tool >= static_cast<int>(field.tools.size());  // the support
     const Shape& core = cores[pair.shape];
-    const double approach = longest + (stays ? 0.0 : travel[tool]);
+    const double approach = longest + paths.travel(pair.shape);
     if (share * approach < (1.0 - contact_keep) * (pair.distance + contact_guard)) continue;
     const Nearness near = places.nearness(pair.triangle, core);
-    const auto refresh = [&] {
-      if (stays || (path_shape == pair.shape && path_share == share)) return;
-      path_shape = pair.shape, path_share = share;
-      path.emplace(field.tools[tool], pair.shape % shapes_per_tool, from[tool],
-                   interpolate(from[tool], to[tool], share));
-    };
-    refresh();
+    const PartPath* path = paths.of(pair.shape, share);
     double way = 0;  // of the triangle's corners
     for (int c = 0; c < 3; ++c) {
       const Vec3 motion = share * moves.corners(pair.triangle).col(c);
-      way = std::max(way, stays ? motion.norm() : path->way(places.corners(pair.triangle).col(c), motion));
+      way = std::max(way, path ? path->way(places.corners(pair.triangle).col(c), motion) : motion.norm());
     }
     if (way < (1.0 - contact_keep) * near.of_all()) continue;
     for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 at = places.at(point), motion = share * moves.at(point);
-      if (stays) {
-        share *= safe_share(at, motion, core, contact_keep);
-        continue;
-      }
-      refresh();
-      share *= path->share_apart(core, at, motion, contact_keep);
+      path = paths.of(pair.shape, share);
+      share *= path ? path->share_apart(core, at, motion, contact_keep)
+                    : safe_share(at, motion, core, contact_keep);
     }
   }
   return share;

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index_of.h"
+
 namespace calot {
 namespace {
 
 /// Below this, N, nothing is left of a load.
 constexpr double no_load = 1e-9;
 
-bool contains(const std::vector<int>& list, int value) {
-  return std::binary_search(list.begin(), list.end(), value);
-}
+bool contains(const std::vector<int>& list, int value) { return index_of(value, list) >= 0; }
 
 }  // namespace
 
@@ -64,10 +64,9 @@ std::vector<DetailShare> shares_of(const std::vector<int>& next, const std::vect
                                    const VirtualStructure& body, const std::vector<DetailShare>& shares) {
   std::vector<DetailShare> out;
   for (int detail : next) {
-    const auto found = std::lower_bound(body.details().begin(), body.details().end(), detail);
-    const bool known = found != body.details().end() && *found == detail;
+    const int known = index_of(detail, body.details());
     DetailShare share{least_share, false};
-    if (known) share = shares.empty() ? DetailShare{} : shares[found - body.details().begin()];
+    if (known >= 0) share = shares.empty() ? DetailShare{} : shares[known];
     share.leaving = !contains(wanted, detail);
     out.push_back(share);
   }

@@ -104,8 +104,8 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
   ContactStiffness pressed(body_.skin(), matrix);
   for_touching(body_, x, field_, pairs_, moved(x),
-               [&](int point, int shape, const Vec3& at, const DistanceSlope&) {
-                 pressed.add(point, contact_hessian(body_, field_, point, shape, at));
+               [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
+                 pressed.add(point, contact_hessian(body_, field_, point, shape, at, d));
                });
   pressed.finish();
   for_held_details([&](Eigen::Index at, double stiffness) {
@@ -201,11 +201,10 @@ std::vector<ContactForce> contact_forces(const VirtualStructure& body, const Vec
 }
 
 Mat3 contact_hessian(const VirtualStructure& body, const Surroundings& field, int point, int shape,
-                     const Vec3& at) {
-  const DistanceSample d = sample_distance(field.shapes[shape], at);
+                     const Vec3& at, const DistanceSlope& d) {
   const BarrierSample b = field.barrier.sample(d.distance);
-  return body.contact_area(point) *
-         (b.second * d.gradient * d.gradient.transpose() + b.derivative * d.hessian);
+  return body.contact_area(point) * (b.second * d.gradient * d.gradient.transpose() +
+                                     b.derivative * distance_hessian(field.shapes[shape], at, d));
 }
 
 }  // namespace calot

@@ -70,8 +70,8 @@ struct ContactForce {
 /// One for each contact point in range.
 std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
                                          const Surroundings& field, const std::vector<ContactPair>& pairs);
-/// Hessian, by its place, of a contact point's energy against a shape of the field, N/m.
+/// Hessian, by its place, of a contact point's energy against a shape of the field, N/m: of what for_touching finds.
 Mat3 contact_hessian(const VirtualStructure& body, const Surroundings& field, int point, int shape,
-                     const Vec3& at);
+                     const Vec3& at, const DistanceSlope& d);
 
 }  // namespace calot

@@ -73,7 +73,7 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
                       const VecX& before, double share, Surroundings& around) {
   const std::vector<Pose> frames = shape_frames(field, poses);
   const std::vector<bool> holding = holding_tools(field, organ);
-  const std::vector<InstrumentPose> from = present_poses(field);
+  const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));
   FrictionLoad now;
   ContactPlaces places_before(organ.body.skin(), before);
   const auto rub = [&](int point, int shape, const Vec3&, const DistanceSlope& d) {
@@ -85,8 +85,8 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
     hold.limit = -mu * area * around.barrier.sample(d.distance).derivative;
     hold.stiffness = stick_stiffness * area;
     const RubbingPoint* old = organ.friction.find(shape, point);
-    hold.anchor = frames[shape] * (old ? old->hold.anchor
-                                       : shape_frame(field, from, shape).inverse() * places_before.at(point));
+    hold.anchor =
+        frames[shape] * (old ? old->hold.anchor : frames_before[shape].inverse() * places_before.at(point));
     now.points.push_back({point, shape, hold});
   };
   for_touching(organ.body, organ.state.x, around, organ.search.pairs(organ.body, organ.state.x, around, 0.0),

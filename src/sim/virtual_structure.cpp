@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index_of.h"
 #include "base/units.h"
 #include "skin/subdivision.h"
 
@@ -63,12 +64,6 @@ std::vector<double> lumped(const std::vector<double>& areas, const std::vector<T
   for (std::size_t k = 0; k < triangles.size(); ++k)
     for (int p : triangles[k]) out[p] += areas[k] / 3.0;
   return out;
-}
-
-/// Place of a value in an increasing list, -1: none.
-int index_of(int value, const std::vector<int>& list) {
-  const auto found = std::lower_bound(list.begin(), list.end(), value);
-  return found != list.end() && *found == value ? static_cast<int>(found - list.begin()) : -1;
 }
 
 StencilTable without_derivatives(const StencilTable& table) {
@@ -319,10 +314,9 @@ VecX VirtualStructure::coordinates_in(const VirtualStructure& other, const VecX&
   VecX out = VecX::Zero(other.rest_.size());
   out.head(coarse) = x.head(coarse);
   for (std::size_t i = 0; i < other.details().size(); ++i) {
-    const auto found = std::lower_bound(details().begin(), details().end(), other.details()[i]);
-    if (found == details().end() || *found != other.details()[i]) continue;
-    const Eigen::Index from = coarse + 3 * (found - details().begin());
-    out.segment<3>(coarse + 3 * static_cast<Eigen::Index>(i)) = x.segment<3>(from);
+    const int here = index_of(other.details()[i], details());
+    if (here >= 0)
+      out.segment<3>(coarse + 3 * static_cast<Eigen::Index>(i)) = x.segment<3>(coarse + 3 * here);
   }
   return out;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/index_of.h"
+
 namespace calot {
 
 SharedRows::SharedRows(const DetailedSurface& before, const DetailedSurface& now) : basis_(now.basis) {
@@ -16,11 +18,9 @@ SharedRows::SharedRows(const DetailedSurface& before, const DetailedSurface& now
   }
   const int coarse = now.basis.coarse_nodes();
   for (int column = 0; column < coarse; ++column) column_.push_back(column);
-  const std::vector<int>& details = now.basis.details();
   for (int detail : before.basis.details()) {
-    const auto found = std::lower_bound(details.begin(), details.end(), detail);
-    const bool stays = found != details.end() && *found == detail;
-    column_.push_back(stays ? coarse + static_cast<int>(found - details.begin()) : -1);
+    const int stays = index_of(detail, now.basis.details());
+    column_.push_back(stays >= 0 ? coarse + stays : -1);
   }
 }
 
