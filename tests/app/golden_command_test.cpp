@@ -4,6 +4,7 @@
 
 #include "app/program.h"
 #include "render/png.h"
+#include "support/paths.h"
 
 namespace calot::test {
 namespace {
@@ -16,7 +17,7 @@ class GoldenProject : public ProgramTest {
     ProgramTest::SetUp();
     spill(folder_ / "scenarios" / "small.lua", small_scenario());
     fs::create_directories(folder_ / "scripts");
-    fs::create_directory_symlink(fs::path(CALOT_SOURCE_DIR) / "scripts" / "lua", folder_ / "scripts" / "lua");
+    fs::create_directory_symlink(fs::path(source_dir()) / "scripts" / "lua", folder_ / "scripts" / "lua");
   }
   fs::path golden(const std::string& name) const { return folder_ / "golden" / "small" / name; }
 

@@ -17,6 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/paths.h"
+
 namespace calot::test {
 
 namespace fs = std::filesystem;
@@ -109,12 +111,12 @@ class ProgramTest : public ::testing::Test {
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
     dup2(open(out.c_str(), flags, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), flags, 0600), STDERR_FILENO);
-    std::vector<std::string> words{CALOT_PROGRAM};
+    std::vector<std::string> words{program_path()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    execv(CALOT_PROGRAM, argv.data());
+    execv(program_path().c_str(), argv.data());
     _exit(126);
   }
 };

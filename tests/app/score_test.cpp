@@ -4,6 +4,7 @@
 #include <set>
 
 #include "app/program.h"
+#include "support/paths.h"
 
 namespace calot::test {
 namespace {
@@ -14,7 +15,7 @@ class MainScenario : public ProgramTest {
  protected:
   /// The score of the main scenario when the instrument does this instead of the demo.
   Json score(const std::string& demo) {
-    std::string text = slurp(CALOT_SOURCE_DIR "/scenarios/grasp_and_traction.lua");
+    std::string text = slurp(source_dir() + "/scenarios/grasp_and_traction.lua");
     if (!demo.empty()) {
       const std::size_t begin = text.find("demo = function(t)"), end = text.find("\n  end,", begin);
       EXPECT_NE(end, std::string::npos);

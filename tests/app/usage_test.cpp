@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/program.h"
+#include "support/paths.h"
 
 namespace calot::test {
 namespace {
@@ -108,7 +109,7 @@ TEST_F(Usage, AnOutputFolderThatCannotBeIsAUsageErrorBeforeAnythingIsPlayed) {
 /// Runs a line of shell in the test's folder; `$calot` is the program.
 int shell(const fs::path& folder, const std::string& line) {
   const std::string words =
-      "cd '" + folder.string() + "' && calot='" + CALOT_PROGRAM "' && { " + line + " ; } 2>.stderr";
+      "cd '" + folder.string() + "' && calot='" + program_path() + "' && { " + line + " ; } 2>.stderr";
   const int status = std::system(words.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

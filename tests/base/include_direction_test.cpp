@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 
+#include "support/paths.h"
+
 namespace calot::test {
 namespace {
 
@@ -75,7 +77,7 @@ std::vector<std::string> violations(const Rooms& rooms, const std::string& room,
   return wrong;
 }
 
-const fs::path kRoot = CALOT_SOURCE_DIR;
+const fs::path kRoot = source_dir();
 
 Rooms house() { return parse_rooms(read(kRoot / "CMakeLists.txt")); }
 

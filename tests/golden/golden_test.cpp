@@ -9,6 +9,7 @@
 #include "app/golden_store.h"
 #include "app/play.h"
 #include "render/offscreen.h"
+#include "support/paths.h"
 
 namespace calot {
 namespace {
@@ -23,13 +24,13 @@ struct Stored {
 /// Every golden of the project.
 std::vector<Stored> stored_goldens() {
   std::vector<Stored> all;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(CALOT_SOURCE_DIR "/golden")) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source_dir() + "/golden")) {
     if (entry.path().extension() != ".json") continue;
     fs::path stem = entry.path();
     stem.replace_extension();
     const Result<Golden> golden = read_golden(stem);
     EXPECT_TRUE(golden) << to_text(golden.failure());
-    const fs::path scenario = stem.parent_path().lexically_relative(CALOT_SOURCE_DIR "/golden");
+    const fs::path scenario = stem.parent_path().lexically_relative(source_dir() + "/golden");
     if (golden) all.push_back({scenario, stem.filename(), golden.value()});
   }
   std::sort(all.begin(), all.end(), [](const Stored& a, const Stored& b) {
@@ -103,7 +104,7 @@ TEST(Golden, TheOtherScenariosMatch) {
     auto session = sessions.find(stored.scenario);
     if (session == sessions.end()) {
       PlayRequest request;
-      request.scenario = CALOT_SOURCE_DIR "/scenarios/" + stored.scenario + ".lua";
+      request.scenario = source_dir() + "/scenarios/" + stored.scenario + ".lua";
       Result<Played> played = play(request);
       ASSERT_TRUE(played) << to_text(played.failure());
       session = sessions.emplace(stored.scenario, std::move(played).value()).first;
@@ -123,7 +124,7 @@ TEST(Golden, TheMainScenarioMatchesAndAMovedLightOrAMissingInstrumentIsCaught) {
   const std::vector<Stored> goldens = stored_goldens();
   ASSERT_FALSE(goldens.empty()) << "accept some: calot golden accept grasp_and_traction";
   PlayRequest request;
-  request.scenario = CALOT_SOURCE_DIR "/scenarios/grasp_and_traction.lua";
+  request.scenario = source_dir() + "/scenarios/grasp_and_traction.lua";
   std::map<std::string, Scene> scenes;
   request.on_frame = [&](const Scene& scene, const std::string& frame) { scenes[frame] = scene; };
   const Result<Played> played = play(request);

@@ -4,6 +4,7 @@
 
 #include "lua/load_exercise.h"
 #include "session/runner.h"
+#include "support/paths.h"
 
 namespace calot {
 namespace {
@@ -15,8 +16,8 @@ INSTANTIATE_TEST_SUITE_P(Shipped, Scenario,
 
 TEST_P(Scenario, KeepsTheInstrumentsOutOfTheSkinAndTheBileIn) {
   LoadOptions options;
-  options.modules = CALOT_SOURCE_DIR "/scripts/lua";
-  auto script = load_exercise(CALOT_SOURCE_DIR "/scenarios/" + std::string(GetParam()) + ".lua", options);
+  options.modules = source_dir() + "/scripts/lua";
+  auto script = load_exercise(source_dir() + "/scenarios/" + std::string(GetParam()) + ".lua", options);
   ASSERT_TRUE(script) << to_text(script.failure());
   World world = World::create(script.value()->definition().scene).value();
   std::vector<double> volumes;

@@ -13,6 +13,7 @@
 #include "lua/read_scene.h"
 #include "lua/sandbox_library.h"
 #include "lua/scenario_files.h"
+#include "support/paths.h"
 
 namespace calot {
 namespace {
@@ -29,7 +30,7 @@ struct Generated {
 class GeneratedFiles : public ::testing::TestWithParam<Generated> {};
 
 TEST_P(GeneratedFiles, AreWhatTheTableGives) {
-  const std::filesystem::path path = std::filesystem::path(CALOT_SOURCE_DIR) / GetParam().path;
+  const std::filesystem::path path = std::filesystem::path(source_dir()) / GetParam().path;
   const std::string wanted = GetParam().text();
   if (std::getenv("CALOT_WRITE_GENERATED") != nullptr) std::ofstream(path, std::ios::binary) << wanted;
   std::ifstream file(path, std::ios::binary);
@@ -46,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Api, GeneratedFiles,
 TEST(Api, LuacheckFindsNothingInTheRepositorysLua) {
   if (std::system("luacheck --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "luacheck is not installed";
   const std::string command =
-      "cd '" CALOT_SOURCE_DIR
+      "cd '" + source_dir() +
       "' && luacheck --config .luacheckrc --no-color scenarios scripts/lua > /dev/null";
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
 }
@@ -55,7 +56,7 @@ TEST(Api, LuacheckKnowsWhatTheSandboxLacks) {
   if (std::system("luacheck --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "luacheck is not installed";
   const Folder folder;
   const std::string file = folder.write("bad.lua", "print(os.time(), string.dump)\n").string();
-  const std::string command = "luacheck --config '" CALOT_SOURCE_DIR
+  const std::string command = "luacheck --config '" + source_dir() +
                               "/.luacheckrc' --no-color --formatter plain " +
                               file + " > " + (folder.path() / "out").string();
   EXPECT_NE(std::system(command.c_str()), 0);

@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "lua/scenario_files.h"
+#include "support/paths.h"
 
 namespace calot {
 namespace {
@@ -121,8 +122,8 @@ TEST(Modules, AreRunOnceAndCountInTheSourceHash) {
 
 TEST(Exercise, OfTheRepositoryLoads) {
   LoadOptions options;
-  options.modules = std::filesystem::path(CALOT_SOURCE_DIR) / "scripts/lua";
-  const std::filesystem::path folder = std::filesystem::path(CALOT_SOURCE_DIR) / "scenarios";
+  options.modules = std::filesystem::path(source_dir()) / "scripts/lua";
+  const std::filesystem::path folder = std::filesystem::path(source_dir()) / "scenarios";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".lua") continue;
     const Result<std::unique_ptr<ExerciseScript>> loaded = load_exercise(entry.path(), options);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "lua/load_exercise.h"
+#include "support/paths.h"
 
 namespace calot::test {
 
@@ -76,7 +77,7 @@ inline ScenarioText with_steps(const std::string& steps) {
 
 inline Result<std::unique_ptr<ExerciseScript>> load_text(const Folder& folder, const std::string& text,
                                                          LoadOptions options = {}) {
-  if (options.modules.empty()) options.modules = std::filesystem::path(CALOT_SOURCE_DIR) / "scripts/lua";
+  if (options.modules.empty()) options.modules = std::filesystem::path(source_dir()) / "scripts/lua";
   return load_exercise(folder.write("test.lua", text), options);
 }
 
