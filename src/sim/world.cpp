@@ -53,39 +53,80 @@ struct World::Impl {
   std::uint64_t hash() const;
 };
 
+namespace {
+
+void add_vector(Hash& hash, const VecX& v) {
+  hash.add(v.size());
+  hash.add(std::span<const double>(v.data(), static_cast<std::size_t>(v.size())));
+}
+
+void add_point(Hash& hash, const Vec3& p) { hash.add(std::span<const double>(p.data(), 3)); }
+
+void add_body_state(Hash& hash, const Organ& organ) {
+  const BodyState& state = organ.state;
+  add_vector(hash, state.x);
+  hash.add(state.multiplier);
+  hash.add(state.volume);
+  for (int detail : organ.body.details()) hash.add(detail);
+  for (const DetailShare& detail : state.shares) {
+    hash.add(detail.share);
+    hash.add(detail.leaving);
+  }
+  add_vector(hash, state.fading_load);
+  for (const Extension& extension : organ.extensions) {
+    hash.add(extension.shape);
+    hash.add(extension.centre);
+  }
+  hash.add(organ.refused_details.has_value());
+  if (organ.refused_details)
+    for (int detail : *organ.refused_details) hash.add(detail);
+}
+
+void add_holds(Hash& hash, const Organ& organ) {
+  for (const GripPoint& grip : organ.grips) {
+    hash.add(grip.instrument);
+    hash.add(grip.jaw);
+    hash.add(grip.row);
+    add_point(hash, grip.local);
+    hash.add(grip.stiffness);
+  }
+  for (const RubbingPoint& rubbing : organ.friction.points) {
+    hash.add(rubbing.shape);
+    hash.add(rubbing.point);
+    hash.add(rubbing.hold.limit);
+    hash.add(rubbing.hold.stiffness);
+    add_point(hash, rubbing.hold.anchor);
+    add_point(hash, rubbing.hold.normal);
+  }
+}
+
+/// The factor that is kept serves the next steps, so their bits depend on it: what it makes of the volume's gradient
+/// stands for all of its entries, which would take a tenth of a step.
+void add_factor(Hash& hash, const NewtonWorkspace& work) {
+  hash.add(work.factored);
+  hash.add(work.shifted);
+  if (!work.factored) return;
+  add_vector(hash, work.constraint_gradient);
+  add_vector(hash, work.bordered);
+}
+
+void add_tool(Hash& hash, const Tool& tool) {
+  for (bool flag : {tool.jaw_stopped, tool.slipping, tool.touched, tool.over_limit}) hash.add(flag);
+  for (double v : {tool.pose.pitch, tool.pose.yaw, tool.pose.insertion, tool.pose.roll, tool.pose.jaw})
+    hash.add(v);
+}
+
+}  // namespace
+
 std::uint64_t World::Impl::hash() const {
   Hash hash;
   hash.add(steps);
   for (const Organ& organ : field.organs) {
-    hash.add(std::span<const double>(organ.state.x.data(), static_cast<std::size_t>(organ.state.x.size())));
-    hash.add(organ.state.multiplier);
-    hash.add(organ.state.volume);
-    for (const DetailShare& detail : organ.state.shares) {
-      hash.add(detail.share);
-      hash.add(detail.leaving);
-    }
-    const VecX& load = organ.state.fading_load;
-    hash.add(std::span<const double>(load.data(), static_cast<std::size_t>(load.size())));
-    for (const GripPoint& grip : organ.grips) {
-      hash.add(grip.instrument);
-      hash.add(grip.jaw);
-      hash.add(grip.row);
-      hash.add(std::span<const double>(grip.local.data(), 3));
-    }
-    for (const RubbingPoint& rubbing : organ.friction.points) {
-      hash.add(rubbing.shape);
-      hash.add(rubbing.point);
-      hash.add(rubbing.hold.limit);
-      hash.add(std::span<const double>(rubbing.hold.anchor.data(), 3));
-    }
+    add_body_state(hash, organ);
+    add_holds(hash, organ);
+    add_factor(hash, organ.work);
   }
-  for (const Tool& tool : field.tools) {
-    hash.add(tool.jaw_stopped);
-    hash.add(tool.slipping);
-  }
-  for (const Tool& tool : field.tools)
-    for (double v : {tool.pose.pitch, tool.pose.yaw, tool.pose.insertion, tool.pose.roll, tool.pose.jaw})
-      hash.add(v);
+  for (const Tool& tool : field.tools) add_tool(hash, tool);
   return hash.value();
 }
 
