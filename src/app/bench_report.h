@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/comparison.h"
+#include "paper/comparison.h"
 
 namespace calot {
 

@@ -128,7 +128,7 @@ Bile::Triangles Bile::triangles(int first, int used, const std::vector<Vec3>& at
   return out;
 }
 
-Bile::PointForces Bile::point_forces(const VecX& x, double multiplier) const {
+Bile::PointForces Bile::point_forces(const VecX& x, double datum_pressure) const {
   const std::vector<Vec3> at = positions(x);
   PointForces out;
   out.load.assign(at.size(), Vec3::Zero());
@@ -139,7 +139,7 @@ Bile::PointForces Bile::point_forces(const VecX& x, double multiplier) const {
     const int used = std::min(lane_count, count - first);
     const Triangles t = triangles(first, used, at);
     const Lanes3 sum = t.corner[0] + t.corner[1] + t.corner[2];
-    const Lanes s = g4 * (up_[0] * sum[0] + up_[1] * sum[1] + up_[2] * sum[2]) - multiplier;
+    const Lanes s = g4 * (up_[0] * sum[0] + up_[1] * sum[1] + up_[2] * sum[2]) - datum_pressure;
     const Lanes share = t.weight / 6.0, volume = share * dot(t.corner[0], cross(t.corner[1], t.corner[2]));
     out.volume += sum_of(volume);
     for (int k = 0; k < 3; ++k) {
@@ -163,13 +163,13 @@ double Bile::add_volume_gradient(const VecX& x, VecX& gradient) const {
   return forces.volume;
 }
 
-void Bile::add_load(const VecX& x, double multiplier, VecX& gradient) const {
-  spread(points_, point_forces(x, multiplier).load, gradient);
+void Bile::add_load(const VecX& x, double datum_pressure, VecX& gradient) const {
+  spread(points_, point_forces(x, datum_pressure).load, gradient);
 }
 
-double Bile::add_load_and_volume_gradient(const VecX& x, double multiplier, VecX& load,
+double Bile::add_load_and_volume_gradient(const VecX& x, double datum_pressure, VecX& load,
                                           VecX& by_volume) const {
-  const PointForces forces = point_forces(x, multiplier);
+  const PointForces forces = point_forces(x, datum_pressure);
   spread(points_, forces.load, load);
   spread(points_, forces.by_volume, by_volume);
   return forces.volume;
@@ -200,10 +200,10 @@ struct Bile::TriangleDerivatives {
   Lanes3 by[3];  ///< gradient of g4 V by each corner, weighed
   Lanes s;
 
-  TriangleDerivatives(const Triangles& t, double g4, const Vec3& upwards, double multiplier)
+  TriangleDerivatives(const Triangles& t, double g4, const Vec3& upwards, double datum_pressure)
       : up(upwards), corner(t.corner) {
     const Lanes3 sum = t.corner[0] + t.corner[1] + t.corner[2];
-    s = t.weight / 6.0 * (g4 * (up[0] * sum[0] + up[1] * sum[1] + up[2] * sum[2]) - multiplier);
+    s = t.weight / 6.0 * (g4 * (up[0] * sum[0] + up[1] * sum[1] + up[2] * sum[2]) - datum_pressure);
     for (int i = 0; i < 3; ++i)
       by[i] = g4 / 6.0 * t.weight * cross(t.corner[(i + 1) % 3], t.corner[(i + 2) % 3]);
   }
@@ -225,14 +225,15 @@ struct Bile::TriangleDerivatives {
   }
 };
 
-void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double multiplier, CellHessian& h) const {
+void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure,
+                    CellHessian& h) const {
   const int points = cells_[cell].points;
   h.reset(points);
   const int end = cell + 1 < cells_.size() ? cells_[cell + 1].first_part : static_cast<int>(parts_.size());
   for (int first = cells_[cell].first_part; first < end; first += lane_count) {
     const int used = std::min(lane_count, end - first);
     const Triangles t = triangles(first, used, at);
-    const TriangleDerivatives derivatives(t, 0.25 * specific_weight_, up_, multiplier);
+    const TriangleDerivatives derivatives(t, 0.25 * specific_weight_, up_, datum_pressure);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         const TriangleDerivatives::Block block = derivatives.block(i, j);
@@ -247,7 +248,7 @@ void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double multip
   }
 }
 
-void Bile::add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
+void Bile::add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const {
   const std::vector<Vec3> at = positions(x);
   ElementMatrix element;
   CellHessian h;
@@ -255,7 +256,7 @@ void Bile::add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) co
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const int points = cells_[c].points, n = cells_[c].nodes.padded;
     const double* weights = weights_.data() + cells_[c].weights;
-    assemble(c, at, multiplier, h);
+    assemble(c, at, datum_pressure, h);
     int others[most_points][most_points], count[most_points] = {};  // that each point is coupled with
     for (int i = 0; i < points; ++i)
       for (int j = 0; j < points; ++j)
@@ -278,14 +279,14 @@ void Bile::add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) co
   }
 }
 
-double Bile::pressure_at(const Vec3& position, double multiplier) const {
-  return multiplier - specific_weight_ * up_.dot(position - datum_);
+double Bile::pressure_at(const Vec3& position, double datum_pressure) const {
+  return datum_pressure - specific_weight_ * up_.dot(position - datum_);
 }
 
-double Bile::pressure_at_top(const VecX& x, double multiplier) const {
+double Bile::pressure_at_top(const VecX& x, double datum_pressure) const {
   double top = -1e300;
   for (const Vec3& p : positions(x)) top = std::max(top, up_.dot(p));
-  return multiplier - specific_weight_ * top;
+  return datum_pressure - specific_weight_ * top;
 }
 
 std::vector<std::vector<int>> Bile::cliques() const {

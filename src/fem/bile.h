@@ -38,18 +38,19 @@ class Bile {
   double add_volume_gradient(const VecX& x, VecX& gradient) const;
   /// Potential energy of the liquid's weight, J, relative to the datum's height.
   double value(const VecX& x) const;
-  /// Adds the gradient of weight - multiplier * volume (N): the load of pressure multiplier - weight *
+  /// Adds the gradient of weight - datum_pressure * volume (N): the load of pressure datum_pressure - weight *
   /// height.
-  void add_load(const VecX& x, double multiplier, VecX& gradient) const;
+  void add_load(const VecX& x, double datum_pressure, VecX& gradient) const;
   /// Both: add_load to `load`, add_volume_gradient to `by_volume`, for little more than one.
-  double add_load_and_volume_gradient(const VecX& x, double multiplier, VecX& load, VecX& by_volume) const;
-  /// Adds the exact Hessian of weight - multiplier * volume (N/m).
-  void add_hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const;
+  double add_load_and_volume_gradient(const VecX& x, double datum_pressure, VecX& load,
+                                      VecX& by_volume) const;
+  /// Adds the exact Hessian of weight - datum_pressure * volume (N/m).
+  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const;
 
-  /// Gauge pressure (Pa) at `position` when the multiplier is given: multiplier - specific weight * height.
-  double pressure_at(const Vec3& position, double multiplier) const;
+  /// Gauge pressure (Pa) at `position` when the datum_pressure is given: datum_pressure - specific weight * height.
+  double pressure_at(const Vec3& position, double datum_pressure) const;
   /// Gauge pressure at the surface's highest point.
-  double pressure_at_top(const VecX& x, double multiplier) const;
+  double pressure_at_top(const VecX& x, double datum_pressure) const;
 
   /// A triangle of the sum.
   struct Part {
@@ -73,11 +74,11 @@ class Bile {
     std::vector<Vec3> load, by_volume;
     double volume = 0;
   };
-  PointForces point_forces(const VecX& x, double multiplier) const;
+  PointForces point_forces(const VecX& x, double datum_pressure) const;
   /// Adds the parts of a cell; returns its points.
   std::vector<int> add_parts(const std::vector<BileSurface::Part>& parts);
   struct CellHessian;
-  void assemble(std::size_t cell, const std::vector<Vec3>& at, double multiplier, CellHessian& h) const;
+  void assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure, CellHessian& h) const;
 
   StencilTable points_;
   double specific_weight_ = 0;

@@ -8,7 +8,7 @@
 
 #include "base/timed.h"
 #include "sim/grip.h"
-#include "sim/hold.h"
+#include "sim/grip_slip.h"
 #include "sim/rubbing.h"
 #include "sim/structural_extension.h"
 
@@ -45,7 +45,7 @@ Vec3 carried(const Pose& motion, const Vec3& x) { return motion * x - x; }
 
 /// The load that the tools' motion to `to` puts on the organ to first order; none for a tool that stays, not
 /// even rounding.
-VecX motion_load(const Field& field, const Organ& organ, const Surroundings& field_now,
+VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& field_now,
                  const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
   VecX load = VecX::Zero(organ.state.x.size());
   loaded = false;
@@ -117,7 +117,7 @@ class ShapePaths {
 };
 
 /// Largest share of the joint motion of skin and tools that keeps them apart.
-double share_kept_apart(const Field& field, const Organ& organ, const Surroundings& now,
+double share_kept_apart(const Field& field, const Organ& organ, const ContactLoads& now,
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
   const double longest = organ.body.largest_motion(dx);
@@ -154,7 +154,7 @@ double share_kept_apart(const Field& field, const Organ& organ, const Surroundin
 Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh,
                            SolveStatistics& statistics) {
   Prediction out;
-  const Surroundings now = surroundings(field, organ, from);
+  const ContactLoads now = contact_loads(field, organ, from);
   double travel = 0;
   for (std::size_t i = 0; i < from.size(); ++i)
     travel = std::max(travel, travel_bound(field.tools[i], from[i], to[i]));
@@ -170,7 +170,7 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   if (loaded) {
     const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search.own);
     const NewtonResult factored =
-        factorise_tangent(problem, organ.work, organ.state.x, organ.state.multiplier, fresh);
+        factorise_tangent(problem, organ.work, organ.state.x, organ.state.datum_pressure, fresh);
     count(factored, statistics);
     if (!factored.converged()) return solve_failure(factored, organ.definition.name, "under its instruments");
     const Timed timed(statistics.solve_s);
@@ -276,7 +276,7 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
         Organ& organ = field.organs[k];
         before.push_back(placement(organ));
         organ.state.x += share * predictions[k].dx;
-        organ.state.multiplier += share * predictions[k].dmultiplier;
+        organ.state.datum_pressure += share * predictions[k].dmultiplier;
         last = settle_organ(field, organ, poses, before.back().state.x, part_iterations, statistics);
         accepted = last.converged();
       }
@@ -382,7 +382,7 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     if (load.touches++ == 0) load.organ = organ.definition.name;
   };
   for (const Organ& organ : field.organs) {
-    const Surroundings now = surroundings(field, organ, poses);
+    const ContactLoads now = contact_loads(field, organ, poses);
     const std::vector<ContactPair> touching =
         organ.search.pairs(organ.body, organ.state.x, now, -contact_margin);
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
@@ -399,7 +399,7 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
       loads[tool].moment += (at - field.tools[tool].trocar).cross(rub);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
-      const Vec3 at = organ.body.skin_point(organ.grips[g].row, organ.state.x);
+      const Vec3 at = organ.body.skin_point(organ.grips[g].skin_point, organ.state.x);
       add(static_cast<std::size_t>(organ.grips[g].instrument), at,
           now.grip.stiffness[g] * (at - now.grip.target[g]), organ);
     }

@@ -6,7 +6,7 @@ namespace calot {
 namespace {
 
 /// Pairs nearer than `reach`.
-std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+std::vector<ContactPair> pairs_within(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                       double reach) {
   std::vector<Eigen::AlignedBox3d> faces;
   for (const std::vector<int>& nodes : body.face_nodes()) {
@@ -25,15 +25,15 @@ std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& 
   const int each = body.triangles_each();
   std::vector<ContactPair> pairs;
   ContactPlaces places(body.skin(), x);
-  for (int shape = 0; shape < static_cast<int>(field.shapes.size()); ++shape) {
-    const Bounds b = bounds(field.shapes[shape]);
+  for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape) {
+    const Bounds b = bounds(loads.shapes[shape]);
     const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
       const double far = reach + 0.5 * faces[f].diagonal().norm();
-      if (!near.intersects(faces[f]) || signed_distance(field.shapes[shape], faces[f].center()) > far)
+      if (!near.intersects(faces[f]) || signed_distance(loads.shapes[shape], faces[f].center()) > far)
         continue;
       for (int triangle = f * each; triangle < (f + 1) * each; ++triangle) {
-        const double distance = places.nearness(triangle, field.shapes[shape]).of_all();
+        const double distance = places.nearness(triangle, loads.shapes[shape]).of_all();
         if (distance < reach) pairs.push_back({triangle, shape, distance});
       }
     }
@@ -41,39 +41,39 @@ std::vector<ContactPair> pairs_within(const VirtualStructure& body, const VecX& 
   return pairs;
 }
 
-double reach_of(const Surroundings& field, double extra) {
-  return field.barrier.range + contact_margin + extra;
+double reach_of(const ContactLoads& loads, double extra) {
+  return loads.barrier.range + contact_margin + extra;
 }
 
 }  // namespace
 
-std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                       double extra) {
-  return pairs_within(body, x, field, reach_of(field, extra));
+  return pairs_within(body, x, loads, reach_of(loads, extra));
 }
 
-void ContactSearch::look_again(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+void ContactSearch::look_again(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                double approach) {
   ContactPlaces places(body.skin(), x);
   for (ContactPair& pair : near_)
-    pair.distance = places.nearness(pair.triangle, field.shapes[pair.shape]).of_all();
+    pair.distance = places.nearness(pair.triangle, loads.shapes[pair.shape]).of_all();
   reach_ -= approach;
-  shapes_ = field.shapes;
+  shapes_ = loads.shapes;
   x_ = x;
 }
 
-std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, const VecX& x,
-                                              const Surroundings& field, double extra) {
+std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                                              double extra) {
   constexpr double ahead = 4e-3;    // m remembered beyond what is asked for
   constexpr double stale = 0.5e-3;  // m of motion after which remembered distances are measured again
-  const double reach = reach_of(field, extra);
-  bool usable = reach_ > 0 && x_.size() == x.size() && shapes_.size() == field.shapes.size();
-  std::vector<double> approach(field.shapes.size());  // how much nearer a pair of the shape may have come
+  const double reach = reach_of(loads, extra);
+  bool usable = reach_ > 0 && x_.size() == x.size() && shapes_.size() == loads.shapes.size();
+  std::vector<double> approach(loads.shapes.size());  // how much nearer a pair of the shape may have come
   double most = 0;
   if (usable) {
     const double moved = body.largest_motion(x - x_);
     for (std::size_t k = 0; k < approach.size(); ++k) {
-      approach[k] = moved + distance_change(field.shapes[k], shapes_[k]);
+      approach[k] = moved + distance_change(loads.shapes[k], shapes_[k]);
       usable &= reach + approach[k] <= reach_;  // false for a NaN
       most = std::max(most, approach[k]);
     }
@@ -81,12 +81,12 @@ std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, cons
   if (!usable) {
     // What is found near a place that is no place is not to be remembered.
     reach_ = x.allFinite() ? reach + ahead : -1;
-    near_ = pairs_within(body, x, field, reach + ahead);
-    shapes_ = field.shapes;
+    near_ = pairs_within(body, x, loads, reach + ahead);
+    shapes_ = loads.shapes;
     x_ = x;
     approach.assign(approach.size(), 0.0);
   } else if (most > stale) {
-    look_again(body, x, field, most);
+    look_again(body, x, loads, most);
     approach.assign(approach.size(), 0.0);
   }
   std::vector<ContactPair> out;
@@ -96,7 +96,7 @@ std::vector<ContactPair> ContactSearch::pairs(const VirtualStructure& body, cons
     now.distance -= approach[pair.shape];
     if (now.distance >= reach) continue;
     if (now.distance < exact)
-      now.distance = places.nearness(pair.triangle, field.shapes[pair.shape]).of_all();
+      now.distance = places.nearness(pair.triangle, loads.shapes[pair.shape]).of_all();
     if (now.distance < reach) out.push_back(now);
   }
   return out;

@@ -5,7 +5,7 @@
 #include "collision/shapes.h"
 #include "sim/friction_load.h"
 #include "sim/self_contact.h"
-#include "sim/virtual_structure.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -29,8 +29,8 @@ inline Shape contact_shape(const Shape& made) { return offset(made, -contact_ins
 /// What no trial may reach, of a contact shape.
 inline Shape core_of(const Shape& contact_shape) { return offset(contact_shape, -contact_guard); }
 
-/// The field that acts on an organ during one solve; shapes do not move within it.
-struct Surroundings {
+/// What acts on an organ during one solve; shapes do not move within it.
+struct ContactLoads {
   std::vector<Shape> shapes;  ///< contact shapes: what they are in truth, inset
   Barrier barrier = contact_barrier;
   Links grip;  ///< rows of the skin's stencils
@@ -43,7 +43,7 @@ struct Surroundings {
 /// A triangle of the skin near enough to a shape to meet it within a solve.
 struct ContactPair {
   int triangle = 0;
-  int shape = 0;        ///< index into Surroundings::shapes
+  int shape = 0;        ///< index into ContactLoads::shapes
   double distance = 0;  ///< m, when it was gathered: none of its points was nearer
 };
 
@@ -53,13 +53,13 @@ inline constexpr double contact_margin = 2.5e-3;
 /// Calls use(contact point, index of the shape, its place, distance and gradient there) for the points of the pairs that are in range of
 /// the shapes when the nodes are at x, m. No pair has come nearer than by `approach` since it was gathered.
 template <class Use>
-void for_touching(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+void for_touching(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                   const std::vector<ContactPair>& pairs, double approach, const Use& use) {
   ContactPlaces places(body.skin(), x);
   for (const ContactPair& pair : pairs) {
-    const double range = field.barrier.range;
+    const double range = loads.barrier.range;
     if (pair.distance >= range + approach) continue;
-    const Shape& shape = field.shapes[pair.shape];
+    const Shape& shape = loads.shapes[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);
     if (near.of_all() >= range) continue;
     for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
@@ -72,7 +72,7 @@ void for_touching(const VirtualStructure& body, const VecX& x, const Surrounding
 }
 
 /// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then triangle.
-std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                       double extra);
 
 /// The same pairs with less work: triangles a little further away are remembered, and only these are looked at
@@ -81,14 +81,14 @@ std::vector<ContactPair> gather_pairs(const VirtualStructure& body, const VecX& 
 class ContactSearch {
  public:
   static constexpr double exact = 0.5e-3;  ///< m
-  std::vector<ContactPair> pairs(const VirtualStructure& body, const VecX& x, const Surroundings& field,
+  std::vector<ContactPair> pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                  double extra);
 
   SelfContact own;  ///< the skin's with itself
 
  private:
   /// Measures what is remembered again where it is now, nothing having come nearer than by `approach`, m.
-  void look_again(const VirtualStructure& body, const VecX& x, const Surroundings& field, double approach);
+  void look_again(const ShellBody& body, const VecX& x, const ContactLoads& loads, double approach);
 
   std::vector<ContactPair> near_;  ///< distances as they were then
   std::vector<Shape> shapes_;

@@ -15,7 +15,7 @@ bool contains(const std::vector<int>& list, int value) { return index_of(value, 
 
 }  // namespace
 
-std::vector<double> detail_holds(const VirtualStructure& body, const std::vector<DetailShare>& shares) {
+std::vector<double> detail_holds(const ShellBody& body, const std::vector<DetailShare>& shares) {
   if (std::all_of(shares.begin(), shares.end(), [](const DetailShare& s) { return s.share == 1.0; }))
     return {};
   std::vector<double> out;
@@ -33,7 +33,7 @@ void fade_details(double way, BodyState& state) {
   if (largest_node(state.fading_load) < no_load) state.fading_load.resize(0);
 }
 
-std::vector<int> lasting_details(const VirtualStructure& body, const BodyState& state,
+std::vector<int> lasting_details(const ShellBody& body, const BodyState& state,
                                  const std::vector<int>& wanted) {
   constexpr double displaced = 1e-6;  // m
   std::vector<int> out;
@@ -48,11 +48,10 @@ std::vector<int> lasting_details(const VirtualStructure& body, const BodyState& 
   return out;
 }
 
-VecX made_good(const VirtualStructure& body, const BodyState& state, const VirtualStructure& next,
-               const VecX& x) {
-  VecX known = -body.forces(state.x, state.multiplier);
+VecX made_good(const ShellBody& body, const BodyState& state, const ShellBody& next, const VecX& x) {
+  VecX known = -body.forces(state.x, state.datum_pressure);
   if (state.fading_load.size() > 0) known += state.fading_load;
-  VecX out = next.forces(x, state.multiplier);
+  VecX out = next.forces(x, state.datum_pressure);
   // What both have, that is: a new detail's own force is for its spring.
   const VecX both = body.coordinates_in(next, VecX::Ones(known.size()));
   out = out.cwiseProduct(both) + body.coordinates_in(next, known);
@@ -61,7 +60,7 @@ VecX made_good(const VirtualStructure& body, const BodyState& state, const Virtu
 }
 
 std::vector<DetailShare> shares_of(const std::vector<int>& next, const std::vector<int>& wanted,
-                                   const VirtualStructure& body, const std::vector<DetailShare>& shares) {
+                                   const ShellBody& body, const std::vector<DetailShare>& shares) {
   std::vector<DetailShare> out;
   for (int detail : next) {
     const int known = index_of(detail, body.details());

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "sim/virtual_structure.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -16,24 +16,23 @@ inline constexpr double fade_length = 2e-3;
 inline constexpr double least_share = 1e-3;
 
 /// Stiffness of the springs, N/m, one a detail; none where all are free.
-std::vector<double> detail_holds(const VirtualStructure& body, const std::vector<DetailShare>& shares);
+std::vector<double> detail_holds(const ShellBody& body, const std::vector<DetailShare>& shares);
 
 /// Moves shares and the fading load on as a tool travels by `way`, m.
 void fade_details(double way, BodyState& state);
 
 /// The details of a body that are wanted or still do something: those that leave do until their share is spent or they
 /// are where they were at rest. Increasing.
-std::vector<int> lasting_details(const VirtualStructure& body, const BodyState& state,
+std::vector<int> lasting_details(const ShellBody& body, const BodyState& state,
                                  const std::vector<int>& wanted);
 
 /// Load that keeps a body in balance as it becomes `next`, at the same place `x` in its coordinates, but for the new
 /// details, which are held: its finer rules see a deformed wall otherwise than those before.
-VecX made_good(const VirtualStructure& body, const BodyState& state, const VirtualStructure& next,
-               const VecX& x);
+VecX made_good(const ShellBody& body, const BodyState& state, const ShellBody& next, const VecX& x);
 
 /// Shares for the details `next` of a body that has its own: what is new begins with the least, what is not `wanted`
 /// leaves.
 std::vector<DetailShare> shares_of(const std::vector<int>& next, const std::vector<int>& wanted,
-                                   const VirtualStructure& body, const std::vector<DetailShare>& shares);
+                                   const ShellBody& body, const std::vector<DetailShare>& shares);
 
 }  // namespace calot

@@ -8,18 +8,17 @@
 #include "sim/staged.h"
 
 namespace calot {
-BodyProblem::BodyProblem(const VirtualStructure& body, const Surroundings& field,
-                         std::vector<ContactPair> pairs, const BodyState& start, bool fixed_pressure,
-                         SelfContact* own)
+BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
+                         const BodyState& start, bool fixed_pressure, SelfContact* own)
     : body_(body),
-      field_(field),
+      loads_(loads),
       pairs_(std::move(pairs)),
       start_(start.x),
       volume_(start.volume),
-      multiplier_(start.multiplier),
+      multiplier_(start.datum_pressure),
       fixed_pressure_(fixed_pressure),
       own_(own) {
-  for (const Shape& shape : field.shapes) cores_.push_back(core_of(shape));
+  for (const Shape& shape : loads.shapes) cores_.push_back(core_of(shape));
 }
 
 double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
@@ -27,24 +26,24 @@ double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x -
 template <class Use>
 void BodyProblem::for_held_details(const Use& use) const {
   const auto first = 3 * Eigen::Index{body_.coarse_nodes()};
-  for (std::size_t i = 0; i < field_.detail_holds.size(); ++i)
-    use(first + 3 * static_cast<Eigen::Index>(i), field_.detail_holds[i]);
+  for (std::size_t i = 0; i < loads_.detail_holds.size(); ++i)
+    use(first + 3 * static_cast<Eigen::Index>(i), loads_.detail_holds[i]);
 }
 
 double BodyProblem::value(const VecX& x) const {
   double sum = body_.shell().value(x);
   if (!std::isfinite(sum)) return sum;
   sum += body_.foundation().value(body_.bed_points(), x);
-  sum += field_.grip.value(body_.skin().stencils, x);
-  sum += field_.friction.value(body_.skin(), x);
+  sum += loads_.grip.value(body_.skin().stencils, x);
+  sum += loads_.friction.value(body_.skin(), x);
   if (body_.bile()) {
     sum += body_.bile()->value(x);
     if (fixed_pressure_) sum -= multiplier_ * body_.volume(x);
   }
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
-  if (field_.load.size() > 0) sum -= field_.load.dot(x);
-  for_touching(body_, x, field_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
-    sum += body_.contact_area(point) * field_.barrier.sample(d.distance).energy;
+  if (loads_.load.size() > 0) sum -= loads_.load.dot(x);
+  for_touching(body_, x, loads_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
+    sum += body_.contact_area(point) * loads_.barrier.sample(d.distance).energy;
   });
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
@@ -56,13 +55,13 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
   body_.shell().add_gradient(x, gradient);
   largest_internal = largest_node(gradient);
   body_.foundation().add_gradient(body_.bed_points(), x, gradient);
-  field_.grip.add_gradient(body_.skin().stencils, x, gradient);
-  field_.friction.add_gradient(body_.skin(), x, gradient);
+  loads_.grip.add_gradient(body_.skin().stencils, x, gradient);
+  loads_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
-  if (field_.load.size() > 0) gradient -= field_.load;
+  if (loads_.load.size() > 0) gradient -= loads_.load;
   ContactLoad pressed(body_.skin(), gradient);
-  for_touching(body_, x, field_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
-    pressed.add(point, body_.contact_area(point) * field_.barrier.sample(d.distance).derivative * d.gradient);
+  for_touching(body_, x, loads_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
+    pressed.add(point, body_.contact_area(point) * loads_.barrier.sample(d.distance).derivative * d.gradient);
   });
   pressed.finish();
   for_held_details(
@@ -99,13 +98,13 @@ double BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, doub
 void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
   matrix.assign(body_.pattern());
   body_.shell().add_hessian(x, matrix);
-  field_.grip.add_hessian(body_.skin().stencils, matrix);
-  field_.friction.add_hessian(body_.skin(), x, matrix);
+  loads_.grip.add_hessian(body_.skin().stencils, matrix);
+  loads_.friction.add_hessian(body_.skin(), x, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
   ContactStiffness pressed(body_.skin(), matrix);
-  for_touching(body_, x, field_, pairs_, moved(x),
+  for_touching(body_, x, loads_, pairs_, moved(x),
                [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
-                 pressed.add(point, contact_hessian(body_, field_, point, shape, at, d));
+                 pressed.add(point, contact_hessian(body_, loads_, point, shape, at, d));
                });
   pressed.finish();
   for_held_details([&](Eigen::Index at, double stiffness) {
@@ -132,7 +131,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     if (length * share > body_.edge_lengths()[i]) share = body_.edge_lengths()[i] / length;
     // Pairs were gathered for nodes that stay within the margin of where the solve began.
     const Vec3 gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
-    if (!field_.shapes.empty() && (gone + share * move).norm() > margin) {
+    if (!loads_.shapes.empty() && (gone + share * move).norm() > margin) {
       const double left = margin - gone.norm();
       if (left < 0.5 * margin) return 0;  // better gather anew than go on in ever shorter steps
       share = std::min(share, left / length);
@@ -156,7 +155,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   return own_ ? own_->safe_share(body_, x, step, contact_keep, share) : share;
 }
 
-NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
+NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const NewtonSettings& settings,
                     NewtonWorkspace& work, ContactSearch& search, BodyState& state, bool fixed_pressure,
                     ExtensionScheme scheme) {
   constexpr int max_rounds = 30;
@@ -167,17 +166,17 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
     std::vector<ContactPair> pairs;
     {
       const Timed timed(gathering_s);
-      pairs = search.pairs(body, state.x, field, 0.0);
+      pairs = search.pairs(body, state.x, loads, 0.0);
       search.own.prepare(body, state.x, work);
     }
     const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
     const auto problem = [&](const BodyState& start, bool at_pressure) {
-      return std::make_unique<BodyProblem>(body, field, pairs, start, at_pressure, &search.own);
+      return std::make_unique<BodyProblem>(body, loads, pairs, start, at_pressure, &search.own);
     };
     const NewtonResult result =
         staged ? solve_in_stages(body, problem, settings, work, state)
-               : solve_equilibrium(BodyProblem(body, field, pairs, state, fixed_pressure, &search.own),
-                                   settings, work, state.x, state.multiplier);
+               : solve_equilibrium(BodyProblem(body, loads, pairs, state, fixed_pressure, &search.own),
+                                   settings, work, state.x, state.datum_pressure);
     total.add(result);
     total.safety_s += gathering_s;
     // Walls that met without couplings in the matrix have them in the next round.
@@ -190,21 +189,21 @@ NewtonResult settle(const VirtualStructure& body, const Surroundings& field, con
   return total;
 }
 
-std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
-                                         const Surroundings& field, const std::vector<ContactPair>& pairs) {
+std::vector<ContactForce> contact_forces(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                                         const std::vector<ContactPair>& pairs) {
   std::vector<ContactForce> out;
-  for_touching(body, x, field, pairs, 0.0, [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
-    const double pressure = field.barrier.sample(d.distance).derivative;
+  for_touching(body, x, loads, pairs, 0.0, [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
+    const double pressure = loads.barrier.sample(d.distance).derivative;
     out.push_back({shape, point, at, body.contact_area(point) * pressure * d.gradient});
   });
   return out;
 }
 
-Mat3 contact_hessian(const VirtualStructure& body, const Surroundings& field, int point, int shape,
-                     const Vec3& at, const DistanceSlope& d) {
-  const BarrierSample b = field.barrier.sample(d.distance);
+Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, int point, int shape, const Vec3& at,
+                     const DistanceSlope& d) {
+  const BarrierSample b = loads.barrier.sample(d.distance);
   return body.contact_area(point) * (b.second * d.gradient * d.gradient.transpose() +
-                                     b.derivative * distance_hessian(field.shapes[shape], at, d));
+                                     b.derivative * distance_hessian(loads.shapes[shape], at, d));
 }
 
 }  // namespace calot

@@ -20,7 +20,7 @@ class BodyProblem : public ConstrainedEnergy {
  public:
   /// `fixed_pressure`: the multiplier is prescribed and the volume free. `own`: contact of the skin with itself,
   /// where that is asked for; it must outlive the problem.
-  BodyProblem(const VirtualStructure& body, const Surroundings& field, std::vector<ContactPair> pairs,
+  BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
               const BodyState& start, bool fixed_pressure = false, SelfContact* own = nullptr);
 
   bool constrained() const override { return body_.bile().has_value() && !fixed_pressure_; }
@@ -44,8 +44,8 @@ class BodyProblem : public ConstrainedEnergy {
   /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
   template <class Use>
   void for_held_details(const Use& use) const;
-  const VirtualStructure& body_;
-  const Surroundings& field_;
+  const ShellBody& body_;
+  const ContactLoads& loads_;
   std::vector<ContactPair> pairs_;
   std::vector<Shape> cores_;  ///< of the shapes: what no trial may reach
   VecX start_;
@@ -54,10 +54,10 @@ class BodyProblem : public ConstrainedEnergy {
   SelfContact* own_;
 };
 
-/// Equilibrium in a field at rest, however far from `state` it is: where a solve ends at the margin, the next
+/// Equilibrium under loads that stand still, however far from `state` it is: where a solve ends at the margin, the next
 /// goes on from there with fresh pairs, always downhill. On failure `state` holds the last iterate. Counts of
 /// all rounds.
-NewtonResult settle(const VirtualStructure& body, const Surroundings& field, const NewtonSettings& settings,
+NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const NewtonSettings& settings,
                     NewtonWorkspace& work, ContactSearch& search, BodyState& state,
                     bool fixed_pressure = false, ExtensionScheme scheme = ExtensionScheme::condensed);
 
@@ -68,10 +68,10 @@ struct ContactForce {
   Vec3 on_shape = Vec3::Zero();  ///< N, of the skin on the shape
 };
 /// One for each contact point in range.
-std::vector<ContactForce> contact_forces(const VirtualStructure& body, const VecX& x,
-                                         const Surroundings& field, const std::vector<ContactPair>& pairs);
-/// Hessian, by its place, of a contact point's energy against a shape of the field, N/m: of what for_touching finds.
-Mat3 contact_hessian(const VirtualStructure& body, const Surroundings& field, int point, int shape,
-                     const Vec3& at, const DistanceSlope& d);
+std::vector<ContactForce> contact_forces(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                                         const std::vector<ContactPair>& pairs);
+/// Hessian, by its place, of a contact point's energy against a shape that loads it, N/m: of what for_touching finds.
+Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, int point, int shape, const Vec3& at,
+                     const DistanceSlope& d);
 
 }  // namespace calot

@@ -12,8 +12,8 @@ std::vector<InstrumentPose> present_poses(const Field& field) {
   return poses;
 }
 
-Surroundings surroundings(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
-  Surroundings out;
+ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
+  ContactLoads out;
   out.barrier = field.barrier;
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
@@ -59,7 +59,7 @@ NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<In
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
   fade_details(largest_travel(field, poses), organ.state);
-  Surroundings around = surroundings(field, organ, poses);
+  ContactLoads around = contact_loads(field, organ, poses);
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {
     total.add(

@@ -13,7 +13,7 @@ namespace calot {
 
 /// What the laparoscope looks at from near by.
 struct ViewedPlace {
-  int organ = 0, row = 0;  ///< row: skin point
+  int organ = 0, skin_point = 0;
 };
 
 struct Field {
@@ -31,7 +31,7 @@ std::vector<InstrumentPose> present_poses(const Field& field);
 
 /// What acts on an organ when the tools stand at `poses`: the tools' shapes first, three each, then the
 /// support; the springs of what they hold; and friction as it was at the last equilibrium.
-Surroundings surroundings(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
+ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
 
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);

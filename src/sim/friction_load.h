@@ -10,7 +10,7 @@ namespace calot {
 
 struct RubbingPoint {
   int point = 0;  ///< contact point
-  int shape = 0;  ///< index into Surroundings::shapes
+  int shape = 0;  ///< index into ContactLoads::shapes
   StickSlip hold;
 };
 

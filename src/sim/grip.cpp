@@ -27,7 +27,7 @@ void take_hold(Field& field, int instrument) {
   for (Organ& organ : field.organs) {
     const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
     std::vector<char> held(skin.size(), 0);
-    for (const GripPoint& grip : organ.grips) held[grip.row] = 1;
+    for (const GripPoint& grip : organ.grips) held[grip.skin_point] = 1;
     const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
                               jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
     for (std::size_t p = 0; p < skin.size(); ++p) {
@@ -38,7 +38,7 @@ void take_hold(Field& field, int instrument) {
         organ.grips.push_back({instrument, jaw, static_cast<int>(p), local[jaw], grip_stiffness});
     }
     std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
-      return std::tie(a.instrument, a.jaw, a.row) < std::tie(b.instrument, b.jaw, b.row);
+      return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
     });
   }
 }
@@ -87,7 +87,7 @@ Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
   Links links;
   for (const GripPoint& grip : organ.grips) {
     const Tool& tool = tools[grip.instrument];
-    links.row.push_back(grip.row);
+    links.row.push_back(grip.skin_point);
     links.target.push_back(jaw_frame(tool.trocar, poses[grip.instrument], tool.geometry, grip.jaw) *
                            grip.local);
     links.stiffness.push_back(grip.stiffness);

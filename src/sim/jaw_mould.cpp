@@ -92,12 +92,12 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
     for (const GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
       const Pose jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, grip.jaw);
-      const Vec3 at = organ.body.skin_point(grip.row, organ.state.x);
+      const Vec3 at = organ.body.skin_point(grip.skin_point, organ.state.x);
       const Vec3 local = jaw.inverse(Eigen::Isometry) * at;
       Vec3 moved = local;
       moved.x() += share_on_pad(tool.geometry, local.y(), local.z()) *
                    (moulded_height(tool.geometry, local.y(), local.z()) - local.x());
-      held.push_back({static_cast<int>(k), grip.row, jaw.linear() * (moved - local)});
+      held.push_back({static_cast<int>(k), grip.skin_point, jaw.linear() * (moved - local)});
     }
   }
   if (!held.empty()) {
@@ -126,7 +126,7 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
   // The skin around what is held stays where it is.
   std::vector<Vec3> ways(positions.size(), Vec3::Zero());
   for (const Held& held : held_)
-    if (held.organ == organ) ways[held.row] = smooth(weight_) * held.way;
+    if (held.organ == organ) ways[held.skin_point] = smooth(weight_) * held.way;
   std::vector<Vec3> from, to;
   for (std::size_t p = 0; p < positions.size(); ++p) {
     if (!form.contains(positions[p])) continue;

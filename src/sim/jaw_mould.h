@@ -54,7 +54,7 @@ class JawMould {
 
  private:
   struct Held {
-    int organ = 0, row = 0;   ///< skin point
+    int organ = 0, skin_point = 0;
     Vec3 way = Vec3::Zero();  ///< m, patient's frame: from where it is held to where the mould has it
   };
   std::vector<Held> held_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "anatomy/organ_frame.h"
 #include "geometry/mesh_io.h"
 #include "geometry/shapes.h"
 #include "sim/instrument.h"
@@ -13,18 +14,6 @@
 
 namespace calot {
 namespace {
-
-/// Organ frame to world: z from neck to fundus, x towards the liver.
-Pose organ_frame(const OrganDefinition& definition) {
-  const Vec3 z = (definition.fundus - definition.neck).normalized();
-  const Vec3 x = (definition.liver_side - z * z.dot(definition.liver_side)).normalized();
-  Pose frame = Pose::Identity();
-  frame.linear().col(0) = x;
-  frame.linear().col(1) = z.cross(x);
-  frame.linear().col(2) = z;
-  frame.translation() = definition.neck;
-  return frame;
-}
 
 /// Vertices of the unstressed surface in the organ's frame, lower pole at the origin.
 Result<TriMesh> unstressed_mesh(const OrganDefinition& definition) {
@@ -116,7 +105,7 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
 }
 
 /// Volume and pressure that the author asked for, by small steps from the unstressed shape.
-Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings& settings) {
+Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings& settings) {
   const BileDefinition& bile = organ.definition.bile;
   const Bile& liquid = *organ.body.bile();
   const double unstressed = liquid.volume(organ.state.x);
@@ -128,9 +117,9 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
       const double ramp = std::min(1.0, 0.25 * (round + 1));
       const double offset = liquid.pressure_at_top(organ.state.x, 0.0);
       const double next = ramp * *bile.fill_pressure - offset;
-      organ.state.multiplier = next;
+      organ.state.datum_pressure = next;
       const NewtonResult result =
-          settle(organ.body, field, settings, organ.work, organ.search, organ.state, true);
+          settle(organ.body, loads, settings, organ.work, organ.search, organ.state, true);
       if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
       settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
       aim = next;
@@ -151,7 +140,7 @@ Result<bool> fill(Organ& organ, const Surroundings& field, const NewtonSettings&
     for (int k = 1; k <= steps; ++k) {
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
       const NewtonResult result =
-          settle(organ.body, field, settings, organ.work, organ.search, organ.state, false);
+          settle(organ.body, loads, settings, organ.work, organ.search, organ.state, false);
       if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
     }
   }
@@ -169,7 +158,7 @@ bool swells(const Organ& organ) {
 
 /// Contact is felt at skin points: they must stand closer than half a jaw is wide, or it would slip in
 /// between.
-std::optional<Failure> check_skin_spacing(const VirtualStructure& body) {
+std::optional<Failure> check_skin_spacing(const ShellBody& body) {
   const double limit = 0.5 * InstrumentGeometry{}.jaw_width;
   const double widest = body.widest_skin_gap();
   if (widest <= limit) return std::nullopt;
@@ -194,11 +183,11 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
               hint);
 }
 
-Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& field, const Vec3& up,
+Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
                          double tolerance, int levels) {
   Result<TriMesh> control = control_mesh(definition);
   if (!control) return control.failure();
-  VirtualStructure::Setup setup;
+  ShellBody::Setup setup;
   setup.name = definition.name;
   setup.control = control.value();
   setup.material = wall_material(definition);
@@ -217,7 +206,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
       if ((x - places.at(region.landmark)).norm() < region.radius) stiffness += region.stiffness;
     return stiffness;
   };
-  Result<VirtualStructure> body = VirtualStructure::create(setup);
+  Result<ShellBody> body = ShellBody::create(setup);
   if (!body) return body.failure();
   for (const HeldRegion& region : definition.held) {
     const std::vector<Vec3>& wall = body->foundation().target;
@@ -235,7 +224,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))
     organ.landmarks[name] = nearest_of(organ.body.skin_rest(), place);
-  for (const Shape& shape : field.shapes)
+  for (const Shape& shape : loads.shapes)
     for (const Vec3& p : organ.body.skin_rest())
       if (signed_distance(shape, p) <= 0)
         return fail(FailureKind::scenario,
@@ -245,7 +234,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& 
   NewtonSettings settings;
   settings.tolerance = tolerance;
   organ.search.own.active = !swells(organ);
-  Result<bool> filled = fill(organ, field, settings);
+  Result<bool> filled = fill(organ, loads, settings);
   organ.search.own.active = true;
   if (!filled) return filled.failure();
   organ.body.keep_in_equilibrium(organ.state);

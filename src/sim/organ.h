@@ -12,7 +12,7 @@ namespace calot {
 /// A skin point that a pad holds: it keeps its place in the jaw's frame until it slips or the jaw opens.
 struct GripPoint {
   int instrument = 0, jaw = 0;
-  int row = 0;                ///< skin point
+  int skin_point = 0;
   Vec3 local = Vec3::Zero();  ///< m, in the jaw's frame
   double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
 };
@@ -26,12 +26,12 @@ struct Extension {
 
 struct Organ {
   OrganDefinition definition;
-  VirtualStructure body;
+  ShellBody body;
   BodyState state;
   NewtonWorkspace work;
   mutable ContactSearch search;  ///< remembers where it looked last: what it finds does not depend on it
   std::map<std::string, int> landmarks;  ///< skin point of each
-  std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, row
+  std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, skin_point
   std::vector<Extension> extensions;     ///< ordered by shape
   /// Details that found no rest when they were tried last: not tried again until others are wanted.
   std::optional<std::vector<int>> refused_details;
@@ -41,7 +41,7 @@ struct Organ {
 /// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its
 /// bile (and on `field`). Failures: scenario (a mesh that
 /// cannot be used) or simulation (no rest state found).
-Result<Organ> make_organ(const OrganDefinition& definition, const Surroundings& field, const Vec3& up,
+Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
                          double tolerance, int levels = 0);
 
 /// A failed solve in words: what happened, and what to change.

@@ -70,7 +70,7 @@ FrictionLoad friction_load(const Field& field, const Organ& organ, const std::ve
 }
 
 double renew_friction(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                      const VecX& before, double share, Surroundings& around) {
+                      const VecX& before, double share, ContactLoads& around) {
   const std::vector<Pose> frames = shape_frames(field, poses);
   const std::vector<bool> holding = holding_tools(field, organ);
   const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));

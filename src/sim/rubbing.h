@@ -38,7 +38,7 @@ FrictionLoad friction_load(const Field& field, const Organ& organ, const std::ve
 /// field.tools stand. Limits change by `share` (1: wholly) of what their normal forces ask for. Returns the
 /// change asked for, as friction_tolerance judges it.
 double renew_friction(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                      const VecX& before, double share, Surroundings& around);
+                      const VecX& before, double share, ContactLoads& around);
 
 /// Keeps a new equilibrium's rubbing points, anchors slid along where they slipped.
 void keep_friction(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,

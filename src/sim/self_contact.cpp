@@ -20,7 +20,7 @@ constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 
 
 /// Bound on how much any two skin points that hang on `nodes` move against each other when the nodes move by `dx`, m:
 /// what the coarse nodes' motions differ by, and the details' of each level.
-double relative_motion(const VirtualStructure& body, const VecX& dx, const std::vector<int>& nodes) {
+double relative_motion(const ShellBody& body, const VecX& dx, const std::vector<int>& nodes) {
   Eigen::AlignedBox3d coarse;
   std::vector<double> of_level(body.levels_used() + 1, 0.0);
   for (int node : nodes) {
@@ -37,7 +37,7 @@ double relative_motion(const VirtualStructure& body, const VecX& dx, const std::
   return sum;
 }
 
-std::vector<int> all_nodes(const VirtualStructure& body) {
+std::vector<int> all_nodes(const ShellBody& body) {
   std::vector<int> all(body.nodes());
   std::iota(all.begin(), all.end(), 0);
   return all;
@@ -45,7 +45,7 @@ std::vector<int> all_nodes(const VirtualStructure& body) {
 
 /// Bound on how much any two skin points have come nearer between two states, m: what their motions differ by but for
 /// a turn of the whole, which changes no distance.
-double approach_between(const VirtualStructure& body, const VecX& before, const VecX& now) {
+double approach_between(const ShellBody& body, const VecX& before, const VecX& now) {
   const auto coarse = [&](const VecX& x) {
     return Eigen::Map<const Eigen::Matrix3Xd>(x.data(), 3, body.coarse_nodes());
   };
@@ -63,24 +63,25 @@ std::array<Vec3, 3> corners_of(const Triangle& t, const std::vector<Vec3>& point
 double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>& at,
               const std::vector<Vec3>& motion, double keep, double share) {
   const Triangle& t = net.triangles[pair.triangle];
-  const Vec3 p = at[pair.row], q = at[t[0]];
+  const Vec3 p = at[pair.skin_point], q = at[t[0]];
   const double triangle = std::max((at[t[1]] - q).norm(), (at[t[2]] - q).norm());
   std::array<Vec3, 3> motions = corners_of(t, motion);
   double longest = 0;
-  for (Vec3& m : motions) longest = std::max(longest, (m - motion[pair.row]).squaredNorm());
+  for (Vec3& m : motions) longest = std::max(longest, (m - motion[pair.skin_point]).squaredNorm());
   if (share * std::sqrt(longest) < (1.0 - keep) * ((p - q).norm() - triangle)) return share;
   for (Vec3& m : motions) m *= share;
-  return share * calot::safe_share(at[pair.row], share * motion[pair.row], corners_of(t, at), motions, keep);
+  return share * calot::safe_share(at[pair.skin_point], share * motion[pair.skin_point], corners_of(t, at),
+                                   motions, keep);
 }
 
 }  // namespace
 
-const SkinNet& SelfContact::net(const VirtualStructure& body) {
+const SkinNet& SelfContact::net(const ShellBody& body) {
   if (!net_) net_.emplace(body);
   return *net_;
 }
 
-void SelfContact::refresh_groups(const VirtualStructure& body, const VecX& x, double need) {
+void SelfContact::refresh_groups(const ShellBody& body, const VecX& x, double need) {
   // A group is near by its triangles' corners: these come nearer by what moves, and edges lengthen by that.
   constexpr double by_motion = 1.6;
   if (groups_known_ && groups_x_.size() == x.size() && groups_details_ == body.details() &&
@@ -114,7 +115,7 @@ void SelfContact::refresh_groups(const VirtualStructure& body, const VecX& x, do
   pairs_known_ = false;
 }
 
-double SelfContact::refresh(const VirtualStructure& body, const VecX& x, double need) {
+double SelfContact::refresh(const ShellBody& body, const VecX& x, double need) {
   if (!active || !x.allFinite()) {
     near_.clear();
     groups_known_ = pairs_known_ = false;
@@ -140,21 +141,21 @@ double SelfContact::refresh(const VirtualStructure& body, const VecX& x, double 
   return 0;
 }
 
-void SelfContact::look_up(const VirtualStructure& body, const VecX& x, std::vector<Vec3>& points) const {
+void SelfContact::look_up(const ShellBody& body, const VecX& x, std::vector<Vec3>& points) const {
   points.resize(body.skin_rest().size());
   for (int row : rows_) points[row] = body.skin_point(row, x);
 }
 
-std::vector<SelfTouch> SelfContact::touching(const VirtualStructure& body, const VecX& x) {
+std::vector<SelfTouch> SelfContact::touching(const ShellBody& body, const VecX& x) {
   const double near = self_barrier.range + refresh(body, x, self_barrier.range);
   std::vector<SelfTouch> out;
   if (near_.empty() || nearest_ >= near) return out;
   look_up(body, x, at_);
   std::vector<Triangle> faces;
   for (std::size_t first = 0, last = 0; first < near_.size(); first = last) {
-    const int row = near_[first].row;
+    const int row = near_[first].skin_point;
     faces.clear();
-    for (; last < near_.size() && near_[last].row == row; ++last) {
+    for (; last < near_.size() && near_[last].skin_point == row; ++last) {
       if (near_[last].distance >= near) continue;
       const Triangle& t = net_->triangles[near_[last].triangle];
       if (nearest_point(at_[row], corners_of(t, at_)).distance < self_barrier.range) faces.push_back(t);
@@ -171,30 +172,30 @@ std::vector<SelfTouch> SelfContact::touching(const VirtualStructure& body, const
   return out;
 }
 
-double SelfContact::value(const VirtualStructure& body, const VecX& x) {
+double SelfContact::value(const ShellBody& body, const VecX& x) {
   double sum = 0;
   for (const SelfTouch& touch : touching(body, x))
     sum += touch.area * self_barrier.sample(touch.sample.distance).energy;
   return sum;
 }
 
-void SelfContact::add_gradient(const VirtualStructure& body, const VecX& x, VecX& gradient) {
+void SelfContact::add_gradient(const ShellBody& body, const VecX& x, VecX& gradient) {
   const StencilTable& skin = body.skin().stencils;
   for (const SelfTouch& touch : touching(body, x)) {
     const Vec3 force =
         touch.area * self_barrier.sample(touch.sample.distance).derivative * touch.sample.normal;
-    spread(skin, touch.row, force, gradient);
+    spread(skin, touch.skin_point, force, gradient);
     for (int k = 0; k < touch.part.corners; ++k)
       spread(skin, touch.part.corner[k], touch.sample.weight[k + 1] * force, gradient);
   }
 }
 
-void SelfContact::add_hessian(const VirtualStructure& body, const VecX& x, BlockMatrix& matrix) {
+void SelfContact::add_hessian(const ShellBody& body, const VecX& x, BlockMatrix& matrix) {
   lacking_ = false;
   for (const SelfTouch& touch : touching(body, x)) {
     const BarrierSample b = self_barrier.sample(touch.sample.distance);
     std::array<Vec3, 3> corners;
-    std::array<int, 4> rows{touch.row, -1, -1, -1};
+    std::array<int, 4> rows{touch.skin_point, -1, -1, -1};
     Eigen::Matrix<double, 12, 1> slope;
     for (int k = 0; k < 4; ++k) slope.segment<3>(3 * k) = touch.sample.weight[k] * touch.sample.normal;
     for (int k = 0; k < touch.part.corners; ++k) {
@@ -210,7 +211,7 @@ void SelfContact::add_hessian(const VirtualStructure& body, const VecX& x, Block
   }
 }
 
-double SelfContact::safe_share(const VirtualStructure& body, const VecX& x, const VecX& step, double keep,
+double SelfContact::safe_share(const ShellBody& body, const VecX& x, const VecX& step, double keep,
                                double share) {
   if (!active || !step.allFinite() || !x.allFinite()) return share;
   // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
@@ -225,7 +226,7 @@ double SelfContact::safe_share(const VirtualStructure& body, const VecX& x, cons
   return share;
 }
 
-double SelfContact::safe_part(const VirtualStructure& body, const VecX& x, const VecX& step, double keep) {
+double SelfContact::safe_part(const ShellBody& body, const VecX& x, const VecX& step, double keep) {
   const double lost = 1.0 - keep;
   const double anywhere = relative_motion(body, step, all_nodes(body)) / lost;
   refresh_groups(body, x, anywhere);
@@ -248,17 +249,18 @@ double SelfContact::safe_part(const VirtualStructure& body, const VecX& x, const
   return share;
 }
 
-bool SelfContact::any_nearer(const VirtualStructure& body, const VecX& x, double distance) {
+bool SelfContact::any_nearer(const ShellBody& body, const VecX& x, double distance) {
   const double near = distance + refresh(body, x, distance);
   if (near_.empty() || nearest_ >= near) return false;
   look_up(body, x, at_);
   return std::any_of(near_.begin(), near_.end(), [&](const SelfPair& pair) {
     return pair.distance < near &&
-           nearest_point(at_[pair.row], corners_of(net_->triangles[pair.triangle], at_)).distance < distance;
+           nearest_point(at_[pair.skin_point], corners_of(net_->triangles[pair.triangle], at_)).distance <
+               distance;
   });
 }
 
-void SelfContact::prepare(const VirtualStructure& body, const VecX& x, NewtonWorkspace& work) {
+void SelfContact::prepare(const ShellBody& body, const VecX& x, NewtonWorkspace& work) {
   const BlockMatrix& own = body.pattern();
   const bool widened = work.matrix.entries().size() != own.entries().size();
   if (!any_nearer(body, x, widened ? uncouple_above : couple_below)) {
@@ -269,7 +271,7 @@ void SelfContact::prepare(const VirtualStructure& body, const VecX& x, NewtonWor
   for (const SelfPair& pair : near_) {
     const Triangle& t = net_->triangles[pair.triangle];
     const auto face_of = [&](int row) { return body.skin().at[row].face; };
-    groups.push_back({face_of(pair.row), face_of(t[0]), face_of(t[1]), face_of(t[2])});
+    groups.push_back({face_of(pair.skin_point), face_of(t[0]), face_of(t[1]), face_of(t[2])});
   }
   std::sort(groups.begin(), groups.end());
   groups.erase(std::unique(groups.begin(), groups.end()), groups.end());

@@ -23,7 +23,7 @@ inline constexpr Barrier self_barrier{0.4e-3, 20e3};
 
 /// A skin point and a part of the skin that press on each other.
 struct SelfTouch {
-  int row = 0;
+  int skin_point = 0;
   SurfacePart part;
   FlatSample sample;
   double area = 0;  ///< m^2 that it counts for; negative where the part counts so
@@ -37,35 +37,35 @@ class SelfContact {
   bool active = true;
 
   /// All that touches at x, ordered by row, then part.
-  std::vector<SelfTouch> touching(const VirtualStructure& body, const VecX& x);
+  std::vector<SelfTouch> touching(const ShellBody& body, const VecX& x);
   /// Energy (J) and derivatives.
-  double value(const VirtualStructure& body, const VecX& x);
-  void add_gradient(const VirtualStructure& body, const VecX& x, VecX& gradient);
+  double value(const ShellBody& body, const VecX& x);
+  void add_gradient(const ShellBody& body, const VecX& x, VecX& gradient);
   /// Couplings that the matrix' pattern does not hold are left out: Newton then converges more slowly.
-  void add_hessian(const VirtualStructure& body, const VecX& x, BlockMatrix& matrix);
+  void add_hessian(const ShellBody& body, const VecX& x, BlockMatrix& matrix);
   /// Whether the last add_hessian left some out.
   bool lacking() const { return lacking_; }
 
   /// The largest part of `share` of the step on which no point and triangle lose more than 1 - keep of their
   /// distance; of a long step, gone in parts, in none of these.
-  double safe_share(const VirtualStructure& body, const VecX& x, const VecX& step, double keep, double share);
+  double safe_share(const ShellBody& body, const VecX& x, const VecX& step, double keep, double share);
   /// Gives the workspace a pattern that holds the couplings of what is near at x, and the body's own once that has
   /// moved apart.
-  void prepare(const VirtualStructure& body, const VecX& x, NewtonWorkspace& work);
+  void prepare(const ShellBody& body, const VecX& x, NewtonWorkspace& work);
 
  private:
   /// Sees to it that near_ holds all pairs nearer than `need` at x, at most close_reach. Returns how much of their
   /// distance its pairs may have lost since it was gathered, m.
-  double refresh(const VirtualStructure& body, const VecX& x, double need);
+  double refresh(const ShellBody& body, const VecX& x, double need);
   /// safe_share() of a step no longer than groups are remembered.
-  double safe_part(const VirtualStructure& body, const VecX& x, const VecX& step, double keep);
+  double safe_part(const ShellBody& body, const VecX& x, const VecX& step, double keep);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
-  void refresh_groups(const VirtualStructure& body, const VecX& x, double need);
+  void refresh_groups(const ShellBody& body, const VecX& x, double need);
   /// Whether walls are nearer than this (at most close_reach) at x.
-  bool any_nearer(const VirtualStructure& body, const VecX& x, double distance);
+  bool any_nearer(const ShellBody& body, const VecX& x, double distance);
   /// Places (at x) or motions of the skin points in rows_; the others mean nothing.
-  void look_up(const VirtualStructure& body, const VecX& x, std::vector<Vec3>& points) const;
-  const SkinNet& net(const VirtualStructure& body);
+  void look_up(const ShellBody& body, const VecX& x, std::vector<Vec3>& points) const;
+  const SkinNet& net(const ShellBody& body);
 
   std::optional<SkinNet> net_;
   // Groups of points that were near at groups_x_, their points and those of the triangles around them, and all nodes

@@ -159,7 +159,7 @@ class Boxes {
 
 }  // namespace
 
-SkinNet::SkinNet(const VirtualStructure& body)
+SkinNet::SkinNet(const ShellBody& body)
     : rest(body.skin_rest()),
       triangles(body.skin().triangles),
       begin(rest.size() + 1, 0),

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "sim/virtual_structure.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -24,7 +24,7 @@ struct SkinNet {
   std::vector<Node> nodes;
   std::vector<int> order;
 
-  explicit SkinNet(const VirtualStructure& body);
+  explicit SkinNet(const ShellBody& body);
   /// Whether the point is so near to the triangle at rest (to one of its corners: 6 mm, or twice the widest gap of
   /// the skin's points if that is more) that they are one piece of wall. These do not meet: the wall's own stiffness
   /// keeps them in order, they would press on each other at rest, and as the barrier's range is a small part of that
@@ -46,7 +46,7 @@ struct SkinMotion {
 
 /// A skin point and a triangle of the same skin that are no neighbours.
 struct SelfPair {
-  int row = 0, triangle = 0;
+  int skin_point = 0, triangle = 0;
   double distance = 0;  ///< m, when it was gathered; 0 of those on a way
 };
 
@@ -54,7 +54,7 @@ using GroupPair = std::pair<int, int>;  ///< two of SkinNet::nodes without child
 
 /// Groups with points that are nearer than `reach` (m) to a triangle around a point of the other, but for neighbours.
 std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach);
-/// All pairs looked for among these groups, and some more; ordered by row, then triangle. Only points of the groups and
+/// All pairs looked for among these groups, and some more; ordered by skin point, then triangle. Only points of the groups and
 /// of the triangles around them are read.
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
                                  std::span<const GroupPair> groups);

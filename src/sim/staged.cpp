@@ -23,14 +23,14 @@ double Stage::constraint(const VecX& x, VecX& gradient) const {
   return value;
 }
 
-NewtonResult solve_in_stages(const VirtualStructure& body, const StagedProblem& problem,
+NewtonResult solve_in_stages(const ShellBody& body, const StagedProblem& problem,
                              const NewtonSettings& settings, NewtonWorkspace& work, BodyState& state) {
   work.factored = false;  // each stage has a matrix of its own
   NewtonResult result = solve_equilibrium(Stage(*problem(state, false), 0, body.coarse_nodes()), settings,
-                                          work, state.x, state.multiplier);
+                                          work, state.x, state.datum_pressure);
   work.factored = false;
   if (!result.converged()) return result;
-  double pressure = state.multiplier;
+  double pressure = state.datum_pressure;
   result.add(solve_equilibrium(Stage(*problem(state, true), body.coarse_nodes(), body.nodes()), settings,
                                work, state.x, pressure));
   work.factored = false;

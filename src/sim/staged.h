@@ -39,7 +39,7 @@ using StagedProblem =
 
 /// Both stages once. The volume is the coarse stage's, whose pressure the second one takes over; what is left out
 /// of balance is what the extensions pass back. The workspace is left without a factor.
-NewtonResult solve_in_stages(const VirtualStructure& body, const StagedProblem& problem,
+NewtonResult solve_in_stages(const ShellBody& body, const StagedProblem& problem,
                              const NewtonSettings& settings, NewtonWorkspace& work, BodyState& state);
 
 }  // namespace calot

@@ -14,7 +14,7 @@ namespace {
 
 /// A skin point near a shape, or held by it (at no distance, m).
 struct NearPoint {
-  int row = 0, shape = 0;
+  int skin_point = 0, shape = 0;
   double distance = 0;
 };
 
@@ -23,7 +23,7 @@ std::vector<NearPoint> points_near(int shape, const Organ& organ, const std::vec
                                   [&](const Extension& e) { return e.shape == shape; });
   std::vector<NearPoint> out;
   for (const GripPoint& grip : organ.grips)
-    if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.row, shape, 0});
+    if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.skin_point, shape, 0});
   if (!out.empty()) return out;  // what is held does not slide: it alone says where
   double nearest = std::numeric_limits<double>::infinity();
   for (const NearPoint& point : near) {
@@ -36,7 +36,7 @@ std::vector<NearPoint> points_near(int shape, const Organ& organ, const std::vec
 }
 
 /// Shortest coarse edge near a skin point at rest, m.
-double coarse_edge(const VirtualStructure& body, int row) {
+double coarse_edge(const ShellBody& body, int row) {
   double edge = body.size();
   for (int node : body.control().triangles[body.skin().at[row].face])
     edge = std::min(edge, body.edge_lengths()[node]);
@@ -45,7 +45,7 @@ double coarse_edge(const VirtualStructure& body, int row) {
 
 /// Middle, at rest, of the points about the nearest one: weighed by how near they are, so that it moves evenly as
 /// the nearest point jumps from one to the next.
-int middle_of(const VirtualStructure& body, const std::vector<NearPoint>& points, double radius) {
+int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, double radius) {
   constexpr double depth = 1e-3;  // m beyond the nearest
   const auto lead =
       std::min_element(points.begin(), points.end(),
@@ -54,25 +54,25 @@ int middle_of(const VirtualStructure& body, const std::vector<NearPoint>& points
   double total = 0;
   const auto counts = [&](const NearPoint& p) {
     return p.distance < lead->distance + depth &&
-           (body.skin_rest()[p.row] - body.skin_rest()[lead->row]).norm() < radius;
+           (body.skin_rest()[p.skin_point] - body.skin_rest()[lead->skin_point]).norm() < radius;
   };
   for (const NearPoint& p : points) {
     if (!counts(p)) continue;
     const double share = 1 - (p.distance - lead->distance) / depth,
-                 weight = share * share * body.skin_areas()[p.row];
-    sum += weight * body.skin_rest()[p.row];
+                 weight = share * share * body.skin_areas()[p.skin_point];
+    sum += weight * body.skin_rest()[p.skin_point];
     total += weight;
   }
   const Vec3 middle = sum / total;
-  int best = lead->row;
+  int best = lead->skin_point;
   for (const NearPoint& p : points)
-    if (counts(p) &&
-        (body.skin_rest()[p.row] - middle).squaredNorm() < (body.skin_rest()[best] - middle).squaredNorm())
-      best = p.row;
+    if (counts(p) && (body.skin_rest()[p.skin_point] - middle).squaredNorm() <
+                         (body.skin_rest()[best] - middle).squaredNorm())
+      best = p.skin_point;
   return best;
 }
 
-bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::vector<ContactPair>& near) {
+bool clear_of_tools(const Organ& organ, const ContactLoads& field, const std::vector<ContactPair>& near) {
   bool clear = true;
   for_touching(organ.body, organ.state.x, field, near, std::numeric_limits<double>::infinity(),
                [&](int, int, const Vec3&, const DistanceSlope& d) { clear &= d.distance > -contact_guard; });
@@ -80,7 +80,7 @@ bool clear_of_tools(const Organ& organ, const Surroundings& field, const std::ve
 }
 
 /// Skin points of the pairs that are no further from their shapes than an extension is kept.
-std::vector<NearPoint> corners_near(const Organ& organ, const Surroundings& field,
+std::vector<NearPoint> corners_near(const Organ& organ, const ContactLoads& field,
                                     const std::vector<ContactPair>& pairs) {
   std::vector<int> seen(organ.body.skin_rest().size(), -1);  // the last shape that each was measured from
   std::vector<NearPoint> out;
@@ -95,7 +95,7 @@ std::vector<NearPoint> corners_near(const Organ& organ, const Surroundings& fiel
 }
 
 /// Whether no wall passes through another as the details that are left out go. Those that are new move nothing yet.
-bool clear_of_itself(Organ& organ, const VirtualStructure& before, const VecX& x) {
+bool clear_of_itself(Organ& organ, const ShellBody& before, const VecX& x) {
   const VecX going = organ.body.coordinates_in(before, organ.state.x) - x;
   return organ.search.own.safe_share(before, x, going, contact_keep, 1.0) == 1.0;
 }
@@ -111,13 +111,14 @@ std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
 std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
                                          const std::vector<NearPoint>& near) {
   constexpr int most_along_a_part = 2;
-  const VirtualStructure& body = organ.body;
+  const ShellBody& body = organ.body;
   std::vector<Extension> out;
-  if (field.viewed && &field.organs[field.viewed->organ] == &organ) out.push_back({-1, field.viewed->row});
+  if (field.viewed && &field.organs[field.viewed->organ] == &organ)
+    out.push_back({-1, field.viewed->skin_point});
   for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
     std::vector<NearPoint> points = points_near(shape, organ, near);
     for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {
-      const double edge = coarse_edge(body, points.front().row);
+      const double edge = coarse_edge(body, points.front().skin_point);
       Extension next{shape, middle_of(body, points, 0.5 * edge)};
       const double drift = 0.25 * std::ldexp(edge, -body.levels().levels());
       for (const Extension& present : organ.extensions)
@@ -128,7 +129,7 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
       // Another one only where the part touches too far away to be served.
       std::erase_if(points, [&](const NearPoint& p) {
         return p.distance > field.barrier.range ||
-               (body.skin_rest()[p.row] - body.skin_rest()[next.centre]).norm() < 1.5 * edge;
+               (body.skin_rest()[p.skin_point] - body.skin_rest()[next.centre]).norm() < 1.5 * edge;
       });
     }
   }
@@ -137,7 +138,7 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
 
 }  // namespace
 
-std::vector<int> details_around(const VirtualStructure& body, const std::vector<Extension>& extensions) {
+std::vector<int> details_around(const ShellBody& body, const std::vector<Extension>& extensions) {
   std::vector<int> out;
   std::vector<std::pair<double, int>> by_distance;
   for (const Extension& extension : extensions) {
@@ -160,7 +161,7 @@ std::vector<int> details_around(const VirtualStructure& body, const std::vector<
 void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   if (organ.body.levels().levels() == 0) return;
   const std::vector<InstrumentPose> poses = present_poses(field);
-  const Surroundings now = surroundings(field, organ, poses);
+  const ContactLoads now = contact_loads(field, organ, poses);
   std::vector<ContactPair> near;
   std::vector<int> wanted, details;
   {
@@ -180,7 +181,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   }
   organ.refused_details = details;
   const Timed timed(statistics.extension_s);
-  Result<VirtualStructure> next = organ.body.with_details(std::move(details));
+  Result<ShellBody> next = organ.body.with_details(std::move(details));
   if (!next) {
     ++statistics.extensions_refused;
     return;

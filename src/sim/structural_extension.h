@@ -17,7 +17,7 @@ inline constexpr int details_per_level = 12;
 inline constexpr double extension_ahead = 3.0e-3, extension_behind = 5.0e-3;
 
 /// Details of every level around the centres: odd nodes, increasing.
-std::vector<int> details_around(const VirtualStructure& body, const std::vector<Extension>& extensions);
+std::vector<int> details_around(const ShellBody& body, const std::vector<Extension>& extensions);
 
 /// Lays, moves and takes away the organ's extensions for the tools where they stand, and brings it to rest again: what
 /// is new begins held and what is left out goes when it has faded (detail_fading.h).

@@ -26,7 +26,7 @@ std::map<std::pair<int, int>, std::pair<FacePoint, FacePoint>> edges_of(const Su
 
 }  // namespace
 
-StructureDrawing draw_structure(const VirtualStructure& body, const VecX& x) {
+StructureDrawing draw_structure(const ShellBody& body, const VecX& x) {
   constexpr int parts = 8;  // of an edge
   const SurfaceLevels& levels = body.levels();
   std::vector<FacePoint> at;

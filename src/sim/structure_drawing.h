@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/virtual_structure.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -17,6 +17,6 @@ struct StructureDrawing {
   std::vector<Vec3> coarse_nodes, details;  ///< m, where the nodes' functions are centred
 };
 
-StructureDrawing draw_structure(const VirtualStructure& body, const VecX& x);
+StructureDrawing draw_structure(const ShellBody& body, const VecX& x);
 
 }  // namespace calot

@@ -63,7 +63,7 @@ std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vecto
 
 }  // namespace
 
-BodyMass::BodyMass(const VirtualStructure& body, const VecX& x, double wall_thickness, double bile_density)
+BodyMass::BodyMass(const ShellBody& body, const VecX& x, double wall_thickness, double bile_density)
     : body_(body), bile_density_(bile_density) {
   for (double area : body.shell().point_areas()) {
     row_mass_.push_back(area * wall_thickness * wall_density);
@@ -177,13 +177,13 @@ Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mas
 
 }  // namespace
 
-Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
-                                const BodyState& state, const BodyMass& mass) {
+Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads, const BodyState& state,
+                                const BodyMass& mass) {
   NewtonWorkspace work(body.pattern());
   SelfContact own;
   own.prepare(body, state.x, work);
-  const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state, false, &own);
-  const NewtonResult factored = factorise_tangent(problem, work, state.x, state.multiplier, true);
+  const BodyProblem problem(body, loads, gather_pairs(body, state.x, loads, 0.0), state, false, &own);
+  const NewtonResult factored = factorise_tangent(problem, work, state.x, state.datum_pressure, true);
   if (!factored.converged())
     return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
                 "hold the organ, or give it fewer nodes");
@@ -193,7 +193,7 @@ Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings
   };
   std::optional<KeptVolumeFactor> kept;
   if (work.shifted) {
-    problem.hessian(state.x, state.multiplier, work.matrix);
+    problem.hessian(state.x, state.datum_pressure, work.matrix);
     if (problem.constrained()) kept.emplace(work.matrix, work.constraint_gradient);
     if (!kept || !kept->stable())
       return fail(FailureKind::simulation,

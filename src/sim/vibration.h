@@ -23,13 +23,13 @@ inline constexpr double wall_density = 1050;
 class BodyMass {
  public:
   /// `bile_density` in kg/m^3; the wall has wall_density.
-  BodyMass(const VirtualStructure& body, const VecX& x, double wall_thickness, double bile_density);
+  BodyMass(const ShellBody& body, const VecX& x, double wall_thickness, double bile_density);
   /// Mass times a nodal motion: N at 1 m/s^2, 3 a node.
   VecX multiply(const VecX& motion) const;
   double wall() const { return wall_; }  ///< kg
 
  private:
-  const VirtualStructure& body_;
+  const ShellBody& body_;
   std::vector<double> row_mass_;  ///< kg, of each quadrature point
   double wall_ = 0, bile_density_ = 0;
   Eigen::MatrixXd flow_;  ///< column k: h_k integrated with each node's normal motion, m^3 or more
@@ -39,7 +39,7 @@ class BodyMass {
 /// Lowest natural frequency, Hz, of the organ in `field` at its present state: the smallest w of K v = w^2 M v among
 /// motions v that keep the volume to first order. Fails (simulation) where K is not positive definite on these: the
 /// state is not stable.
-Result<double> lowest_frequency(const VirtualStructure& body, const Surroundings& field,
-                                const BodyState& state, const BodyMass& mass);
+Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads, const BodyState& state,
+                                const BodyMass& mass);
 
 }  // namespace calot

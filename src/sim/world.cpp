@@ -65,7 +65,7 @@ void add_point(Hash& hash, const Vec3& p) { hash.add(std::span<const double>(p.d
 void add_body_state(Hash& hash, const Organ& organ) {
   const BodyState& state = organ.state;
   add_vector(hash, state.x);
-  hash.add(state.multiplier);
+  hash.add(state.datum_pressure);
   hash.add(state.volume);
   for (int detail : organ.body.details()) hash.add(detail);
   for (const DetailShare& detail : state.shares) {
@@ -86,7 +86,7 @@ void add_holds(Hash& hash, const Organ& organ) {
   for (const GripPoint& grip : organ.grips) {
     hash.add(grip.instrument);
     hash.add(grip.jaw);
-    hash.add(grip.row);
+    hash.add(grip.skin_point);
     add_point(hash, grip.local);
     hash.add(grip.stiffness);
   }
@@ -153,7 +153,7 @@ InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad&
 OrganState World::Impl::organ_state(const Organ& organ) const {
   OrganState state;
   const VecX& x = organ.state.x;
-  state.pressure = organ.body.bile()->pressure_at_top(x, organ.state.multiplier);
+  state.pressure = organ.body.bile()->pressure_at_top(x, organ.state.datum_pressure);
   state.volume = organ.body.volume(x);
   state.energy = organ.body.shell().value(x);
   state.max_stretch = organ.body.shell().max_stretch(x);
@@ -238,7 +238,7 @@ Result<World> World::create(const SceneDefinition& scene) {
     impl->field.support = Plane{support->point, support->normal.normalized()};
     impl->field.support_friction = support->friction;
   }
-  Surroundings still;
+  ContactLoads still;
   if (impl->field.support) still.shapes.push_back(contact_shape(*impl->field.support));
   for (const OrganDefinition& definition : scene.anatomy.organs) {
     Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance,
@@ -261,8 +261,8 @@ Result<World> World::create(const SceneDefinition& scene) {
     world.impl_->moulds.emplace_back();
   }
   if (scene.laparoscope.distance < scene.solver.extension_view) {
-    const auto [organ, row] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
-    if (row >= 0) world.impl_->field.viewed = ViewedPlace{organ, row};
+    const auto [organ, skin_point] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
+    if (skin_point >= 0) world.impl_->field.viewed = ViewedPlace{organ, skin_point};
     SolveStatistics statistics;
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
@@ -311,16 +311,16 @@ Vec3 World::port_position(const std::string& port) const {
 }
 
 Vec3 World::landmark(const std::string& name) const {
-  const auto [organ, row] = find_landmark(impl_->field.organs, name);
-  if (row < 0) return Vec3::Zero();
+  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
+  if (skin_point < 0) return Vec3::Zero();
   const Organ& at = impl_->field.organs[organ];
-  return at.body.skin_point(row, at.state.x);
+  return at.body.skin_point(skin_point, at.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
-  const auto [organ, row] = find_landmark(impl_->field.organs, name);
-  if (row < 0) return Vec3::UnitZ();
-  return skin_normals(organ)[row];
+  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
+  if (skin_point < 0) return Vec3::UnitZ();
+  return skin_normals(organ)[skin_point];
 }
 
 const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body.skin(); }
@@ -349,7 +349,7 @@ Result<double> World::lowest_frequency(int index) const {
   const Organ& organ = impl_->field.organs[index];
   const BodyMass mass(organ.body, organ.state.x, organ.definition.wall.thickness,
                       organ.definition.bile.density);
-  return calot::lowest_frequency(organ.body, surroundings(impl_->field, organ, present_poses(impl_->field)),
+  return calot::lowest_frequency(organ.body, contact_loads(impl_->field, organ, present_poses(impl_->field)),
                                  organ.state, mass);
 }
 

@@ -1,8 +1,8 @@
 #include "view/build_scene.h"
 
+#include "anatomy/organ_frame.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
-#include "view/organ_frame.h"
 #include "view/structure_mesh.h"
 #include "view/vessels.h"
 

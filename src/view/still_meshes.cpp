@@ -1,7 +1,7 @@
 #include <utility>
 
+#include "anatomy/organ_frame.h"
 #include "view/build_scene.h"
-#include "view/organ_frame.h"
 #include "view/surroundings.h"
 
 namespace calot {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "view/organ_frame.h"
+#include "anatomy/organ_frame.h"
 #include "view/surfaces.h"
 
 namespace calot {

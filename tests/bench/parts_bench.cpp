@@ -28,13 +28,13 @@ void bile_hessian(benchmark::State& state) {
   Organ organ = gallbladder(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     organ.work.matrix.set_zero();
-    organ.body.bile()->add_hessian(organ.state.x, organ.state.multiplier, organ.work.matrix);
+    organ.body.bile()->add_hessian(organ.state.x, organ.state.datum_pressure, organ.work.matrix);
   }
 }
 
 void energy_and_gradient(benchmark::State& state) {
   const Organ organ = gallbladder(static_cast<int>(state.range(0)));
-  const Surroundings nothing;
+  const ContactLoads nothing;
   const BodyProblem problem(organ.body, nothing, {}, organ.state);
   VecX gradient(organ.state.x.size());
   double largest = 0;
@@ -49,24 +49,24 @@ void contact_search(benchmark::State& state) {
   const Organ organ = gallbladder(static_cast<int>(state.range(0)));
   const Vec3 fundus = organ.body.skin_positions(organ.state.x)[organ.landmarks.at("fundus")];
   const Vec3 trocar = fundus + Vec3(20e-3, -20e-3, 100e-3);
-  Surroundings field;
+  ContactLoads field;
   field.shapes = instrument_shapes(trocar, pose_reaching(trocar, fundus, 0, 0), {});
   for (auto _ : state) benchmark::DoNotOptimize(gather_pairs(organ.body, organ.state.x, field, 2e-3));
 }
 
 void factorisation(benchmark::State& state) {
   Organ organ = gallbladder(static_cast<int>(state.range(0)));
-  const Surroundings nothing;
+  const ContactLoads nothing;
   const BodyProblem problem(organ.body, nothing, {}, organ.state);
-  problem.hessian(organ.state.x, organ.state.multiplier, organ.work.matrix);
+  problem.hessian(organ.state.x, organ.state.datum_pressure, organ.work.matrix);
   for (auto _ : state) benchmark::DoNotOptimize(organ.work.factor.factorise(organ.work.matrix));
 }
 
 void solve(benchmark::State& state) {
   Organ organ = gallbladder(static_cast<int>(state.range(0)));
-  const Surroundings nothing;
+  const ContactLoads nothing;
   const BodyProblem problem(organ.body, nothing, {}, organ.state);
-  problem.hessian(organ.state.x, organ.state.multiplier, organ.work.matrix);
+  problem.hessian(organ.state.x, organ.state.datum_pressure, organ.work.matrix);
   if (organ.work.factor.factorise(organ.work.matrix) != FactorStatus::ok)
     return state.SkipWithError("not definite");
   const VecX right = VecX::Ones(organ.state.x.size());
@@ -77,10 +77,10 @@ void solve(benchmark::State& state) {
 void laying_an_extension(benchmark::State& state) {
   const Organ organ = gallbladder(static_cast<int>(state.range(0)), 1);
   const int fundus = organ.landmarks.at("fundus"), neck = organ.landmarks.at("neck");
-  const VirtualStructure one = organ.body.with_details(details_around(organ.body, {{0, fundus}})).value();
+  const ShellBody one = organ.body.with_details(details_around(organ.body, {{0, fundus}})).value();
   const std::vector<int> both = details_around(organ.body, {{0, fundus}, {1, neck}});
   for (auto _ : state) {
-    const VirtualStructure two = one.with_details(both).value();
+    const ShellBody two = one.with_details(both).value();
     benchmark::DoNotOptimize(NewtonWorkspace(two.pattern(), two.coarse_nodes()));
   }
 }

@@ -85,7 +85,7 @@ BENCHMARK(converged_step)->Apply([](auto* bench) { steps(bench, 946, 4); });
 
 struct Tangent {
   Organ organ;
-  Surroundings nothing;
+  ContactLoads nothing;
   explicit Tangent(int nodes) : organ(make_organ(ball(nodes), {}, Vec3::UnitZ(), 1e-6).value()) {}
   BodyProblem problem() const { return {organ.body, nothing, {}, organ.state}; }
 };
@@ -93,14 +93,14 @@ struct Tangent {
 void assembly(benchmark::State& state) {
   Tangent t(static_cast<int>(state.range(0)));
   const BodyProblem problem = t.problem();
-  for (auto _ : state) problem.hessian(t.organ.state.x, t.organ.state.multiplier, t.organ.work.matrix);
+  for (auto _ : state) problem.hessian(t.organ.state.x, t.organ.state.datum_pressure, t.organ.work.matrix);
 }
 BENCHMARK(assembly)->ArgName("nodes")->Arg(61)->Arg(238)->Arg(946)->Unit(benchmark::kMillisecond);
 
 /// One factorisation and solve of the same matrix, dense (1) or sparse (0): what a step is measured against.
 void factor_and_solve(benchmark::State& state) {
   Tangent t(static_cast<int>(state.range(0)));
-  t.problem().hessian(t.organ.state.x, t.organ.state.multiplier, t.organ.work.matrix);
+  t.problem().hessian(t.organ.state.x, t.organ.state.datum_pressure, t.organ.work.matrix);
   const FactorKind kind = state.range(1) == 1 ? FactorKind::dense : FactorKind::sparse;
   Cholesky factor(t.organ.work.matrix, t.organ.body.nodes(), kind);
   const VecX right = VecX::Ones(t.organ.state.x.size());

@@ -58,9 +58,9 @@ Content content(const Body& body, const VecX& x) {
   return out;
 }
 
-VecX load(const Bile& bile, const VecX& x, double multiplier) {
+VecX load(const Bile& bile, const VecX& x, double datum_pressure) {
   VecX f = VecX::Zero(x.size());
-  bile.add_load(x, multiplier, f);
+  bile.add_load(x, datum_pressure, f);
   return f;
 }
 VecX volume_gradient(const Bile& bile, const VecX& x) {
@@ -101,19 +101,21 @@ TEST(Bile, LoadAndVolumeGradientAreTheDerivativesOfTheirEnergies) {
   Rng rng(2);
   for (const Body& body : bodies()) {
     const VecX x = deformed(body, rng);
-    const double multiplier = 1500;
-    const auto energy = [&](const VecX& y) { return body.bile.value(y) - multiplier * body.bile.volume(y); };
+    const double datum_pressure = 1500;
+    const auto energy = [&](const VecX& y) {
+      return body.bile.value(y) - datum_pressure * body.bile.volume(y);
+    };
     const auto volume = [&](const VecX& y) { return body.bile.volume(y); };
     // Cubic and quartic polynomials of x: differences are wrong by (h / size)^2 = 1e-9 and by rounding.
     EXPECT_LT(
-        test::relative_error(load(body.bile, x, multiplier), test::difference_gradient(energy, x, 1e-6)),
+        test::relative_error(load(body.bile, x, datum_pressure), test::difference_gradient(energy, x, 1e-6)),
         1e-7);
     EXPECT_LT(test::relative_error(volume_gradient(body.bile, x), test::difference_gradient(volume, x, 1e-6)),
               1e-7);
     VecX both_load = VecX::Zero(x.size()), both_gradient = both_load;
-    EXPECT_NEAR(body.bile.add_load_and_volume_gradient(x, multiplier, both_load, both_gradient),
+    EXPECT_NEAR(body.bile.add_load_and_volume_gradient(x, datum_pressure, both_load, both_gradient),
                 body.bile.volume(x), 1e-13 * body.bile.volume(x));  // the same sum, rounded otherwise
-    EXPECT_EQ(both_load, load(body.bile, x, multiplier));
+    EXPECT_EQ(both_load, load(body.bile, x, datum_pressure));
     EXPECT_EQ(both_gradient, volume_gradient(body.bile, x));
   }
 }
@@ -122,11 +124,11 @@ TEST(Bile, HessianIsTheDerivativeOfTheLoadAndSymmetric) {
   Rng rng(3);
   for (Body& body : bodies()) {
     const VecX x = deformed(body, rng);
-    for (double multiplier : {0.0, 1500.0}) {
+    for (double datum_pressure : {0.0, 1500.0}) {
       body.matrix.set_zero();
-      body.bile.add_hessian(x, multiplier, body.matrix);
-      const Eigen::MatrixXd by_difference =
-          test::difference_hessian([&](const VecX& y) { return load(body.bile, y, multiplier); }, x, 1e-6);
+      body.bile.add_hessian(x, datum_pressure, body.matrix);
+      const Eigen::MatrixXd by_difference = test::difference_hessian(
+          [&](const VecX& y) { return load(body.bile, y, datum_pressure); }, x, 1e-6);
       EXPECT_LT(test::relative_error(test::dense(body.matrix), by_difference), 1e-7);
       const Eigen::MatrixXd kept = test::stored(body.matrix);
       EXPECT_GT(kept.norm(), 0);
@@ -143,10 +145,10 @@ TEST(Bile, NetLoadIsItsWeightAtTheCentreOfBuoyancy) {
   for (const Body& body : bodies()) {
     const VecX x = deformed(body, rng);
     const Content inside = content(body, x);
-    for (double multiplier : {0.0, 1600.0}) {
+    for (double datum_pressure : {0.0, 1600.0}) {
       // The gradient is minus the load on the wall: the liquid pulls down with its weight, whatever its
       // pressure.
-      const VecX f = -load(body.bile, x, multiplier);
+      const VecX f = -load(body.bile, x, datum_pressure);
       const double scale = weight * inside.volume;
       const double rounding = 1e-13 * (scale + 1600 * 4e-3);  // pressure times area is what cancels
       EXPECT_LT((test::net_force(f) + scale * up).norm(), rounding);
@@ -171,17 +173,17 @@ TEST(Bile, PressureGrowsWithDepthByTheSpecificWeight) {
     EXPECT_EQ(body.bile.specific_weight(), weight);
     const VecX x = deformed(body, rng);
     const std::vector<Vec3> skin = blend_all(body.surface.stencils, body.surface.stencils.value, x);
-    const double multiplier = 1200, top = body.bile.pressure_at_top(x, multiplier);
+    const double datum_pressure = 1200, top = body.bile.pressure_at_top(x, datum_pressure);
     double least = INFINITY;
     for (const Vec3& p : skin) {
-      const double deeper = body.bile.pressure_at(p - 7e-3 * up, multiplier);
-      const double aside = body.bile.pressure_at(p + up.unitOrthogonal() * 7e-3, multiplier);
-      const double pressure = body.bile.pressure_at(p, multiplier);
-      EXPECT_NEAR(deeper - pressure, weight * 7e-3, 1e-10 * multiplier);
-      EXPECT_NEAR(aside, pressure, 1e-10 * multiplier);
+      const double deeper = body.bile.pressure_at(p - 7e-3 * up, datum_pressure);
+      const double aside = body.bile.pressure_at(p + up.unitOrthogonal() * 7e-3, datum_pressure);
+      const double pressure = body.bile.pressure_at(p, datum_pressure);
+      EXPECT_NEAR(deeper - pressure, weight * 7e-3, 1e-10 * datum_pressure);
+      EXPECT_NEAR(aside, pressure, 1e-10 * datum_pressure);
       least = std::min(least, pressure);
     }
-    EXPECT_NEAR(top, least, 1e-12 * multiplier);
+    EXPECT_NEAR(top, least, 1e-12 * datum_pressure);
   }
 }
 
@@ -190,19 +192,19 @@ TEST(Bile, LoadIsThePressureOnEachTriangle) {
   Rng rng(7);
   for (const Body& body : bodies()) {
     const VecX x = deformed(body, rng);
-    const double multiplier = 1500;
+    const double datum_pressure = 1500;
     const std::vector<Vec3> skin = blend_all(body.surface.stencils, body.surface.stencils.value, x);
     std::vector<Vec3> by_point(skin.size(), Vec3::Zero());
     for (const auto& [t, local, share] : body.bile.parts()) {
       const Vec3 area = 0.5 * share * (skin[t[1]] - skin[t[0]]).cross(skin[t[2]] - skin[t[0]]);
       double sum = 0;
-      for (int corner : t) sum += body.bile.pressure_at(skin[corner], multiplier);
+      for (int corner : t) sum += body.bile.pressure_at(skin[corner], datum_pressure);
       for (int corner : t)
-        by_point[corner] += area * (sum + body.bile.pressure_at(skin[corner], multiplier)) / 12;
+        by_point[corner] += area * (sum + body.bile.pressure_at(skin[corner], datum_pressure)) / 12;
     }
     VecX expected = VecX::Zero(x.size());
     spread(body.surface.stencils, by_point, expected);
-    EXPECT_LT(test::relative_error(-load(body.bile, x, multiplier), expected), 1e-12);
+    EXPECT_LT(test::relative_error(-load(body.bile, x, datum_pressure), expected), 1e-12);
   }
 }
 

@@ -47,7 +47,7 @@ TEST(Balance, PlaneAndHeldPoleCarryTheWeightTogether) {
   const Vec3 vertical = Vec3::UnitZ();
   const Field field = test::make_field(organ, tight, vertical, Plane{Vec3::Zero(), vertical});
   const Organ& placed = field.organs[0];
-  Surroundings now;
+  ContactLoads now;
   now.shapes = {contact_shape(*field.support)};
   Vec3 push = Vec3::Zero();
   for (const ContactForce& contact :

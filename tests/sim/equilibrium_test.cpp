@@ -30,7 +30,7 @@ Shape at_gap(const std::vector<Vec3>& skin, double gap, const std::function<Shap
 struct Touched {
   Field field;
   Organ& organ;
-  Surroundings around;
+  ContactLoads around;
   VecX x;
 
   /// With `levels` the ball has extensions where it is touched.
@@ -111,7 +111,7 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
                   .size(),
               5u);
     const BodyProblem problem = touched.problem();
-    Surroundings otherwise = touched.around;
+    ContactLoads otherwise = touched.around;
     otherwise.detail_holds.clear();
     otherwise.load.resize(0);
     const BodyProblem of_others(touched.organ.body, otherwise,
@@ -159,7 +159,7 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
 
 TEST(Equilibrium, EveryPointThatCanTouchIsGatheredWhereverTheSkinGoes) {
   Touched touched(4);
-  const VirtualStructure& body = touched.organ.body;
+  const ShellBody& body = touched.organ.body;
   const std::vector<ContactPair> pairs = gather_pairs(body, touched.x, touched.around, 0.0);
   ContactPlaces places(body.skin(), touched.x);
   std::size_t gathered = 0, near = 0;

@@ -40,7 +40,7 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
   Field field;
   field.tolerance = tolerance;
   field.support = support;
-  Surroundings still;
+  ContactLoads still;
   if (support) still.shapes.push_back(contact_shape(*support));
   field.organs.push_back(make_organ(definition, still, up, tolerance, levels).value());
   return field;
@@ -50,7 +50,7 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
 inline void extend(Organ& organ, const std::vector<int>& centres) {
   organ.extensions.clear();
   for (int row : centres) organ.extensions.push_back({0, row});
-  VirtualStructure next = organ.body.with_details(details_around(organ.body, organ.extensions)).value();
+  ShellBody next = organ.body.with_details(details_around(organ.body, organ.extensions)).value();
   organ.state.x = organ.body.coordinates_in(next, organ.state.x);
   organ.state.shares.clear();  // free at once
   organ.state.fading_load.resize(0);

@@ -163,7 +163,7 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
     SolveStatistics statistics;
     for (double y : {-25e-3, -20e-3, -17e-3}) ASSERT_TRUE(advance(field, {at(y)}, statistics)) << y;
     const Organ& organ = field.organs[0];
-    const Surroundings now = surroundings(field, organ, present_poses(field));
+    const ContactLoads now = contact_loads(field, organ, present_poses(field));
     Vec3 rub = Vec3::Zero(), push = Vec3::Zero();
     ContactPlaces places(organ.body.skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points)

@@ -50,7 +50,7 @@ TEST(Grasp, GraspedSkinStaysWithTheJaw) {
     for (const GripPoint& grip : organ.grips)
       local.push_back(
           jaw_frame(field.tools[0].trocar, field.tools[0].pose, field.tools[0].geometry, grip.jaw).inverse() *
-          skin[grip.row]);
+          skin[grip.skin_point]);
     return local;
   };
   const std::vector<Vec3> before = in_the_jaws();

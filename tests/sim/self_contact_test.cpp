@@ -17,7 +17,7 @@ namespace {
 struct Pinched {
   Field field;
   Organ& organ;
-  Surroundings around;
+  ContactLoads around;
   Vec3 middle = Vec3::Zero();
 
   explicit Pinched(bool contact)
@@ -25,7 +25,7 @@ struct Pinched {
     organ.search.own.active = contact;
     const std::vector<Vec3>& rest = organ.body.skin_rest();
     for (const Vec3& p : rest) middle += p / static_cast<double>(rest.size());
-    organ.state.multiplier = 0;
+    organ.state.datum_pressure = 0;
     const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
     for (int row = 0; row < static_cast<int>(skin.size()); ++row) {
       if (std::abs(skin[row].x() - middle.x()) < 18e-3) continue;
@@ -111,7 +111,7 @@ Field ball_with_details() {
 
 TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   Field field = ball_with_details();
-  const VirtualStructure& body = field.organs[0].body;
+  const ShellBody& body = field.organs[0].body;
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   const std::vector<SelfTouch> touches = own.touching(body, x);
@@ -154,7 +154,7 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
 
 TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
-  const VirtualStructure& body = field.organs[0].body;
+  const ShellBody& body = field.organs[0].body;
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   VecX g = VecX::Zero(x.size());

@@ -70,7 +70,7 @@ struct Slide {
   };
   Contact contact() const {
     Contact out;
-    const Surroundings now = surroundings(field, organ(), present_poses(field));
+    const ContactLoads now = contact_loads(field, organ(), present_poses(field));
     const std::vector<ContactPair> pairs = gather_pairs(organ().body, organ().state.x, now, -contact_margin);
     for (const ContactForce& force : contact_forces(organ().body, organ().state.x, now, pairs)) {
       const RubbingPoint* point = now.friction.find(force.shape, force.point);

@@ -33,7 +33,7 @@ TEST_P(SlidingContact, AcrossFacesHasNoJumpOfForce) {
     range = std::max(range, force.norm());
     jump = std::max(jump, (force - last).norm());
     last = force;
-    const Surroundings now = surroundings(field, organ, present_poses(field));
+    const ContactLoads now = contact_loads(field, organ, present_poses(field));
     const auto pairs = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
     for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, pairs))
       faces.insert(contact.point / contacts_each / organ.body.triangles_each());

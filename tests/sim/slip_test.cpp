@@ -7,7 +7,7 @@
 
 #include "field_rig.h"
 #include "rig.h"
-#include "sim/hold.h"
+#include "sim/grip_slip.h"
 
 namespace calot {
 namespace {
@@ -100,8 +100,8 @@ TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
                                        const std::vector<GripPoint>& others) {
     int same = 0;
     for (const GripPoint& grip : some) {
-      const auto found =
-          std::find_if(others.begin(), others.end(), [&](const GripPoint& o) { return o.row == grip.row; });
+      const auto found = std::find_if(others.begin(), others.end(),
+                                      [&](const GripPoint& o) { return o.skin_point == grip.skin_point; });
       if (found != others.end()) {
         ++same;
         EXPECT_LT((found->local - grip.local).norm(), apart);
@@ -145,7 +145,7 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
     EXPECT_EQ(field.organs[0].state.x, x);
     ASSERT_EQ(field.organs[0].grips.size(), held.size());
     for (std::size_t i = 0; i < held.size(); ++i) {
-      EXPECT_EQ(field.organs[0].grips[i].row, held[i].row);
+      EXPECT_EQ(field.organs[0].grips[i].skin_point, held[i].skin_point);
       EXPECT_EQ(field.organs[0].grips[i].local, held[i].local);
       EXPECT_EQ(field.organs[0].grips[i].stiffness, held[i].stiffness);
     }

@@ -25,7 +25,7 @@ double furthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 struct Pulled {
   Field field;
   Organ& organ;
-  Surroundings around;
+  ContactLoads around;
 
   explicit Pulled(int levels)
       : field(test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, levels)),
@@ -73,19 +73,19 @@ TEST(StructuralExtension, AThousandInsertedAndRemovedUnderLoadLeaveTheStateWitho
 }
 
 /// Everything that a solve reads of a structure, at a state where all its details move.
-std::vector<double> fingerprint(const VirtualStructure& body, const BodyState& rest) {
+std::vector<double> fingerprint(const ShellBody& body, const BodyState& rest) {
   Rng rng(3);
   VecX x = VecX::Zero(body.rest().size());
   x.head(rest.x.size()) = rest.x;
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += rng.uniform(-0.5e-3, 0.5e-3);
-  const Surroundings nothing;
-  const BodyProblem problem(body, nothing, {}, {x, rest.multiplier, rest.volume});
+  const ContactLoads nothing;
+  const BodyProblem problem(body, nothing, {}, {x, rest.datum_pressure, rest.volume});
   VecX gradient, of_constraint;
   double internal = 0;
   std::vector<double> out = {problem.value(x),
                              problem.gradient_and_constraint(x, gradient, internal, of_constraint), internal};
   NewtonWorkspace work(body.pattern(), body.coarse_nodes());
-  problem.hessian(x, rest.multiplier, work.matrix);
+  problem.hessian(x, rest.datum_pressure, work.matrix);
   const VecX solution =
       work.factor.factorise(work.matrix) == FactorStatus::ok ? work.factor.solve(gradient) : VecX();
   for (const VecX& v : {gradient, of_constraint, solution, body.kept_load()})
@@ -98,7 +98,7 @@ std::vector<double> fingerprint(const VirtualStructure& body, const BodyState& r
 TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
   Field field = test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   const Organ& organ = field.organs[0];
-  const VirtualStructure& bare = organ.body;
+  const ShellBody& bare = organ.body;
   const auto about = [&](const std::vector<int>& rows) {
     std::vector<Extension> extensions;
     for (int row : rows) extensions.push_back({0, row});
@@ -106,8 +106,8 @@ TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
   };
   const std::vector<int> first = about({10, 700}), second = about({700, 1200}),
                          third = about({15, 1200, 1500});
-  const VirtualStructure a = bare.with_details(first).value(), b = a.with_details(second).value(),
-                         c = b.with_details(third).value(), gone = c.with_details({}).value();
+  const ShellBody a = bare.with_details(first).value(), b = a.with_details(second).value(),
+                  c = b.with_details(third).value(), gone = c.with_details({}).value();
   EXPECT_EQ(fingerprint(b, organ.state), fingerprint(bare.with_details(second).value(), organ.state));
   EXPECT_EQ(fingerprint(c, organ.state), fingerprint(bare.with_details(third).value(), organ.state));
   EXPECT_EQ(fingerprint(gone, organ.state), fingerprint(bare, organ.state));
@@ -118,14 +118,14 @@ TEST(StructuralExtension, AnOrganAtRestDoesNotMoveWhenItIsExtended) {
   Field field = test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   Organ& organ = field.organs[0];
   const std::vector<Vec3> before = organ.body.skin_positions(organ.state.x);
-  const double multiplier = organ.state.multiplier;
+  const double multiplier = organ.state.datum_pressure;
   NewtonSettings settings;
   settings.tolerance = 1e-9;
   test::extend(organ, {10, 700, organ.landmarks.at("fundus")});
   EXPECT_GT(organ.body.kept_load().norm(), 1e-4) << "N: the finer rules do see the wall otherwise";
   EXPECT_TRUE(settle(organ.body, {}, settings, organ.work, organ.search, organ.state).converged());
   EXPECT_LT(furthest(before, organ.body.skin_positions(organ.state.x)), 1e-9) << "m; met to 1e-9";
-  EXPECT_NEAR(organ.state.multiplier, multiplier, 1e-6 * multiplier);
+  EXPECT_NEAR(organ.state.datum_pressure, multiplier, 1e-6 * multiplier);
 }
 
 TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
@@ -137,7 +137,7 @@ TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
     x[i] = rng.uniform(-1e-3, 1e-3);
   const Bile& bile = *pulled.organ.body.bile();
   VecX load = VecX::Zero(x.size());
-  bile.add_load(x, pulled.organ.state.multiplier, load);
+  bile.add_load(x, pulled.organ.state.datum_pressure, load);
   // The coarse functions sum to one everywhere: their loads are all there are.
   Vec3 net = Vec3::Zero();
   for (int i = 0; i < pulled.organ.body.coarse_nodes(); ++i) net += load.segment<3>(Eigen::Index{3} * i);
@@ -153,7 +153,7 @@ TEST(StructuralExtension, ItsUnknownsCondensedGiveTheWholeSystemsSolution) {
   pulled.rest();
   const BodyProblem problem(pulled.organ.body, pulled.around, {}, pulled.organ.state);
   BlockMatrix matrix = pulled.organ.body.pattern();
-  problem.hessian(pulled.organ.state.x, pulled.organ.state.multiplier, matrix);
+  problem.hessian(pulled.organ.state.x, pulled.organ.state.datum_pressure, matrix);
   const int coarse = pulled.organ.body.coarse_nodes();
   ASSERT_GT(matrix.nodes(), coarse + 40);
   Cholesky whole(matrix, coarse, FactorKind::dense), condensed(matrix, coarse, FactorKind::condensed);
@@ -173,7 +173,7 @@ TEST(StructuralExtension, APulledWallIsTwiceAsTrueWithItAsWithout) {
   std::vector<int> all;
   for (int node = fine.organ.body.levels().nodes(0); node < fine.organ.body.levels().nodes(2); ++node)
     all.push_back(node);
-  VirtualStructure finest = fine.organ.body.with_details(all).value();
+  ShellBody finest = fine.organ.body.with_details(all).value();
   fine.organ.state.x = fine.organ.body.coordinates_in(finest, fine.organ.state.x);
   fine.organ.body = std::move(finest);
   fine.organ.work = NewtonWorkspace(fine.organ.body.pattern());

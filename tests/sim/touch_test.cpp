@@ -20,7 +20,7 @@ struct Touch {
 void look(const Field& field, Touch& touch) {
   const Organ& organ = field.organs[0];
   const Tool& tool = field.tools[0];
-  const Surroundings now = surroundings(field, organ, present_poses(field));
+  const ContactLoads now = contact_loads(field, organ, present_poses(field));
   const std::vector<Shape> made = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
   const auto pairs = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
   for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, pairs)) {
@@ -100,7 +100,7 @@ TEST_P(TouchedPoints, LieOnTheJawsThatGraspThem) {
 
 TEST(ContactPoints, StandForAllOfTheSkin) {
   const Field field = Handled::make(0);
-  const VirtualStructure& body = field.organs[0].body;
+  const ShellBody& body = field.organs[0].body;
   double skin = 0, felt = 0;
   for (const Triangle& t : body.skin().triangles)
     skin += 0.5 * (body.skin_rest()[t[1]] - body.skin_rest()[t[0]])

@@ -30,7 +30,7 @@ OrganDefinition ball(double stiffness) {
 
 /// Nodal motion whose surface velocity at the vertices is along the normal: `speed` of the place on the unit
 /// sphere.
-VecX along_normal(const VirtualStructure& body, const std::function<double(const Vec3&)>& speed) {
+VecX along_normal(const ShellBody& body, const std::function<double(const Vec3&)>& speed) {
   const LoopSurface surface = LoopSurface::create(body.control()).value();
   const StencilTable vertices = surface.tessellate(1).stencils;
   std::vector<Vec3> velocity;
@@ -41,7 +41,7 @@ VecX along_normal(const VirtualStructure& body, const std::function<double(const
 
 TEST(Vibration, BileInASphereHasTheMassOfItsHarmonicOverItsDegree) {
   const Field field = test::make_field(ball(1e6), 1e-6, Vec3::UnitZ());
-  const VirtualStructure& body = field.organs[0].body;
+  const ShellBody& body = field.organs[0].body;
   const BodyMass mass(body, body.rest(), 1e-9, bile_density);  // no wall to speak of
   // Potential flow in a sphere (Lamb, Hydrodynamics, art. 262): phi = (r/R)^n R/n q, so that the kinetic energy
   // of normal velocity q, a harmonic of degree n, is 1/2 density R/n times the integral of q^2.
@@ -95,10 +95,10 @@ TEST(Vibration, AStiffBallOnSpringsSwaysAtTheRootOfSpringOverMass) {
 /// Lowest frequency, Hz, from all eigenvalues on a basis of the motions that keep the volume; and whether K has a
 /// negative one on all motions.
 std::pair<double, bool> by_brute_force(const Organ& organ, const BodyMass& mass) {
-  const Surroundings nothing;
+  const ContactLoads nothing;
   const BodyProblem problem(organ.body, nothing, {}, organ.state);
   BlockMatrix matrix = organ.body.pattern();
-  problem.hessian(organ.state.x, organ.state.multiplier, matrix);
+  problem.hessian(organ.state.x, organ.state.datum_pressure, matrix);
   VecX gradient;
   problem.constraint(organ.state.x, gradient);
   const Eigen::Index n = gradient.size();

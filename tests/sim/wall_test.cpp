@@ -50,7 +50,7 @@ Size growth(const OrganDefinition& definition) {
     ADD_FAILURE() << to_text(organ.failure());
     return {};
   }
-  const VirtualStructure& body = organ->body;
+  const ShellBody& body = organ->body;
   const Size rest = size_of(definition, body.skin_rest());
   const Size now = size_of(definition, body.skin_positions(organ->state.x));
   return {now.girth / rest.girth - 1, now.length / rest.length - 1};

@@ -22,12 +22,12 @@ inline std::vector<TriMesh> nested_spheres(int levels, double radius = 20e-3) {
 /// Order of convergence when the mesh size is halved.
 inline double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
-inline NewtonResult equilibrium(const VirtualStructure& body, const Surroundings& field, BodyState& state,
+inline NewtonResult equilibrium(const ShellBody& body, const ContactLoads& field, BodyState& state,
                                 NewtonWorkspace& work, double tolerance = 1e-8) {
   NewtonSettings settings;
   settings.tolerance = tolerance;
   const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
-  return solve_equilibrium(problem, settings, work, state.x, state.multiplier);
+  return solve_equilibrium(problem, settings, work, state.x, state.datum_pressure);
 }
 
 }  // namespace calot::test

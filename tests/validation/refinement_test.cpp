@@ -16,15 +16,15 @@ double bump(const Vec3& at, const Vec3& centre, double spread) {
 
 /// Where the mesh's nodes' limit points end up.
 std::vector<Vec3> pulled(const TriMesh& mesh) {
-  VirtualStructure::Setup setup;
+  ShellBody::Setup setup;
   setup.control = mesh;
   setup.bile = BileDefinition{};
   const Vec3 bottom(0, 0, -radius), top(0, 0, radius);
   setup.foundation = [&](const Vec3& x) { return 2e6 * bump(x, bottom, 8e-3); };
-  const VirtualStructure body = VirtualStructure::create(setup).value();
+  const ShellBody body = ShellBody::create(setup).value();
   NewtonWorkspace work(body.pattern());
   BodyState state{body.rest(), 0, 1.1 * body.bile()->volume(body.rest())};
-  Surroundings field;
+  ContactLoads field;
   EXPECT_TRUE(test::equilibrium(body, field, state, work, 1e-6).converged());
   const std::vector<Vec3> filled = body.skin_positions(state.x);
   for (std::size_t r = 0; r < filled.size(); ++r) {

@@ -20,15 +20,15 @@ double closed_form(double stretch, double stiffening) {
          std::exp(stiffening * (invariant - 3));
 }
 
-VirtualStructure balloon(const TriMesh& mesh, double stiffening) {
-  VirtualStructure::Setup setup;
+ShellBody balloon(const TriMesh& mesh, double stiffening) {
+  ShellBody::Setup setup;
   setup.control = mesh;
   setup.material = {{shear_modulus, thickness, stiffening}, {shear_modulus, thickness}, false};
   setup.bile = BileDefinition{};
   setup.bile->density = 0;
   // Keeps it from drifting; 1e-6 of the wall's stiffness mu t / R^2.
   setup.foundation = [](const Vec3&) { return 1e-6 * shear_modulus * thickness / (radius * radius); };
-  return VirtualStructure::create(setup).value();
+  return ShellBody::create(setup).value();
 }
 
 struct Errors {
@@ -38,7 +38,7 @@ struct Errors {
 };
 
 Errors errors_of(const TriMesh& mesh, double stiffening) {
-  const VirtualStructure body = balloon(mesh, stiffening);
+  const ShellBody body = balloon(mesh, stiffening);
   NewtonWorkspace work(body.pattern());
   const double unstressed = body.bile()->volume(body.rest());
   const double share_of_sphere = unstressed / (4.0 / 3.0 * M_PI * std::pow(radius, 3));
@@ -48,8 +48,8 @@ Errors errors_of(const TriMesh& mesh, double stiffening) {
     BodyState state{stretch * body.rest(), exact, unstressed * std::pow(stretch, 3)};
     const NewtonResult result = test::equilibrium(body, {}, state, work);
     EXPECT_TRUE(result.converged()) << to_text(result.status);
-    errors.pressure = std::max(errors.pressure, std::abs(state.multiplier / exact - 1));
-    errors.wall = std::max(errors.wall, std::abs(state.multiplier * share_of_sphere / exact - 1));
+    errors.pressure = std::max(errors.pressure, std::abs(state.datum_pressure / exact - 1));
+    errors.wall = std::max(errors.wall, std::abs(state.datum_pressure * share_of_sphere / exact - 1));
     for (const Vec3& p : body.skin_positions(state.x))
       errors.out_of_round = std::max(errors.out_of_round, std::abs(p.norm() / (stretch * radius) - 1));
   }

@@ -1,8 +1,8 @@
 #include "view/build_scene.h"
 
+#include "anatomy/organ_frame.h"
 #include "render/image_compare.h"
 #include "render/offscreen.h"
-#include "view/organ_frame.h"
 
 namespace calot {
 namespace {

@@ -1,9 +1,9 @@
 #include "view/surroundings.h"
 
+#include "anatomy/organ_frame.h"
 #include "render/offscreen.h"
 #include "view/build_scene.h"
 #include "view/laparoscope.h"
-#include "view/organ_frame.h"
 
 namespace calot {
 namespace {

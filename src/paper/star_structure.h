@@ -40,15 +40,15 @@ struct PaperElements {
 /// Equilibrium of nodes `first`, first + 1, ... (the unknowns), those before held where `nodes` has them.
 class PaperProblem : public ConstrainedEnergy {
  public:
-  /// `points` are points of the elements' triangles, springs its rows. Without `volume` the bile's multiplier
+  /// `points` are points of the elements' triangles, springs its rows. Without `volume` the bile's datum_pressure
   /// (pressure at the origin's height, Pa) is given.
   PaperProblem(const PaperElements& elements, const StencilTable& points, const Links& springs,
-               std::optional<double> volume, double multiplier, const VecX& nodes, int first);
+               std::optional<double> volume, double datum_pressure, const VecX& nodes, int first);
 
   bool constrained() const override { return volume_.has_value(); }
   double value(const VecX& x) const override;
   void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
-  void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override;
+  void hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const override;
   double constraint(const VecX& x, VecX& gradient) const override;
   double constraint_value(const VecX& x) const override;
   double constraint_scale() const override { return volume_.value_or(1.0); }
@@ -60,13 +60,13 @@ class PaperProblem : public ConstrainedEnergy {
 
  private:
   VecX whole(const VecX& x) const;  ///< all nodes
-  void add_hessian(const VecX& all, double multiplier, BlockMatrix& matrix) const;
+  void add_hessian(const VecX& all, double datum_pressure, BlockMatrix& matrix) const;
 
   const PaperElements& elements_;
   const StencilTable& points_;
   const Links& springs_;
   std::optional<double> volume_;
-  double multiplier_;
+  double datum_pressure_;
   VecX nodes_;
   int first_;
   double size_;
@@ -97,7 +97,7 @@ class PaperBody {
   std::vector<Vec3> surface() const;  ///< the points, m
   double volume() const;              ///< enclosed by the first (or only) stage, m^3
   const VecX& nodes() const { return stages_.back().nodes; }
-  double pressure() const { return multiplier_; }  ///< at the origin's height, Pa
+  double pressure() const { return datum_pressure_; }  ///< at the origin's height, Pa
 
   struct Cost {
     int nodes = 0, unknowns = 0;  ///< unknowns of all stages
@@ -132,7 +132,7 @@ class PaperBody {
   PaperSetup setup_;
   std::vector<Stage> stages_;
   StencilTable places_;  ///< of the second stage's unknowns in the first stage's mesh
-  double multiplier_ = 0;
+  double datum_pressure_ = 0;
 };
 
 }  // namespace calot

@@ -1,6 +1,6 @@
 // Structural extensions against uniform meshes: what the comparison promises of its errors, not of its times.
 
-#include "sim/comparison.h"
+#include "paper/comparison.h"
 
 #include <gtest/gtest.h>
 

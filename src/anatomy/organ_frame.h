@@ -1,5 +1,5 @@
 #pragma once
-// The frame in which an organ's texture and surroundings are laid out.
+// The frame in which an organ is made, and in which its texture and what lies around it are laid out.
 
 #include "anatomy/definitions.h"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "geometry/shapes.h"
-#include "sim/compared_body.h"
+#include "paper/compared_body.h"
 
 namespace calot {
 

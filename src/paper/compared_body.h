@@ -1,5 +1,5 @@
 #pragma once
-// What the comparison (sim/comparison.h) loads and measures: a sphere full of bile, of either formulation, under
+// What the comparison (paper/comparison.h) loads and measures: a sphere full of bile, of either formulation, under
 // the same springs on the same surface points.
 
 #include <memory>
@@ -66,12 +66,12 @@ class ComparedBody {
 };
 
 /// The finite elements of this project, on the Loop surface. Level `uniform` of the whole surface, or with details
-/// of `extended` levels around each place. Failures as VirtualStructure's.
+/// of `extended` levels around each place. Failures as ShellBody's.
 Result<std::unique_ptr<ComparedBody>> uniform_shell(const ComparedSurface& surface, int uniform);
 Result<std::unique_ptr<ComparedBody>> extended_shell(const ComparedSurface& surface,
                                                      const std::vector<Vec3>& places, int levels);
 
-/// The paper's: flat triangles with hinges (sim/paper_structure.h). `levels`: subdivisions of the stars.
+/// The paper's: flat triangles with hinges (paper/star_structure.h). `levels`: subdivisions of the stars.
 Result<std::unique_ptr<ComparedBody>> uniform_triangles(const ComparedSurface& surface, int uniform);
 Result<std::unique_ptr<ComparedBody>> extended_triangles(const ComparedSurface& surface,
                                                          const std::vector<Vec3>& places, int levels,

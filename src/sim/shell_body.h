@@ -29,15 +29,15 @@ struct DetailShare {
 };
 
 struct BodyState {
-  VecX x;                 ///< 3 a node, m: places of the control nodes, then displacements of the details
-  double multiplier = 0;  ///< pressure at the datum's height, Pa
-  double volume = 0;      ///< m^3, what the constraint keeps
+  VecX x;                     ///< 3 a node, m: places of the control nodes, then displacements of the details
+  double datum_pressure = 0;  ///< pressure at the datum's height, Pa
+  double volume = 0;          ///< m^3, what the constraint keeps
   std::vector<DetailShare> shares = {};  ///< one a detail; none: all are free
   /// N, 3 a node: what a change of the details altered and is still made good; empty: nothing.
   VecX fading_load = {};
 };
 
-class VirtualStructure {
+class ShellBody {
  public:
   /// From a control mesh whose limit surface is the unstressed shape (m, world).
   struct Setup {
@@ -51,12 +51,12 @@ class VirtualStructure {
     std::vector<QuadraturePoint> rule = three_point_rule();
     int levels = 0;  ///< of details that it can be extended by
   };
-  static Result<VirtualStructure> create(const Setup& setup);
+  static Result<ShellBody> create(const Setup& setup);
 
   /// The same structure with other details active (odd nodes of levels().nodes, increasing): the paper's
   /// structural extensions. The faces that they split have quadrature and bile of their own; the bed stays where
   /// it was. Fails (scenario) where too many details reach one face.
-  Result<VirtualStructure> with_details(std::vector<int> details) const;
+  Result<ShellBody> with_details(std::vector<int> details) const;
   /// From here on details refine the answer to instruments, not the state `rest` (of this structure, which has no
   /// details, in equilibrium): with any details the same shape is in equilibrium, held by a constant load and volume
   /// that make good what the finer rules see differently there. So nothing moves where an extension is laid or
@@ -65,7 +65,7 @@ class VirtualStructure {
   /// That load, N, 3 a node; empty without details or before keep_in_equilibrium.
   const VecX& kept_load() const { return kept_load_; }
   /// Gradient of the energies of wall, bed and bile less that load, N.
-  VecX forces(const VecX& x, double multiplier) const;
+  VecX forces(const VecX& x, double datum_pressure) const;
   /// Enclosed volume, m^3, of a structure with bile.
   double volume(const VecX& x) const { return bile_->volume(x) - kept_volume_; }
   /// The same, its gradient (m^2) added to `gradient`.
@@ -83,7 +83,7 @@ class VirtualStructure {
   const std::vector<Vec3>& node_rest() const { return base_->node_rest; }
   /// Coordinates `x` of this structure as those of `other`, which differs in its details only: those that are new
   /// there begin at zero.
-  VecX coordinates_in(const VirtualStructure& other, const VecX& x) const;
+  VecX coordinates_in(const ShellBody& other, const VecX& x) const;
   /// Levels that have active details.
   int levels_used() const;
   /// Bound on how far any surface point moves when the nodes move by `dx`, m.
@@ -152,24 +152,24 @@ class VirtualStructure {
     double size = 0;
     Vec3 middle = Vec3::Zero();
   };
-  VirtualStructure(std::shared_ptr<const Base> base, std::vector<int> details)
+  ShellBody(std::shared_ptr<const Base> base, std::vector<int> details)
       : base_(std::move(base)), surface_(detailed(base_->levels, std::move(details))) {}
   static DetailedSurface detailed(const SurfaceLevels& levels, std::vector<int> details);
   /// The bed holds on to the coarse rule's points.
   static void lay_bed(const VecX& rest, Base& base);
   /// What is the same in `before`, of the same base, is taken from there.
-  std::optional<Failure> build(const VirtualStructure* before);
-  std::optional<Failure> build_shell(const VirtualStructure* before, const SharedRows* shared);
+  std::optional<Failure> build(const ShellBody* before);
+  std::optional<Failure> build_shell(const ShellBody* before, const SharedRows* shared);
   void build_skin();
-  Result<bool> build_bile(const VirtualStructure* before, const SharedRows* shared);
-  void build_bed(const VirtualStructure* before, const SharedRows* shared);
+  Result<bool> build_bile(const ShellBody* before, const SharedRows* shared);
+  void build_bed(const ShellBody* before, const SharedRows* shared);
 
   struct Kept {
     BodyState state;
     VecX own_forces;  ///< of wall, bed and bile
   };
   /// Gradient of the energies of wall, bed and bile, N.
-  VecX own_forces(const VecX& x, double multiplier) const;
+  VecX own_forces(const VecX& x, double datum_pressure) const;
   /// Sets the load and volume that keep the state kept_ in equilibrium.
   void make_good();
 

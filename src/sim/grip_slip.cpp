@@ -1,4 +1,4 @@
-#include "sim/hold.h"
+#include "sim/grip_slip.h"
 
 #include <fmt/format.h>
 
@@ -89,7 +89,7 @@ Vec3 pad_pull(const Field& field, int instrument) {
   Vec3 pull = Vec3::Zero();
   for (const Organ& organ : field.organs) {
     if (grip_count(organ, instrument) == 0) continue;
-    const Surroundings now = surroundings(field, organ, present_poses(field));
+    const ContactLoads now = contact_loads(field, organ, present_poses(field));
     for (std::size_t g = 0; g < organ.grips.size(); ++g)
       if (organ.grips[g].instrument == instrument)
         pull += now.grip.stiffness[g] *

@@ -1,4 +1,4 @@
-#include "sim/paper_comparison.h"
+#include "paper/paper_comparison.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "geometry/radial_view.h"
 #include "geometry/shapes.h"
-#include "sim/displacement_errors.h"
+#include "paper/displacement_errors.h"
 
 namespace calot {
 namespace {

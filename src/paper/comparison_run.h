@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/comparison.h"
+#include "paper/comparison.h"
 
 namespace calot {
 

@@ -1,4 +1,4 @@
-#include "view/organ_frame.h"
+#include "anatomy/organ_frame.h"
 
 namespace calot {
 

@@ -1,4 +1,4 @@
-#include "sim/virtual_structure.h"
+#include "sim/shell_body.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +121,7 @@ std::vector<std::vector<int>> points_of_faces(const Tessellation& skin, std::siz
 
 }  // namespace
 
-Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
+Result<ShellBody> ShellBody::create(const Setup& setup) {
   Result<SurfaceLevels> levels = SurfaceLevels::create(setup.control, setup.levels);
   if (!levels) return levels.failure();
   const VecX rest = to_coordinates(setup.control.points);
@@ -149,12 +149,12 @@ Result<VirtualStructure> VirtualStructure::create(const Setup& setup) {
   base.size = box.diagonal().norm();
   base.middle = box.center();
   if (setup.foundation) lay_bed(rest, base);
-  VirtualStructure body(std::make_shared<const Base>(std::move(base)), {});
+  ShellBody body(std::make_shared<const Base>(std::move(base)), {});
   if (std::optional<Failure> failure = body.build(nullptr)) return *failure;
   return body;
 }
 
-void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
+void ShellBody::lay_bed(const VecX& rest, Base& base) {
   const RulePoints points(base.levels, FaceTree(base.levels, {}), base.setup.rule);
   const StencilTable table = base.levels.evaluate(0, points.at, 1);
   for (int r = 0; r < table.rows(); ++r) {
@@ -169,48 +169,48 @@ void VirtualStructure::lay_bed(const VecX& rest, Base& base) {
   }
 }
 
-Result<VirtualStructure> VirtualStructure::with_details(std::vector<int> details) const {
-  VirtualStructure out(base_, std::move(details));
+Result<ShellBody> ShellBody::with_details(std::vector<int> details) const {
+  ShellBody out(base_, std::move(details));
   if (std::optional<Failure> failure = out.build(this)) return *failure;
   out.kept_ = kept_;
   out.make_good();
   return out;
 }
 
-VecX VirtualStructure::own_forces(const VecX& x, double multiplier) const {
+VecX ShellBody::own_forces(const VecX& x, double datum_pressure) const {
   VecX out = VecX::Zero(x.size());
   shell_.add_gradient(x, out);
   foundation().add_gradient(bed_points_, x, out);
-  if (bile_) bile_->add_load(x, multiplier, out);
+  if (bile_) bile_->add_load(x, datum_pressure, out);
   return out;
 }
 
-VecX VirtualStructure::forces(const VecX& x, double multiplier) const {
-  VecX out = own_forces(x, multiplier);
+VecX ShellBody::forces(const VecX& x, double datum_pressure) const {
+  VecX out = own_forces(x, datum_pressure);
   if (kept_load_.size() > 0) out -= kept_load_;
   return out;
 }
 
-void VirtualStructure::keep_in_equilibrium(const BodyState& rest) {
-  kept_ = std::make_shared<const Kept>(Kept{rest, own_forces(rest.x, rest.multiplier)});
+void ShellBody::keep_in_equilibrium(const BodyState& rest) {
+  kept_ = std::make_shared<const Kept>(Kept{rest, own_forces(rest.x, rest.datum_pressure)});
 }
 
-void VirtualStructure::make_good() {
+void ShellBody::make_good() {
   if (!kept_ || details().empty()) return;
   const BodyState& state = kept_->state;
   VecX x = VecX::Zero(rest_.size());
   x.head(state.x.size()) = state.x;
-  kept_load_ = own_forces(x, state.multiplier);
+  kept_load_ = own_forces(x, state.datum_pressure);
   kept_load_.head(state.x.size()) -= kept_->own_forces;
   if (bile_) kept_volume_ = bile_->volume(x) - state.volume;
 }
 
-DetailedSurface VirtualStructure::detailed(const SurfaceLevels& levels, std::vector<int> details) {
+DetailedSurface ShellBody::detailed(const SurfaceLevels& levels, std::vector<int> details) {
   FaceTree tree(levels, details);
   return {DetailBasis(levels, std::move(details)), std::move(tree)};
 }
 
-std::optional<Failure> VirtualStructure::build(const VirtualStructure* before) {
+std::optional<Failure> ShellBody::build(const ShellBody* before) {
   std::optional<SharedRows> shared;
   if (before != nullptr) shared.emplace(before->surface_, surface_);
   const SharedRows* rows = shared ? &*shared : nullptr;
@@ -237,8 +237,7 @@ std::optional<Failure> VirtualStructure::build(const VirtualStructure* before) {
   return std::nullopt;
 }
 
-std::optional<Failure> VirtualStructure::build_shell(const VirtualStructure* before,
-                                                     const SharedRows* shared) {
+std::optional<Failure> ShellBody::build_shell(const ShellBody* before, const SharedRows* shared) {
   RulePoints points(base_->levels, surface_.tree, base_->setup.rule);
   first_rows_ = std::move(points.first_rows);
   std::vector<int> known(points.at.size(), -1);
@@ -255,7 +254,7 @@ std::optional<Failure> VirtualStructure::build_shell(const VirtualStructure* bef
   return std::nullopt;
 }
 
-void VirtualStructure::build_skin() {
+void ShellBody::build_skin() {
   skin_.at = base_->skin.at;
   skin_.triangles = base_->skin.triangles;
   skin_.stencils = surface_.basis.extend(base_->skin_places, skin_.at, base_->skin_places_by_level);
@@ -265,7 +264,7 @@ void VirtualStructure::build_skin() {
     add_nodes(skin_.stencils, base_->face_points[f], coarse_nodes(), seen, face_nodes_[f]);
 }
 
-void VirtualStructure::build_bed(const VirtualStructure* before, const SharedRows* shared) {
+void ShellBody::build_bed(const ShellBody* before, const SharedRows* shared) {
   std::vector<int> known(base_->bed_places.size(), -1);
   for (int k = 0; shared && k < static_cast<int>(known.size()); ++k)
     if (shared->same(base_->bed_places[k].face)) known[k] = k;
@@ -273,7 +272,7 @@ void VirtualStructure::build_bed(const VirtualStructure* before, const SharedRow
                        : surface_.basis.evaluate(base_->bed_places, 0);
 }
 
-Result<bool> VirtualStructure::build_bile(const VirtualStructure* before, const SharedRows* shared) {
+Result<bool> ShellBody::build_bile(const ShellBody* before, const SharedRows* shared) {
   const SurfaceLevels& levels = base_->levels;
   BileSurface surface;
   // The rule splits each face in four itself: with one split less errors near a contact are the same to 0.04 % of the
@@ -309,7 +308,7 @@ Result<bool> VirtualStructure::build_bile(const VirtualStructure* before, const 
   return true;
 }
 
-VecX VirtualStructure::coordinates_in(const VirtualStructure& other, const VecX& x) const {
+VecX ShellBody::coordinates_in(const ShellBody& other, const VecX& x) const {
   const Eigen::Index coarse = 3 * Eigen::Index{coarse_nodes()};
   VecX out = VecX::Zero(other.rest_.size());
   out.head(coarse) = x.head(coarse);
@@ -321,11 +320,9 @@ VecX VirtualStructure::coordinates_in(const VirtualStructure& other, const VecX&
   return out;
 }
 
-int VirtualStructure::levels_used() const {
-  return details().empty() ? 0 : levels().level_of(details().back());
-}
+int ShellBody::levels_used() const { return details().empty() ? 0 : levels().level_of(details().back()); }
 
-double VirtualStructure::detail_stiffness(int index) const {
+double ShellBody::detail_stiffness(int index) const {
   const ShellMaterial& material = base_->setup.material;
   // In membrane and in bending; the factors fit the diagonal of the Hessian at rest of a ball and a gallbladder, two
   // levels each.
@@ -333,7 +330,7 @@ double VirtualStructure::detail_stiffness(int index) const {
   return material.membrane.shear_modulus * h * (1.5 + 0.27 * slope * slope);
 }
 
-double VirtualStructure::largest_motion(const VecX& dx) const {
+double ShellBody::largest_motion(const VecX& dx) const {
   const Eigen::Index coarse = 3 * Eigen::Index{coarse_nodes()};
   if (dx.size() == coarse) return largest_node(dx);
   // The weights of the coarse nodes sum to 1, those of one level's details to less.
@@ -350,13 +347,13 @@ double VirtualStructure::largest_motion(const VecX& dx) const {
   return sum;
 }
 
-double VirtualStructure::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }
+double ShellBody::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }
 
-std::vector<Vec3> VirtualStructure::skin_positions(const VecX& x) const {
+std::vector<Vec3> ShellBody::skin_positions(const VecX& x) const {
   return blend_all(skin_.stencils, skin_.stencils.value, x);
 }
 
-std::vector<Vec3> VirtualStructure::skin_normals(const VecX& x) const {
+std::vector<Vec3> ShellBody::skin_normals(const VecX& x) const {
   // Only the base has derivatives: details are added to a copy of it, where there are any.
   std::optional<StencilTable> extended;
   if (!details().empty())

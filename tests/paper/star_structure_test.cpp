@@ -1,4 +1,4 @@
-#include "sim/paper_structure.h"
+#include "paper/star_structure.h"
 
 #include <gtest/gtest.h>
 
@@ -81,28 +81,28 @@ TEST(PaperStructure, GradientAndHessianAreTheDerivativesWhicheverNodesAreHeld) {
   }
   const VecX nodes =
       elements.rest + test::random_coordinates(rng, static_cast<int>(elements.rest.size()), 0.3e-3);
-  const double volume = elements.bile.volume(elements.rest), multiplier = 800;
+  const double volume = elements.bile.volume(elements.rest), datum_pressure = 800;
   for (int first : {0, 20}) {
     // With nodes held the pressure is given; without, the volume is, and the Hessian is the Lagrangian's.
     const std::optional<double> kept = first == 0 ? std::optional(volume) : std::nullopt;
-    const PaperProblem problem(elements, points, springs, kept, multiplier, nodes, first);
+    const PaperProblem problem(elements, points, springs, kept, datum_pressure, nodes, first);
     const auto gradient = [&](const VecX& y) {
       VecX g, by_volume;
       double largest = 0;
       problem.gradient(y, g, largest);
       if (!kept) return g;
       problem.constraint(y, by_volume);
-      return VecX(g - multiplier * by_volume);
+      return VecX(g - datum_pressure * by_volume);
     };
     const auto value = [&](const VecX& y) {
-      return problem.value(y) - (kept ? multiplier * problem.constraint_value(y) : 0.0);
+      return problem.value(y) - (kept ? datum_pressure * problem.constraint_value(y) : 0.0);
     };
     const VecX x = nodes.tail(nodes.size() - 3 * first);
     EXPECT_GT(gradient(x).norm(), 1e-2);
     // The smallest edges are 2 mm: relative error (1e-7 / 2e-3)^2 and rounding / 1e-7.
     EXPECT_LT(test::relative_error(gradient(x), test::difference_gradient(value, x, 1e-7)), 1e-6);
     BlockMatrix matrix = PaperProblem::pattern(elements, first);
-    problem.hessian(x, multiplier, matrix);
+    problem.hessian(x, datum_pressure, matrix);
     EXPECT_GT(test::stored(matrix).norm(), 0);
     EXPECT_LT(test::relative_error(test::dense(matrix), test::difference_hessian(gradient, x, 1e-7)), 1e-6);
   }

@@ -1,12 +1,12 @@
-#include "sim/comparison.h"
+#include "paper/comparison.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/comparison_run.h"
-#include "sim/displacement_errors.h"
+#include "paper/comparison_run.h"
+#include "paper/displacement_errors.h"
 
 namespace calot {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sim/paper_structure.h"
+#include "paper/star_structure.h"
 
 namespace calot {
 

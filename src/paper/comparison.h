@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/status.h"
-#include "sim/compared_body.h"
+#include "paper/compared_body.h"
 
 namespace calot {
 

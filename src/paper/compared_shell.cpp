@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "base/timed.h"
-#include "sim/comparison_run.h"
+#include "paper/comparison_run.h"
 #include "sim/staged.h"
 #include "sim/structural_extension.h"
 
@@ -24,7 +24,7 @@ struct Springs {
 /// A body under springs on surface points of any kind.
 class SpringProblem : public ConstrainedEnergy {
  public:
-  SpringProblem(const VirtualStructure& body, const Surroundings& nothing, const StencilTable& points,
+  SpringProblem(const ShellBody& body, const ContactLoads& nothing, const StencilTable& points,
                 const Springs& springs, const BodyState& start, bool fixed_pressure = false)
       : body_(body, nothing, {}, start, fixed_pressure), points_(points), springs_(springs) {}
 
@@ -59,7 +59,7 @@ class SpringProblem : public ConstrainedEnergy {
 
 /// A body that is filled and at rest.
 struct Rested {
-  VirtualStructure body;
+  ShellBody body;
   BodyState state;
 };
 
@@ -143,13 +143,13 @@ class ComparedShell : public ComparedBody {
             return std::make_unique<SpringProblem>(body_, nothing_, points_, springs_, start, fixed_pressure);
           },
           NewtonSettings{}, work_, state_);
-    return solve_equilibrium(problem(), NewtonSettings{}, work_, state_.x, state_.multiplier);
+    return solve_equilibrium(problem(), NewtonSettings{}, work_, state_.x, state_.datum_pressure);
   }
 
   /// Moves springs and body on towards `share` to first order, as far as no node goes beyond half an edge.
   NewtonResult predict(double share, double most, bool fresh) {
     constexpr double edge_share = 0.5;
-    const NewtonResult result = factorise_tangent(problem(), work_, state_.x, state_.multiplier, fresh);
+    const NewtonResult result = factorise_tangent(problem(), work_, state_.x, state_.datum_pressure, fresh);
     if (!result.converged()) return result;
     VecX load = VecX::Zero(state_.x.size());
     for (std::size_t i = 0; i < springs_.from.size(); ++i)
@@ -161,25 +161,25 @@ class ComparedShell : public ComparedBody {
     for (int i = 0; i < body_.nodes(); ++i)
       part = std::min(part, edge_share * body_.edge_lengths()[i] / dx.segment<3>(3 * i).norm());
     state_.x += part * dx;
-    state_.multiplier += part * dmultiplier;
+    state_.datum_pressure += part * dmultiplier;
     share_ = part >= 1 ? share : share_ + part * (share - share_);
     springs_.move_to(share_);
     return result;
   }
 
   const ComparedSurface& surface_;
-  VirtualStructure body_;
+  ShellBody body_;
   StencilTable points_;
   NewtonWorkspace work_;
-  Surroundings nothing_;
+  ContactLoads nothing_;
   BodyState filled_, state_;
   Springs springs_;
   double share_ = 0, insertion_s_ = 0;
   bool staged_ = false;
 };
 
-VirtualStructure::Setup setup_of(const TriMesh& control, double radius, int levels) {
-  VirtualStructure::Setup setup;
+ShellBody::Setup setup_of(const TriMesh& control, double radius, int levels) {
+  ShellBody::Setup setup;
   setup.name = "sphere";
   setup.control = control;
   setup.bile = BileDefinition{};
@@ -192,18 +192,19 @@ VirtualStructure::Setup setup_of(const TriMesh& control, double radius, int leve
   return setup;
 }
 
-Result<Rested> brought_to_rest(VirtualStructure body, BodyState state) {
+Result<Rested> brought_to_rest(ShellBody body, BodyState state) {
   NewtonWorkspace work(body.pattern(), body.coarse_nodes());
-  const Surroundings nothing;
+  const ContactLoads nothing;
   const BodyProblem problem(body, nothing, {}, state);
-  const NewtonResult result = solve_equilibrium(problem, NewtonSettings{}, work, state.x, state.multiplier);
+  const NewtonResult result =
+      solve_equilibrium(problem, NewtonSettings{}, work, state.x, state.datum_pressure);
   if (!result.converged())
     return fail(FailureKind::simulation, "a filled sphere found no rest: " + to_text(result.status));
   return Rested{std::move(body), std::move(state)};
 }
 
 Result<Rested> filled(const TriMesh& control, double radius, int levels) {
-  Result<VirtualStructure> body = VirtualStructure::create(setup_of(control, radius, levels));
+  Result<ShellBody> body = ShellBody::create(setup_of(control, radius, levels));
   if (!body) return body.failure();
   const BodyState state{body->rest(), 0, compared_fill * body->bile()->volume(body->rest())};
   return brought_to_rest(std::move(body).value(), state);
@@ -211,9 +212,9 @@ Result<Rested> filled(const TriMesh& control, double radius, int levels) {
 
 Result<Rested> extended(const Rested& before, std::span<const Extension> extensions) {
   std::vector<Extension> all(extensions.begin(), extensions.end());
-  Result<VirtualStructure> body = before.body.with_details(details_around(before.body, all));
+  Result<ShellBody> body = before.body.with_details(details_around(before.body, all));
   if (!body) return body.failure();
-  const BodyState state{before.body.coordinates_in(body.value(), before.state.x), before.state.multiplier,
+  const BodyState state{before.body.coordinates_in(body.value(), before.state.x), before.state.datum_pressure,
                         before.state.volume};
   return brought_to_rest(std::move(body).value(), state);
 }

@@ -1,4 +1,4 @@
-#include "sim/displacement_errors.h"
+#include "paper/displacement_errors.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "sim/paper_comparison.h"
+#include "paper/paper_comparison.h"
 
 namespace calot {
 namespace {

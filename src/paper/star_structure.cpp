@@ -1,4 +1,4 @@
-#include "sim/paper_structure.h"
+#include "paper/star_structure.h"
 
 #include <cmath>
 
@@ -51,12 +51,12 @@ Result<PaperElements> PaperElements::create(const TriMesh& mesh, const std::vect
 }
 
 PaperProblem::PaperProblem(const PaperElements& elements, const StencilTable& points, const Links& springs,
-                           std::optional<double> volume, double multiplier, const VecX& nodes, int first)
+                           std::optional<double> volume, double datum_pressure, const VecX& nodes, int first)
     : elements_(elements),
       points_(points),
       springs_(springs),
       volume_(volume),
-      multiplier_(multiplier),
+      datum_pressure_(datum_pressure),
       nodes_(nodes),
       first_(first) {
   Eigen::AlignedBox3d box;
@@ -85,7 +85,7 @@ double PaperProblem::value(const VecX& x) const {
   double sum = elements_.membrane.value(all);
   if (!std::isfinite(sum)) return sum;
   sum += elements_.hinges.value(all) + springs_.value(points_, all) + elements_.bile.value(all);
-  if (!volume_) sum -= multiplier_ * elements_.bile.volume(all);
+  if (!volume_) sum -= datum_pressure_ * elements_.bile.volume(all);
   return sum;
 }
 
@@ -96,24 +96,24 @@ void PaperProblem::gradient(const VecX& x, VecX& gradient, double& largest_inter
   elements_.hinges.add_gradient(all, g);
   largest_internal = largest_node(g.tail(x.size()));
   springs_.add_gradient(points_, all, g);
-  elements_.bile.add_load(all, volume_ ? 0.0 : multiplier_, g);
+  elements_.bile.add_load(all, volume_ ? 0.0 : datum_pressure_, g);
   gradient = g.tail(x.size());
   // A body at rest carries no force yet: then the loads on it are the scale.
   largest_internal = std::max(largest_internal, 1e-3 * largest_node(gradient));
 }
 
-void PaperProblem::add_hessian(const VecX& all, double multiplier, BlockMatrix& matrix) const {
+void PaperProblem::add_hessian(const VecX& all, double datum_pressure, BlockMatrix& matrix) const {
   elements_.membrane.add_hessian(all, matrix);
   elements_.hinges.add_hessian(all, matrix);
   springs_.add_hessian(points_, matrix);
-  elements_.bile.add_hessian(all, volume_ ? multiplier : multiplier_, matrix);
+  elements_.bile.add_hessian(all, volume_ ? datum_pressure : datum_pressure_, matrix);
 }
 
-void PaperProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
+void PaperProblem::hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const {
   matrix.set_zero();
-  if (first_ == 0) return add_hessian(x, multiplier, matrix);
+  if (first_ == 0) return add_hessian(x, datum_pressure, matrix);
   BlockMatrix all = pattern(elements_, 0);
-  add_hessian(whole(x), multiplier, all);
+  add_hessian(whole(x), datum_pressure, all);
   // The unknowns come last and only the lower triangle is kept: their columns are the same entries.
   matrix.assign({all.entries().begin() + all.column_starts()[3 * first_], all.entries().end()});
 }
@@ -209,17 +209,17 @@ void PaperBody::carry_extension() {
 NewtonResult PaperBody::solve(Stage& stage, double share) {
   for (std::size_t i = 0; i < stage.from.size(); ++i)
     stage.springs.target[i] = stage.from[i] + share * stage.travel[i];
-  const PaperProblem problem(stage.elements, stage.points, stage.springs, stage.volume, multiplier_,
+  const PaperProblem problem(stage.elements, stage.points, stage.springs, stage.volume, datum_pressure_,
                              stage.nodes, stage.first);
   VecX x = stage.nodes.tail(stage.nodes.size() - 3 * stage.first);
-  double multiplier = multiplier_;
+  double datum_pressure = datum_pressure_;
   NewtonResult result;
   {
     const Timed timed(stage.seconds);
-    result = solve_equilibrium(problem, setup_.newton, stage.work, x, multiplier);
+    result = solve_equilibrium(problem, setup_.newton, stage.work, x, datum_pressure);
   }
   stage.nodes.tail(x.size()) = x;
-  if (stage.volume) multiplier_ = multiplier;
+  if (stage.volume) datum_pressure_ = datum_pressure;
   stage.iterations += result.iterations;
   stage.factorisations += result.iterations - result.chords + result.shifts;
   return result;

@@ -1,4 +1,4 @@
-#include "sim/paper_skin.h"
+#include "paper/star_skin.h"
 
 #include "skin/subdivision.h"
 

@@ -1,4 +1,4 @@
-#include "sim/comparison_run.h"
+#include "paper/comparison_run.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "geometry/radial_view.h"
-#include "sim/compared_body.h"
-#include "sim/paper_comparison.h"
+#include "paper/compared_body.h"
+#include "paper/paper_comparison.h"
 
 namespace calot {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/paper_skin.h"
+#include "paper/star_skin.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "geometry/shapes.h"
-#include "sim/paper_structure.h"
+#include "paper/star_structure.h"
 
 namespace calot {
 namespace {
