@@ -155,6 +155,8 @@ struct SolverDefinition {
   ExtensionScheme extension_scheme = ExtensionScheme::condensed;
   /// m; where the laparoscope looks at an organ from nearer than this, it has an extension there too; 0: never
   double extension_view = 0;
+  /// Steps that are known to change nothing are not computed again; off only to measure what they cost.
+  bool skip_still = true;
 };
 
 struct SceneDefinition {

@@ -11,12 +11,14 @@ namespace calot {
 struct Plane {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();  ///< unit
+  bool operator==(const Plane&) const = default;
 };
 
 /// Ball swept along a segment.
 struct Capsule {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< m
   double radius = 0;                        ///< m
+  bool operator==(const Capsule&) const = default;
 };
 
 /// Box grown by a radius: an instrument's jaw. `half` are the half extents of the inner box.
@@ -24,6 +26,9 @@ struct RoundedBox {
   Pose pose = Pose::Identity();  ///< box frame to world
   Vec3 half = Vec3::Zero();      ///< m
   double radius = 0;             ///< m, > 0
+  bool operator==(const RoundedBox& other) const {
+    return pose.matrix() == other.pose.matrix() && half == other.half && radius == other.radius;
+  }
 };
 
 using Shape = std::variant<Plane, Capsule, RoundedBox>;

@@ -71,6 +71,14 @@ void BlockMatrix::slots(std::span<const int> nodes, int* out) const {
   }
 }
 
+BlockMatrix BlockMatrix::pattern_only() const { return BlockMatrix(pattern_); }
+
+BlockMatrix BlockMatrix::blank() const {
+  BlockMatrix out(pattern_);
+  out.values_.assign(pattern_->rows.size(), 0.0);
+  return out;
+}
+
 BlockMatrix BlockMatrix::widened(std::span<const std::vector<int>> cliques) const {
   std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
   for (int j = 0; j < nodes(); ++j)

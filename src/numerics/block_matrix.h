@@ -27,6 +27,11 @@ class BlockMatrix {
   /// Adds values as entries() returned them from a matrix of the same pattern.
   void add(const std::vector<double>& values);
 
+  /// The pattern without values, to be kept: blank() makes a matrix of zeros of it again.
+  BlockMatrix pattern_only() const;
+  BlockMatrix blank() const;
+  bool same_pattern(const BlockMatrix& other) const { return pattern_ == other.pattern_; }
+
   /// The same values with room for the couplings of further cliques.
   BlockMatrix widened(std::span<const std::vector<int>> cliques) const;
   /// Starts from a matrix whose pattern this one's holds.
@@ -66,6 +71,7 @@ class BlockMatrix {
     std::vector<int> column_starts, rows;
     std::vector<int> slots;  ///< of every pair (i, j) at j * nodes + i, for few nodes
   };
+  explicit BlockMatrix(std::shared_ptr<const Pattern> pattern) : pattern_(std::move(pattern)) {}
   int search(int i, int j) const;
 
   std::shared_ptr<const Pattern> pattern_;

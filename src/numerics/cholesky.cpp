@@ -52,7 +52,15 @@ struct Cholesky::Impl {
     common.print = 0;
     common.quick_return_if_not_posdef = 1;
   }
-  Impl(const Impl&) = delete;
+  /// Room for another factor of the same pattern.
+  explicit Impl(const Impl& like) : Impl() {
+    kind = like.kind;
+    condensation = like.condensation;
+    if (kind != FactorKind::sparse)
+      factor_l.resize(like.factor_l.rows(), like.factor_l.cols());
+    else if (like.factor != nullptr)
+      factor = cholmod_copy_factor(like.factor, &common);
+  }
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     cholmod_free_dense(&solution, &common);
@@ -90,7 +98,7 @@ struct Cholesky::Impl {
 };
 
 Cholesky::Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(std::make_shared<Impl>()) {
   impl_->kind = kind;
   // Eigen cuts its products by the caches it finds; fixed sizes make the order of sums the same everywhere.
   Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 8 * 1024 * 1024);
@@ -104,13 +112,11 @@ Cholesky::Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind)
     impl_->factor = cholmod_analyze(&sparse, &impl_->common);
   }
 }
-Cholesky::Cholesky(Cholesky&&) noexcept = default;
-Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
-Cholesky::~Cholesky() = default;
 
 FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
   // Neither library minds a NaN (CHOLMOD 3.0.14 takes one on the diagonal for a success), so look before.
   if (!matrix.all_finite()) return FactorStatus::not_finite;
+  if (impl_.use_count() > 1) impl_ = std::make_shared<Impl>(*impl_);
   if (impl_->kind == FactorKind::sparse) return impl_->factorise_sparse(matrix);
   return impl_->kind == FactorKind::dense ? impl_->factorise_dense(matrix)
                                           : impl_->factorise_condensed(matrix);

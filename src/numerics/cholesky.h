@@ -28,9 +28,10 @@ class Cholesky {
                  : coarse < pattern.nodes()    ? FactorKind::condensed
                                                : FactorKind::dense) {}
   Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind);
-  Cholesky(Cholesky&&) noexcept;
-  Cholesky& operator=(Cholesky&&) noexcept;
-  ~Cholesky();
+  /// A copy shares the factor until either factorises anew.
+  Cholesky(const Cholesky&) = default;
+  Cholesky& operator=(const Cholesky&) = default;
+  bool shares_factor_with(const Cholesky& other) const { return impl_ == other.impl_; }
 
   /// Factorises a matrix of the analysed pattern; values are checked to be finite before, the status after.
   FactorStatus factorise(const BlockMatrix& matrix);
@@ -43,7 +44,7 @@ class Cholesky {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace calot

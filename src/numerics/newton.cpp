@@ -299,6 +299,15 @@ NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSet
   }
 }
 
+void NewtonWorkspace::restore(const Kept& kept) {
+  if (!matrix.same_pattern(kept.pattern)) matrix = kept.pattern.blank();
+  factor = kept.factor;
+  constraint_gradient = kept.constraint_gradient;
+  bordered = kept.bordered;
+  factored = kept.factored;
+  shifted = kept.shifted;
+}
+
 NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
                                double multiplier, bool fresh) {
   NewtonResult result;

@@ -83,6 +83,19 @@ struct NewtonWorkspace {
   VecX bordered;             ///< factor^-1 constraint_gradient
   bool factored = false;
   bool shifted = false;  ///< the factor is of a shifted matrix: no use for chord steps
+
+  /// All that later solves depend on: the matrix' values are written anew by each. Cheap to copy, as the factor is
+  /// shared until the next one is made.
+  struct Kept {
+    BlockMatrix pattern;
+    Cholesky factor;
+    VecX constraint_gradient, bordered;
+    bool factored, shifted;
+  };
+  Kept keep() const {
+    return {matrix.pattern_only(), factor, constraint_gradient, bordered, factored, shifted};
+  }
+  void restore(const Kept& kept);
 };
 
 /// Solves from (x, multiplier), which receive the result; on failure they hold the last iterate.

@@ -45,41 +45,40 @@ Vec3 carried(const Pose& motion, const Vec3& x) { return motion * x - x; }
 
 /// The load that the tools' motion to `to` puts on the organ to first order; none for a tool that stays, not
 /// even rounding.
-VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& field_now,
+VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now,
                  const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
   VecX load = VecX::Zero(organ.state.x.size());
   loaded = false;
   ContactLoad pressed(organ.body.skin(), load);
   std::vector<std::optional<Pose>> motions;  // of the shapes; the support stays
-  for (std::size_t shape = 0; shape < field_now.shapes.size(); ++shape) {
+  for (std::size_t shape = 0; shape < now.shapes.size(); ++shape) {
     const std::size_t tool = shape / shapes_per_tool;
     motions.emplace_back();
     if (tool < field.tools.size() && from[tool] != to[tool])
       motions.back() =
           part_motion(field.tools[tool], from[tool], to[tool], static_cast<int>(shape % shapes_per_tool));
   }
-  const auto press = [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
-    if (!motions[shape]) return;
-    pressed.add(point,
-                contact_hessian(organ.body, field_now, point, shape, at, d) * carried(*motions[shape], at));
+  for (const Touch& touch : organ.search.touches.at(organ.body, organ.state.x, now, pairs, 0.0)) {
+    if (!motions[touch.shape]) continue;
+    pressed.add(touch.point,
+                contact_hessian(organ.body, now, touch) * carried(*motions[touch.shape], touch.at));
     loaded = true;
-  };
-  for_touching(organ.body, organ.state.x, field_now, pairs, 0.0, press);
+  }
   const Links target = grip_links(organ, field.tools, to);
   for (std::size_t i = 0; i < target.row.size(); ++i) {
     const int tool = organ.grips[i].instrument;
     if (from[tool] == to[tool]) continue;
     spread(organ.body.skin().stencils, target.row[i],
-           target.stiffness[i] * (target.target[i] - field_now.grip.target[i]), load);
+           target.stiffness[i] * (target.target[i] - now.grip.target[i]), load);
     loaded = true;
   }
   // What rubs touches as well: it has been found loaded above.
   const FrictionLoad carried_on = friction_load(field, organ, to);
   ContactPlaces places(organ.body.skin(), organ.state.x);
   for (std::size_t i = 0; i < carried_on.points.size(); ++i) {
-    const RubbingPoint& rubbing = field_now.friction.points[i];
-    const FrictionSample now = rubbing.hold.sample(places.at(rubbing.point));
-    pressed.add(rubbing.point, now.hessian * (carried_on.points[i].hold.anchor - rubbing.hold.anchor));
+    const RubbingPoint& rubbing = now.friction.points[i];
+    const FrictionSample sample = rubbing.hold.sample(places.at(rubbing.point));
+    pressed.add(rubbing.point, sample.hessian * (carried_on.points[i].hold.anchor - rubbing.hold.anchor));
   }
   pressed.finish();
   return load;
@@ -154,6 +153,8 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
 Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh,
                            SolveStatistics& statistics) {
   Prediction out;
+  out.dx = VecX::Zero(organ.state.x.size());
+  if (from == to) return out;
   const ContactLoads now = contact_loads(field, organ, from);
   double travel = 0;
   for (std::size_t i = 0; i < from.size(); ++i)
@@ -166,9 +167,8 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   }
   bool loaded = false;
   const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
-  out.dx = VecX::Zero(organ.state.x.size());
   if (loaded) {
-    const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search.own);
+    const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search);
     const NewtonResult factored =
         factorise_tangent(problem, organ.work, organ.state.x, organ.state.datum_pressure, fresh);
     count(factored, statistics);
@@ -271,10 +271,10 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
       const double next = share >= 1.0 ? 1.0 : done + share * left;
       const Poses poses = next >= 1.0 ? to : between(from, to, share);
       accepted = true;
-      std::vector<Placement> before;
+      std::vector<OrganSnapshot> before;
       for (std::size_t k = 0; k < field.organs.size() && accepted; ++k) {
         Organ& organ = field.organs[k];
-        before.push_back(placement(organ));
+        before.push_back(snapshot(organ));
         organ.state.x += share * predictions[k].dx;
         organ.state.datum_pressure += share * predictions[k].dmultiplier;
         last = settle_organ(field, organ, poses, before.back().state.x, part_iterations, statistics);
@@ -292,7 +292,7 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
         if (!held) return held;
         iterations_before += statistics.newton_iterations - iterations_moving;
       } else {
-        for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
+        for (std::size_t k = 0; k < before.size(); ++k) restore(field.organs[k], before[k]);
         if (!fresh) {
           fresh = true;
           break;
@@ -370,74 +370,6 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     }
   }
   return events;
-}
-
-std::vector<ToolLoad> tool_loads(const Field& field) {
-  std::vector<ToolLoad> loads(field.tools.size());
-  const Poses poses = present_poses(field);
-  const auto add = [&](std::size_t tool, const Vec3& at, const Vec3& force, const Organ& organ) {
-    ToolLoad& load = loads[tool];
-    load.force += force;
-    load.moment += (at - field.tools[tool].trocar).cross(force);
-    if (load.touches++ == 0) load.organ = organ.definition.name;
-  };
-  for (const Organ& organ : field.organs) {
-    const ContactLoads now = contact_loads(field, organ, poses);
-    const std::vector<ContactPair> touching =
-        organ.search.pairs(organ.body, organ.state.x, now, -contact_margin);
-    for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching)) {
-      const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
-      if (tool < loads.size()) add(tool, contact.at, contact.on_shape, organ);
-    }
-    ContactPlaces places(organ.body.skin(), organ.state.x);
-    for (const RubbingPoint& rubbing : now.friction.points) {
-      const std::size_t tool = static_cast<std::size_t>(rubbing.shape) / shapes_per_tool;
-      // The point is counted where it presses.
-      if (tool >= loads.size()) continue;
-      const Vec3 at = places.at(rubbing.point), rub = rubbing.hold.sample(at).gradient;
-      loads[tool].force += rub;
-      loads[tool].moment += (at - field.tools[tool].trocar).cross(rub);
-    }
-    for (std::size_t g = 0; g < organ.grips.size(); ++g) {
-      const Vec3 at = organ.body.skin_point(organ.grips[g].skin_point, organ.state.x);
-      add(static_cast<std::size_t>(organ.grips[g].instrument), at,
-          now.grip.stiffness[g] * (at - now.grip.target[g]), organ);
-    }
-  }
-  return loads;
-}
-
-Result<bool> check_clear(const Field& field) {
-  bool touches = deepest_penetration(field) > 0;
-  for (const ToolLoad& load : tool_loads(field)) touches |= load.touches > 0;
-  if (touches)
-    return fail(FailureKind::scenario, "an instrument that waits in its trocar, 30 mm deep, touches an organ",
-                "choose another port, or move the organ");
-  return true;
-}
-
-double deepest_penetration(const Field& field) {
-  constexpr int parts = 4;  // other points than those that are felt
-  double deepest = 0;
-  for (const Tool& tool : field.tools) {
-    for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {
-      const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
-      for (const Organ& organ : field.organs) {
-        const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
-        for (const Triangle& t : organ.body.skin().triangles) {
-          Eigen::AlignedBox3d around;
-          for (int corner : t) around.extend(skin[corner]);
-          if (!around.intersects(box)) continue;
-          for (int i = 0; i <= parts; ++i)
-            for (int j = 0; i + j <= parts; ++j) {
-              const Vec3 at = (i * skin[t[0]] + j * skin[t[1]] + (parts - i - j) * skin[t[2]]) / parts;
-              deepest = std::max(deepest, -signed_distance(shape, at));
-            }
-        }
-      }
-    }
-  }
-  return deepest;
 }
 
 }  // namespace calot

@@ -22,19 +22,4 @@ inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,
                                         SolveStatistics& statistics);
 
-/// What the tissue does to a tool.
-struct ToolLoad {
-  Vec3 force = Vec3::Zero();   ///< N
-  Vec3 moment = Vec3::Zero();  ///< N m, about the trocar
-  int touches = 0;             ///< skin points in contact or held
-  std::string organ;           ///< the first organ that touches it, or empty
-};
-std::vector<ToolLoad> tool_loads(const Field& field);
-
-/// Fails (scenario) when a tool starts inside an organ.
-Result<bool> check_clear(const Field& field);
-
-/// Deepest point of any skin inside a tool as it is made, m, on the skin's triangles split into four along each edge.
-double deepest_penetration(const Field& field);
-
 }  // namespace calot

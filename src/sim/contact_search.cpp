@@ -67,7 +67,8 @@ std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX&
   constexpr double ahead = 4e-3;    // m remembered beyond what is asked for
   constexpr double stale = 0.5e-3;  // m of motion after which remembered distances are measured again
   const double reach = reach_of(loads, extra);
-  bool usable = reach_ > 0 && x_.size() == x.size() && shapes_.size() == loads.shapes.size();
+  bool usable = reach_ > 0 && x_.size() == x.size() && details_ == body.details() &&
+                shapes_.size() == loads.shapes.size();
   std::vector<double> approach(loads.shapes.size());  // how much nearer a pair of the shape may have come
   double most = 0;
   if (usable) {
@@ -79,9 +80,10 @@ std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX&
     }
   }
   if (!usable) {
-    // What is found near a place that is no place is not to be remembered.
+    // Distances from a place that is not finite say nothing about the next one.
     reach_ = x.allFinite() ? reach + ahead : -1;
     near_ = pairs_within(body, x, loads, reach + ahead);
+    details_ = body.details();
     shapes_ = loads.shapes;
     x_ = x;
     approach.assign(approach.size(), 0.0);
@@ -100,6 +102,41 @@ std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX&
     if (now.distance < reach) out.push_back(now);
   }
   return out;
+}
+
+const std::vector<Touch>* TouchMemory::known(const ShellBody& body, const VecX& x,
+                                             const ContactLoads& loads) const {
+  for (const State& state : states_)
+    if (state.range == loads.barrier.range && state.x.size() == x.size() && state.x == x &&
+        state.shapes == loads.shapes && state.details == body.details())
+      return &state.touches;
+  return nullptr;
+}
+
+const std::vector<Touch>& TouchMemory::at(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                                          const std::vector<ContactPair>& pairs, double approach) {
+  if (const std::vector<Touch>* touches = known(body, x, loads)) {
+    newest_ = &states_[0].touches == touches ? 0 : 1;
+    return *touches;
+  }
+  newest_ = 1 - newest_;
+  State& state = states_[newest_];
+  state.x = x;
+  state.details = body.details();
+  state.shapes = loads.shapes;
+  state.range = loads.barrier.range;
+  state.touches.clear();
+  for_touching(body, x, loads, pairs, approach,
+               [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
+                 state.touches.push_back({point, shape, at, slope});
+               });
+  return state.touches;
+}
+
+const std::vector<Touch>& ContactSearch::touching(const ShellBody& body, const VecX& x,
+                                                  const ContactLoads& loads) {
+  if (const std::vector<Touch>* known = touches.known(body, x, loads)) return *known;
+  return touches.at(body, x, loads, pairs(body, x, loads, -contact_margin), 0.0);
 }
 
 }  // namespace calot

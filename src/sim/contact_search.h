@@ -1,6 +1,8 @@
 #pragma once
 // Which triangles of the skin may meet which shapes.
 
+#include <array>
+
 #include "collision/barrier.h"
 #include "collision/shapes.h"
 #include "sim/friction_load.h"
@@ -71,6 +73,36 @@ void for_touching(const ShellBody& body, const VecX& x, const ContactLoads& load
   }
 }
 
+/// A contact point in range of a shape.
+struct Touch {
+  int point = 0, shape = 0;
+  Vec3 at = Vec3::Zero();  ///< m
+  DistanceSlope slope;
+};
+
+/// What touches, found once for a state: a solve's energies and their derivatives, and after it pads, forces and report
+/// ask for the same place. For one organ.
+class TouchMemory {
+ public:
+  /// All contact points in range when the nodes are at x, m, ordered by shape, then point. `pairs` are ordered and hold
+  /// all that may meet; none has come nearer than by `approach` since it was gathered. Valid until the next call.
+  const std::vector<Touch>& at(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                               const std::vector<ContactPair>& pairs, double approach);
+  /// The same where it is known, else null.
+  const std::vector<Touch>* known(const ShellBody& body, const VecX& x, const ContactLoads& loads) const;
+
+ private:
+  struct State {
+    VecX x;
+    std::vector<int> details;
+    std::vector<Shape> shapes;
+    double range = -1;  ///< m; below 0: nothing yet
+    std::vector<Touch> touches;
+  };
+  std::array<State, 2> states_;  ///< where a step began and where it is tried
+  std::size_t newest_ = 0;
+};
+
 /// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then triangle.
 std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                       double extra);
@@ -84,7 +116,11 @@ class ContactSearch {
   std::vector<ContactPair> pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                  double extra);
 
+  /// What touches at x, looked for only where that is not known yet. Valid until the next call or solve.
+  const std::vector<Touch>& touching(const ShellBody& body, const VecX& x, const ContactLoads& loads);
+
   SelfContact own;  ///< the skin's with itself
+  TouchMemory touches;
 
  private:
   /// Measures what is remembered again where it is now, nothing having come nearer than by `approach`, m.
@@ -92,6 +128,7 @@ class ContactSearch {
 
   std::vector<ContactPair> near_;  ///< distances as they were then
   std::vector<Shape> shapes_;
+  std::vector<int> details_;
   VecX x_;
   double reach_ = -1;  ///< m
 };

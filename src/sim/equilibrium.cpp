@@ -9,7 +9,7 @@
 
 namespace calot {
 BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
-                         const BodyState& start, bool fixed_pressure, SelfContact* own)
+                         const BodyState& start, bool fixed_pressure, ContactSearch* search)
     : body_(body),
       loads_(loads),
       pairs_(std::move(pairs)),
@@ -17,7 +17,7 @@ BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, std::
       volume_(start.volume),
       multiplier_(start.datum_pressure),
       fixed_pressure_(fixed_pressure),
-      own_(own) {
+      search_(search) {
   for (const Shape& shape : loads.shapes) cores_.push_back(core_of(shape));
 }
 
@@ -42,12 +42,11 @@ double BodyProblem::value(const VecX& x) const {
   }
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   if (loads_.load.size() > 0) sum -= loads_.load.dot(x);
-  for_touching(body_, x, loads_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
-    sum += body_.contact_area(point) * loads_.barrier.sample(d.distance).energy;
-  });
+  for (const Touch& touch : touching(x))
+    sum += body_.contact_area(touch.point) * loads_.barrier.sample(touch.slope.distance).energy;
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
-  if (own_) sum += own_->value(body_, x);
+  if (search_) sum += search_->own.value(body_, x);
   return sum;
 }
 
@@ -60,13 +59,14 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   if (loads_.load.size() > 0) gradient -= loads_.load;
   ContactLoad pressed(body_.skin(), gradient);
-  for_touching(body_, x, loads_, pairs_, moved(x), [&](int point, int, const Vec3&, const DistanceSlope& d) {
-    pressed.add(point, body_.contact_area(point) * loads_.barrier.sample(d.distance).derivative * d.gradient);
-  });
+  for (const Touch& touch : touching(x))
+    pressed.add(touch.point, body_.contact_area(touch.point) *
+                                 loads_.barrier.sample(touch.slope.distance).derivative *
+                                 touch.slope.gradient);
   pressed.finish();
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
-  if (own_) own_->add_gradient(body_, x, gradient);
+  if (search_) search_->own.add_gradient(body_, x, gradient);
 }
 
 namespace {
@@ -102,16 +102,13 @@ void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix)
   loads_.friction.add_hessian(body_.skin(), x, matrix);
   if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
   ContactStiffness pressed(body_.skin(), matrix);
-  for_touching(body_, x, loads_, pairs_, moved(x),
-               [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
-                 pressed.add(point, contact_hessian(body_, loads_, point, shape, at, d));
-               });
+  for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(body_, loads_, touch));
   pressed.finish();
   for_held_details([&](Eigen::Index at, double stiffness) {
     const int node = static_cast<int>(at / 3);
     matrix.add(node, node, stiffness * Mat3::Identity());
   });
-  if (own_) own_->add_hessian(body_, x, matrix);
+  if (search_) search_->own.add_hessian(body_, x, matrix);
 }
 
 double BodyProblem::constraint(const VecX& x, VecX& gradient) const {
@@ -152,7 +149,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
       share *= calot::safe_share(at, motion, shape, contact_keep);
     }
   }
-  return own_ ? own_->safe_share(body_, x, step, contact_keep, share) : share;
+  return search_ ? search_->own.safe_share(body_, x, step, contact_keep, share) : share;
 }
 
 NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const NewtonSettings& settings,
@@ -171,12 +168,12 @@ NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const Newt
     }
     const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
     const auto problem = [&](const BodyState& start, bool at_pressure) {
-      return std::make_unique<BodyProblem>(body, loads, pairs, start, at_pressure, &search.own);
+      return std::make_unique<BodyProblem>(body, loads, pairs, start, at_pressure, &search);
     };
     const NewtonResult result =
         staged ? solve_in_stages(body, problem, settings, work, state)
-               : solve_equilibrium(BodyProblem(body, loads, pairs, state, fixed_pressure, &search.own),
-                                   settings, work, state.x, state.datum_pressure);
+               : solve_equilibrium(BodyProblem(body, loads, pairs, state, fixed_pressure, &search), settings,
+                                   work, state.x, state.datum_pressure);
     total.add(result);
     total.safety_s += gathering_s;
     // Walls that met without couplings in the matrix have them in the next round.
@@ -189,21 +186,29 @@ NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const Newt
   return total;
 }
 
-std::vector<ContactForce> contact_forces(const ShellBody& body, const VecX& x, const ContactLoads& loads,
-                                         const std::vector<ContactPair>& pairs) {
+std::vector<ContactForce> contact_forces(const ShellBody& body, const ContactLoads& loads,
+                                         const std::vector<Touch>& touches) {
   std::vector<ContactForce> out;
-  for_touching(body, x, loads, pairs, 0.0, [&](int point, int shape, const Vec3& at, const DistanceSlope& d) {
-    const double pressure = loads.barrier.sample(d.distance).derivative;
-    out.push_back({shape, point, at, body.contact_area(point) * pressure * d.gradient});
-  });
+  for (const Touch& touch : touches) {
+    const double pressure = loads.barrier.sample(touch.slope.distance).derivative;
+    out.push_back({touch.shape, touch.point, touch.at,
+                   body.contact_area(touch.point) * pressure * touch.slope.gradient});
+  }
   return out;
 }
 
-Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, int point, int shape, const Vec3& at,
-                     const DistanceSlope& d) {
+std::vector<ContactForce> contact_forces(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                                         const std::vector<ContactPair>& pairs) {
+  TouchMemory memory;
+  return contact_forces(body, loads, memory.at(body, x, loads, pairs, 0.0));
+}
+
+Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, const Touch& touch) {
+  const DistanceSlope& d = touch.slope;
   const BarrierSample b = loads.barrier.sample(d.distance);
-  return body.contact_area(point) * (b.second * d.gradient * d.gradient.transpose() +
-                                     b.derivative * distance_hessian(loads.shapes[shape], at, d));
+  return body.contact_area(touch.point) *
+         (b.second * d.gradient * d.gradient.transpose() +
+          b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));
 }
 
 }  // namespace calot

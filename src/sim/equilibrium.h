@@ -18,10 +18,10 @@ inline constexpr int settle_iterations = 1000;
 
 class BodyProblem : public ConstrainedEnergy {
  public:
-  /// `fixed_pressure`: the multiplier is prescribed and the volume free. `own`: contact of the skin with itself,
-  /// where that is asked for; it must outlive the problem.
+  /// `fixed_pressure`: the multiplier is prescribed and the volume free. `search`: remembers what touches and
+  /// knows the contact of the skin with itself, which is left out without it; it must outlive the problem.
   BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
-              const BodyState& start, bool fixed_pressure = false, SelfContact* own = nullptr);
+              const BodyState& start, bool fixed_pressure = false, ContactSearch* search = nullptr);
 
   bool constrained() const override { return body_.bile().has_value() && !fixed_pressure_; }
   double value(const VecX& x) const override;
@@ -39,6 +39,9 @@ class BodyProblem : public ConstrainedEnergy {
  private:
   /// How far any node, and so any skin point, is from where the solve began, m.
   double moved(const VecX& x) const;
+  const std::vector<Touch>& touching(const VecX& x) const {
+    return (search_ ? search_->touches : touches_).at(body_, x, loads_, pairs_, moved(x));
+  }
   /// Gradient but for the bile's part.
   void add_dry_gradient(const VecX& x, VecX& gradient, double& largest_internal) const;
   /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
@@ -51,7 +54,8 @@ class BodyProblem : public ConstrainedEnergy {
   VecX start_;
   double volume_, multiplier_;
   bool fixed_pressure_;
-  SelfContact* own_;
+  ContactSearch* search_;
+  mutable TouchMemory touches_;  ///< where no search remembers
 };
 
 /// Equilibrium under loads that stand still, however far from `state` it is: where a solve ends at the margin, the next
@@ -68,10 +72,11 @@ struct ContactForce {
   Vec3 on_shape = Vec3::Zero();  ///< N, of the skin on the shape
 };
 /// One for each contact point in range.
+std::vector<ContactForce> contact_forces(const ShellBody& body, const ContactLoads& loads,
+                                         const std::vector<Touch>& touches);
 std::vector<ContactForce> contact_forces(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                          const std::vector<ContactPair>& pairs);
-/// Hessian, by its place, of a contact point's energy against a shape that loads it, N/m: of what for_touching finds.
-Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, int point, int shape, const Vec3& at,
-                     const DistanceSlope& d);
+/// Hessian of a contact point's energy by its place, N/m.
+Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, const Touch& touch);
 
 }  // namespace calot

@@ -45,14 +45,6 @@ double largest_travel(const Field& field, const std::vector<InstrumentPose>& to)
 
 }  // namespace
 
-Placement placement(const Organ& organ) { return {organ.state, organ.grips, organ.friction}; }
-
-void give_back(Organ& organ, const Placement& placement) {
-  organ.state = placement.state;
-  organ.grips = placement.grips;
-  organ.friction = placement.friction;
-}
-
 NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
                           const VecX& before, int max_iterations, SolveStatistics& statistics) {
   NewtonSettings settings;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/organ.h"
+#include "sim/step_report.h"
 #include "sim/tool.h"
-#include "sim/world.h"
 
 namespace calot {
 
@@ -35,15 +35,6 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
 
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);
-
-/// What a failed motion gives back.
-struct Placement {
-  BodyState state;
-  std::vector<GripPoint> grips;
-  FrictionLoad friction;
-};
-Placement placement(const Organ& organ);
-void give_back(Organ& organ, const Placement& placement);
 
 /// Brings one organ to rest with the tools at `poses`; on failure it is left at the last iterate. `before` is
 /// where it was at its last equilibrium, tools as field.tools stand: friction resists what moved since, and details

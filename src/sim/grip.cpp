@@ -85,11 +85,15 @@ bool fold_fills_jaws(const Field& field, int instrument) {
 Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
                  const std::vector<InstrumentPose>& poses) {
   Links links;
+  Pose jaw = Pose::Identity();
+  const GripPoint* last = nullptr;  // those of one jaw follow each other
   for (const GripPoint& grip : organ.grips) {
     const Tool& tool = tools[grip.instrument];
+    if (!last || last->instrument != grip.instrument || last->jaw != grip.jaw)
+      jaw = jaw_frame(tool.trocar, poses[grip.instrument], tool.geometry, grip.jaw);
+    last = &grip;
     links.row.push_back(grip.skin_point);
-    links.target.push_back(jaw_frame(tool.trocar, poses[grip.instrument], tool.geometry, grip.jaw) *
-                           grip.local);
+    links.target.push_back(jaw * grip.local);
     links.stiffness.push_back(grip.stiffness);
   }
   return links;

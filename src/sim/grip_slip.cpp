@@ -5,20 +5,11 @@
 #include <algorithm>
 #include <functional>
 
+#include "sim/field_state.h"
 #include "sim/grip.h"
 
 namespace calot {
 namespace {
-
-std::vector<Placement> placements(const Field& field) {
-  std::vector<Placement> out;
-  for (const Organ& organ : field.organs) out.push_back(placement(organ));
-  return out;
-}
-
-void give_back(Field& field, const std::vector<Placement>& before) {
-  for (std::size_t k = 0; k < before.size(); ++k) give_back(field.organs[k], before[k]);
-}
 
 /// Newton iterations that a change of a grip may take.
 struct Budget {
@@ -77,10 +68,10 @@ Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& 
 
 Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
-  const std::vector<Placement> before = placements(field);
+  const FieldState before = field_state(field);
   const auto held = [&](const GripPoint& grip) { return grip.instrument == instrument; };
   const Result<bool> faded = fade(field, instrument, held, 0.2, budget, statistics);
-  if (!faded) give_back(field, before);
+  if (!faded) restore(field, before);
   return faded;
 }
 
@@ -94,8 +85,8 @@ Vec3 pad_pull(const Field& field, int instrument) {
       if (organ.grips[g].instrument == instrument)
         pull += now.grip.stiffness[g] *
                 (organ.body.skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
-    const auto touching = organ.search.pairs(organ.body, organ.state.x, now, -contact_margin);
-    for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, touching))
+    const std::vector<Touch>& touching = organ.search.touching(organ.body, organ.state.x, now);
+    for (const ContactForce& contact : contact_forces(organ.body, now, touching))
       if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
         pull += contact.on_shape;
   }
@@ -117,19 +108,19 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
   Vec3 pull = pad_pull(field, instrument);
   const double at_start = pull.norm();
   if (at_start <= above * limit) return 0.0;
-  const std::vector<Placement> start = placements(field);
+  const FieldState start = field_state(field);
   double way = shortest_way;
   while (!budget.spent()) {
-    const std::vector<Placement> before = placements(field);
+    const FieldState before = field_state(field);
     const Result<bool> slid = slide(field, instrument, way * pull.normalized(), budget, statistics);
     if (!slid) {
-      give_back(field, start);
+      restore(field, start);
       return slid.failure();
     }
     const Vec3 now = pad_pull(field, instrument);
     const bool lost = !both_pads_hold(field, instrument);
     if (!lost && now.norm() < below * limit && way > shortest_way) {  // too far
-      give_back(field, before);
+      restore(field, before);
       way = std::max(0.3 * way, shortest_way);
       continue;
     }
@@ -140,7 +131,7 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
     way = std::clamp(next, shortest_way, longest);
     pull = now;
   }
-  give_back(field, start);
+  restore(field, start);
   return without_end(field, instrument, "the fold that slips through");
 }
 

@@ -172,6 +172,21 @@ std::optional<Failure> check_skin_spacing(const ShellBody& body) {
 
 }  // namespace
 
+OrganSnapshot snapshot(const Organ& organ) {
+  return {organ.body,       organ.state,           organ.work.keep(), organ.grips,
+          organ.extensions, organ.refused_details, organ.friction};
+}
+
+void restore(Organ& organ, const OrganSnapshot& snapshot) {
+  organ.body = snapshot.body;
+  organ.state = snapshot.state;
+  organ.work.restore(snapshot.factor);
+  organ.grips = snapshot.grips;
+  organ.extensions = snapshot.extensions;
+  organ.refused_details = snapshot.refused_details;
+  organ.friction = snapshot.friction;
+}
+
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {
   const std::string hint = result.status == NewtonStatus::mechanism
                                ? "give the organ a held region, or let something support it"
@@ -219,7 +234,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
   }
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
-  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}, {}};
+  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}, {}, {}};
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/equilibrium.h"
+#include "sim/instrument.h"
 
 namespace calot {
 
@@ -15,6 +16,7 @@ struct GripPoint {
   int skin_point = 0;
   Vec3 local = Vec3::Zero();  ///< m, in the jaw's frame
   double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
+  bool operator==(const GripPoint&) const = default;
 };
 
 /// Where details are active: around a skin point that a shape of the surroundings is near to.
@@ -22,6 +24,19 @@ struct Extension {
   int shape = 0;   ///< -1: none, the laparoscope looks there
   int centre = 0;  ///< skin point
   bool operator==(const Extension&) const = default;
+};
+
+/// What the active details were chosen by.
+struct ContactPlace {
+  VecX x;
+  std::vector<InstrumentPose> poses;
+  std::vector<GripPoint> grips;
+  std::vector<Extension> extensions;
+  std::vector<DetailShare> shares;
+  bool operator==(const ContactPlace& other) const {
+    return x.size() == other.x.size() && x == other.x && poses == other.poses && grips == other.grips &&
+           extensions == other.extensions && shares == other.shares;
+  }
 };
 
 struct Organ {
@@ -36,7 +51,22 @@ struct Organ {
   /// Details that found no rest when they were tried last: not tried again until others are wanted.
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
+  /// Where the details were found to be those that are wanted: remembered, no part of any result.
+  std::optional<ContactPlace> looked_at;
 };
+
+/// All that moves of an organ, cheap to copy: what failed is undone by it. `search` only remembers.
+struct OrganSnapshot {
+  ShellBody body;
+  BodyState state;
+  NewtonWorkspace::Kept factor;
+  std::vector<GripPoint> grips;
+  std::vector<Extension> extensions;
+  std::optional<std::vector<int>> refused_details;
+  FrictionLoad friction;
+};
+OrganSnapshot snapshot(const Organ& organ);
+void restore(Organ& organ, const OrganSnapshot& snapshot);
 
 /// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its
 /// bile (and on `field`). Failures: scenario (a mesh that

@@ -76,9 +76,9 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));
   FrictionLoad now;
   ContactPlaces places_before(organ.body.skin(), before);
-  const auto rub = [&](int point, int shape, const Vec3&, const DistanceSlope& d) {
+  for (const auto& [point, shape, at, d] : organ.search.touching(organ.body, organ.state.x, around)) {
     const double mu = coefficient(field, shape);
-    if (mu <= 0 || is_holding_jaw(holding, shape)) return;
+    if (mu <= 0 || is_holding_jaw(holding, shape)) continue;
     const double area = organ.body.contact_area(point);
     StickSlip hold;
     hold.normal = d.gradient;
@@ -88,9 +88,7 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
     hold.anchor =
         frames[shape] * (old ? old->hold.anchor : frames_before[shape].inverse() * places_before.at(point));
     now.points.push_back({point, shape, hold});
-  };
-  for_touching(organ.body, organ.state.x, around, organ.search.pairs(organ.body, organ.state.x, around, 0.0),
-               0.0, rub);
+  }
   const double changed = change(around.friction, now);
   for (RubbingPoint& rubbing : now.points) {
     const RubbingPoint* old = around.friction.find(rubbing.shape, rubbing.point);

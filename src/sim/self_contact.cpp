@@ -146,7 +146,19 @@ void SelfContact::look_up(const ShellBody& body, const VecX& x, std::vector<Vec3
   for (int row : rows_) points[row] = body.skin_point(row, x);
 }
 
-std::vector<SelfTouch> SelfContact::touching(const ShellBody& body, const VecX& x) {
+const std::vector<SelfTouch>& SelfContact::touching(const ShellBody& body, const VecX& x) {
+  for (std::size_t k = 0; active && k < found_.size(); ++k) {
+    const Touching& known = found_[k];
+    if (known.x.size() != x.size() || known.x != x || known.details != body.details()) continue;
+    newest_ = k;
+    return known.touches;
+  }
+  newest_ = 1 - newest_;
+  found_[newest_] = {active ? x : VecX(), body.details(), find_touching(body, x)};
+  return found_[newest_].touches;
+}
+
+std::vector<SelfTouch> SelfContact::find_touching(const ShellBody& body, const VecX& x) {
   const double near = self_barrier.range + refresh(body, x, self_barrier.range);
   std::vector<SelfTouch> out;
   if (near_.empty() || nearest_ >= near) return out;
@@ -213,7 +225,7 @@ void SelfContact::add_hessian(const ShellBody& body, const VecX& x, BlockMatrix&
 
 double SelfContact::safe_share(const ShellBody& body, const VecX& x, const VecX& step, double keep,
                                double share) {
-  if (!active || !step.allFinite() || !x.allFinite()) return share;
+  if (!active || !step.allFinite() || !x.allFinite() || step.isZero(0)) return share;
   // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
   // way would be everything: that is gone in parts.
   const double far = share * relative_motion(body, step, all_nodes(body)) / (1.0 - keep);
@@ -267,9 +279,16 @@ void SelfContact::prepare(const ShellBody& body, const VecX& x, NewtonWorkspace&
     if (widened) work = NewtonWorkspace(own, body.coarse_nodes());
     return;
   }
+  // Of all pairs this near, however many more are remembered: the pattern must not depend on where else the skin was
+  // looked at.
+  const double near = uncouple_above + refresh(body, x, uncouple_above);
+  look_up(body, x, at_);
   std::vector<std::array<int, 4>> groups;  // faces of a point and of a triangle's corners
   for (const SelfPair& pair : near_) {
     const Triangle& t = net_->triangles[pair.triangle];
+    if (pair.distance >= near ||
+        nearest_point(at_[pair.skin_point], corners_of(t, at_)).distance >= uncouple_above)
+      continue;
     const auto face_of = [&](int row) { return body.skin().at[row].face; };
     groups.push_back({face_of(pair.skin_point), face_of(t[0]), face_of(t[1]), face_of(t[2])});
   }

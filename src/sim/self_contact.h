@@ -36,8 +36,8 @@ class SelfContact {
   /// Without contact where false: to show what it does.
   bool active = true;
 
-  /// All that touches at x, ordered by row, then part.
-  std::vector<SelfTouch> touching(const ShellBody& body, const VecX& x);
+  /// All that touches at x, ordered by skin point, then part; found once for a state. Valid until the next call.
+  const std::vector<SelfTouch>& touching(const ShellBody& body, const VecX& x);
   /// Energy (J) and derivatives.
   double value(const ShellBody& body, const VecX& x);
   void add_gradient(const ShellBody& body, const VecX& x, VecX& gradient);
@@ -66,7 +66,16 @@ class SelfContact {
   /// Places (at x) or motions of the skin points in rows_; the others mean nothing.
   void look_up(const ShellBody& body, const VecX& x, std::vector<Vec3>& points) const;
   const SkinNet& net(const ShellBody& body);
+  std::vector<SelfTouch> find_touching(const ShellBody& body, const VecX& x);
 
+  /// What touched at the last two states that were asked for: where a step began and where it is tried.
+  struct Touching {
+    VecX x;
+    std::vector<int> details;
+    std::vector<SelfTouch> touches;
+  };
+  std::array<Touching, 2> found_;
+  std::size_t newest_ = 0;
   std::optional<SkinNet> net_;
   // Groups of points that were near at groups_x_, their points and those of the triangles around them, and all nodes
   // that these hang on.

@@ -179,15 +179,15 @@ Result<ShellBody> ShellBody::with_details(std::vector<int> details) const {
 
 VecX ShellBody::own_forces(const VecX& x, double datum_pressure) const {
   VecX out = VecX::Zero(x.size());
-  shell_.add_gradient(x, out);
-  foundation().add_gradient(bed_points_, x, out);
-  if (bile_) bile_->add_load(x, datum_pressure, out);
+  refined_->shell.add_gradient(x, out);
+  foundation().add_gradient(refined_->bed_points, x, out);
+  if (refined_->bile) refined_->bile->add_load(x, datum_pressure, out);
   return out;
 }
 
 VecX ShellBody::forces(const VecX& x, double datum_pressure) const {
   VecX out = own_forces(x, datum_pressure);
-  if (kept_load_.size() > 0) out -= kept_load_;
+  if (refined_->kept_load.size() > 0) out -= refined_->kept_load;
   return out;
 }
 
@@ -198,11 +198,11 @@ void ShellBody::keep_in_equilibrium(const BodyState& rest) {
 void ShellBody::make_good() {
   if (!kept_ || details().empty()) return;
   const BodyState& state = kept_->state;
-  VecX x = VecX::Zero(rest_.size());
+  VecX x = VecX::Zero(refined_->rest.size());
   x.head(state.x.size()) = state.x;
-  kept_load_ = own_forces(x, state.datum_pressure);
-  kept_load_.head(state.x.size()) -= kept_->own_forces;
-  if (bile_) kept_volume_ = bile_->volume(x) - state.volume;
+  refined_->kept_load = own_forces(x, state.datum_pressure);
+  refined_->kept_load.head(state.x.size()) -= kept_->own_forces;
+  if (refined_->bile) refined_->kept_volume = refined_->bile->volume(x) - state.volume;
 }
 
 DetailedSurface ShellBody::detailed(const SurfaceLevels& levels, std::vector<int> details) {
@@ -212,64 +212,66 @@ DetailedSurface ShellBody::detailed(const SurfaceLevels& levels, std::vector<int
 
 std::optional<Failure> ShellBody::build(const ShellBody* before) {
   std::optional<SharedRows> shared;
-  if (before != nullptr) shared.emplace(before->surface_, surface_);
+  if (before != nullptr) shared.emplace(before->refined_->surface, refined_->surface);
   const SharedRows* rows = shared ? &*shared : nullptr;
-  rest_ = VecX::Zero(3 * Eigen::Index{surface_.basis.nodes()});
-  rest_.head(3 * Eigen::Index{coarse_nodes()}) = to_coordinates(control().points);
+  refined_->rest = VecX::Zero(3 * Eigen::Index{refined_->surface.basis.nodes()});
+  refined_->rest.head(3 * Eigen::Index{coarse_nodes()}) = to_coordinates(control().points);
   if (std::optional<Failure> failure = build_shell(before, rows)) return failure;
   build_skin();
-  edge_lengths_ = shortest_edges(control());
+  refined_->edge_lengths = shortest_edges(control());
   for (int detail : details()) {
     double shortest = base_->size;
     for (int node : base_->levels.faces(0)[base_->levels.place(detail).face])
-      shortest = std::min(shortest, edge_lengths_[node]);
-    edge_lengths_.push_back(std::ldexp(shortest, -base_->levels.level_of(detail)));
+      shortest = std::min(shortest, refined_->edge_lengths[node]);
+    refined_->edge_lengths.push_back(std::ldexp(shortest, -base_->levels.level_of(detail)));
   }
-  std::vector<std::vector<int>> cliques = shell_.cliques();
+  std::vector<std::vector<int>> cliques = refined_->shell.cliques();
   if (base_->setup.bile) {
     if (Result<bool> built = build_bile(before, rows); !built) return built.failure();
-    for (std::vector<int>& clique : bile_->cliques()) cliques.push_back(std::move(clique));
+    for (std::vector<int>& clique : refined_->bile->cliques()) cliques.push_back(std::move(clique));
   }
-  cliques.insert(cliques.end(), face_nodes_.begin(), face_nodes_.end());
+  cliques.insert(cliques.end(), refined_->face_nodes.begin(), refined_->face_nodes.end());
   build_bed(before, rows);
-  constant_ = BlockMatrix(nodes(), cliques);
-  foundation().add_hessian(bed_points_, constant_);
+  refined_->constant = BlockMatrix(nodes(), cliques);
+  foundation().add_hessian(refined_->bed_points, refined_->constant);
   return std::nullopt;
 }
 
 std::optional<Failure> ShellBody::build_shell(const ShellBody* before, const SharedRows* shared) {
-  RulePoints points(base_->levels, surface_.tree, base_->setup.rule);
-  first_rows_ = std::move(points.first_rows);
+  RulePoints points(base_->levels, refined_->surface.tree, base_->setup.rule);
+  refined_->first_rows = std::move(points.first_rows);
   std::vector<int> known(points.at.size(), -1);
-  for (int face = 0; shared && face < static_cast<int>(first_rows_.size()) - 1; ++face)
-    for (int row = first_rows_[face]; shared->same(face) && row < first_rows_[face + 1]; ++row)
-      known[row] = before->first_rows_[face] + row - first_rows_[face];
-  points.quadrature.stencils =
-      shared ? shared->rows(points.at, 2, before->quadrature_, known) : surface_.basis.evaluate(points.at, 2);
-  Result<Shell> shell = Shell::create(points.quadrature, rest_, base_->setup.material,
-                                      before ? &before->shell_ : nullptr, known);
+  for (int face = 0; shared && face < static_cast<int>(refined_->first_rows.size()) - 1; ++face)
+    for (int row = refined_->first_rows[face]; shared->same(face) && row < refined_->first_rows[face + 1];
+         ++row)
+      known[row] = before->refined_->first_rows[face] + row - refined_->first_rows[face];
+  points.quadrature.stencils = shared ? shared->rows(points.at, 2, before->refined_->quadrature, known)
+                                      : refined_->surface.basis.evaluate(points.at, 2);
+  Result<Shell> shell = Shell::create(points.quadrature, refined_->rest, base_->setup.material,
+                                      before ? &before->refined_->shell : nullptr, known);
   if (!shell) return shell.failure();
-  shell_ = std::move(shell).value();
-  quadrature_ = std::move(points.quadrature.stencils);
+  refined_->shell = std::move(shell).value();
+  refined_->quadrature = std::move(points.quadrature.stencils);
   return std::nullopt;
 }
 
 void ShellBody::build_skin() {
-  skin_.at = base_->skin.at;
-  skin_.triangles = base_->skin.triangles;
-  skin_.stencils = surface_.basis.extend(base_->skin_places, skin_.at, base_->skin_places_by_level);
-  face_nodes_ = base_->face_nodes;
+  refined_->skin.at = base_->skin.at;
+  refined_->skin.triangles = base_->skin.triangles;
+  refined_->skin.stencils =
+      refined_->surface.basis.extend(base_->skin_places, refined_->skin.at, base_->skin_places_by_level);
+  refined_->face_nodes = base_->face_nodes;
   std::vector<char> seen(details().size(), 0);
-  for (std::size_t f = 0; f < face_nodes_.size() && !details().empty(); ++f)
-    add_nodes(skin_.stencils, base_->face_points[f], coarse_nodes(), seen, face_nodes_[f]);
+  for (std::size_t f = 0; f < refined_->face_nodes.size() && !details().empty(); ++f)
+    add_nodes(refined_->skin.stencils, base_->face_points[f], coarse_nodes(), seen, refined_->face_nodes[f]);
 }
 
 void ShellBody::build_bed(const ShellBody* before, const SharedRows* shared) {
   std::vector<int> known(base_->bed_places.size(), -1);
   for (int k = 0; shared && k < static_cast<int>(known.size()); ++k)
     if (shared->same(base_->bed_places[k].face)) known[k] = k;
-  bed_points_ = shared ? shared->rows(base_->bed_places, 0, before->bed_points_, known)
-                       : surface_.basis.evaluate(base_->bed_places, 0);
+  refined_->bed_points = shared ? shared->rows(base_->bed_places, 0, before->refined_->bed_points, known)
+                                : refined_->surface.basis.evaluate(base_->bed_places, 0);
 }
 
 Result<bool> ShellBody::build_bile(const ShellBody* before, const SharedRows* shared) {
@@ -287,30 +289,32 @@ Result<bool> ShellBody::build_bile(const ShellBody* before, const SharedRows* sh
   }
   for (const std::vector<BileSurface::Part>& cell : surface.cells)
     for (const BileSurface::Part& part : cell)
-      bile_nodes_.insert(bile_nodes_.end(), part.corners.begin(), part.corners.end());
-  std::sort(bile_nodes_.begin(), bile_nodes_.end());
-  bile_nodes_.erase(std::unique(bile_nodes_.begin(), bile_nodes_.end()), bile_nodes_.end());
+      refined_->bile_nodes.insert(refined_->bile_nodes.end(), part.corners.begin(), part.corners.end());
+  std::sort(refined_->bile_nodes.begin(), refined_->bile_nodes.end());
+  refined_->bile_nodes.erase(std::unique(refined_->bile_nodes.begin(), refined_->bile_nodes.end()),
+                             refined_->bile_nodes.end());
   std::vector<FacePoint> places;
   std::vector<int> known;
-  for (int node : bile_nodes_) {
+  for (int node : refined_->bile_nodes) {
     places.push_back(levels.place(node));
-    known.push_back(shared && shared->same(places.back().face) ? index_of(node, before->bile_nodes_) : -1);
+    known.push_back(shared && shared->same(places.back().face) ? index_of(node, before->refined_->bile_nodes)
+                                                               : -1);
   }
-  surface.points =
-      shared ? shared->rows(places, 0, before->bile_->points(), known) : surface_.basis.evaluate(places, 0);
+  surface.points = shared ? shared->rows(places, 0, before->refined_->bile->points(), known)
+                          : refined_->surface.basis.evaluate(places, 0);
   for (std::vector<BileSurface::Part>& cell : surface.cells)
     for (BileSurface::Part& part : cell)
-      for (int& corner : part.corners) corner = index_of(corner, bile_nodes_);
+      for (int& corner : part.corners) corner = index_of(corner, refined_->bile_nodes);
   const double weight = base_->setup.bile->density * units::standard_gravity;
   Result<Bile> bile = Bile::create(surface, weight, base_->setup.up, base_->middle);
   if (!bile) return bile.failure();
-  bile_ = std::move(bile).value();
+  refined_->bile = std::move(bile).value();
   return true;
 }
 
 VecX ShellBody::coordinates_in(const ShellBody& other, const VecX& x) const {
   const Eigen::Index coarse = 3 * Eigen::Index{coarse_nodes()};
-  VecX out = VecX::Zero(other.rest_.size());
+  VecX out = VecX::Zero(other.refined_->rest.size());
   out.head(coarse) = x.head(coarse);
   for (std::size_t i = 0; i < other.details().size(); ++i) {
     const int here = index_of(other.details()[i], details());
@@ -326,7 +330,7 @@ double ShellBody::detail_stiffness(int index) const {
   const ShellMaterial& material = base_->setup.material;
   // In membrane and in bending; the factors fit the diagonal of the Hessian at rest of a ball and a gallbladder, two
   // levels each.
-  const double h = material.membrane.thickness, slope = h / edge_lengths_[coarse_nodes() + index];
+  const double h = material.membrane.thickness, slope = h / refined_->edge_lengths[coarse_nodes() + index];
   return material.membrane.shear_modulus * h * (1.5 + 0.27 * slope * slope);
 }
 
@@ -347,17 +351,17 @@ double ShellBody::largest_motion(const VecX& dx) const {
   return sum;
 }
 
-double ShellBody::widest_skin_gap() const { return widest_gap(skin_rest(), skin_.triangles); }
+double ShellBody::widest_skin_gap() const { return widest_gap(skin_rest(), refined_->skin.triangles); }
 
 std::vector<Vec3> ShellBody::skin_positions(const VecX& x) const {
-  return blend_all(skin_.stencils, skin_.stencils.value, x);
+  return blend_all(refined_->skin.stencils, refined_->skin.stencils.value, x);
 }
 
 std::vector<Vec3> ShellBody::skin_normals(const VecX& x) const {
   // Only the base has derivatives: details are added to a copy of it, where there are any.
   std::optional<StencilTable> extended;
   if (!details().empty())
-    extended = surface_.basis.extend(base_->skin.stencils, base_->skin.at, base_->skin_by_level);
+    extended = refined_->surface.basis.extend(base_->skin.stencils, base_->skin.at, base_->skin_by_level);
   const StencilTable& table = extended ? *extended : base_->skin.stencils;
   const std::vector<Vec3> u = blend_all(table, table.du, x), v = blend_all(table, table.dv, x);
   std::vector<Vec3> normals(u.size());

@@ -26,6 +26,7 @@ inline constexpr double skin_spacing = 1.0e-3;
 struct DetailShare {
   double share = 1;      ///< 0: held at rest, 1: free
   bool leaving = false;  ///< its share falls
+  bool operator==(const DetailShare&) const = default;
 };
 
 struct BodyState {
@@ -63,21 +64,21 @@ class ShellBody {
   /// taken away unloaded (the defect correction of the full approximation scheme: Brandt 1977).
   void keep_in_equilibrium(const BodyState& rest);
   /// That load, N, 3 a node; empty without details or before keep_in_equilibrium.
-  const VecX& kept_load() const { return kept_load_; }
+  const VecX& kept_load() const { return refined_->kept_load; }
   /// Gradient of the energies of wall, bed and bile less that load, N.
   VecX forces(const VecX& x, double datum_pressure) const;
   /// Enclosed volume, m^3, of a structure with bile.
-  double volume(const VecX& x) const { return bile_->volume(x) - kept_volume_; }
+  double volume(const VecX& x) const { return refined_->bile->volume(x) - refined_->kept_volume; }
   /// The same, its gradient (m^2) added to `gradient`.
   double add_volume_gradient(const VecX& x, VecX& gradient) const {
-    return bile_->add_volume_gradient(x, gradient) - kept_volume_;
+    return refined_->bile->add_volume_gradient(x, gradient) - refined_->kept_volume;
   }
   /// The same with the load of the bile's weight added to `load`.
   double add_weight_and_volume_gradient(const VecX& x, VecX& load, VecX& gradient) const {
-    return bile_->add_load_and_volume_gradient(x, 0, load, gradient) - kept_volume_;
+    return refined_->bile->add_load_and_volume_gradient(x, 0, load, gradient) - refined_->kept_volume;
   }
-  const std::vector<int>& details() const { return surface_.basis.details(); }
-  const DetailBasis& basis() const { return surface_.basis; }
+  const std::vector<int>& details() const { return refined_->surface.basis.details(); }
+  const DetailBasis& basis() const { return refined_->surface.basis; }
   const SurfaceLevels& levels() const { return base_->levels; }
   /// Where the nodes of all levels lie on the surface at rest, m.
   const std::vector<Vec3>& node_rest() const { return base_->node_rest; }
@@ -89,14 +90,17 @@ class ShellBody {
   /// Bound on how far any surface point moves when the nodes move by `dx`, m.
   double largest_motion(const VecX& dx) const;
 
+  /// Whether both are one structure, but for their details.
+  bool same_base(const ShellBody& other) const { return base_ == other.base_; }
+
   const std::string& name() const { return base_->setup.name; }
-  int nodes() const { return static_cast<int>(rest_.size()) / 3; }
-  int coarse_nodes() const { return surface_.basis.coarse_nodes(); }
-  const VecX& rest() const { return rest_; }
+  int nodes() const { return static_cast<int>(refined_->rest.size()) / 3; }
+  int coarse_nodes() const { return refined_->surface.basis.coarse_nodes(); }
+  const VecX& rest() const { return refined_->rest; }
   const TriMesh& control() const { return base_->setup.control; }
-  const Shell& shell() const { return shell_; }
-  const std::optional<Bile>& bile() const { return bile_; }
-  const Tessellation& skin() const { return skin_; }
+  const Shell& shell() const { return refined_->shell; }
+  const std::optional<Bile>& bile() const { return refined_->bile; }
+  const Tessellation& skin() const { return refined_->skin; }
   /// Rest area that each skin point stands for, m^2.
   const std::vector<double>& skin_areas() const { return base_->skin_areas; }
   /// Rest area that a contact point (contact_points.h) stands for, m^2.
@@ -108,28 +112,30 @@ class ShellBody {
   double widest_skin_gap() const;
   /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe
   /// step there.
-  const std::vector<double>& edge_lengths() const { return edge_lengths_; }
+  const std::vector<double>& edge_lengths() const { return refined_->edge_lengths; }
   /// About the wall's own resistance to a detail (by its place among details()), N/m.
   double detail_stiffness(int index) const;
   double size() const { return base_->size; }  ///< m, diagonal of the rest shape's box
 
   /// Nodes that the skin of each control face depends on. As the weights are not negative it lies in the box of the
   /// coarse ones among them, widened by half of each detail's length, whatever the state.
-  const std::vector<std::vector<int>>& face_nodes() const { return face_nodes_; }
+  const std::vector<std::vector<int>>& face_nodes() const { return refined_->face_nodes; }
   /// Triangles of the skin on each control face, which follow each other: those of the first face first.
-  int triangles_each() const { return static_cast<int>(skin_.triangles.size() / face_nodes_.size()); }
+  int triangles_each() const {
+    return static_cast<int>(refined_->skin.triangles.size() / refined_->face_nodes.size());
+  }
 
   /// A matrix with this structure's pattern that holds the constant part of its Hessian (the bed).
-  const BlockMatrix& pattern() const { return constant_; }
+  const BlockMatrix& pattern() const { return refined_->constant; }
 
   /// The bed's springs and the surface points that they hold, the same at rest whatever the details.
   const Links& foundation() const { return base_->bed; }
-  const StencilTable& bed_points() const { return bed_points_; }
-  const StencilTable& quadrature() const { return quadrature_; }
+  const StencilTable& bed_points() const { return refined_->bed_points; }
+  const StencilTable& quadrature() const { return refined_->quadrature; }
 
   std::vector<Vec3> skin_positions(const VecX& x) const;  ///< m
   Vec3 skin_point(int row, const VecX& x) const {
-    return blend(skin_.stencils, skin_.stencils.value, row, x);
+    return blend(refined_->skin.stencils, refined_->skin.stencils.value, row, x);
   }
   std::vector<Vec3> skin_normals(const VecX& x) const;  ///< unit, outward
 
@@ -153,7 +159,8 @@ class ShellBody {
     Vec3 middle = Vec3::Zero();
   };
   ShellBody(std::shared_ptr<const Base> base, std::vector<int> details)
-      : base_(std::move(base)), surface_(detailed(base_->levels, std::move(details))) {}
+      : base_(std::move(base)),
+        refined_(std::make_shared<Refined>(detailed(base_->levels, std::move(details)))) {}
   static DetailedSurface detailed(const SurfaceLevels& levels, std::vector<int> details);
   /// The bed holds on to the coarse rule's points.
   static void lay_bed(const VecX& rest, Base& base);
@@ -173,21 +180,26 @@ class ShellBody {
   /// Sets the load and volume that keep the state kept_ in equilibrium.
   void make_good();
 
+  /// What depends on the details; nothing changes it once built, so copies of a body share it.
+  struct Refined {
+    explicit Refined(DetailedSurface detailed) : surface(std::move(detailed)) {}
+    DetailedSurface surface;
+    VecX rest, kept_load;
+    double kept_volume = 0;
+    Shell shell;
+    std::optional<Bile> bile;
+    Tessellation skin;
+    std::vector<double> edge_lengths;
+    BlockMatrix constant{0, {}};
+    StencilTable quadrature, bed_points;
+    std::vector<int> first_rows;  ///< of quadrature: each coarse face's first, and their number
+    std::vector<int> bile_nodes;  ///< of all levels, where the bile's points are: increasing
+    std::vector<std::vector<int>> face_nodes;
+  };
+
   std::shared_ptr<const Base> base_;
   std::shared_ptr<const Kept> kept_;
-  VecX kept_load_;
-  double kept_volume_ = 0;
-  DetailedSurface surface_;
-  VecX rest_;
-  Shell shell_;
-  std::optional<Bile> bile_;
-  Tessellation skin_;
-  std::vector<double> edge_lengths_;
-  BlockMatrix constant_{0, {}};
-  StencilTable quadrature_, bed_points_;
-  std::vector<int> first_rows_;  ///< of quadrature_: each coarse face's first, and their number
-  std::vector<int> bile_nodes_;  ///< of all levels, where the bile's points are: increasing
-  std::vector<std::vector<int>> face_nodes_;
+  std::shared_ptr<Refined> refined_;
 };
 
 }  // namespace calot

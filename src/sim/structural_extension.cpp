@@ -72,15 +72,15 @@ int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, doubl
   return best;
 }
 
-bool clear_of_tools(const Organ& organ, const ContactLoads& field, const std::vector<ContactPair>& near) {
+bool clear_of_tools(const Organ& organ, const ContactLoads& loads, const std::vector<ContactPair>& near) {
   bool clear = true;
-  for_touching(organ.body, organ.state.x, field, near, std::numeric_limits<double>::infinity(),
+  for_touching(organ.body, organ.state.x, loads, near, std::numeric_limits<double>::infinity(),
                [&](int, int, const Vec3&, const DistanceSlope& d) { clear &= d.distance > -contact_guard; });
   return clear;
 }
 
 /// Skin points of the pairs that are no further from their shapes than an extension is kept.
-std::vector<NearPoint> corners_near(const Organ& organ, const ContactLoads& field,
+std::vector<NearPoint> corners_near(const Organ& organ, const ContactLoads& loads,
                                     const std::vector<ContactPair>& pairs) {
   std::vector<int> seen(organ.body.skin_rest().size(), -1);  // the last shape that each was measured from
   std::vector<NearPoint> out;
@@ -88,7 +88,7 @@ std::vector<NearPoint> corners_near(const Organ& organ, const ContactLoads& fiel
     for (int row : organ.body.skin().triangles[pair.triangle]) {
       if (std::exchange(seen[row], pair.shape) == pair.shape) continue;
       const double distance =
-          signed_distance(field.shapes[pair.shape], organ.body.skin_point(row, organ.state.x));
+          signed_distance(loads.shapes[pair.shape], organ.body.skin_point(row, organ.state.x));
       if (distance <= extension_behind) out.push_back({row, pair.shape, distance});
     }
   return out;
@@ -161,6 +161,10 @@ std::vector<int> details_around(const ShellBody& body, const std::vector<Extensi
 void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   if (organ.body.levels().levels() == 0) return;
   const std::vector<InstrumentPose> poses = present_poses(field);
+  const auto place = [&] {
+    return ContactPlace{organ.state.x, poses, organ.grips, organ.extensions, organ.state.shares};
+  };
+  if (organ.looked_at == place()) return;
   const ContactLoads now = contact_loads(field, organ, poses);
   std::vector<ContactPair> near;
   std::vector<int> wanted, details;
@@ -171,12 +175,16 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     wanted = details_around(organ.body, organ.extensions);
     details = united(wanted, lasting_details(organ.body, organ.state, wanted));
   }
-  if (details == organ.refused_details) return;
+  if (details == organ.refused_details) {
+    organ.looked_at = place();
+    return;
+  }
   const std::vector<int>& active = organ.body.details();
   // What has faded goes with the next change or with the last that fades: a change costs as much as many details.
   if (details == active ||
       (details != wanted && std::includes(active.begin(), active.end(), wanted.begin(), wanted.end()))) {
     organ.state.shares = shares_of(active, wanted, organ.body, organ.state.shares);
+    organ.looked_at = place();
     return;
   }
   organ.refused_details = details;
@@ -187,22 +195,22 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     return;
   }
   NewtonWorkspace work(next->pattern(), next->coarse_nodes());
-  const Placement before = placement(organ);
+  const OrganSnapshot before = snapshot(organ);
   organ.state.x = organ.body.coordinates_in(next.value(), before.state.x);
   organ.state.shares = shares_of(next->details(), wanted, organ.body, before.state.shares);
   organ.state.fading_load = made_good(organ.body, before.state, next.value(), organ.state.x);
-  std::swap(organ.body, next.value());  // what a failed change gives back
-  std::swap(organ.work, work);
+  organ.body = next.value();
+  organ.work = std::move(work);
   const VecX start = organ.state.x;
   ++statistics.extensions_changed;
-  if (clear_of_tools(organ, now, near) && clear_of_itself(organ, next.value(), before.state.x) &&
+  if (clear_of_tools(organ, now, near) && clear_of_itself(organ, before.body, before.state.x) &&
       settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged()) {
     organ.refused_details.reset();
     return;
   }
-  std::swap(organ.body, next.value());
-  std::swap(organ.work, work);
-  give_back(organ, before);
+  std::optional<std::vector<int>> refused = std::move(organ.refused_details);
+  restore(organ, before);
+  organ.refused_details = std::move(refused);
   --statistics.extensions_changed;
   ++statistics.extensions_refused;
 }

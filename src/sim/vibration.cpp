@@ -180,9 +180,9 @@ Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mas
 Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads, const BodyState& state,
                                 const BodyMass& mass) {
   NewtonWorkspace work(body.pattern());
-  SelfContact own;
-  own.prepare(body, state.x, work);
-  const BodyProblem problem(body, loads, gather_pairs(body, state.x, loads, 0.0), state, false, &own);
+  ContactSearch search;
+  search.own.prepare(body, state.x, work);
+  const BodyProblem problem(body, loads, gather_pairs(body, state.x, loads, 0.0), state, false, &search);
   const NewtonResult factored = factorise_tangent(problem, work, state.x, state.datum_pressure, true);
   if (!factored.converged())
     return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),

@@ -7,9 +7,11 @@
 
 #include "base/hash.h"
 #include "sim/advance.h"
+#include "sim/field_state.h"
 #include "sim/grip.h"
 #include "sim/jaw_mould.h"
 #include "sim/structural_extension.h"
+#include "sim/tool_loads.h"
 #include "sim/vibration.h"
 
 namespace calot {
@@ -46,10 +48,16 @@ struct World::Impl {
   long steps = 0;
   bool failed = false;
   Failure failure;
+  std::uint64_t field_hash = 0;
+  /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
+  std::optional<StepInput> still;
 
   void observe(std::vector<WorldEvent> events);
+  void follow_moulds();
   InstrumentState instrument_state(std::size_t index, const ToolLoad& load) const;
   OrganState organ_state(const Organ& organ) const;
+  std::uint64_t hash_field() const;
+  bool same_factors(const FieldState& state) const;
   std::uint64_t hash() const;
 };
 
@@ -118,15 +126,28 @@ void add_tool(Hash& hash, const Tool& tool) {
 
 }  // namespace
 
-std::uint64_t World::Impl::hash() const {
+std::uint64_t World::Impl::hash_field() const {
   Hash hash;
-  hash.add(steps);
   for (const Organ& organ : field.organs) {
     add_body_state(hash, organ);
     add_holds(hash, organ);
     add_factor(hash, organ.work);
   }
   for (const Tool& tool : field.tools) add_tool(hash, tool);
+  return hash.value();
+}
+
+/// The hash knows a factor only by what it makes of one vector.
+bool World::Impl::same_factors(const FieldState& state) const {
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
+    if (!field.organs[k].work.factor.shares_factor_with(state.organs[k].factor.factor)) return false;
+  return true;
+}
+
+std::uint64_t World::Impl::hash() const {
+  Hash hash;
+  hash.add(field_hash);
+  hash.add(steps);
   return hash.value();
 }
 
@@ -162,6 +183,11 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
   return state;
 }
 
+void World::Impl::follow_moulds() {
+  for (std::size_t i = 0; i < moulds.size(); ++i)
+    moulds[i].follow(field, static_cast<int>(i), 1.0 / scene.solver.rate);
+}
+
 void World::Impl::observe(std::vector<WorldEvent> events) {
   const std::vector<ToolLoad> loads = tool_loads(field);
   report.time = static_cast<double>(steps) / scene.solver.rate;
@@ -191,6 +217,7 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
   }
   for (WorldEvent& event : events) event.time = report.time;
   report.events = std::move(events);
+  field_hash = hash_field();
   report.state_hash = hash();
 }
 
@@ -283,6 +310,16 @@ Result<StepReport> World::step(const StepInput& input) {
     if (std::optional<Failure> failure = check_pose(self.field.tools[i], input.instruments[i]))
       return *failure;
   self.report.statistics = {};
+  if (self.scene.solver.skip_still && self.still == input) {
+    ++self.steps;
+    self.report.time = static_cast<double>(self.steps) / self.scene.solver.rate;
+    self.report.events.clear();
+    self.report.state_hash = self.hash();
+    self.follow_moulds();
+    return self.report;
+  }
+  const FieldState before = state();
+  const std::uint64_t hash_before = self.field_hash;
   Result<std::vector<WorldEvent>> events = advance(self.field, input.instruments, self.report.statistics);
   if (!events) {
     self.failed = true;
@@ -290,18 +327,49 @@ Result<StepReport> World::step(const StepInput& input) {
     for (Problem& problem : self.failure.problems)
       problem.message +=
           fmt::format(", at {:.3f} s", static_cast<double>(self.steps + 1) / self.scene.solver.rate);
+    calot::restore(self.field, before);
     return self.failure;
   }
   ++self.steps;
-  for (std::size_t i = 0; i < self.moulds.size(); ++i)
-    self.moulds[i].follow(self.field, static_cast<int>(i), 1.0 / self.scene.solver.rate);
+  self.follow_moulds();
   self.observe(std::move(events).value());
+  self.still.reset();
+  if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
+    self.still = input;
   return self.report;
 }
 
 const SceneDefinition& World::scene() const { return impl_->scene; }
 const StepReport& World::report() const { return impl_->report; }
-std::uint64_t World::state_hash() const { return impl_->report.state_hash; }
+std::uint64_t World::state_hash() const {
+  Hash hash;
+  hash.add(impl_->hash_field());
+  hash.add(impl_->steps);
+  return hash.value();
+}
+
+FieldState World::state() const {
+  FieldState state = field_state(impl_->field);
+  state.steps = impl_->steps;
+  state.report = impl_->report;
+  return state;
+}
+
+Result<bool> World::restore(const FieldState& state) {
+  Impl& self = *impl_;
+  bool same =
+      state.organs.size() == self.field.organs.size() && state.tools.size() == self.field.tools.size();
+  for (std::size_t k = 0; same && k < state.organs.size(); ++k)
+    same = state.organs[k].body.same_base(self.field.organs[k].body);
+  if (!same) return fail(FailureKind::internal, "a field state can only be given back to the world it is of");
+  calot::restore(self.field, state);
+  self.steps = state.steps;
+  self.report = state.report;
+  self.field_hash = self.hash_field();
+  self.still.reset();
+  self.failed = false;
+  return true;
+}
 Vec3 World::up() const { return impl_->up; }
 
 Vec3 World::port_position(const std::string& port) const {

@@ -9,64 +9,13 @@
 
 #include "anatomy/definitions.h"
 #include "geometry/stencil.h"
-#include "sim/instrument.h"
 #include "sim/skin_difference.h"
+#include "sim/step_report.h"
 #include "sim/structure_drawing.h"
 
 namespace calot {
 
-/// Target poses at the end of the step, one an instrument in the definition's order: the only input there is,
-/// whatever its source (demo, recording, live device).
-struct StepInput {
-  std::vector<InstrumentPose> instruments;
-};
-
-/// Kinds: contact, grasp, release, slip, overforce, overstretch.
-struct WorldEvent {
-  std::string kind;
-  double time = 0;         ///< s
-  std::string instrument;  ///< may be empty
-  std::string organ;       ///< may be empty
-  double value = 0;        ///< N for forces, stretch for overstretch, else 0
-};
-
-struct InstrumentState {
-  InstrumentPose pose;
-  Vec3 tip = Vec3::Zero();           ///< m
-  Vec3 tip_force = Vec3::Zero();     ///< N, of the tissue on the instrument
-  Vec3 handle_force = Vec3::Zero();  ///< N, felt at the handle, lever about the trocar
-  bool touching = false;
-  std::string holds;  ///< organ's name, empty when nothing is held
-  int grip_points = 0;
-};
-
-struct OrganState {
-  double pressure = 0;     ///< Pa, gauge, at the highest point
-  double volume = 0;       ///< m^3 enclosed
-  double energy = 0;       ///< J, wall
-  double max_stretch = 1;  ///< largest principal stretch of the wall
-  int extensions = 0;      ///< places where an instrument has structural extensions
-  int details = 0;         ///< nodes that they add
-};
-
-struct SolveStatistics {
-  int substeps = 0;
-  int newton_iterations = 0;
-  /// Changes of the active details, and those given up because the organ found no rest with them.
-  int extensions_changed = 0, extensions_refused = 0;
-  /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,
-  /// and finding who meets whom and how far each may go; and changes of details, their solves included.
-  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0, extension_s = 0;
-};
-
-struct StepReport {
-  double time = 0;  ///< s, at the end of the step
-  std::vector<InstrumentState> instruments;
-  std::vector<OrganState> organs;
-  std::vector<WorldEvent> events;
-  SolveStatistics statistics;
-  std::uint64_t state_hash = 0;
-};
+struct FieldState;
 
 class World {
  public:
@@ -78,13 +27,20 @@ class World {
   ~World();
 
   /// Advances by 1 / rate. On failure (FailureKind::simulation) the message says where, when and what to
-  /// change; the state stays that of the last converged sub-step and further steps fail alike.
+  /// change; the state is that of before the step and further steps fail alike. A step that is known to change nothing,
+  /// as the last one with the same input did not, costs a hash (solver.skip_still).
   Result<StepReport> step(const StepInput& input);
 
   const SceneDefinition& scene() const;
   /// The report of the last step (of the rest state before the first).
   const StepReport& report() const;
+  /// Of the present state, computed anew.
   std::uint64_t state_hash() const;
+
+  /// All that moves, to be copied and given back to this world: what follows has the same bits. Fails (internal) where
+  /// it is another world's.
+  FieldState state() const;
+  Result<bool> restore(const FieldState& state);
 
   /// Upward direction (unit): minus gravity, turned by the table's tilt.
   Vec3 up() const;

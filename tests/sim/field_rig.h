@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "rig.h"
 #include "sim/advance.h"
+#include "sim/tool_loads.h"
 #include "sim/grip.h"
 #include "sim/structural_extension.h"
 

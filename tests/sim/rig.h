@@ -68,6 +68,11 @@ class Driver {
     return !failure;
   }
   bool stay(int steps) { return go(tip_, jaw_, steps); }
+  /// Goes on from where another driver of the same world was.
+  void follow(const Driver& other) {
+    tip_ = other.tip_;
+    jaw_ = other.jaw_;
+  }
 
   const Vec3& trocar() const { return trocar_; }
   int count(const std::string& kind) const {

@@ -103,6 +103,7 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   EXPECT_NE(message.find(" s"), std::string::npos) << message;
   EXPECT_FALSE(failure.problems[0].hint.empty());
   const std::uint64_t hash = path.world.state_hash();
+  EXPECT_EQ(hash, path.world.report().state_hash) << "what was tried is undone";
   StepInput retreat;
   retreat.instruments = {pose_reaching(path.driver.trocar(), path.fundus + 30e-3 * path.out, 0, 0)};
   for (int k = 0; k < 2; ++k) {

@@ -1,0 +1,26 @@
+#include "sim/field_state.h"
+
+namespace calot {
+
+FieldState field_state(const Field& field) {
+  FieldState state;
+  for (const Organ& organ : field.organs) state.organs.push_back(snapshot(organ));
+  for (const Tool& tool : field.tools)
+    state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.slipping});
+  return state;
+}
+
+void restore(Field& field, const FieldState& state) {
+  for (std::size_t k = 0; k < field.organs.size(); ++k) restore(field.organs[k], state.organs[k]);
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const ToolSnapshot& was = state.tools[i];
+    tool.pose = was.pose;
+    tool.touched = was.touched;
+    tool.over_limit = was.over_limit;
+    tool.jaw_stopped = was.jaw_stopped;
+    tool.slipping = was.slipping;
+  }
+}
+
+}  // namespace calot

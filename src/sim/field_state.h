@@ -1,0 +1,27 @@
+#pragma once
+// Everything of a field that moves, in one copyable value: undo, prepared fields, rewinding and tests start from it.
+
+#include <vector>
+
+#include "sim/field.h"
+
+namespace calot {
+
+struct ToolSnapshot {
+  InstrumentPose pose;
+  bool touched = false, over_limit = false, jaw_stopped = false, slipping = false;
+};
+
+struct FieldState {
+  long steps = 0;
+  std::vector<OrganSnapshot> organs;
+  std::vector<ToolSnapshot> tools;
+  StepReport report;  ///< of the step that led here: events are raised by what differs from it
+};
+
+/// Organs and tools; steps and report are the world's.
+FieldState field_state(const Field& field);
+/// The field must have the organs and tools that the state is of.
+void restore(Field& field, const FieldState& state);
+
+}  // namespace calot

@@ -1,0 +1,66 @@
+#pragma once
+// What goes into a step and what comes out of it: plain data.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/instrument.h"
+
+namespace calot {
+
+/// Target poses at the end of the step, one an instrument in the definition's order: the only input there is,
+/// whatever its source (demo, recording, live device).
+struct StepInput {
+  std::vector<InstrumentPose> instruments;
+  bool operator==(const StepInput&) const = default;
+};
+
+/// Kinds: contact, grasp, release, slip, overforce, overstretch.
+struct WorldEvent {
+  std::string kind;
+  double time = 0;         ///< s
+  std::string instrument;  ///< may be empty
+  std::string organ;       ///< may be empty
+  double value = 0;        ///< N for forces, stretch for overstretch, else 0
+};
+
+struct InstrumentState {
+  InstrumentPose pose;
+  Vec3 tip = Vec3::Zero();           ///< m
+  Vec3 tip_force = Vec3::Zero();     ///< N, of the tissue on the instrument
+  Vec3 handle_force = Vec3::Zero();  ///< N, felt at the handle, lever about the trocar
+  bool touching = false;
+  std::string holds;  ///< organ's name, empty when nothing is held
+  int grip_points = 0;
+};
+
+struct OrganState {
+  double pressure = 0;     ///< Pa, gauge, at the highest point
+  double volume = 0;       ///< m^3 enclosed
+  double energy = 0;       ///< J, wall
+  double max_stretch = 1;  ///< largest principal stretch of the wall
+  int extensions = 0;      ///< places where an instrument has structural extensions
+  int details = 0;         ///< nodes that they add
+};
+
+struct SolveStatistics {
+  int substeps = 0;
+  int newton_iterations = 0;
+  /// Changes of the active details, and those given up because the organ found no rest with them.
+  int extensions_changed = 0, extensions_refused = 0;
+  /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,
+  /// and finding who meets whom and how far each may go; and changes of details, their solves included.
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0, extension_s = 0;
+};
+
+struct StepReport {
+  double time = 0;  ///< s, at the end of the step
+  std::vector<InstrumentState> instruments;
+  std::vector<OrganState> organs;
+  std::vector<WorldEvent> events;
+  SolveStatistics statistics;
+  std::uint64_t state_hash = 0;
+};
+
+}  // namespace calot

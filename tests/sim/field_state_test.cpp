@@ -1,0 +1,115 @@
+#include "sim/field_state.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/rig.h"
+
+namespace calot {
+namespace {
+
+SceneDefinition refined_scene(bool skip_still = true) {
+  SceneDefinition scene = test::grasper_scene();
+  scene.solver.extension_levels = 1;
+  scene.solver.skip_still = skip_still;
+  scene.instruments[0].friction = 0.2;
+  return scene;
+}
+
+/// Hashes of 50 steps that pull a held fold, hold still, and let go.
+std::vector<std::uint64_t> fifty_steps(test::FundusPath& path) {
+  std::vector<std::uint64_t> hashes;
+  path.driver.watch = [&](const StepReport& report) { hashes.push_back(report.state_hash); };
+  path.lift(20);
+  path.driver.stay(10);
+  path.release(20);
+  return hashes;
+}
+
+TEST(FieldState, RestoredTheSameStepsHaveTheSameBits) {
+  test::FundusPath path(refined_scene());
+  ASSERT_TRUE(path.grasp()) << path.driver.why();
+  ASSERT_EQ(path.world.report().instruments[0].holds, "gallbladder");
+  ASSERT_GT(path.world.report().organs[0].details, 0);
+  const FieldState state = path.world.state();
+  const test::Driver driver = path.driver;
+  const std::uint64_t at_start = path.world.state_hash();
+  const std::vector<std::uint64_t> first = fifty_steps(path);
+  ASSERT_EQ(first.size(), 50u) << path.driver.why();
+  EXPECT_NE(path.world.state_hash(), at_start);
+  ASSERT_TRUE(path.world.restore(state));
+  EXPECT_EQ(path.world.state_hash(), at_start);
+  path.driver.follow(driver);
+  EXPECT_EQ(fifty_steps(path), first);
+}
+
+TEST(FieldState, EachPartOfItIsInTheStateHash) {
+  test::FundusPath path(refined_scene());
+  ASSERT_TRUE(path.grasp() && path.lift(2)) << path.driver.why();
+  const FieldState state = path.world.state();
+  ASSERT_FALSE(state.organs[0].grips.empty());
+  ASSERT_FALSE(state.organs[0].extensions.empty());
+  ASSERT_FALSE(state.organs[0].state.shares.empty());
+  ASSERT_TRUE(state.organs[0].factor.factored);
+  const std::uint64_t hash = path.world.state_hash();
+  const auto differs = [&](const char* what, const std::function<void(FieldState&)>& change) {
+    FieldState other = state;
+    change(other);
+    ASSERT_TRUE(path.world.restore(other));
+    EXPECT_NE(path.world.state_hash(), hash) << what;
+  };
+  differs("steps", [](FieldState& s) { ++s.steps; });
+  differs("place", [](FieldState& s) { s.organs[0].state.x[0] += 1e-15; });
+  differs("pressure", [](FieldState& s) { s.organs[0].state.datum_pressure += 1e-9; });
+  differs("volume", [](FieldState& s) { s.organs[0].state.volume *= 1.0000001; });
+  differs("share", [](FieldState& s) { s.organs[0].state.shares[0].share *= 0.5; });
+  differs("leaving", [](FieldState& s) { s.organs[0].state.shares[0].leaving ^= true; });
+  differs("fading load", [](FieldState& s) {
+    s.organs[0].state.fading_load = VecX::Constant(s.organs[0].state.x.size(), 1e-6);
+  });
+  differs("grip's point", [](FieldState& s) { ++s.organs[0].grips[0].skin_point; });
+  differs("grip's place", [](FieldState& s) { s.organs[0].grips[0].local.x() += 1e-12; });
+  differs("grip's stiffness", [](FieldState& s) { s.organs[0].grips[0].stiffness *= 0.2; });
+  differs("extension", [](FieldState& s) { ++s.organs[0].extensions[0].centre; });
+  differs("refused details", [](FieldState& s) { s.organs[0].refused_details = {{1, 2, 3}}; });
+  differs("friction", [](FieldState& s) {
+    s.organs[0].friction.points.push_back({0, 0, StickSlip{.limit = 1e-3, .stiffness = 1}});
+  });
+  differs("factor", [](FieldState& s) { s.organs[0].factor.bordered[0] += 1e-12; });
+  differs("no factor", [](FieldState& s) { s.organs[0].factor.factored = false; });
+  differs("shifted", [](FieldState& s) { s.organs[0].factor.shifted ^= true; });
+  differs("pose", [](FieldState& s) { s.tools[0].pose.roll += 1e-12; });
+  differs("jaws", [](FieldState& s) { s.tools[0].jaw_stopped ^= true; });
+  differs("slip", [](FieldState& s) { s.tools[0].slipping ^= true; });
+  differs("touch", [](FieldState& s) { s.tools[0].touched ^= true; });
+  differs("limit", [](FieldState& s) { s.tools[0].over_limit ^= true; });
+  ASSERT_TRUE(path.world.restore(state));
+  EXPECT_EQ(path.world.state_hash(), hash);
+}
+
+TEST(FieldState, OfAnotherWorldIsRefused) {
+  World world = World::create(test::grasper_scene(80)).value();
+  const FieldState state = World::create(test::grasper_scene(80)).value().state();
+  const std::uint64_t hash = world.state_hash();
+  EXPECT_EQ(world.restore(state).failure().kind, FailureKind::internal);
+  EXPECT_EQ(world.state_hash(), hash);
+}
+
+TEST(StillSteps, AreWhatTheyWouldBeIfTheyWereComputed) {
+  std::vector<std::uint64_t> hashes[2];
+  int substeps[2] = {0, 0};
+  for (int skip = 0; skip < 2; ++skip) {
+    test::FundusPath path(refined_scene(skip == 1));
+    ASSERT_TRUE(path.grasp() && path.lift(5)) << path.driver.why();
+    path.driver.watch = [&](const StepReport& report) {
+      hashes[skip].push_back(report.state_hash);
+      substeps[skip] += report.statistics.substeps;
+    };
+    ASSERT_TRUE(path.driver.stay(30) && path.lower(5)) << path.driver.why();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_GE(substeps[0], 35);
+  EXPECT_LT(substeps[1], 15) << "a held fold comes to rest within a few steps";
+}
+
+}  // namespace
+}  // namespace calot
