@@ -82,7 +82,7 @@ struct OrganDefinition {
   BileDefinition bile;
   std::vector<HeldRegion> held;
   bool extensions = true;     ///< false: none are laid on this organ, whatever the solver's levels
-  std::string compared_with;  ///< another organ of the same shape and posture, see sim/skin_difference.h
+  std::string compared_with;  ///< another organ of the same shape and posture, see session/skin_difference.h
 };
 
 struct SupportDefinition {

@@ -32,6 +32,7 @@ class FrameCapture {
 
   void observe(const World& world, bool last) {
     if (!builder_) builder_.emplace(world);  // at rest: the laparoscope is held still from then on
+    builder_->follow(world);
     while (next_ < times_.size() && world.report().time >= times_[next_] - half_step_) {
       if (request_.on_frame) request_.on_frame(builder_->build(world), frame_name(times_[next_]));
       draw(world, frame_name(times_[next_]));

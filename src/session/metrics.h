@@ -14,7 +14,7 @@
 //   grasps, releases, slips   counts of events
 // Per organ: peak_pressure_Pa, max_stretch (largest principal stretch of the wall), lowest_frequency_Hz (at rest,
 // bile included: shaking below a third of it may be treated as static). Of one that is compared with another, when the
-// session ends: mean_difference_pct, largest_difference_pct (sim/skin_difference.h).
+// session ends: mean_difference_pct, largest_difference_pct (session/skin_difference.h).
 // Per hold: <step>.<hold>.time_in_s, set by the script. Per step: <step>.time_s. total.time_s.
 
 #include <map>

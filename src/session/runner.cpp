@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "session/skin_difference.h"
+
 namespace calot {
 namespace {
 
@@ -19,6 +21,7 @@ class Session {
         script_(script),
         source_(source),
         options_(options),
+        differences_(world),
         dt_(1 / world.scene().solver.rate) {
     for (const InstrumentState& state : world.report().instruments) input_.instruments.push_back(state.pose);
   }
@@ -129,7 +132,7 @@ class Session {
   void note_differences() {
     const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
     for (std::size_t i = 0; i < organs.size(); ++i) {
-      const std::optional<SkinDifference> found = world_.difference(static_cast<int>(i));
+      const std::optional<SkinDifference> found = differences_.of(world_, static_cast<int>(i));
       if (!found) continue;
       result_.progress.set_metric(organs[i].name + ".mean_difference_pct", found->mean_pct);
       result_.progress.set_metric(organs[i].name + ".largest_difference_pct", found->largest_pct);
@@ -154,6 +157,7 @@ class Session {
   ExerciseScript& script_;
   InputSource& source_;
   const SessionOptions& options_;
+  SkinDifferences differences_;
   double dt_;
   StepInput input_;  ///< held where the source has ended
   bool ended_ = false;

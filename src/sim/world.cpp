@@ -9,7 +9,6 @@
 #include "sim/advance.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
-#include "sim/jaw_mould.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
 #include "sim/vibration.h"
@@ -42,8 +41,6 @@ struct World::Impl {
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
   Field field;
-  std::vector<JawMould> moulds;                ///< one a tool; of pictures only, so no hash knows them
-  std::vector<std::vector<Vec3>> first_skins;  ///< m, each organ's skin points at time 0
   StepReport report;
   long steps = 0;
   bool failed = false;
@@ -53,7 +50,6 @@ struct World::Impl {
   std::optional<StepInput> still;
 
   void observe(std::vector<WorldEvent> events);
-  void follow_moulds();
   InstrumentState instrument_state(std::size_t index, const ToolLoad& load) const;
   OrganState organ_state(const Organ& organ) const;
   std::uint64_t hash_field() const;
@@ -183,11 +179,6 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
   return state;
 }
 
-void World::Impl::follow_moulds() {
-  for (std::size_t i = 0; i < moulds.size(); ++i)
-    moulds[i].follow(field, static_cast<int>(i), 1.0 / scene.solver.rate);
-}
-
 void World::Impl::observe(std::vector<WorldEvent> events) {
   const std::vector<ToolLoad> loads = tool_loads(field);
   report.time = static_cast<double>(steps) / scene.solver.rate;
@@ -285,7 +276,6 @@ Result<World> World::create(const SceneDefinition& scene) {
     tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
     tool.pose.insertion = waiting_depth;
     world.impl_->field.tools.push_back(tool);
-    world.impl_->moulds.emplace_back();
   }
   if (scene.laparoscope.distance < scene.solver.extension_view) {
     const auto [organ, skin_point] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
@@ -294,8 +284,6 @@ Result<World> World::create(const SceneDefinition& scene) {
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
-  for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i)
-    world.impl_->first_skins.push_back(world.skin_positions(static_cast<int>(i)));
   world.impl_->observe({});
   return world;
 }
@@ -315,7 +303,6 @@ Result<StepReport> World::step(const StepInput& input) {
     self.report.time = static_cast<double>(self.steps) / self.scene.solver.rate;
     self.report.events.clear();
     self.report.state_hash = self.hash();
-    self.follow_moulds();
     return self.report;
   }
   const FieldState before = state();
@@ -331,7 +318,6 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   ++self.steps;
-  self.follow_moulds();
   self.observe(std::move(events).value());
   self.still.reset();
   if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
@@ -371,6 +357,7 @@ Result<bool> World::restore(const FieldState& state) {
   return true;
 }
 Vec3 World::up() const { return impl_->up; }
+const Field& World::field() const { return impl_->field; }
 
 Vec3 World::port_position(const std::string& port) const {
   for (const PortDefinition& p : impl_->scene.ports)
@@ -402,32 +389,12 @@ const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
   return impl_->field.organs[organ].body.skin_rest();
 }
 
-StructureDrawing World::structure(int organ) const {
-  return draw_structure(impl_->field.organs[organ].body, impl_->field.organs[organ].state.x);
-}
-
-World::DrawnSkin World::drawn_skin(int organ) const {
-  DrawnSkin skin{skin_positions(organ), skin_normals(organ)};
-  for (std::size_t i = 0; i < impl_->moulds.size(); ++i)
-    impl_->moulds[i].apply(impl_->field, static_cast<int>(i), organ, skin.positions, skin.normals);
-  return skin;
-}
-
 Result<double> World::lowest_frequency(int index) const {
   const Organ& organ = impl_->field.organs[index];
   const BodyMass mass(organ.body, organ.state.x, organ.definition.wall.thickness,
                       organ.definition.bile.density);
   return calot::lowest_frequency(organ.body, contact_loads(impl_->field, organ, present_poses(impl_->field)),
                                  organ.state, mass);
-}
-
-std::optional<SkinDifference> World::difference(int index) const {
-  const std::vector<Organ>& organs = impl_->field.organs;
-  for (std::size_t k = 0; k < organs.size(); ++k)
-    if (organs[k].definition.name == organs[index].definition.compared_with)
-      return skin_difference(moved_skin(organs[index], impl_->first_skins[index]),
-                             moved_skin(organs[k], impl_->first_skins[k]));
-  return std::nullopt;
 }
 
 double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }

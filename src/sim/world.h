@@ -9,12 +9,11 @@
 
 #include "anatomy/definitions.h"
 #include "geometry/stencil.h"
-#include "sim/skin_difference.h"
 #include "sim/step_report.h"
-#include "sim/structure_drawing.h"
 
 namespace calot {
 
+struct Field;
 struct FieldState;
 
 class World {
@@ -50,26 +49,18 @@ class World {
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
 
-  /// The skin that is touched, and drawn but for the mould of jaws: triangles fixed, positions present; rest
+  /// Organs and tools as they are now (sim/field.h), for who looks closer than the report does.
+  const Field& field() const;
+  /// The skin that is touched, and drawn but for the mould of jaws (view/jaw_mould.h): triangles fixed, positions present; rest
   /// positions for texture.
   const Tessellation& skin(int organ) const;
   std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
   std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
   const std::vector<Vec3>& skin_rest_positions(int organ) const;
-  /// Elements and nodes of an organ's structure and of its extensions, where they lie on the present skin.
-  StructureDrawing structure(int organ) const;
-  /// The skin as it is drawn: what jaws hold takes their shape (sim/jaw_mould.h). Some milliseconds a holding tool.
-  struct DrawnSkin {
-    std::vector<Vec3> positions, normals;  ///< m; unit, outward
-  };
-  DrawnSkin drawn_skin(int organ) const;
   /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
   /// equilibrium is not stable, its volume kept.
   Result<double> lowest_frequency(int organ) const;
-  /// How far the motion of an organ's skin since time 0 is from that of the organ it is compared with. None without
-  /// one, or where that has not moved. Some 0.1 s.
-  std::optional<SkinDifference> difference(int organ) const;
   /// Deepest penetration of any instrument part into the skin (m, 0 when none), tested on a finer
   /// tessellation than contact uses: for tests and reports.
   double deepest_penetration() const;

@@ -8,7 +8,7 @@
 
 namespace calot {
 
-SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())) {
+SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())), moulds_(world) {
   const SceneDefinition& scene = world.scene();
   camera_ = laparoscope_camera(scene.laparoscope, world.port_position(scene.laparoscope.port),
                                world.landmark(scene.laparoscope.look_at));
@@ -38,14 +38,16 @@ Scene SceneBuilder::build(const World& world) const {
   }
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     SceneMesh mesh = organs_[i];
-    World::DrawnSkin skin = world.drawn_skin(static_cast<int>(i));
+    DrawnSkin skin = moulds_.skin(world, static_cast<int>(i));
     mesh.positions = std::move(skin.positions);
     mesh.normals = std::move(skin.normals);
     scene.meshes.push_back(std::move(mesh));
   }
-  for (std::size_t i = 0; i < organs_.size() && definition.laparoscope.show_structure; ++i)
-    for (SceneMesh& mesh : structure_meshes(world.structure(static_cast<int>(i))))
+  for (const Organ& organ : world.field().organs) {
+    if (!definition.laparoscope.show_structure) break;
+    for (SceneMesh& mesh : structure_meshes(draw_structure(organ.body, organ.state.x)))
       scene.meshes.push_back(std::move(mesh));
+  }
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());
   return scene;
 }

@@ -2,6 +2,7 @@
 
 #include "render/scene.h"
 #include "sim/world.h"
+#include "view/jaw_mould.h"
 
 namespace calot {
 
@@ -9,6 +10,8 @@ namespace calot {
 class SceneBuilder {
  public:
   explicit SceneBuilder(const World& world);
+  /// To be told of every step, drawn or not: a picture shows something of the way to it (view/jaw_mould.h).
+  void follow(const World& world) { moulds_.follow(world); }
   /// The picture of the world's present state. The laparoscope stays where it stood at the builder's making:
   /// a camera held still, not one glued to the moving organ.
   Scene build(const World& world) const;
@@ -18,6 +21,7 @@ class SceneBuilder {
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
   std::vector<SceneMesh>
       organs_;  // all that does not move of them: material, rest positions, triangles, vessels
+  JawMoulds moulds_;
 };
 
 /// A builder used once.

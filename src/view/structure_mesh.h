@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/scene.h"
-#include "sim/structure_drawing.h"
+#include "view/structure_drawing.h"
 
 namespace calot {
 

@@ -9,6 +9,7 @@
 #include "session/metrics.h"
 #include "session/report.h"
 #include "session/session_for_tests.h"
+#include "session/skin_difference.h"
 
 namespace calot {
 namespace {
@@ -167,8 +168,9 @@ TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
   scene.anatomy.organs[0].compared_with = "other";
   scene.anatomy.organs.push_back(other);
   World world = World::create(scene).value();
-  EXPECT_FALSE(world.difference(0)) << "nothing has moved";
-  EXPECT_FALSE(world.difference(1)) << "it is compared with none";
+  const SkinDifferences differences(world);
+  EXPECT_FALSE(differences.of(world, 0)) << "nothing has moved";
+  EXPECT_FALSE(differences.of(world, 1)) << "it is compared with none";
   // Only the other one is pressed.
   const Vec3 trocar = world.port_position("right_subcostal"), top = world.landmark("other.fundus"),
              in = world.landmark("other.neck") - top;
@@ -178,7 +180,7 @@ TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
     const Result<StepReport> step = world.step(input);
     ASSERT_TRUE(step) << to_text(step.failure());
   }
-  const std::optional<SkinDifference> found = world.difference(0);
+  const std::optional<SkinDifference> found = differences.of(world, 0);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->largest_pct, 100, 1e-9) << "one has not moved at all";
   EXPECT_GT(found->mean_pct, 0);

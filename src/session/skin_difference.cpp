@@ -1,4 +1,4 @@
-#include "sim/skin_difference.h"
+#include "session/skin_difference.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "collision/simplex_distance.h"
 #include "geometry/tri_mesh.h"
-#include "sim/organ.h"
+#include "sim/field.h"
 
 namespace calot {
 namespace {
@@ -41,8 +41,7 @@ class MotionField {
   std::vector<std::vector<std::size_t>> around_;  ///< triangles of each point
 };
 
-}  // namespace
-
+/// Since its skin points were at `first`, m.
 MovedSkin moved_skin(const Organ& organ, const std::vector<Vec3>& first) {
   MovedSkin out{organ.body.skin_rest(), organ.body.skin_positions(organ.state.x), organ.body.skin_areas(),
                 organ.body.skin().triangles};
@@ -52,6 +51,8 @@ MovedSkin moved_skin(const Organ& organ, const std::vector<Vec3>& first) {
   }
   return out;
 }
+
+}  // namespace
 
 std::optional<SkinDifference> skin_difference(const MovedSkin& skin, const MovedSkin& reference) {
   double largest_motion = 0;
@@ -68,6 +69,18 @@ std::optional<SkinDifference> skin_difference(const MovedSkin& skin, const Moved
   }
   out.mean_pct = sum / area;
   return out;
+}
+
+SkinDifferences::SkinDifferences(const World& world) {
+  for (const Organ& organ : world.field().organs) first_.push_back(organ.body.skin_positions(organ.state.x));
+}
+
+std::optional<SkinDifference> SkinDifferences::of(const World& world, int index) const {
+  const std::vector<Organ>& organs = world.field().organs;
+  for (std::size_t k = 0; k < organs.size(); ++k)
+    if (organs[k].definition.name == organs[index].definition.compared_with)
+      return skin_difference(moved_skin(organs[index], first_[index]), moved_skin(organs[k], first_[k]));
+  return std::nullopt;
 }
 
 }  // namespace calot

@@ -1,6 +1,6 @@
 // How differently two skins have moved, against closed forms.
 
-#include "sim/skin_difference.h"
+#include "session/skin_difference.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/structure_drawing.h"
+#include "view/structure_drawing.h"
 
 #include <map>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "sim/jaw_mould.h"
+#include "view/jaw_mould.h"
 
 #include <algorithm>
 #include <cmath>
@@ -146,6 +146,22 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
     positions[p] = *place;
     normals[p] = form.moved_normal(start, normals[p]);
   }
+}
+
+JawMoulds::JawMoulds(const World& world) : moulds_(world.field().tools.size()), time_(world.report().time) {}
+
+void JawMoulds::follow(const World& world) {
+  if (world.report().time == time_) return;
+  time_ = world.report().time;
+  for (std::size_t i = 0; i < moulds_.size(); ++i)
+    moulds_[i].follow(world.field(), static_cast<int>(i), 1.0 / world.scene().solver.rate);
+}
+
+DrawnSkin JawMoulds::skin(const World& world, int organ) const {
+  DrawnSkin skin{world.skin_positions(organ), world.skin_normals(organ)};
+  for (std::size_t i = 0; i < moulds_.size(); ++i)
+    moulds_[i].apply(world.field(), static_cast<int>(i), organ, skin.positions, skin.normals);
+  return skin;
 }
 
 }  // namespace calot

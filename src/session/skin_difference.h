@@ -5,11 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/types.h"
+#include "sim/world.h"
 
 namespace calot {
-
-struct Organ;
 
 /// Skin points of an organ in its own frame, all lists of the same length.
 struct MovedSkin {
@@ -17,9 +15,6 @@ struct MovedSkin {
   std::vector<double> areas;       ///< m^2 at rest, that each point stands for
   std::vector<Triangle> triangles;
 };
-
-/// `first`: its skin points when it had been filled, m.
-MovedSkin moved_skin(const Organ& organ, const std::vector<Vec3>& first);
 
 /// Distances between the two displacements of each of the reference's points, in % of its largest displacement.
 struct SkinDifference {
@@ -29,5 +24,16 @@ struct SkinDifference {
 
 /// Points correspond by the nearest place at rest. None where the reference has not moved.
 std::optional<SkinDifference> skin_difference(const MovedSkin& skin, const MovedSkin& reference);
+
+/// The same for organs of a world that are compared with others, since the moment of its making.
+class SkinDifferences {
+ public:
+  explicit SkinDifferences(const World& world);
+  /// None for an organ that is compared with none, or where that one has not moved. Some 0.1 s.
+  std::optional<SkinDifference> of(const World& world, int organ) const;
+
+ private:
+  std::vector<std::vector<Vec3>> first_;  ///< m, each organ's skin points then
+};
 
 }  // namespace calot

@@ -1,9 +1,9 @@
-#include "sim/jaw_mould.h"
+#include "view/jaw_mould.h"
 
 #include <gtest/gtest.h>
 
-#include "rig.h"
 #include "sim/grip.h"
+#include "sim/rig.h"
 
 namespace calot {
 namespace {
@@ -52,8 +52,8 @@ double largest_way(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return largest;
 }
 
-void expect_same(const World& world) {
-  const World::DrawnSkin drawn = world.drawn_skin(0);
+void expect_touched_skin(const JawMoulds& moulds, const World& world) {
+  const DrawnSkin drawn = moulds.skin(world, 0);
   EXPECT_EQ(drawn.positions, world.skin_positions(0));
   EXPECT_EQ(drawn.normals, world.skin_normals(0));
 }
@@ -67,10 +67,12 @@ INSTANTIATE_TEST_SUITE_P(Of, JawMouldGrasp, ::testing::Values("atraumatic_graspe
 
 TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
   test::FundusPath path(test::scene_with(type));
-  expect_same(path.world);
+  JawMoulds moulds(path.world);
+  expect_touched_skin(moulds, path.world);
+  path.driver.watch = [&](const StepReport&) { moulds.follow(path.world); };
   ASSERT_TRUE(path.grasp() && path.driver.stay(12)) << path.driver.why();
   const std::vector<Vec3> touched = path.world.skin_positions(0);
-  const World::DrawnSkin drawn = path.world.drawn_skin(0);
+  const DrawnSkin drawn = moulds.skin(path.world, 0);
   const Tool tool = tool_of(path.world);
   // Not all the way: towards the pads' edges the mould fades, and its functions are as wide as a fold at the tip.
   EXPECT_LT(mean_misfit(tool, touched, drawn.positions), 0.8 * mean_misfit(tool, touched, touched));
@@ -88,10 +90,14 @@ TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
 
 TEST_P(JawMouldGrasp, KeepsOutOfTheInstrumentComesAndGoesWithoutAJumpAndLeavesNothingBehind) {
   test::FundusPath path(test::scene_with(type));
+  JawMoulds moulds(path.world), told_twice(path.world);
   std::vector<Vec3> before = path.world.skin_positions(0), drawn_before = before;
   path.driver.watch = [&](const StepReport&) {
+    moulds.follow(path.world);
     const std::vector<Vec3> touched = path.world.skin_positions(0);
-    const std::vector<Vec3> drawn = path.world.drawn_skin(0).positions;
+    const std::vector<Vec3> drawn = moulds.skin(path.world, 0).positions;
+    for (int k = 0; k < 2; ++k) told_twice.follow(path.world);
+    ASSERT_EQ(told_twice.skin(path.world, 0).positions, drawn);
     const Solids solids(tools_only(tool_of(path.world)));
     for (std::size_t p = 0; p < drawn.size(); ++p) {
       if (drawn[p] == touched[p]) continue;
@@ -108,7 +114,7 @@ TEST_P(JawMouldGrasp, KeepsOutOfTheInstrumentComesAndGoesWithoutAJumpAndLeavesNo
       << path.driver.why();
   EXPECT_EQ(path.driver.count("release"), 1);
   ASSERT_TRUE(path.driver.stay(10)) << path.driver.why();
-  expect_same(path.world);
+  expect_touched_skin(moulds, path.world);
 }
 
 TEST(JawMould, AFlatPadIsFlatAndAWindowLetsTheWallThroughInItsMiddleOnly) {

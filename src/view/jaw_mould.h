@@ -63,4 +63,22 @@ class JawMould {
   double weight_ = 0;              ///< 0 to 1, linear in time
 };
 
+struct DrawnSkin {
+  std::vector<Vec3> positions, normals;  ///< m; unit, outward
+};
+
+/// The moulds of a world's tools.
+class JawMoulds {
+ public:
+  explicit JawMoulds(const World& world);
+  /// To be told of every step, drawn or not: moulds come and go in time. Twice after one step is once.
+  void follow(const World& world);
+  /// An organ's skin as it is drawn. Some milliseconds a holding tool.
+  DrawnSkin skin(const World& world, int organ) const;
+
+ private:
+  std::vector<JawMould> moulds_;  ///< one a tool
+  double time_;                   ///< s, of the last step that was followed
+};
+
 }  // namespace calot
