@@ -149,6 +149,10 @@ double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& 
 
 }  // namespace
 
+double force_scale(double largest_internal, const VecX& gradient) {
+  return std::max(largest_internal, 1e-3 * largest_node(gradient));
+}
+
 double largest_node(const Eigen::Ref<const VecX>& v) {
   double largest_squared = 0;
   for (int i = 0; i + 2 < v.size(); i += 3)
@@ -327,6 +331,25 @@ VecX linear_response(const NewtonWorkspace& work, const VecX& load, double& dmul
     dx += dmultiplier * work.bordered;
   }
   return dx;
+}
+
+FirstOrderAnswer first_order_answer(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
+                                    double multiplier, const VecX& load, const std::vector<double>& edges,
+                                    bool fresh) {
+  FirstOrderAnswer out;
+  out.result = factorise_tangent(problem, work, x, multiplier, fresh);
+  if (!out.result.converged()) return out;
+  const Timed timed(out.result.solve_s);
+  out.dx = linear_response(work, load, out.dmultiplier);
+  if (!out.dx.allFinite()) {
+    out.result.status = NewtonStatus::not_finite;
+    return out;
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double move = out.dx.segment<3>(3 * static_cast<Eigen::Index>(i)).norm();
+    if (move * out.share > answer_edge_share * edges[i]) out.share = answer_edge_share * edges[i] / move;
+  }
+  return out;
 }
 
 }  // namespace calot

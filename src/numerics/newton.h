@@ -14,6 +14,10 @@ namespace calot {
 /// Length of the largest of the 3-vectors, one a node, that v is made of.
 double largest_node(const Eigen::Ref<const VecX>& v);
 
+/// Scale of a residual, N, from the largest internal nodal force: a body at rest carries none yet, then the loads on it
+/// (the rest of the gradient) are the scale.
+double force_scale(double largest_internal, const VecX& gradient);
+
 /// L(x, m) = energy(x) - m * constraint(x), to be made stationary in x with constraint(x) = 0.
 class ConstrainedEnergy {
  public:
@@ -110,5 +114,20 @@ VecX linear_response(const NewtonWorkspace& workspace, const VecX& load, double&
 /// factor that can serve is kept. Of the result only status, shifts and times have a meaning.
 NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& workspace, const VecX& x,
                                double multiplier, bool fresh);
+
+/// No node of a first-order answer is believed further than this share of its shortest edge.
+inline constexpr double answer_edge_share = 0.5;
+
+struct FirstOrderAnswer {
+  NewtonResult result;  ///< status, shifts and times
+  VecX dx;
+  double dmultiplier = 0;
+  double share = 1;  ///< of both that can be believed
+};
+/// Of a body at (x, multiplier) to a change of its load; `edges`: each node's shortest, m. `fresh` as above. Fails
+/// where there is no tangent, or no finite answer.
+FirstOrderAnswer first_order_answer(const ConstrainedEnergy& problem, NewtonWorkspace& workspace,
+                                    const VecX& x, double multiplier, const VecX& load,
+                                    const std::vector<double>& edges, bool fresh);
 
 }  // namespace calot

@@ -148,23 +148,19 @@ class ComparedShell : public ComparedBody {
 
   /// Moves springs and body on towards `share` to first order, as far as no node goes beyond half an edge.
   NewtonResult predict(double share, double most, bool fresh) {
-    constexpr double edge_share = 0.5;
-    const NewtonResult result = factorise_tangent(problem(), work_, state_.x, state_.datum_pressure, fresh);
-    if (!result.converged()) return result;
     VecX load = VecX::Zero(state_.x.size());
     for (std::size_t i = 0; i < springs_.from.size(); ++i)
       spread(points_, springs_.links.row[i],
              springs_.links.stiffness[i] * (share - share_) * springs_.travel[i], load);
-    double dmultiplier = 0;
-    const VecX dx = linear_response(work_, load, dmultiplier);
-    double part = most;
-    for (int i = 0; i < body_.nodes(); ++i)
-      part = std::min(part, edge_share * body_.edge_lengths()[i] / dx.segment<3>(3 * i).norm());
-    state_.x += part * dx;
-    state_.datum_pressure += part * dmultiplier;
+    const FirstOrderAnswer answer = first_order_answer(problem(), work_, state_.x, state_.datum_pressure,
+                                                       load, body_.edge_lengths(), fresh);
+    if (!answer.result.converged()) return answer.result;
+    const double part = std::min(most, answer.share);
+    state_.x += part * answer.dx;
+    state_.datum_pressure += part * answer.dmultiplier;
     share_ = part >= 1 ? share : share_ + part * (share - share_);
     springs_.move_to(share_);
-    return result;
+    return answer.result;
   }
 
   const ComparedSurface& surface_;

@@ -17,8 +17,6 @@ namespace {
 
 using Poses = std::vector<InstrumentPose>;
 
-/// No predicted node moves further than this share of its shortest edge in one part.
-constexpr double edge_share = 0.5;
 constexpr int max_parts = 100;
 /// No motion between two stops takes more: one that needs them is blocked, and says so within seconds.
 constexpr int step_iterations = 1000;
@@ -169,22 +167,13 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
   if (loaded) {
     const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search);
-    const NewtonResult factored =
-        factorise_tangent(problem, organ.work, organ.state.x, organ.state.datum_pressure, fresh);
-    count(factored, statistics);
-    if (!factored.converged()) return solve_failure(factored, organ.definition.name, "under its instruments");
-    const Timed timed(statistics.solve_s);
-    out.dx = linear_response(organ.work, load, out.dmultiplier);
-    if (!out.dx.allFinite()) {
-      NewtonResult failed;
-      failed.status = NewtonStatus::not_finite;
-      return solve_failure(failed, organ.definition.name, "under its instruments");
-    }
-    for (int i = 0; i < organ.body.nodes(); ++i) {
-      const double move = out.dx.segment<3>(3 * i).norm();
-      if (move * out.share > edge_share * organ.body.edge_lengths()[i])
-        out.share = edge_share * organ.body.edge_lengths()[i] / move;
-    }
+    FirstOrderAnswer answer =
+        first_order_answer(problem, organ.work, organ.state.x, organ.state.datum_pressure, load,
+                           organ.body.edge_lengths(), fresh);
+    count(answer.result, statistics);
+    if (!answer.result.converged())
+      return solve_failure(answer.result, organ.definition.name, "under its instruments");
+    out = {std::move(answer.dx), answer.dmultiplier, answer.share};
   }
   const Timed timed(statistics.contact_s);
   out.share = organ.search.own.safe_share(organ.body, organ.state.x, out.dx, contact_keep, out.share);

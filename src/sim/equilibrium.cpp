@@ -69,15 +69,6 @@ void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& larges
   if (search_) search_->own.add_gradient(body_, x, gradient);
 }
 
-namespace {
-
-/// A body at rest carries no force yet: then the loads on it are the scale.
-double force_scale(double largest_internal, const VecX& gradient) {
-  return std::max(largest_internal, 1e-3 * largest_node(gradient));
-}
-
-}  // namespace
-
 void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   gradient.setZero(x.size());
   add_dry_gradient(x, gradient, largest_internal);

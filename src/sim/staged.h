@@ -9,10 +9,11 @@
 
 namespace calot {
 
-/// A problem with all nodes but first .. last - 1 held where they are.
-class Stage : public ConstrainedEnergy {
+/// A problem in part of its nodes, first .. last - 1: the others are held where they are.
+class PartProblem : public ConstrainedEnergy {
  public:
-  Stage(const ConstrainedEnergy& whole, int first, int last) : whole_(whole), first_(first), last_(last) {}
+  PartProblem(const ConstrainedEnergy& whole, int first, int last)
+      : whole_(whole), first_(first), last_(last) {}
 
   bool constrained() const override { return whole_.constrained(); }
   double value(const VecX& x) const override { return whole_.value(x); }

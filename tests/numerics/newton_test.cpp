@@ -327,6 +327,31 @@ TEST(Newton, LinearResponseIsTheChangeOfTheSolutionToFirstOrder) {
   EXPECT_NEAR(there - multiplier, dmultiplier, 1e-3 * std::abs(dmultiplier));
 }
 
+TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFinite) {
+  Net net(true);
+  net.volume *= 1.1;
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0, dmultiplier = 0;
+  ASSERT_TRUE(solve_equilibrium(net, {}, work, x, multiplier).converged());
+  Rng rng(4);
+  VecX more = test::random_coordinates(rng, 3 * Net::nodes, 1.0);
+  std::vector<double> edges(Net::nodes, 1e6);
+  const FirstOrderAnswer whole = first_order_answer(net, work, x, multiplier, more, edges, true);
+  ASSERT_TRUE(whole.result.converged());
+  EXPECT_EQ(whole.share, 1);
+  EXPECT_EQ(whole.dx, linear_response(work, more, dmultiplier));
+  EXPECT_EQ(whole.dmultiplier, dmultiplier);
+  edges[2] = 0.1 * whole.dx.segment<3>(6).norm();
+  edges[4] = 0.2 * whole.dx.segment<3>(12).norm();
+  const FirstOrderAnswer part = first_order_answer(net, work, x, multiplier, more, edges, false);
+  EXPECT_EQ(part.dx, whole.dx);
+  EXPECT_NEAR(part.share, 0.5 * 0.1, 1e-12);  // rounding
+  more[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(first_order_answer(net, work, x, multiplier, more, edges, false).result.status,
+            NewtonStatus::not_finite);
+}
+
 TEST(Newton, EveryStatusHasItsWords) {
   std::vector<std::string> words;
   for (NewtonStatus status :
