@@ -1,8 +1,6 @@
 #include "geometry/radial_view.h"
 
-#include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace calot {
 
@@ -21,28 +19,14 @@ FacePoint RadialView::point(const Vec3& direction) const {
     const double here = depth(f, direction);
     if (here > deepest) best = f, deepest = here;
   }
-  return on_plane(best, direction);
+  const Vec3 w = inverses_[best] * direction;
+  return {best, w[1] / w.sum(), w[2] / w.sum()};
 }
 
 std::vector<FacePoint> RadialView::points(const std::vector<Vec3>& directions) const {
   std::vector<FacePoint> out;
   for (const Vec3& d : directions) out.push_back(point(d));
   return out;
-}
-
-std::vector<FacePoint> RadialView::nearest(const Vec3& direction, int count) const {
-  std::vector<int> order(inverses_.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return depth(a, direction) > depth(b, direction); });
-  std::vector<FacePoint> out;
-  for (int k = 0; k < count; ++k) out.push_back(on_plane(order[k], direction));
-  return out;
-}
-
-FacePoint RadialView::on_plane(int face, const Vec3& direction) const {
-  const Vec3 w = inverses_[face] * direction;
-  return {face, w[1] / w.sum(), w[2] / w.sum()};
 }
 
 double RadialView::depth(int face, const Vec3& direction) const {

@@ -13,12 +13,9 @@ class RadialView {
 
   FacePoint point(const Vec3& direction) const;
   std::vector<FacePoint> points(const std::vector<Vec3>& directions) const;
-  /// A point on each of the faces' planes; the nearer the ray passes to a face the earlier it comes.
-  std::vector<FacePoint> nearest(const Vec3& direction, int count) const;
 
  private:
   int faces() const { return static_cast<int>(inverses_.size()); }
-  FacePoint on_plane(int face, const Vec3& direction) const;
   /// The smallest barycentric weight of where the ray meets the face's plane.
   double depth(int face, const Vec3& direction) const;
 

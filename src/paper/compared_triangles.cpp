@@ -3,8 +3,9 @@
 #include <optional>
 
 #include "geometry/radial_view.h"
+#include "geometry/shapes.h"
 #include "paper/compared_body.h"
-#include "paper/paper_comparison.h"
+#include "paper/star_structure.h"
 
 namespace calot {
 namespace {
@@ -71,11 +72,18 @@ class ComparedTriangles : public ComparedBody {
   std::optional<PaperBody> body_;
 };
 
-Result<TriMesh> flat_mesh(const ComparedSurface& surface, int level) {
-  const int nodes = static_cast<int>(surface.control.points.size());
-  Result<std::vector<TriMesh>> meshes = flat_spheres(surface.radius, nodes, level);
-  if (!meshes) return meshes.failure();
-  return meshes->back();
+/// A sphere of flat triangles and of the round one's volume, its edges halved `level` times.
+Result<TriMesh> flat_sphere(const ComparedSurface& surface, int level) {
+  Result<TriMesh> coarse =
+      revolve(sphere_profile(surface.radius), static_cast<int>(surface.control.points.size()));
+  if (!coarse) return coarse;
+  TriMesh mesh = std::move(coarse).value();
+  for (int k = 0; k < level; ++k) mesh = split_edges(mesh);
+  for (Vec3& p : mesh.points) p = surface.radius * p.normalized();
+  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(surface.radius, 3);
+  const double scale = std::cbrt(volume / enclosed_volume(mesh));
+  for (Vec3& p : mesh.points) p *= scale;
+  return mesh;
 }
 
 Result<std::unique_ptr<ComparedBody>> checked(std::unique_ptr<ComparedTriangles> body) {
@@ -86,7 +94,7 @@ Result<std::unique_ptr<ComparedBody>> checked(std::unique_ptr<ComparedTriangles>
 }  // namespace
 
 Result<std::unique_ptr<ComparedBody>> uniform_triangles(const ComparedSurface& surface, int uniform) {
-  Result<TriMesh> mesh = flat_mesh(surface, uniform);
+  Result<TriMesh> mesh = flat_sphere(surface, uniform);
   if (!mesh) return mesh.failure();
   return checked(std::make_unique<ComparedTriangles>(surface, std::move(mesh).value(), std::nullopt, false));
 }
@@ -94,7 +102,7 @@ Result<std::unique_ptr<ComparedBody>> uniform_triangles(const ComparedSurface& s
 Result<std::unique_ptr<ComparedBody>> extended_triangles(const ComparedSurface& surface,
                                                          const std::vector<Vec3>& places, int levels,
                                                          bool two_stages) {
-  Result<TriMesh> mesh = flat_mesh(surface, 0);
+  Result<TriMesh> mesh = flat_sphere(surface, 0);
   if (!mesh) return mesh.failure();
   const std::vector<FacePoint> contacts = RadialView(mesh.value()).points(places);
   Result<StarMesh> split = star_split(mesh.value(), contacts, levels);

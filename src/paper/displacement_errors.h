@@ -1,5 +1,5 @@
 #pragma once
-// How far one body's displacements are from another's, as both comparisons state it.
+// How far one body's displacements are from another's, as the comparison states it.
 
 #include <vector>
 

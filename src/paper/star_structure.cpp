@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/timed.h"
 #include "base/units.h"
 
 namespace calot {
@@ -45,24 +44,41 @@ Result<PaperElements> PaperElements::create(const TriMesh& mesh, const std::vect
   out.hinges = std::move(hinges).value();
   out.bile = std::move(bile).value();
   out.edges = shortest_edges(mesh);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : mesh.points) box.extend(p);
+  out.size = box.diagonal().norm();
   out.cliques = out.membrane.cliques();
   for (std::vector<int>& clique : out.hinges.cliques()) out.cliques.push_back(std::move(clique));
+  out.pattern = PaperProblem::pattern(out, 0);
   return out;
 }
 
-PaperProblem::PaperProblem(const PaperElements& elements, const StencilTable& points, const Links& springs,
-                           std::optional<double> volume, double datum_pressure, const VecX& nodes, int first)
+namespace {
+
+/// The entries of nodes `first`, first + 1, ... among those of all: the unknowns come last and only the lower triangle
+/// is kept.
+std::vector<double> entries_from(const BlockMatrix& all, int first) {
+  return {all.entries().begin() + all.column_starts()[3 * first], all.entries().end()};
+}
+
+}  // namespace
+
+void PaperSprings::find_hessian(const PaperElements& elements, const StencilTable& points, int first) {
+  BlockMatrix all = elements.pattern;
+  links.add_hessian(points, all);
+  hessian = entries_from(all, first);
+}
+
+PaperProblem::PaperProblem(const PaperElements& elements, const StencilTable& points,
+                           const PaperSprings& springs, std::optional<double> volume, double datum_pressure,
+                           const VecX& nodes, int first)
     : elements_(elements),
       points_(points),
       springs_(springs),
       volume_(volume),
       datum_pressure_(datum_pressure),
       nodes_(nodes),
-      first_(first) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : to_points(elements.rest)) box.extend(p);
-  size_ = box.diagonal().norm();
-}
+      first_(first) {}
 
 BlockMatrix PaperProblem::pattern(const PaperElements& elements, int first) {
   std::vector<std::vector<int>> cliques;
@@ -84,7 +100,7 @@ double PaperProblem::value(const VecX& x) const {
   const VecX all = whole(x);
   double sum = elements_.membrane.value(all);
   if (!std::isfinite(sum)) return sum;
-  sum += elements_.hinges.value(all) + springs_.value(points_, all) + elements_.bile.value(all);
+  sum += elements_.hinges.value(all) + springs_.links.value(points_, all) + elements_.bile.value(all);
   if (!volume_) sum -= datum_pressure_ * elements_.bile.volume(all);
   return sum;
 }
@@ -95,27 +111,28 @@ void PaperProblem::gradient(const VecX& x, VecX& gradient, double& largest_inter
   elements_.membrane.add_gradient(all, g);
   elements_.hinges.add_gradient(all, g);
   largest_internal = largest_node(g.tail(x.size()));
-  springs_.add_gradient(points_, all, g);
+  springs_.links.add_gradient(points_, all, g);
   elements_.bile.add_load(all, volume_ ? 0.0 : datum_pressure_, g);
   gradient = g.tail(x.size());
-  // A body at rest carries no force yet: then the loads on it are the scale.
-  largest_internal = std::max(largest_internal, 1e-3 * largest_node(gradient));
+  largest_internal = force_scale(largest_internal, gradient);
 }
 
-void PaperProblem::add_hessian(const VecX& all, double datum_pressure, BlockMatrix& matrix) const {
+void PaperProblem::add_elements(const VecX& all, double datum_pressure, BlockMatrix& matrix) const {
   elements_.membrane.add_hessian(all, matrix);
   elements_.hinges.add_hessian(all, matrix);
-  springs_.add_hessian(points_, matrix);
   elements_.bile.add_hessian(all, volume_ ? datum_pressure : datum_pressure_, matrix);
 }
 
 void PaperProblem::hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const {
-  matrix.set_zero();
-  if (first_ == 0) return add_hessian(x, datum_pressure, matrix);
-  BlockMatrix all = pattern(elements_, 0);
-  add_hessian(whole(x), datum_pressure, all);
-  // The unknowns come last and only the lower triangle is kept: their columns are the same entries.
-  matrix.assign({all.entries().begin() + all.column_starts()[3 * first_], all.entries().end()});
+  if (first_ == 0) {
+    matrix.set_zero();
+    add_elements(x, datum_pressure, matrix);
+  } else {
+    BlockMatrix all = elements_.pattern;
+    add_elements(whole(x), datum_pressure, all);
+    matrix.assign(entries_from(all, first_));
+  }
+  matrix.add(springs_.hessian);
 }
 
 double PaperProblem::constraint(const VecX& x, VecX& gradient) const {
@@ -138,16 +155,18 @@ PaperBody::Stage PaperBody::make_stage(PaperElements elements, StencilTable poin
   const VecX rest = elements.rest;
   NewtonWorkspace work(PaperProblem::pattern(elements, first));
   if (solver) work.factor = Cholesky(work.matrix, work.matrix.nodes(), *solver);
-  return {std::move(elements),
-          std::move(points),
-          std::move(loaded),
-          volume,
-          first,
-          rest,
-          std::move(work),
-          {},
-          {},
-          {}};
+  Stage stage{std::move(elements),
+              std::move(points),
+              std::move(loaded),
+              volume,
+              first,
+              rest,
+              std::move(work),
+              {},
+              {},
+              {}};
+  stage.springs.find_hessian(stage.elements, stage.points, first);
+  return stage;
 }
 
 Result<PaperBody> PaperBody::one_system(const TriMesh& mesh, const std::vector<FacePoint>& points,
@@ -187,12 +206,13 @@ void PaperBody::bind(const std::vector<double>& stiffness, const Vec3& travel) {
     for (int p = 0; p < stage.points.rows(); ++p) {
       if (stiffness[p] <= 0 || !stage.loaded[p]) continue;
       const Vec3 at = blend(stage.points, stage.points.value, p, stage.nodes);
-      stage.springs.row.push_back(p);
-      stage.springs.target.push_back(at);
-      stage.springs.stiffness.push_back(stiffness[p]);
+      stage.springs.links.row.push_back(p);
+      stage.springs.links.target.push_back(at);
+      stage.springs.links.stiffness.push_back(stiffness[p]);
       stage.from.push_back(at);
       stage.travel.push_back(travel);
     }
+    stage.springs.find_hessian(stage.elements, stage.points, stage.first);
   }
 }
 
@@ -208,20 +228,14 @@ void PaperBody::carry_extension() {
 
 NewtonResult PaperBody::solve(Stage& stage, double share) {
   for (std::size_t i = 0; i < stage.from.size(); ++i)
-    stage.springs.target[i] = stage.from[i] + share * stage.travel[i];
+    stage.springs.links.target[i] = stage.from[i] + share * stage.travel[i];
   const PaperProblem problem(stage.elements, stage.points, stage.springs, stage.volume, datum_pressure_,
                              stage.nodes, stage.first);
   VecX x = stage.nodes.tail(stage.nodes.size() - 3 * stage.first);
   double datum_pressure = datum_pressure_;
-  NewtonResult result;
-  {
-    const Timed timed(stage.seconds);
-    result = solve_equilibrium(problem, setup_.newton, stage.work, x, datum_pressure);
-  }
+  const NewtonResult result = solve_equilibrium(problem, setup_.newton, stage.work, x, datum_pressure);
   stage.nodes.tail(x.size()) = x;
   if (stage.volume) datum_pressure_ = datum_pressure;
-  stage.iterations += result.iterations;
-  stage.factorisations += result.iterations - result.chords + result.shifts;
   return result;
 }
 
@@ -245,23 +259,5 @@ std::vector<const NewtonWorkspace*> PaperBody::systems() const {
 }
 
 double PaperBody::volume() const { return stages_[0].elements.bile.volume(stages_[0].nodes); }
-
-PaperBody::Cost PaperBody::cost() const {
-  Cost cost;
-  cost.nodes = static_cast<int>(nodes().size()) / 3;
-  for (const Stage& stage : stages_) {
-    const Cholesky& factor = stage.work.factor;
-    cost.unknowns += stage.work.matrix.size();
-    cost.iterations += stage.iterations;
-    cost.factorisations += stage.factorisations;
-    cost.factor_flops += factor.factor_flops();
-    cost.flops += stage.factorisations * factor.factor_flops();
-    cost.memory += sizeof(double) * (static_cast<double>(factor.factor_nonzeros()) +
-                                     static_cast<double>(stage.work.matrix.entries().size()));
-    cost.condition = std::max(cost.condition, 1 / factor.reciprocal_condition());
-    cost.seconds += stage.seconds;
-  }
-  return cost;
-}
 
 }  // namespace calot

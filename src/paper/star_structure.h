@@ -28,7 +28,9 @@ struct PaperElements {
   Shell membrane;
   Hinges hinges;
   Bile bile;
-  std::vector<double> edges;  ///< shortest at each node, m
+  std::vector<double> edges;   ///< shortest at each node, m
+  double size = 0;             ///< m, of the whole
+  BlockMatrix pattern{0, {}};  ///< of all nodes, empty
   std::vector<std::vector<int>> cliques;
 
   /// `mesh` may be a part of a closed surface: then the bile's forces hold for nodes inside that part. Hinges
@@ -37,12 +39,21 @@ struct PaperElements {
                                       const PaperSetup& setup);
 };
 
+/// Springs on points of the elements' triangles.
+struct PaperSprings {
+  Links links;
+  /// Entries in the pattern of the unknowns: linear springs have one Hessian for good.
+  std::vector<double> hessian;
+
+  void find_hessian(const PaperElements& elements, const StencilTable& points, int first);
+};
+
 /// Equilibrium of nodes `first`, first + 1, ... (the unknowns), those before held where `nodes` has them.
 class PaperProblem : public ConstrainedEnergy {
  public:
   /// `points` are points of the elements' triangles, springs its rows. Without `volume` the bile's datum_pressure
   /// (pressure at the origin's height, Pa) is given.
-  PaperProblem(const PaperElements& elements, const StencilTable& points, const Links& springs,
+  PaperProblem(const PaperElements& elements, const StencilTable& points, const PaperSprings& springs,
                std::optional<double> volume, double datum_pressure, const VecX& nodes, int first);
 
   bool constrained() const override { return volume_.has_value(); }
@@ -52,7 +63,7 @@ class PaperProblem : public ConstrainedEnergy {
   double constraint(const VecX& x, VecX& gradient) const override;
   double constraint_value(const VecX& x) const override;
   double constraint_scale() const override { return volume_.value_or(1.0); }
-  double length_scale() const override { return size_; }
+  double length_scale() const override { return elements_.size; }
   double safe_share(const VecX& x, const VecX& step) const override;
 
   /// Empty matrix of the unknowns.
@@ -60,16 +71,15 @@ class PaperProblem : public ConstrainedEnergy {
 
  private:
   VecX whole(const VecX& x) const;  ///< all nodes
-  void add_hessian(const VecX& all, double datum_pressure, BlockMatrix& matrix) const;
+  void add_elements(const VecX& all, double datum_pressure, BlockMatrix& matrix) const;
 
   const PaperElements& elements_;
   const StencilTable& points_;
-  const Links& springs_;
+  const PaperSprings& springs_;
   std::optional<double> volume_;
   double datum_pressure_;
   VecX nodes_;
   int first_;
-  double size_;
 };
 
 /// A body of one system, or of the paper's two: the coarse structure first, under the loads at its flat
@@ -99,17 +109,6 @@ class PaperBody {
   const VecX& nodes() const { return stages_.back().nodes; }
   double pressure() const { return datum_pressure_; }  ///< at the origin's height, Pa
 
-  struct Cost {
-    int nodes = 0, unknowns = 0;  ///< unknowns of all stages
-    int iterations = 0, factorisations = 0;
-    double factor_flops = 0;  ///< of one factorisation of each stage
-    double flops = 0;         ///< of all factorisations so far
-    double memory = 0;        ///< bytes, of matrices and their factors
-    double condition = 0;     ///< estimate, of the worse stage's last factor
-    double seconds = 0;       ///< in Newton's method; no result depends on it
-  };
-  Cost cost() const;
-
  private:
   struct Stage {
     PaperElements elements;
@@ -119,10 +118,8 @@ class PaperBody {
     int first = 0;  ///< unknown
     VecX nodes;
     NewtonWorkspace work;
-    Links springs;
+    PaperSprings springs;
     std::vector<Vec3> from, travel;  ///< of each spring
-    int iterations = 0, factorisations = 0;
-    double seconds = 0;
   };
   static Stage make_stage(PaperElements elements, StencilTable points, std::vector<bool> loaded,
                           std::optional<double> volume, int first, std::optional<FactorKind> solver);

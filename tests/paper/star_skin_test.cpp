@@ -1,4 +1,5 @@
-#include "paper/star_skin.h"
+// The paper's B-spline skin over a structure with stars (section 5.3), which nothing draws: that the control mesh of
+// star_control() carries one.
 
 #include <gtest/gtest.h>
 
@@ -7,11 +8,21 @@
 
 #include "geometry/shapes.h"
 #include "paper/star_structure.h"
+#include "skin/subdivision.h"
 
 namespace calot {
 namespace {
 
 constexpr double radius = 20e-3;
+
+/// The Loop surface controlled by the structure's nodes, but at an extension by P0 and P1', P2', P3' in place of P1, P2,
+/// P3; stencils name the structure's nodes.
+Tessellation paper_skin(const StarMesh& structure, int parts) {
+  const StarControl control = star_control(structure);
+  Tessellation skin = LoopSurface::create(control.mesh).value().tessellate(parts);
+  for (int& node : skin.stencils.node) node = control.node[node];
+  return skin;
+}
 
 /// Three stars: the second shares an edge with the first, the third a node of both or of one.
 StarMesh structure(int levels) {
@@ -34,7 +45,7 @@ StarMesh structure(int levels) {
 TEST(PaperSkin, ExtensionsControlItAndTheCornersOfTheTouchedTrianglesDoNot) {
   for (int levels : {0, 1}) {
     const StarMesh split = structure(levels);
-    const StencilTable table = paper_skin(split, 4).value().stencils;
+    const StencilTable table = paper_skin(split, 4).stencils;
     std::set<int> corners, controlling(table.node.begin(), table.node.end());
     for (const Star& star : split.stars) {
       corners.insert(star.corners.begin(), star.corners.end());
@@ -49,7 +60,7 @@ TEST(PaperSkin, ExtensionsControlItAndTheCornersOfTheTouchedTrianglesDoNot) {
 TEST(PaperSkin, IsClosedOutwardAndNearTheStructure) {
   for (int levels : {0, 1}) {
     const StarMesh split = structure(levels);
-    const Tessellation skin = paper_skin(split, 4).value();
+    const Tessellation skin = paper_skin(split, 4);
     const TriMesh mesh{blend_all(skin.stencils, skin.stencils.value, to_coordinates(split.mesh.points)),
                        skin.triangles};
     for (const Problem& problem : check(mesh)) ADD_FAILURE() << to_text(problem);
@@ -62,7 +73,7 @@ TEST(PaperSkin, IsClosedOutwardAndNearTheStructure) {
 
 TEST(PaperSkin, FollowsRigidMotionsOfTheNodes) {
   const StarMesh split = structure(0);
-  const StencilTable table = paper_skin(split, 3).value().stencils;
+  const StencilTable table = paper_skin(split, 3).stencils;
   const Pose motion = Eigen::Translation3d(0.1, -0.2, 0.05) * Eigen::AngleAxisd(1.0, Vec3(1, 2, 2) / 3);
   VecX there = to_coordinates(split.mesh.points);
   const std::vector<Vec3> rest = blend_all(table, table.value, there);
@@ -89,7 +100,7 @@ TEST(PaperSkin, OfABodyPulledAtItsExtensionsDoesNotFold) {
   ASSERT_TRUE(body.settle(0).converged());
   body.bind(contact, pull);
   for (int k = 1; k <= 4; ++k) ASSERT_TRUE(body.settle(k / 4.0).converged());
-  const Tessellation skin = paper_skin(split, 4).value();
+  const Tessellation skin = paper_skin(split, 4);
   const TriMesh mesh{blend_all(skin.stencils, skin.stencils.value, body.nodes()), skin.triangles};
   for (const Problem& problem : check(mesh)) ADD_FAILURE() << to_text(problem);
   EXPECT_GT((Vec3(body.nodes().segment<3>(3 * split.stars[0].centre)) - at).dot(at.normalized()), 6e-3);
@@ -97,7 +108,7 @@ TEST(PaperSkin, OfABodyPulledAtItsExtensionsDoesNotFold) {
 
 TEST(PaperSkin, MovingPZeroMovesTheSkinAroundItOnly) {
   const StarMesh split = structure(0);
-  const Tessellation skin = paper_skin(split, 4).value();
+  const Tessellation skin = paper_skin(split, 4);
   VecX x = to_coordinates(split.mesh.points);
   const std::vector<Vec3> rest = blend_all(skin.stencils, skin.stencils.value, x);
   const int centre = split.stars[0].centre;

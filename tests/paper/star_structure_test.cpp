@@ -73,7 +73,8 @@ TEST(PaperStructure, GradientAndHessianAreTheDerivativesWhicheverNodesAreHeld) {
   Rng rng(1);
   const PaperElements elements = PaperElements::create(rig.split.mesh, {}, setup()).value();
   const StencilTable points = linear_stencils(rig.split.mesh.triangles, rig.split_points);
-  Links springs;
+  PaperSprings bound;
+  Links& springs = bound.links;
   for (int p = 0; p < points.rows(); ++p) {
     springs.row.push_back(p);
     springs.target.push_back(rig.position(rig.split_points[p]) + test::random_vector(rng, 3e-3));
@@ -85,7 +86,8 @@ TEST(PaperStructure, GradientAndHessianAreTheDerivativesWhicheverNodesAreHeld) {
   for (int first : {0, 20}) {
     // With nodes held the pressure is given; without, the volume is, and the Hessian is the Lagrangian's.
     const std::optional<double> kept = first == 0 ? std::optional(volume) : std::nullopt;
-    const PaperProblem problem(elements, points, springs, kept, datum_pressure, nodes, first);
+    bound.find_hessian(elements, points, first);
+    const PaperProblem problem(elements, points, bound, kept, datum_pressure, nodes, first);
     const auto gradient = [&](const VecX& y) {
       VecX g, by_volume;
       double largest = 0;
@@ -148,34 +150,21 @@ TEST(PaperStructure, TheSecondStageBringsTheExtensionsNodesIntoBalance) {
   // The whole of it as one system, at the same pressure: only the coarse nodes are out of balance.
   const PaperElements elements = PaperElements::create(rig.split.mesh, {}, setup()).value();
   const StencilTable points = linear_stencils(rig.split.mesh.triangles, rig.split_points);
-  Links springs;
+  PaperSprings bound;
+  Links& springs = bound.links;
   for (int p = 0; p < points.rows(); ++p) {
     if (!rig.split.extended[rig.split_points[p].face]) continue;
     springs.row.push_back(p);
     springs.target.push_back(filled[p] + pull);
     springs.stiffness.push_back(rig.contact[p]);
   }
-  const PaperProblem problem(elements, points, springs, std::nullopt, staged.pressure(), staged.nodes(), 0);
+  const PaperProblem problem(elements, points, bound, std::nullopt, staged.pressure(), staged.nodes(), 0);
   VecX g;
   double largest = 0;
   problem.gradient(staged.nodes(), g, largest);
   const int unknowns = static_cast<int>(g.size()) - 60;
   EXPECT_LT(largest_node(g.tail(unknowns)), 1e-8 * largest);
   EXPECT_GT(largest_node(g.head(60)), 1e-3 * largest);
-}
-
-TEST(PaperStructure, CostCountsEachStagesSystem) {
-  const Rig rig;
-  PaperBody body =
-      PaperBody::two_stages(rig.coarse, rig.points, rig.split, rig.split_points, setup()).value();
-  load(body, rig);
-  const PaperBody::Cost cost = body.cost();
-  EXPECT_EQ(cost.nodes, 28);
-  EXPECT_EQ(cost.unknowns, 3 * (20 + 8));
-  EXPECT_DOUBLE_EQ(cost.factor_flops, (std::pow(60, 3) + std::pow(24, 3)) / 3);  // dense Cholesky
-  EXPECT_GT(cost.factorisations, 2);
-  EXPECT_GE(cost.flops, cost.factor_flops);
-  EXPECT_GT(cost.condition, 1);
 }
 
 }  // namespace
