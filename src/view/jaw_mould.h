@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/field.h"
+#include "sim/world.h"
 
 namespace calot {
 
