@@ -2,32 +2,37 @@
 
 #include <suitesparse/cholmod.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstring>
 #include <limits>
 #include <optional>
 
 #include "numerics/condense.h"
+#include "numerics/envelope.h"
 
 namespace calot {
 namespace {
 
-/// L in place of the lower triangle of a, block by block; false when a is not positive definite. As Eigen::LLT, which
-/// copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
-bool factorise_in_place(Eigen::MatrixXd& a) {
-  constexpr Eigen::Index block = 48;
-  for (Eigen::Index k = 0; k < a.rows(); k += block) {
-    const Eigen::Index size = std::min(block, a.rows() - k), rest = a.rows() - k - size;
-    const Eigen::LLT<Eigen::MatrixXd> corner(a.block(k, k, size, size));
-    if (corner.info() != Eigen::Success) return false;
-    a.block(k, k, size, size).triangularView<Eigen::Lower>() = corner.matrixLLT();
-    if (rest == 0) continue;
-    auto below = a.block(k + size, k, rest, size);
-    corner.matrixU().solveInPlace<Eigen::OnTheRight>(below);
-    a.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+/// Which of the first `count` nodes each is coupled with: by the pattern, and in `groups`.
+std::vector<std::vector<int>> couplings(const BlockMatrix& pattern, int count,
+                                        const std::vector<std::vector<int>>& groups) {
+  std::vector<std::vector<int>> out(static_cast<std::size_t>(count));
+  const auto couple = [&](int a, int b) {
+    out[a].push_back(b);
+    out[b].push_back(a);
+  };
+  for (int column = 0; column < count; ++column)
+    for (int e = pattern.column_starts()[3 * column]; e < pattern.column_starts()[3 * column + 1]; e += 3)
+      if (const int row = pattern.rows()[e] / 3; row > column && row < count) couple(row, column);
+  for (const std::vector<int>& group : groups)
+    for (int a : group)
+      for (int b : group)
+        if (b < a) couple(a, b);
+  for (std::vector<int>& of_node : out) {
+    std::sort(of_node.begin(), of_node.end());
+    of_node.erase(std::unique(of_node.begin(), of_node.end()), of_node.end());
   }
-  return true;
+  return out;
 }
 
 }  // namespace
@@ -35,7 +40,7 @@ bool factorise_in_place(Eigen::MatrixXd& a) {
 struct Cholesky::Impl {
   FactorKind kind = FactorKind::dense;
   std::optional<Condensation> condensation;
-  Eigen::MatrixXd factor_l;  ///< lower triangle: of the whole matrix, or of what it is condensed to
+  EnvelopeFactor kept;  ///< of the whole matrix, or of what it is condensed to; empty where that is sparse
   cholmod_common common;
   cholmod_factor* factor = nullptr;
   // Workspaces that cholmod_solve2 keeps between calls.
@@ -56,10 +61,8 @@ struct Cholesky::Impl {
   explicit Impl(const Impl& like) : Impl() {
     kind = like.kind;
     condensation = like.condensation;
-    if (kind != FactorKind::sparse)
-      factor_l.resize(like.factor_l.rows(), like.factor_l.cols());
-    else if (like.factor != nullptr)
-      factor = cholmod_copy_factor(like.factor, &common);
+    kept = like.kept.blank();
+    if (like.factor != nullptr) factor = cholmod_copy_factor(like.factor, &common);
   }
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
@@ -70,11 +73,6 @@ struct Cholesky::Impl {
     cholmod_finish(&common);
   }
 
-  VecX solve_dense(VecX right) const {
-    factor_l.triangularView<Eigen::Lower>().solveInPlace(right);
-    factor_l.triangularView<Eigen::Lower>().transpose().solveInPlace(right);
-    return right;
-  }
   FactorStatus factorise_dense(const BlockMatrix& matrix);
   FactorStatus factorise_condensed(const BlockMatrix& matrix);
   FactorStatus factorise_sparse(const BlockMatrix& matrix);
@@ -100,13 +98,11 @@ struct Cholesky::Impl {
 Cholesky::Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind)
     : impl_(std::make_shared<Impl>()) {
   impl_->kind = kind;
-  // Eigen cuts its products by the caches it finds; fixed sizes make the order of sums the same everywhere.
-  Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 8 * 1024 * 1024);
   if (kind == FactorKind::condensed) {
     impl_->condensation.emplace(pattern, coarse);
-    impl_->factor_l = impl_->condensation->condensed();
+    impl_->kept = EnvelopeFactor(couplings(pattern, coarse, impl_->condensation->outer_nodes()));
   } else if (kind == FactorKind::dense) {
-    impl_->factor_l = Eigen::MatrixXd::Zero(pattern.size(), pattern.size());
+    impl_->kept = EnvelopeFactor(couplings(pattern, pattern.nodes(), {}));
   } else {
     cholmod_sparse sparse = Impl::view(pattern);
     impl_->factor = cholmod_analyze(&sparse, &impl_->common);
@@ -123,19 +119,15 @@ FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
 }
 
 FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix) {
-  for (int column = 0; column < matrix.size(); ++column) {
-    factor_l.col(column).tail(matrix.size() - column).setZero();
-    for (int e = matrix.column_starts()[column]; e < matrix.column_starts()[column + 1]; ++e)
-      factor_l(matrix.rows()[e], column) = matrix.entries()[e];
-  }
-  return factorise_in_place(factor_l) ? FactorStatus::ok : FactorStatus::not_positive_definite;
+  kept.load(matrix);
+  return kept.factorise() ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
 FactorStatus Cholesky::Impl::factorise_condensed(const BlockMatrix& matrix) {
   const FactorStatus status = condensation->eliminate(matrix);
   if (status != FactorStatus::ok) return status;
-  factor_l.triangularView<Eigen::Lower>() = condensation->condensed();
-  return factorise_in_place(factor_l) ? FactorStatus::ok : FactorStatus::not_positive_definite;
+  kept.load(condensation->condensed());
+  return kept.factorise() ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
 FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
@@ -148,9 +140,9 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
 }
 
 VecX Cholesky::solve(const VecX& right) const {
-  if (impl_->kind == FactorKind::dense) return impl_->solve_dense(right);
+  if (impl_->kind == FactorKind::dense) return impl_->kept.solve(right);
   if (impl_->kind == FactorKind::condensed)
-    return impl_->condensation->expand(right, impl_->solve_dense(impl_->condensation->reduce(right)));
+    return impl_->condensation->expand(right, impl_->kept.solve(impl_->condensation->reduce(right)));
   cholmod_dense b{};
   b.nrow = b.nzmax = b.d = static_cast<std::size_t>(right.size());
   b.ncol = 1;
@@ -168,8 +160,7 @@ VecX Cholesky::solve(const VecX& right) const {
 
 double Cholesky::reciprocal_condition() const {
   if (impl_->kind == FactorKind::sparse) return cholmod_rcond(impl_->factor, &impl_->common);
-  const auto diagonal = impl_->factor_l.diagonal();
-  double smallest = diagonal.minCoeff(), largest = diagonal.maxCoeff();
+  double smallest = impl_->kept.smallest_pivot(), largest = impl_->kept.largest_pivot();
   if (impl_->kind == FactorKind::condensed && impl_->condensation->groups() > 0) {
     smallest = std::min(smallest, impl_->condensation->smallest_pivot());
     largest = std::max(largest, impl_->condensation->largest_pivot());
@@ -179,15 +170,14 @@ double Cholesky::reciprocal_condition() const {
 
 double Cholesky::factor_flops() const {
   if (impl_->kind == FactorKind::sparse) return impl_->common.fl;
-  const double n = static_cast<double>(impl_->factor_l.rows());
   const double inner = impl_->kind == FactorKind::condensed ? impl_->condensation->flops() : 0;
-  return n * n * n / 3.0 + inner;
+  return impl_->kept.flops() + inner;
 }
 
 long Cholesky::factor_nonzeros() const {
   if (impl_->kind == FactorKind::sparse) return static_cast<long>(impl_->common.lnz);
-  const long n = impl_->factor_l.rows();
-  return n * (n + 1) / 2 + (impl_->kind == FactorKind::condensed ? impl_->condensation->nonzeros() : 0);
+  return impl_->kept.nonzeros() +
+         (impl_->kind == FactorKind::condensed ? impl_->condensation->nonzeros() : 0);
 }
 
 }  // namespace calot

@@ -140,6 +140,15 @@ VecX Condensation::expand(const VecX& right, const VecX& kept) const {
   return out;
 }
 
+std::vector<std::vector<int>> Condensation::outer_nodes() const {
+  std::vector<std::vector<int>> out;
+  for (const Group& group : groups_) {
+    out.emplace_back();
+    for (std::size_t i = 0; i < group.outer.size(); i += 3) out.back().push_back(group.outer[i] / 3);
+  }
+  return out;
+}
+
 double Condensation::flops() const {
   double sum = 0;
   for (const Group& group : groups_) {

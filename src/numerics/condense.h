@@ -27,6 +27,9 @@ class Condensation {
   /// All unknowns under loads `right`, from the kept ones.
   VecX expand(const VecX& right, const VecX& kept) const;
 
+  /// Kept nodes that each group is coupled with, increasing: afterwards these are coupled with each other.
+  std::vector<std::vector<int>> outer_nodes() const;
+
   int groups() const { return static_cast<int>(groups_.size()); }
   double flops() const;   ///< of one elimination
   long nonzeros() const;  ///< of the groups' factors

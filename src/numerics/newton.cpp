@@ -113,10 +113,10 @@ double safe_share(const ConstrainedEnergy& problem, const VecX& x, const VecX& s
   return problem.safe_share(x, step);
 }
 
-/// Backtracking on phi = energy - m * constraint + penalty / 2 * constraint^2. Returns the share taken; 0
-/// when no decrease was found.
+/// Backtracking on phi = energy - m * constraint + penalty / 2 * constraint^2. Begins with `share`;
+/// returns the share taken, 0 when no decrease was found.
 double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& step, const State& state,
-                   double multiplier, double curvature, NewtonResult& result) {
+                   double multiplier, double curvature, double share, NewtonResult& result) {
   const bool constrained = problem.constrained();
   const double c = state.constraint;
   // Large enough that the bordered step descends whatever the curvature along it.
@@ -133,7 +133,6 @@ double line_search(const ConstrainedEnergy& problem, const VecX& x, const VecX& 
   const double start = merit(energy, c);
   // Differences below the rounding of the sum cannot be judged.
   const double rounding = 1e-13 * (std::abs(energy) + std::abs(multiplier) * problem.constraint_scale());
-  double share = safe_share(problem, x, step, result);
   const Timed timed(result.assembly_s);
   for (int trial = 0; trial < 40 && share > 0; ++trial) {
     const VecX next = x + share * step;
@@ -233,13 +232,9 @@ struct Iteration {
     return step;
   }
 
-  /// A step with the last factor, kept only if it brings the body much nearer to balance.
-  bool chord() {
-    if (!serves(work, problem)) return false;
+  /// A whole step, kept only if it brings the body much nearer to balance: then no energy need be asked.
+  bool leap(const VecX& step, double dmultiplier) {
     constexpr double worth = 0.25;  // slower than this, a factorisation pays
-    double dmultiplier = 0;
-    const VecX step = bordered_step(dmultiplier);
-    if (!step.allFinite() || safe_share(problem, x, step, result) < 1.0) return false;
     const VecX next = x + step;
     State then;
     evaluate(problem, next, multiplier + dmultiplier, then, result);
@@ -249,6 +244,16 @@ struct Iteration {
     multiplier += dmultiplier;
     state = std::move(then);
     result.increment = step.lpNorm<Eigen::Infinity>() / problem.length_scale();
+    return true;
+  }
+
+  /// A step with the last factor.
+  bool chord() {
+    if (!serves(work, problem)) return false;
+    double dmultiplier = 0;
+    const VecX step = bordered_step(dmultiplier);
+    if (!step.allFinite() || safe_share(problem, x, step, result) < 1.0 || !leap(step, dmultiplier))
+      return false;
     ++result.chords;
     return true;
   }
@@ -263,10 +268,16 @@ struct Iteration {
     const VecX step = bordered_step(dmultiplier);
     result.status = NewtonStatus::not_finite;
     if (!step.allFinite()) return false;
+    const double safe = safe_share(problem, x, step, result);
+    if (!work.shifted && safe == 1.0 && leap(step, dmultiplier)) {
+      result.status = NewtonStatus::converged;
+      return true;
+    }
     // step' K step, from the bordered equations, without another product with the matrix.
     double curvature = -state.residual.dot(step);
     if (problem.constrained()) curvature += dmultiplier * work.constraint_gradient.dot(step);
-    const double share = line_search(problem, x, step, state, multiplier + dmultiplier, curvature, result);
+    const double share =
+        line_search(problem, x, step, state, multiplier + dmultiplier, curvature, safe, result);
     result.status = NewtonStatus::stalled;
     if (share * step.lpNorm<Eigen::Infinity>() <= smallest_move * problem.length_scale()) return false;
     x += share * step;

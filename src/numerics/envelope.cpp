@@ -1,0 +1,164 @@
+#include "numerics/envelope.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace calot {
+namespace {
+
+/// Eigen cuts its products by the caches it finds; fixed sizes make the order of sums the same everywhere. Set before
+/// main, so that no product comes before it.
+[[maybe_unused]] const bool caches_are_fixed = [] {
+  Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 8 * 1024 * 1024);
+  return true;
+}();
+
+using Graph = std::vector<std::vector<int>>;
+
+/// Nodes of one component by their distance from `first`; nearer to nodes of few neighbours first.
+std::vector<int> breadth_first(const Graph& graph, int first, std::vector<int>& seen, int mark) {
+  std::vector<int> order{first};
+  seen[first] = mark;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    std::vector<int> next;
+    for (int node : graph[order[k]])
+      if (seen[node] != mark) {
+        seen[node] = mark;
+        next.push_back(node);
+      }
+    std::sort(next.begin(), next.end(), [&](int a, int b) {
+      return graph[a].size() != graph[b].size() ? graph[a].size() < graph[b].size() : a < b;
+    });
+    order.insert(order.end(), next.begin(), next.end());
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<int> close_order(const Graph& neighbours) {
+  constexpr int looks = 4;  // from one end to the other and back: then it hardly gets longer
+  const int nodes = static_cast<int>(neighbours.size());
+  std::vector<int> seen(neighbours.size(), -1), out;
+  std::vector<char> placed(neighbours.size(), 0);
+  int mark = 0;
+  for (int node = 0; node < nodes; ++node) {
+    if (placed[node]) continue;
+    std::vector<int> order = breadth_first(neighbours, node, seen, mark++);
+    for (int look = 0; look < looks; ++look) order = breadth_first(neighbours, order.back(), seen, mark++);
+    for (int each : order) placed[each] = 1;
+    out.insert(out.end(), order.begin(), order.end());
+  }
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
+EnvelopeFactor::EnvelopeFactor(const Graph& neighbours) {
+  const std::vector<int> order = close_order(neighbours);
+  std::vector<int> place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    place[order[k]] = static_cast<int>(k);
+    for (int c = 0; c < 3; ++c) unknown_.push_back(3 * order[k] + c);
+  }
+  place_.resize(unknown_.size());
+  for (std::size_t k = 0; k < unknown_.size(); ++k) place_[unknown_[k]] = static_cast<int>(k);
+  const auto size = static_cast<Eigen::Index>(unknown_.size());
+  l_ = Eigen::MatrixXd::Zero(size, size);
+  Eigen::Index end = 0;
+  for (Eigen::Index first = 0; first < size; first += block) {
+    for (Eigen::Index column = first; column < std::min(first + block, size); ++column) {
+      end = std::max(end, column + 1);
+      for (int node : neighbours[order[static_cast<std::size_t>(column / 3)]])
+        end = std::max(end, Eigen::Index{3} * (place[node] + 1));
+    }
+    ends_.push_back(end);
+  }
+}
+
+EnvelopeFactor EnvelopeFactor::blank() const {
+  EnvelopeFactor out;
+  out.l_.resize(l_.rows(), l_.cols());
+  out.unknown_ = unknown_;
+  out.place_ = place_;
+  out.ends_ = ends_;
+  return out;
+}
+
+void EnvelopeFactor::load(const BlockMatrix& matrix) {
+  for (Eigen::Index column = 0; column < size(); ++column)
+    l_.col(column).segment(column, end_of(column) - column).setZero();
+  for (int column = 0; column < matrix.size(); ++column)
+    for (int e = matrix.column_starts()[column]; e < matrix.column_starts()[column + 1]; ++e) {
+      const int row = matrix.rows()[e];
+      if (row < column) continue;  // a diagonal block's upper half
+      const auto [low, high] = std::minmax(place_[column], place_[row]);
+      l_(high, low) = matrix.entries()[e];
+    }
+}
+
+void EnvelopeFactor::load(const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index column = 0; column < size(); ++column) {
+    const int from = unknown_[static_cast<std::size_t>(column)];
+    for (Eigen::Index row = column; row < end_of(column); ++row) {
+      const int to = unknown_[static_cast<std::size_t>(row)];
+      l_(row, column) = matrix(std::max(from, to), std::min(from, to));
+    }
+  }
+}
+
+// Block by block. As Eigen::LLT, which copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
+bool EnvelopeFactor::factorise() {
+  for (Eigen::Index k = 0; k < size(); k += block) {
+    const Eigen::Index columns = std::min(block, size() - k), rest = end_of(k) - k - columns;
+    const Eigen::LLT<Eigen::MatrixXd> corner(l_.block(k, k, columns, columns));
+    if (corner.info() != Eigen::Success) return false;
+    l_.block(k, k, columns, columns).triangularView<Eigen::Lower>() = corner.matrixLLT();
+    if (rest <= 0) continue;
+    auto below = l_.block(k + columns, k, rest, columns);
+    corner.matrixU().solveInPlace<Eigen::OnTheRight>(below);
+    l_.block(k + columns, k + columns, rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  }
+  return true;
+}
+
+VecX EnvelopeFactor::solve(const VecX& right) const {
+  VecX x(size());
+  for (Eigen::Index i = 0; i < size(); ++i) x[i] = right[unknown_[static_cast<std::size_t>(i)]];
+  for (Eigen::Index k = 0; k < size(); k += block) {
+    const Eigen::Index columns = std::min(block, size() - k), rest = end_of(k) - k - columns;
+    l_.block(k, k, columns, columns).triangularView<Eigen::Lower>().solveInPlace(x.segment(k, columns));
+    if (rest > 0)
+      x.segment(k + columns, rest).noalias() -=
+          l_.block(k + columns, k, rest, columns) * x.segment(k, columns);
+  }
+  for (Eigen::Index k = (size() - 1) / block * block; k >= 0; k -= block) {
+    const Eigen::Index columns = std::min(block, size() - k), rest = end_of(k) - k - columns;
+    if (rest > 0)
+      x.segment(k, columns).noalias() -=
+          l_.block(k + columns, k, rest, columns).transpose() * x.segment(k + columns, rest);
+    l_.block(k, k, columns, columns)
+        .triangularView<Eigen::Lower>()
+        .transpose()
+        .solveInPlace(x.segment(k, columns));
+  }
+  VecX out(size());
+  for (Eigen::Index i = 0; i < size(); ++i) out[unknown_[static_cast<std::size_t>(i)]] = x[i];
+  return out;
+}
+
+double EnvelopeFactor::flops() const {
+  double sum = 0;
+  for (Eigen::Index column = 0; column < size(); ++column) {
+    const double below = static_cast<double>(end_of(column) - column);
+    sum += below * below;
+  }
+  return sum;
+}
+
+long EnvelopeFactor::nonzeros() const {
+  long sum = 0;
+  for (Eigen::Index column = 0; column < size(); ++column) sum += end_of(column) - column;
+  return sum;
+}
+
+}  // namespace calot

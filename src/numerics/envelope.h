@@ -1,0 +1,48 @@
+#pragma once
+// Cholesky factors whose fill stays near the diagonal: nodes are numbered so that coupled ones follow each other, and
+// nothing beyond the last coupled row of a block of columns is touched (the envelope method: George and Liu, Computer
+// Solution of Large Sparse Positive Definite Systems, 1981, chapter 4).
+
+#include <vector>
+
+#include "numerics/block_matrix.h"
+
+namespace calot {
+
+/// Order of the nodes that keeps coupled ones close (reverse Cuthill-McKee): the node in each place. `neighbours`: of
+/// each node, in any order.
+std::vector<int> close_order(const std::vector<std::vector<int>>& neighbours);
+
+/// The lower triangle of a symmetric matrix in such an order, dense within its envelope.
+class EnvelopeFactor {
+ public:
+  EnvelopeFactor() = default;
+  /// `neighbours` of each node of three unknowns: what is coupled.
+  explicit EnvelopeFactor(const std::vector<std::vector<int>>& neighbours);
+
+  /// Room for another factor of the same couplings.
+  EnvelopeFactor blank() const;
+
+  Eigen::Index size() const { return l_.rows(); }
+  /// Take over the lower triangle of a matrix of these nodes; what is not coupled is not read.
+  void load(const BlockMatrix& matrix);
+  void load(const Eigen::MatrixXd& matrix);
+  /// False when the matrix that was loaded is not positive definite.
+  bool factorise();
+  /// With the last factor, which must have succeeded.
+  VecX solve(const VecX& right) const;
+  double smallest_pivot() const { return l_.diagonal().minCoeff(); }
+  double largest_pivot() const { return l_.diagonal().maxCoeff(); }
+  double flops() const;   ///< of one factorisation
+  long nonzeros() const;  ///< within the envelope
+
+ private:
+  static constexpr Eigen::Index block = 48;  ///< columns at a time
+  Eigen::Index end_of(Eigen::Index column) const { return ends_[static_cast<std::size_t>(column / block)]; }
+
+  Eigen::MatrixXd l_;
+  std::vector<int> unknown_, place_;  ///< in each place of the order; of each unknown
+  std::vector<Eigen::Index> ends_;    ///< of each block of columns: one past its last row, never falling
+};
+
+}  // namespace calot

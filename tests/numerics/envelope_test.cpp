@@ -1,0 +1,100 @@
+#include "numerics/envelope.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "random_matrices.h"
+
+namespace calot {
+namespace {
+
+using Graph = std::vector<std::vector<int>>;
+
+/// A closed strip of rings of six nodes, each coupled with its own ring and the next, numbered at random.
+Graph shuffled_tube(int rings, Rng& rng) {
+  const int nodes = 6 * rings;
+  std::vector<int> number(nodes);
+  std::iota(number.begin(), number.end(), 0);
+  for (int k = nodes - 1; k > 0; --k) std::swap(number[k], number[static_cast<int>(rng.uniform() * (k + 1))]);
+  Graph out(nodes);
+  for (int a = 0; a < nodes; ++a)
+    for (int b = 0; b < nodes; ++b)
+      if (a != b && std::abs(a / 6 - b / 6) <= 1) out[number[a]].push_back(number[b]);
+  return out;
+}
+
+BlockMatrix positive_on(const Graph& graph, Rng& rng) {
+  std::vector<std::vector<int>> cliques;
+  for (int a = 0; a < static_cast<int>(graph.size()); ++a)
+    for (int b : graph[a])
+      if (b > a) cliques.push_back({a, b});
+  BlockMatrix matrix(static_cast<int>(graph.size()), cliques);
+  for (const std::vector<int>& pair : cliques) {
+    Mat3 block;
+    for (int k = 0; k < 9; ++k) block(k) = rng.uniform() - 0.5;
+    matrix.add(pair[1], pair[0], block);
+  }
+  matrix.add_to_diagonal(40.0);  // more than a row's sum of 17 neighbours' blocks
+  return matrix;
+}
+
+TEST(CloseOrder, HoldsEachNodeOnceAndKeepsRingsOfATubeTogether) {
+  Rng rng(3);
+  const Graph graph = shuffled_tube(20, rng);
+  const std::vector<int> order = close_order(graph);
+  std::vector<int> place(graph.size(), -1);
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<int>(k);
+  EXPECT_EQ(std::count(place.begin(), place.end(), -1), 0);
+  int widest = 0;
+  for (std::size_t a = 0; a < graph.size(); ++a)
+    for (int b : graph[a]) widest = std::max(widest, std::abs(place[a] - place[b]));
+  EXPECT_LE(widest, 17) << "two rings after its own at most";
+}
+
+TEST(CloseOrder, ServesNodesThatNothingCouples) {
+  const std::vector<int> order = close_order({{}, {2}, {1}, {}});
+  EXPECT_EQ(std::vector<int>(order).size(), 4u);
+  EXPECT_EQ(std::accumulate(order.begin(), order.end(), 0), 6);
+}
+
+TEST(EnvelopeFactor, SolvesWhatItIsGivenWithFewerOperationsThanAFullFactor) {
+  Rng rng(5);
+  const Graph graph = shuffled_tube(20, rng);
+  const BlockMatrix matrix = positive_on(graph, rng);
+  EnvelopeFactor factor(graph);
+  factor.load(matrix);
+  ASSERT_TRUE(factor.factorise());
+  const VecX right = test::random_coordinates(rng, matrix.size(), 1.0), x = factor.solve(right);
+  EXPECT_LT((matrix.multiply(x) - right).norm(), 1e-13 * right.norm());
+  EXPECT_GT(x.norm(), 1e-3);
+  const double n = matrix.size();
+  EXPECT_LT(factor.flops(), 0.3 * n * n * n / 3);
+}
+
+TEST(EnvelopeFactor, OfADenseMatrixIsTheSame) {
+  Rng rng(6);
+  const Graph graph = shuffled_tube(12, rng);
+  const BlockMatrix matrix = positive_on(graph, rng);
+  EnvelopeFactor sparse(graph), dense(graph);
+  sparse.load(matrix);
+  dense.load(Eigen::MatrixXd(test::dense(matrix)));
+  ASSERT_TRUE(sparse.factorise() && dense.factorise());
+  const VecX right = test::random_coordinates(rng, matrix.size(), 1.0);
+  EXPECT_EQ(sparse.solve(right), dense.solve(right));
+}
+
+TEST(EnvelopeFactor, RefusesWhatIsNotPositiveDefinite) {
+  Rng rng(7);
+  const Graph graph = shuffled_tube(4, rng);
+  BlockMatrix matrix = positive_on(graph, rng);
+  matrix.add_to_diagonal(-60.0);
+  EnvelopeFactor factor(graph);
+  factor.load(matrix);
+  EXPECT_FALSE(factor.factorise());
+}
+
+}  // namespace
+}  // namespace calot
