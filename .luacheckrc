@@ -1,4 +1,4 @@
--- Generated from the API's table (src/lua/api_*.cpp); the tests hold it to that. Do not edit.
+-- Generated from the API's table (src/lua/api_*.cpp, src/anatomy/scene_keys.cpp); the tests hold it to that. Do not edit.
 std = "calot"
 max_line_length = 120
 exclude_files = { "scripts/lua/calot.meta.lua" }

@@ -1,5 +1,5 @@
 ---@meta calot
--- Generated from the API's table (src/lua/api_*.cpp); the tests hold it to that. Do not edit.
+-- Generated from the API's table (src/lua/api_*.cpp, src/anatomy/scene_keys.cpp); the tests hold it to that. Do not edit.
 
 ---A place or a vector {x, y, z} in m, in the patient's frame: x to the patient's left, y towards the head,
 ---z out of the abdomen, from the navel.
@@ -102,7 +102,7 @@
 ---@class calot.instrument
 ---@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps" which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the semm_forceps have short broad flat ones; default "atraumatic_grasper"
 ---@field port string the port it goes through
----@field force_limit? number tip force above which the event overforce is raised; default 8 * N; 0.05 to 100 N
+---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
@@ -121,6 +121,12 @@
 ---@field rate? number steps a second; default 50; 1 to 2000 steps a second
 ---@field tolerance? number dimensionless residual of equilibrium; default 1e-06; 1e-12 to 0.01
 ---@field extensions? calot.extensions structural extensions at contacts
+
+---Structural extensions: finer basis functions around each place that an instrument touches.
+---@class calot.extensions
+---@field levels? number subdivision levels added at a contact, each with 12 nodes; 0: none; default 0; 0 to 4
+---@field view? number where the laparoscope looks at an organ from nearer than this it is refined too; 0: not; default 0 * mm; 0 to 400 mm
+---@field scheme? "condensed"|"staged" solved together with the organ, or after it as its boundary allows (the 1997 scheme, to compare with); default "condensed"
 
 ---A hollow organ. In calot.anatomy's overrides, only what differs.
 ---@class calot.organ
@@ -181,12 +187,6 @@
 ---@field type? "pear"|"sphere"|"obj" which shape: this one is "obj"; default "pear"
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
-
----Structural extensions: finer basis functions around each place that an instrument touches.
----@class calot.extensions
----@field levels? number subdivision levels added at a contact, each with 12 nodes; 0: none; default 0; 0 to 4
----@field view? number where the laparoscope looks at an organ from nearer than this it is refined too; 0: not; default 0 * mm; 0 to 400 mm
----@field scheme? "condensed"|"staged" solved together with the organ, or after it as its boundary allows (the 1997 scheme, to compare with); default "condensed"
 
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
 ---@class calot.Session

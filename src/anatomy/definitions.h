@@ -1,7 +1,8 @@
 #pragma once
 // What a scenario declares, as plain structs with defaults, in SI units and the patient's frame: origin at
 // the umbilicus, +x patient left, +y cephalad, +z out of the abdomen. Defaults carry their source: (c)
-// clinical literature, (d) a design value of ours, uncalibrated.
+// clinical literature, (d) a design value of ours, uncalibrated. A new key is a member here and a row in
+// scene_keys.cpp: reading, checking and what is generated for authors follow.
 
 #include <optional>
 #include <string>
@@ -12,6 +13,8 @@
 #include "geometry/types.h"
 
 namespace calot {
+
+inline constexpr double abdomen_reach = 500e-3;  ///< m, of anything in an abdomen from the umbilicus
 
 struct SphereShape {
   double radius = 20e-3;  ///< m

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/suggest.h"
@@ -42,6 +43,11 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 void FieldCheck::problem(const std::string& path, std::string message, std::string hint) {
   problems_.push_back({{"", 0, path}, std::move(message), std::move(hint)});
+}
+
+bool FieldCheck::is_fine(const std::string& path) const {
+  return std::none_of(problems_.begin(), problems_.end(),
+                      [&](const Problem& problem) { return problem.place.path == path; });
 }
 
 bool FieldCheck::in_range(const std::string& path, double value, const Quantity& quantity, double low,

@@ -44,6 +44,9 @@ class FieldCheck {
   bool known(const std::string& path, const std::string& name, const std::vector<std::string>& names,
              const std::string& what);
 
+  /// Whether nothing was said about this very field.
+  bool is_fine(const std::string& path) const;
+
   std::vector<Problem> take() { return std::move(problems_); }
 
  private:

@@ -13,16 +13,14 @@ using units::mm;
 using units::ms;
 using units::s;
 
-ApiKey seconds(std::string name, double low, std::string doc) {
+Key seconds(std::string name, double low, std::string doc) {
   return required(number(std::move(name), quantity::time, low, 3600 * s, "", std::move(doc)));
 }
 
-ApiKey predicate(std::string doc) {
-  return required(function("predicate", "fun(): boolean", std::move(doc)));
-}
+Key predicate(std::string doc) { return required(function("predicate", "fun(): boolean", std::move(doc))); }
 
-ApiKey organ(bool needed) {
-  ApiKey key = text("organ", "", "an organ's name");
+Key organ(bool needed) {
+  Key key = text("organ", "", "an organ's name");
   key.required = needed;
   return key;
 }
@@ -98,13 +96,13 @@ std::vector<ApiFunction> session_functions() {
 }
 
 std::vector<ApiFunction> instrument_functions() {
-  const ApiKey options = table("options", "move_options", "how fast");
+  const Key options = table("options", "move_options", "how fast");
   const double open = InstrumentGeometry{}.jaw_opening;
-  ApiKey target{"target", ApiKind::place, "a point, m, or a landmark such as \"gallbladder.fundus\"", true};
+  Key target{"target", KeyKind::place, "a point, m, or a landmark such as \"gallbladder.fundus\"", true};
   target.quantity = &quantity::length;
   target.low = -500 * mm;
   target.high = 500 * mm;
-  const ApiKey landmark = required(text("landmark", "", "a landmark such as \"gallbladder.fundus\""));
+  const Key landmark = required(text("landmark", "", "a landmark such as \"gallbladder.fundus\""));
   return {
       {"Instrument",
        "holds",

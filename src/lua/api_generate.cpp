@@ -9,20 +9,21 @@ namespace calot {
 namespace {
 
 constexpr const char* origin =
-    "Generated from the API's table (src/lua/api_*.cpp); the tests hold it to that. Do not edit.";
+    "Generated from the API's table (src/lua/api_*.cpp, src/anatomy/scene_keys.cpp); the tests hold it to "
+    "that. Do not edit.";
 
 std::string shape_types() {
   std::string types;
-  for (const ApiTable& table : api_tables()) {
+  for (const KeyTable& table : api_tables()) {
     if (table.name.starts_with("shape_"))
       types += fmt::format("{}calot.{}", types.empty() ? "" : "|", table.name);
   }
   return types;
 }
 
-std::string annotate_table(const ApiTable& table) {
+std::string annotate_table(const KeyTable& table) {
   std::string text = fmt::format("\n---{}\n---@class calot.{}\n", table.doc, table.name);
-  for (const ApiKey& key : table.keys) {
+  for (const Key& key : table.keys) {
     text += fmt::format("---@field {}{} {} {}\n", key.name, key.required ? "" : "?", type_text(key),
                         doc_text(key));
   }
@@ -32,7 +33,7 @@ std::string annotate_table(const ApiTable& table) {
 
 std::string annotate_function(const ApiFunction& function, const std::string& prefix) {
   std::string text = fmt::format("\n---{}\n", function.doc), names;
-  for (const ApiKey& parameter : function.parameters) {
+  for (const Key& parameter : function.parameters) {
     text += fmt::format("---@param {}{} {} {}\n", parameter.name, parameter.required ? "" : "?",
                         type_text(parameter), doc_text(parameter));
     names += fmt::format("{}{}", names.empty() ? "" : ", ", parameter.name);
@@ -65,17 +66,17 @@ std::string library_of(const std::string& name) {
 
 std::string signature(const ApiFunction& function) {
   std::string names;
-  for (const ApiKey& parameter : function.parameters) {
+  for (const Key& parameter : function.parameters) {
     names += fmt::format("{}{}{}{}", parameter.required ? "" : "[", names.empty() ? "" : ", ", parameter.name,
                          parameter.required ? "" : "]");
   }
   return fmt::format("{}({})", function.full_name(), names);
 }
 
-std::string describe_table(const ApiTable& table) {
+std::string describe_table(const KeyTable& table) {
   std::string text =
       fmt::format("\n### {}\n\n{}\n\n| key | type | |\n|---|---|---|\n", table.name, table.doc);
-  for (const ApiKey& key : table.keys) {
+  for (const Key& key : table.keys) {
     std::string type = type_text(key);
     for (std::size_t bar = 0; (bar = type.find('|', bar)) != std::string::npos; bar += 2)
       type.insert(bar, 1, '\\');
@@ -89,7 +90,7 @@ std::string describe_function(const ApiFunction& function) {
   std::string text =
       fmt::format("\n**`{}`**{} {}\n", signature(function),
                   function.returns.empty() ? "" : fmt::format(" → `{}`", function.returns), function.doc);
-  for (const ApiKey& parameter : function.parameters)
+  for (const Key& parameter : function.parameters)
     text += fmt::format("- `{}`: {}\n", parameter.name, doc_text(parameter));
   return text;
 }
@@ -103,7 +104,7 @@ std::string generate_annotations() {
       "the head,\n";
   text += "---z out of the abdomen, from the navel.\n---@alias calot.point number[]\n";
   text += fmt::format("---@alias calot.shape {}\n", shape_types());
-  for (const ApiTable& table : api_tables()) text += annotate_table(table);
+  for (const KeyTable& table : api_tables()) text += annotate_table(table);
   for (const ApiClass& handle : api_classes()) text += annotate_class(handle);
   text +=
       "\n---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.\n---@class "
@@ -155,7 +156,7 @@ std::string generate_reference() {
       if (function.owner == handle.name) text += describe_function(function);
   }
   text += "\n## Tables\n";
-  for (const ApiTable& table : api_tables()) text += describe_table(table);
+  for (const KeyTable& table : api_tables()) text += describe_table(table);
   text += "\n## Units\n\n";
   for (const ApiUnit& unit : api_units())
     text += fmt::format("- `calot.units.{}`: {}\n", unit.name, unit.doc);

@@ -13,35 +13,23 @@ const Quantity speed{"m/s", {{"mm / s", units::mm}, {"cm / s", units::cm}}};
 const Quantity points{"points", {}};
 }  // namespace quantity
 
-const ApiKey* ApiTable::find(const std::string& key) const {
-  for (const ApiKey& candidate : keys)
-    if (candidate.name == key) return &candidate;
-  return nullptr;
-}
-
-std::vector<std::string> ApiTable::key_names() const {
-  std::vector<std::string> names;
-  for (const ApiKey& key : keys) names.push_back(key.name);
-  return names;
-}
-
 std::string ApiFunction::full_name() const {
   if (owner == "calot") return "calot." + name;
   if (owner == "score") return "calot.score." + name;
   return (owner == "Instrument" || owner == "DemoInstrument" ? "t.<instrument>:" : "t:") + name;
 }
 
-const std::vector<ApiTable>& api_tables() {
-  static const std::vector<ApiTable> tables = [] {
-    std::vector<ApiTable> all = exercise_tables();
-    for (ApiTable& table : scene_tables()) all.push_back(std::move(table));
+const std::vector<KeyTable>& api_tables() {
+  static const std::vector<KeyTable> tables = [] {
+    std::vector<KeyTable> all = exercise_tables();
+    for (const KeyTable& table : scene_key_tables()) all.push_back(table);
     return all;
   }();
   return tables;
 }
 
-const ApiTable& api_table(const std::string& name) {
-  for (const ApiTable& table : api_tables())
+const KeyTable& api_table(const std::string& name) {
+  for (const KeyTable& table : api_tables())
     if (table.name == name) return table;
   std::abort();  // a name in our own code
 }

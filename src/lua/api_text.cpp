@@ -19,9 +19,9 @@ std::string quoted(const std::vector<std::string>& texts) {
   return all;
 }
 
-std::string limits(const ApiKey& key) {
+std::string limits(const Key& key) {
   const bool has_limits =
-      key.kind == ApiKind::number && std::isfinite(key.low) && std::isfinite(key.high) && key.low < key.high;
+      key.kind == KeyKind::number && std::isfinite(key.low) && std::isfinite(key.high) && key.low < key.high;
   if (!has_limits) return {};
   const Quantity& quantity = *key.quantity;
   const UnitName unit =
@@ -32,43 +32,43 @@ std::string limits(const ApiKey& key) {
 
 }  // namespace
 
-std::string type_text(const ApiKey& key) {
+std::string type_text(const Key& key) {
   switch (key.kind) {
-    case ApiKind::number:
+    case KeyKind::number:
       return "number";
-    case ApiKind::boolean:
+    case KeyKind::boolean:
       return "boolean";
-    case ApiKind::text:
+    case KeyKind::text:
       return "string";
-    case ApiKind::choice:
+    case KeyKind::choice:
       return quoted(key.choices);
-    case ApiKind::point:
+    case KeyKind::point:
       return "calot.point";
-    case ApiKind::place:
+    case KeyKind::place:
       return "calot.point|string";
-    case ApiKind::function:
+    case KeyKind::function:
       return key.signature;
-    case ApiKind::table:
+    case KeyKind::table:
       return named(key.of);
-    case ApiKind::list:
+    case KeyKind::list:
       return named(key.of) + "[]";
-    case ApiKind::map:
+    case KeyKind::map:
       return fmt::format("table<string, {}>", named(key.of));
-    case ApiKind::any:
+    case KeyKind::any:
       break;
   }
   return "any";
 }
 
-std::string doc_text(const ApiKey& key) {
-  std::string text = key.doc;
+std::string doc_text(const Key& key) {
+  std::string text = key.doc + (key.jaws_only ? "; jaws only" : "");
   if (!key.fallback.empty()) text += fmt::format("; default {}", key.fallback);
   const std::string range = limits(key);
   if (!range.empty()) text += fmt::format("; {}", range);
   return text;
 }
 
-std::string items_text(const ApiTable& table) {
+std::string items_text(const KeyTable& table) {
   std::string all;
   for (std::size_t start = 0; start < table.items.size();) {
     const std::size_t end = std::min(table.items.find('|', start), table.items.size());

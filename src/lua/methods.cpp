@@ -184,12 +184,7 @@ int approach(lua_State* L) {
   Arguments arguments(L, call.demo, "DemoInstrument", "approach");
   Approach how;
   how.landmark = arguments.text("landmark");
-  const TableReader options = arguments.options("approach_options");
-  options.take("speed", how.speed);
-  options.take("depth", how.depth);
-  options.take("offset", how.offset);
-  options.take("clearance", how.clearance);
-  options.take("jaw", how.jaw);
+  arguments.options("approach_options").read(how);
   if (!arguments.finish() || !call.demo.is_landmark(L, how.landmark)) return 0;
   return call.demo.approach(L, call.instrument, how);
 }

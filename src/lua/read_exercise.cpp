@@ -41,8 +41,7 @@ class ScoreReader {
       return score;
     }
     const TableReader reader(check_, &value_, "score", api_table("weighted"));
-    reader.take("cap", score.cap);
-    reader.take("pass", score.pass);
+    reader.read(score);
     if (const Value* critical = reader.take("critical")) score.critical = read_critical(*critical);
     for (std::size_t i = 0; i < value_.items.size(); ++i) {
       ScorePart part;
@@ -70,7 +69,6 @@ class ScoreReader {
     const TableReader reader(check_, &value, path, api_table("part"));
     if (!value.is(Value::Kind::table)) return false;
     all_weighted_ = all_weighted_ && reader.has("weight");
-    reader.take("weight", part.weight);
     part.place.path = path;
     const std::string kind = value.items.size() == 1 ? kind_of(value.items[0]) : std::string();
     if (kind == "benchmark") {
@@ -84,16 +82,14 @@ class ScoreReader {
       all_weighted_ = false;
       return false;
     }
-    reader.take("name", part.name);
+    reader.read(part);
     return true;
   }
 
   void read_benchmark(ScorePart& part, const Value& value, const std::string& path) {
     const TableReader reader(check_, &value, path, api_table("benchmark"));
     part.kind = ScorePartKind::benchmark;
-    reader.take("metric", part.metric);
-    reader.take("novice", part.novice);
-    reader.take("expert", part.expert);
+    reader.read(part);
     part.name = part.metric;
     if (reader.has("novice") && reader.has("expert") && part.novice == part.expert) {
       check_.problem(path + ".expert", fmt::format("novice and expert are both {:g}", part.novice),
@@ -104,8 +100,7 @@ class ScoreReader {
   void read_penalty(ScorePart& part, const Value& value, const std::string& path) {
     const TableReader reader(check_, &value, path, api_table("penalty"));
     part.kind = ScorePartKind::penalty;
-    reader.take("event", part.event);
-    reader.take("each", part.each);
+    reader.read(part);
     part.name = part.event;
   }
 
@@ -161,13 +156,8 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
   ExerciseTable result;
   ExerciseDefinition& definition = result.definition;
   const TableReader reader(check, &exercise, "", api_table("exercise"));
-  reader.take("api", definition.api);
-  if (reader.has("id")) {
-    reader.take("id", definition.id);
-    check_id(check, definition.id);
-  }
-  reader.take("title", definition.title);
-  reader.take("time_limit", definition.time_limit);
+  reader.read(definition);
+  if (reader.has("id")) check_id(check, definition.id);
   result.parameters = read_parameters(check, reader.take("params"), chosen, result.usage);
   for (const auto& [name, value] : result.parameters) definition.params[name] = to_text(value);
   if (const Value* score = reader.take("score")) definition.score = ScoreReader(check, *score).read();

@@ -27,8 +27,7 @@ class SceneReader {
     if (const Value* ports = reader.take("ports")) scene.ports = read_ports(*ports);
     if (const Value* instruments = reader.take("instruments"))
       scene.instruments = read_instruments(*instruments);
-    scene.laparoscope = read_laparoscope(reader.take("laparoscope"));
-    scene.solver = read_solver(reader.take("solver"));
+    reader.read(scene);
     return scene;
   }
 
@@ -44,10 +43,7 @@ class SceneReader {
       Result<AnatomyDefinition> named = named_anatomy(base);
       if (named) anatomy = std::move(named).value();
     }
-    reader.take("table_head_up", anatomy.table_head_up);
-    reader.take("table_left_down", anatomy.table_left_down);
-    if (const Value* support = reader.take("support"))
-      anatomy.support = read_support(*support, path + ".support");
+    reader.read(anatomy);
     if (const Value* organs = reader.take("organs")) {
       for (std::size_t i = 0; i < organs->items.size(); ++i) {
         const bool overrides = i < anatomy.organs.size();
@@ -58,57 +54,19 @@ class SceneReader {
     return anatomy;
   }
 
-  SupportDefinition read_support(const Value& value, const std::string& path) {
-    SupportDefinition support;
-    const TableReader reader(check_, &value, path, api_table("support"));
-    reader.take("point", support.point);
-    reader.take("normal", support.normal);
-    reader.take("friction", support.friction);
-    return support;
-  }
-
   void read_organ(OrganDefinition& organ, const Value& value, const std::string& path) {
     const TableReader reader(check_, &value, path, api_table("organ"));
-    reader.take("name", organ.name);
-    reader.take("nodes", organ.nodes);
-    reader.take("neck", organ.neck);
-    reader.take("fundus", organ.fundus);
-    reader.take("liver_side", organ.liver_side);
+    if (const Value* bile = reader.take("bile")) forget_filling(organ.bile, *bile);
+    reader.read(organ);
     if (const Value* shape = reader.take("shape")) read_shape(organ.shape, *shape, path + ".shape");
-    read_wall(organ.wall, reader.take("wall"), path + ".wall");
-    read_bile(organ.bile, reader.take("bile"), path + ".bile");
     if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
-    reader.take("extensions", organ.extensions);
-    reader.take("compared_with", organ.compared_with);
-  }
-
-  void read_wall(WallDefinition& wall, const Value* value, const std::string& path) {
-    const TableReader reader(check_, value, path, api_table("wall"));
-    reader.take("thickness", wall.thickness);
-    reader.take("shear_modulus", wall.shear_modulus);
-    reader.take("stiffening", wall.stiffening);
-    if (const Value* fibres = reader.take("fibres")) read_fibres(wall.fibres, *fibres, path + ".fibres");
-    reader.take("overstretch", wall.overstretch);
-  }
-
-  /// Fibres that the anatomy had keep what is not given here.
-  void read_fibres(std::optional<FibreDefinition>& fibres, const Value& value, const std::string& path) {
-    if (!fibres) fibres.emplace();
-    const TableReader reader(check_, &value, path, api_table("fibres"));
-    reader.take("stiffness", fibres->stiffness);
-    reader.take("stiffening", fibres->stiffening);
-    reader.take("angle", fibres->angle);
   }
 
   /// One of volume and pressure given here replaces whichever the anatomy had.
-  void read_bile(BileDefinition& bile, const Value* value, const std::string& path) {
-    const TableReader reader(check_, value, path, api_table("bile"));
-    reader.take("density", bile.density);
-    if (!reader.has("fill_volume") && !reader.has("fill_pressure")) return;
+  void forget_filling(BileDefinition& bile, const Value& value) {
+    if (value.field("fill_volume") == nullptr && value.field("fill_pressure") == nullptr) return;
     bile.fill_volume.reset();
     bile.fill_pressure.reset();
-    reader.take("fill_volume", bile.fill_volume);
-    reader.take("fill_pressure", bile.fill_pressure);
   }
 
   std::vector<HeldRegion> read_held(const Value& list, const std::string& path) {
@@ -116,10 +74,7 @@ class SceneReader {
     for (std::size_t i = 0; i < list.items.size(); ++i) {
       HeldRegion region;
       const TableReader reader(check_, &list.items[i], indexed(path, i), api_table("held"));
-      reader.take("name", region.name);
-      reader.take("landmark", region.landmark);
-      reader.take("radius", region.radius);
-      reader.take("stiffness", region.stiffness);
+      reader.read(region);
       // Without a fit landmark the reader has said so already; validation would only repeat it.
       if (region.landmark.empty()) region.landmark = organ_landmarks().front();
       regions.push_back(region);
@@ -142,18 +97,14 @@ class SceneReader {
     const TableReader reader(check_, &value, path, api_table("shape_" + wanted));
     if (wanted == "pear") {
       if (wanted != present) shape = PearShape{};
-      PearShape& pear = std::get<PearShape>(shape);
-      reader.take("length", pear.length);
-      reader.take("width", pear.width);
-      reader.take("refine", pear.refine);
-      reader.take("refine_radius", pear.refine_radius);
+      reader.read(std::get<PearShape>(shape));
     } else if (wanted == "sphere") {
       if (wanted != present) shape = SphereShape{};
-      reader.take("radius", std::get<SphereShape>(shape).radius);
+      reader.read(std::get<SphereShape>(shape));
     } else {
       if (wanted != present) shape = MeshFile{};
       MeshFile& mesh = std::get<MeshFile>(shape);
-      reader.take("scale", mesh.scale);
+      reader.read(mesh);
       std::string file;
       reader.take("path", file);
       if (!file.empty()) mesh.path = find_mesh(file, path + ".path");
@@ -198,11 +149,7 @@ class SceneReader {
       reader.take("type", type);
       InstrumentDefinition instrument = default_instrument(*instrument_type_called(type));
       instrument.name = name;
-      reader.take("port", instrument.port);
-      reader.take("force_limit", instrument.force_limit);
-      reader.take("pinch_force", instrument.pinch_force);
-      reader.take("pad_friction", instrument.pad_friction);
-      reader.take("friction", instrument.friction);
+      reader.read(instrument);
       check_jaws(reader, instrument);
       check_free(path, name);
       instruments.push_back(instrument);
@@ -212,11 +159,11 @@ class SceneReader {
 
   void check_jaws(const TableReader& reader, const InstrumentDefinition& instrument) {
     if (has_jaws(instrument.type)) return;
-    for (const char* key : {"pinch_force", "pad_friction"})
-      if (reader.has(key))
-        check_.problem(reader.path_of(key),
+    for (const Key& key : api_table("instrument").keys)
+      if (key.jaws_only && reader.has(key.name))
+        check_.problem(reader.path_of(key.name),
                        fmt::format("a {} has no jaws to pinch with", to_text(instrument.type)),
-                       fmt::format("leave {} out", key));
+                       fmt::format("leave {} out", key.name));
   }
 
   void check_free(const std::string& path, const std::string& name) {
@@ -226,33 +173,6 @@ class SceneReader {
       return check_.problem(path, fmt::format("\"{}\" is a method of t and cannot name an instrument", name),
                             "use another name, such as left or right");
     }
-  }
-
-  LaparoscopeDefinition read_laparoscope(const Value* value) {
-    LaparoscopeDefinition scope;
-    const TableReader reader(check_, value, "scene.laparoscope", api_table("laparoscope"));
-    reader.take("port", scope.port);
-    reader.take("angle", scope.angle);
-    reader.take("look_at", scope.look_at);
-    reader.take("distance", scope.distance);
-    reader.take("field_of_view", scope.field_of_view);
-    reader.take("show_structure", scope.show_structure);
-    return scope;
-  }
-
-  SolverDefinition read_solver(const Value* value) {
-    SolverDefinition solver;
-    const TableReader reader(check_, value, "scene.solver", api_table("solver"));
-    reader.take("rate", solver.rate);
-    reader.take("tolerance", solver.tolerance);
-    const TableReader extensions(check_, reader.take("extensions"), "scene.solver.extensions",
-                                 api_table("extensions"));
-    extensions.take("levels", solver.extension_levels);
-    extensions.take("view", solver.extension_view);
-    std::string scheme;
-    extensions.take("scheme", scheme);
-    if (scheme == "staged") solver.extension_scheme = ExtensionScheme::staged;
-    return solver;
   }
 
   FieldCheck& check_;

@@ -87,7 +87,7 @@ Value Arguments::values_of(lua_State* L, const ApiFunction& function) {
   return values;
 }
 
-ApiTable Arguments::table_of(const ApiFunction& function) {
+KeyTable Arguments::table_of(const ApiFunction& function) {
   return {function.full_name(), function.doc, function.parameters, {}};
 }
 
@@ -136,7 +136,7 @@ int Arguments::function(const std::string& name) const {
 
 std::optional<Vec3> Arguments::point(const Value& value, const std::string& name) {
   std::optional<Vec3> point = read_point(check_, value, name);
-  const ApiKey* key = api_.find(name);
+  const Key* key = api_.find(name);
   if (point && key != nullptr && !check_.place_within(name, *point, key->high, "a place in the abdomen"))
     return std::nullopt;
   return point;

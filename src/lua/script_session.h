@@ -90,13 +90,13 @@ class Arguments {
 
  private:
   static Value values_of(lua_State* L, const ApiFunction& function);
-  static ApiTable table_of(const ApiFunction& function);
+  static KeyTable table_of(const ApiFunction& function);
 
   lua_State* L_;
   ScriptSession& session_;
   const ApiFunction& function_;
   Value values_;
-  ApiTable api_;
+  KeyTable api_;
   FieldCheck check_;
   TableReader reader_;
   bool good_ = true;

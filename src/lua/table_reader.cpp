@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/suggest.h"
@@ -9,59 +10,59 @@
 namespace calot {
 namespace {
 
-std::string wanted(const ApiKey& key) {
+std::string wanted(const Key& key) {
   switch (key.kind) {
-    case ApiKind::number:
+    case KeyKind::number:
       return key.quantity->unit.empty() ? "a number" : fmt::format("a number ({})", key.quantity->unit);
-    case ApiKind::boolean:
+    case KeyKind::boolean:
       return "true or false";
-    case ApiKind::text:
-    case ApiKind::choice:
+    case KeyKind::text:
+    case KeyKind::choice:
       return "a text";
-    case ApiKind::point:
+    case KeyKind::point:
       return "a point { x, y, z }";
-    case ApiKind::place:
+    case KeyKind::place:
       return "a point { x, y, z } or a landmark";
-    case ApiKind::function:
+    case KeyKind::function:
       return "a function";
-    case ApiKind::table:
-    case ApiKind::map:
+    case KeyKind::table:
+    case KeyKind::map:
       return "a table { key = value }";
-    case ApiKind::list:
+    case KeyKind::list:
       return "a list { a, b, c }";
-    case ApiKind::any:
+    case KeyKind::any:
       break;
   }
   return "a value";
 }
 
-bool has_kind(const ApiKey& key, const Value& value) {
+bool has_kind(const Key& key, const Value& value) {
   switch (key.kind) {
-    case ApiKind::number:
+    case KeyKind::number:
       return value.is(Value::Kind::number);
-    case ApiKind::boolean:
+    case KeyKind::boolean:
       return value.is(Value::Kind::boolean);
-    case ApiKind::text:
-    case ApiKind::choice:
+    case KeyKind::text:
+    case KeyKind::choice:
       return value.is(Value::Kind::text);
-    case ApiKind::function:
+    case KeyKind::function:
       return value.is(Value::Kind::function);
-    case ApiKind::list:
+    case KeyKind::list:
       return value.is(Value::Kind::table) && value.fields.empty() && !value.has_other_keys;
-    case ApiKind::map:
+    case KeyKind::map:
       return value.is(Value::Kind::table) && value.items.empty() && !value.has_other_keys;
-    case ApiKind::place:
+    case KeyKind::place:
       return value.is(Value::Kind::table) || value.is(Value::Kind::text);
-    case ApiKind::point:
-    case ApiKind::table:
+    case KeyKind::point:
+    case KeyKind::table:
       return value.is(Value::Kind::table);
-    case ApiKind::any:
+    case KeyKind::any:
       break;
   }
   return true;
 }
 
-std::string example(const ApiKey& key) {
+std::string example(const Key& key) {
   if (!key.fallback.empty()) return fmt::format("such as {} = {}", key.name, key.fallback);
   return key.doc;
 }
@@ -80,7 +81,7 @@ std::optional<Vec3> read_point(FieldCheck& check, const Value& value, const std:
   return Vec3(value.items[0].number, value.items[1].number, value.items[2].number);
 }
 
-TableReader::TableReader(FieldCheck& check, const Value* value, std::string path, const ApiTable& api,
+TableReader::TableReader(FieldCheck& check, const Value* value, std::string path, const KeyTable& api,
                          bool complete)
     : check_(check), path_(std::move(path)), api_(api) {
   if (value == nullptr) return;
@@ -93,7 +94,7 @@ TableReader::TableReader(FieldCheck& check, const Value* value, std::string path
 
 void TableReader::check_keys(const Value& value, bool complete) {
   for (const auto& [name, field] : value.fields) {
-    const ApiKey* key = api_.find(name);
+    const Key* key = api_.find(name);
     if (key == nullptr) {
       if (name != "kind") {  // set by the constructors of calot.score and calot.exercise
         check_.problem(path_of(name), fmt::format("unknown key \"{}\"", name),
@@ -109,7 +110,7 @@ void TableReader::check_keys(const Value& value, bool complete) {
   }
   if (value.has_other_keys)
     check_.problem(path_, "keys must be names, or 1, 2, 3 ... without gaps", "look for a nil in the list");
-  for (const ApiKey& key : api_.keys) {
+  for (const Key& key : api_.keys) {
     if (complete && key.required && value.field(key.name) == nullptr) {
       check_.problem(path_, fmt::format("\"{}\" is missing", key.name),
                      fmt::format("add {} = ...: {}", key.name, key.doc));
@@ -117,35 +118,34 @@ void TableReader::check_keys(const Value& value, bool complete) {
   }
 }
 
-bool TableReader::check_value(const ApiKey& key, const Value& value) {
+bool TableReader::check_value(const Key& key, const Value& value) {
   const std::string path = path_of(key.name);
   if (!has_kind(key, value)) {
     check_.problem(path, fmt::format("{} must be {}, got {}", key.name, wanted(key), name_of(value.kind)),
                    example(key));
     return false;
   }
-  if (key.kind == ApiKind::number) return check_number(key, value);
-  if (key.kind == ApiKind::choice) return check_choice(key, value);
-  if (key.kind != ApiKind::point) return true;
+  if (key.kind == KeyKind::number) return check_number(key, value);
+  if (key.kind == KeyKind::choice) return check_choice(key, value);
+  if (key.kind != KeyKind::point) return true;
   const std::optional<Vec3> point = read_point(check_, value, path);
   if (!point) return false;
-  return api_.validated_elsewhere || check_.place_within(path, *point, key.high, "a sensible " + key.name);
+  return api_.checked_by_validate || check_.place_within(path, *point, key.high, key.expected());
 }
 
-bool TableReader::check_number(const ApiKey& key, const Value& value) {
-  if (api_.validated_elsewhere) return true;
+bool TableReader::check_number(const Key& key, const Value& value) {
+  if (api_.checked_by_validate) return true;
   if (std::isfinite(value.number) && value.number >= key.low && value.number <= key.high) return true;
   if (key.low == key.high && std::isfinite(value.number)) {
     check_.problem(path_of(key.name), fmt::format("{} = {:g} is not available", key.name, value.number),
                    fmt::format("only {:g} is: {}", key.low, api_.doc));
     return false;
   }
-  check_.in_range(path_of(key.name), value.number, *key.quantity, key.low, key.high,
-                  "a sensible " + key.name);
+  check_.in_range(path_of(key.name), value.number, *key.quantity, key.low, key.high, key.expected());
   return false;
 }
 
-bool TableReader::check_choice(const ApiKey& key, const Value& value) {
+bool TableReader::check_choice(const Key& key, const Value& value) {
   return check_.known(path_of(key.name), value.text, key.choices, key.name);
 }
 
@@ -153,6 +153,33 @@ const Value* TableReader::take(const std::string& key) const {
   for (const auto& [name, value] : fit_)
     if (name == key) return value;
   return nullptr;
+}
+
+void TableReader::read_into(void* definition) const {
+  for (const Key& key : api_.keys) {
+    const Value* value = take(key.name);
+    if (value == nullptr) continue;
+    if (key.inner) {
+      const TableReader inner(check_, value, path_of(key.name), api_table(key.of));
+      inner.read_into(key.inner(definition, true));
+    } else if (key.field) {
+      assign(key, *value, key.field(definition));
+    }
+  }
+}
+
+void TableReader::assign(const Key& key, const Value& value, const Field& field) const {
+  if (double* const* number = std::get_if<double*>(&field)) **number = value.number;
+  if (std::optional<double>* const* number = std::get_if<std::optional<double>*>(&field))
+    **number = value.number;
+  if (int* const* number = std::get_if<int*>(&field)) take(key.name, **number);
+  if (bool* const* flag = std::get_if<bool*>(&field)) **flag = value.boolean;
+  if (std::string* const* text = std::get_if<std::string*>(&field)) **text = value.text;
+  if (Vec3* const* point = std::get_if<Vec3*>(&field)) take(key.name, **point);
+  if (const EnumField* choice = std::get_if<EnumField>(&field)) {
+    const auto chosen = std::find(key.choices.begin(), key.choices.end(), value.text);
+    choice->set(choice->place, static_cast<int>(chosen - key.choices.begin()));
+  }
 }
 
 void TableReader::take(const std::string& key, double& target) const {

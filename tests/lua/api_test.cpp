@@ -75,7 +75,7 @@ TEST(Api, EveryDeclaredMethodIsBound) {
 }
 
 TEST(Api, NamesAreUniqueWithinTheirTableAndClass) {
-  for (const ApiTable& table : api_tables()) {
+  for (const KeyTable& table : api_tables()) {
     const std::vector<std::string> names = table.key_names();
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size()) << table.name;
   }
@@ -87,8 +87,8 @@ TEST(Api, NamesAreUniqueWithinTheirTableAndClass) {
 }
 
 TEST(Api, EverythingIsDocumented) {
-  for (const ApiTable& table : api_tables())
-    for (const ApiKey& key : table.keys) EXPECT_FALSE(key.doc.empty()) << table.name << "." << key.name;
+  for (const KeyTable& table : api_tables())
+    for (const Key& key : table.keys) EXPECT_FALSE(key.doc.empty()) << table.name << "." << key.name;
   for (const ApiFunction& function : api_functions()) EXPECT_FALSE(function.doc.empty()) << function.name;
 }
 
@@ -187,10 +187,10 @@ bool complains(const Value& scene, const std::string& key) {
 
 TEST(Api, LimitsOfTheSceneAreThoseOfItsValidation) {
   int tested = 0;
-  for (const ApiTable& table : api_tables()) {
-    if (!table.validated_elsewhere) continue;
-    for (const ApiKey& key : table.keys) {
-      if (key.kind != ApiKind::number) continue;
+  for (const KeyTable& table : api_tables()) {
+    if (!table.checked_by_validate) continue;
+    for (const Key& key : table.keys) {
+      if (key.kind != KeyKind::number) continue;
       const double step = key.name == "nodes" ? 1 : 1e-6 * (std::abs(key.low) + std::abs(key.high));
       if (!scene_with(table.name, key.name, 0)) continue;
       const std::string name = table.name + "." + key.name;
@@ -208,7 +208,7 @@ TEST(Api, LimitsOfTheSceneAreThoseOfItsValidation) {
 TEST(Api, DefaultsAreThoseOfTheDefinitions) {
   const auto written = [](const std::string& table) {
     std::string text;
-    for (const ApiKey& key : api_table(table).keys)
+    for (const Key& key : api_table(table).keys)
       if (!key.fallback.empty() && key.name != "type") text += key.name + " = " + key.fallback + ", ";
     return text;
   };

@@ -1,0 +1,216 @@
+// The keys of a scene's definitions, one row a key. Limits catch forgotten units and slips, not unusual patients.
+
+#include "anatomy/definitions.h"
+#include "anatomy/key_table.h"
+#include "base/units.h"
+
+namespace calot {
+namespace {
+
+using units::deg;
+using units::kPa;
+using units::mL;
+using units::mm;
+
+std::vector<KeyTable> field_tables() {
+  using Instrument = InstrumentDefinition;
+  using Scope = LaparoscopeDefinition;
+  using Anatomy = AnatomyDefinition;
+  using Solver = SolverDefinition;
+  const std::string semm =
+      written(default_instrument(InstrumentType::semm_forceps).pad_friction, quantity::number);
+  Key extensions = table("extensions", "extensions", "structural extensions at contacts");
+  extensions.inner = [](void* solver, bool) { return solver; };  // its keys are the solver's own members
+  return {
+      keys_of<SceneDefinition>(
+          "scene", "What scene = function(p) returns: the operating field at rest.",
+          {required(table("anatomy", "anatomy", "organs and table: calot.anatomy(...) or a table")),
+           map("ports", "point", "trocars by name, added to the usual ones or moved: { name = { x, y, z } }"),
+           map("instruments", "instrument", "instruments by name: { left = { ... } }; they are t.left, ..."),
+           table("laparoscope", &SceneDefinition::laparoscope, "laparoscope", "the camera"),
+           table("solver", &SceneDefinition::solver, "solver", "steps and tolerance")}),
+      keys_of<Anatomy>(
+          "anatomy", "The organs and how the table is tilted.",
+          {choice("base", anatomy_names(), "", "named anatomy to start from; calot.anatomy(name) sets it"),
+           list("organs", "organ",
+                "the organs; with a base, the first overrides the base's first, and so on"),
+           table("support", &Anatomy::support, "support", "a plane that carries the organs"),
+           number("table_head_up", &Anatomy::table_head_up, quantity::angle, -60 * deg, 60 * deg,
+                  "a tilt of an operating table", "reverse Trendelenburg tilt"),
+           number("table_left_down", &Anatomy::table_left_down, quantity::angle, -60 * deg, 60 * deg,
+                  "a tilt of an operating table", "tilt to the patient's left")}),
+      keys_of<SupportDefinition>(
+          "support", "A plane; what is below it is solid.",
+          {place("point", &SupportDefinition::point, abdomen_reach, "a place in the abdomen",
+                 "a point on it"),
+           direction("normal", &SupportDefinition::normal, "its unit normal, pointing out of the solid"),
+           number("friction", &SupportDefinition::friction, quantity::number, 0, 1,
+                  "a coefficient of friction of a support",
+                  "coefficient of friction of the skin on it; 0 to 0.3 for wet tissue")}),
+      keys_of<Instrument>(
+          "instrument", "An instrument through a port.",
+          {choice("type", &Instrument::type, instrument_type_names(),
+                  "which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the "
+                  "semm_forceps have short broad flat ones"),
+           required(text("port", &Instrument::port, "the port it goes through")),
+           number("force_limit", &Instrument::force_limit, quantity::force, 0.05, 100,
+                  "a limit of force on tissue", "force on it above which the event overforce is raised"),
+           jaws_only(
+               number("pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
+                      "a force that a hand gives a jaw",
+                      "force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force "
+                      "slips")),
+           jaws_only(number("pad_friction", &Instrument::pad_friction, quantity::number, 0.01, 5,
+                            "a coefficient of friction",
+                            "coefficient of friction of a pad; " + semm + " for semm_forceps")),
+           number("friction", &Instrument::friction, quantity::number, 0, 1,
+                  "a coefficient of friction of a smooth tool",
+                  "coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 "
+                  "for a smooth shaft on wet skin")}),
+      keys_of<Scope>("laparoscope", "The camera and its light.",
+                     {text("port", &Scope::port, "the port it goes through"),
+                      number("angle", &Scope::angle, quantity::angle, 0, 70 * deg,
+                             "an angle of view of a laparoscope", "of its optic: 0 or 30 deg are usual"),
+                      text("look_at", &Scope::look_at, "landmark in the middle of the picture"),
+                      number("distance", &Scope::distance, quantity::length, 10 * mm, 400 * mm,
+                             "a distance to look from", "from its tip to what it looks at"),
+                      number("field_of_view", &Scope::field_of_view, quantity::angle, 20 * deg, 120 * deg,
+                             "a laparoscope's field of view", "across the round picture"),
+                      flag("show_structure", &Scope::show_structure,
+                           "draw elements and nodes on the organs, to look into the simulation")}),
+      keys_of<Solver>(
+          "solver", "How the simulation steps.",
+          {number("rate", &Solver::rate, quantity::rate, 1, 2000, "a step rate", "steps a second"),
+           number("tolerance", &Solver::tolerance, quantity::number, 1e-12, 1e-2, "a solver tolerance",
+                  "dimensionless residual of equilibrium"),
+           extensions}),
+      keys_of<Solver>(
+          "extensions",
+          "Structural extensions: finer basis functions around each place that an instrument touches.",
+          {count("levels", &Solver::extension_levels, 0, most_extension_levels,
+                 "the levels of a structural extension",
+                 "subdivision levels added at a contact, each with 12 nodes; 0: none"),
+           number("view", &Solver::extension_view, quantity::length, 0, 400 * mm,
+                  "a distance of the laparoscope",
+                  "where the laparoscope looks at an organ from nearer than this it is refined too; 0: not"),
+           choice("scheme", &Solver::extension_scheme, {"condensed", "staged"},
+                  "solved together with the organ, or after it as its boundary allows (the 1997 scheme, "
+                  "to compare with)")}),
+  };
+}
+
+std::vector<KeyTable> organ_tables() {
+  using Organ = OrganDefinition;
+  using Wall = WallDefinition;
+  using Fibres = FibreDefinition;
+  using Bile = BileDefinition;
+  return {
+      keys_of<Organ>(
+          "organ", "A hollow organ. In calot.anatomy's overrides, only what differs.",
+          {text("name", &Organ::name, "its name, unique; landmarks are written \"gallbladder.fundus\""),
+           table("shape", "shape", "its shape at rest: type \"pear\", \"sphere\" or \"obj\" with their keys"),
+           count("nodes", &Organ::nodes, 12, 4000, "a number of control nodes",
+                 "control nodes; more resolve finer folds and cost more"),
+           place("neck", &Organ::neck, abdomen_reach, "a place in the abdomen",
+                 "where the shape's lower pole lies"),
+           place("fundus", &Organ::fundus, abdomen_reach, "a place in the abdomen",
+                 "where its upper pole points to"),
+           direction("liver_side", &Organ::liver_side,
+                     "direction from the organ's axis to its bed on the liver"),
+           table("wall", &Organ::wall, "wall", "its wall"),
+           table("bile", &Organ::bile, "bile", "what fills it"),
+           list("held", "held", "elastic attachments; a list given here replaces the anatomy's own"),
+           flag("extensions", &Organ::extensions, "false: no structural extensions on this organ"),
+           text("compared_with", &Organ::compared_with,
+                "another organ of the same shape; the metrics mean_difference_pct and "
+                "largest_difference_pct then say how far this one's skin is from moving like that one's")}),
+      keys_of<Wall>(
+          "wall", "The organ's wall.",
+          {number("thickness", &Wall::thickness, quantity::length, 0.1 * mm, 10 * mm, "a wall's thickness",
+                  "2 to 3 mm is usual"),
+           number("shear_modulus", &Wall::shear_modulus, quantity::pressure, 1 * kPa, 100e3 * kPa,
+                  "a soft tissue's shear modulus", "shear modulus mu of the isotropic wall at rest"),
+           number("stiffening", &Wall::stiffening, quantity::number, 0, 100,
+                  "an exponent of a wall's stiffening",
+                  "b of the exponential Fung (Demiray) law; 0: neo-Hookean"),
+           table("fibres", &Wall::fibres, "fibres",
+                 "makes the wall anisotropic; {}: as measured in human gallbladders, whose shear_modulus is "
+                 "85 * kPa"),
+           number("overstretch", &Wall::overstretch, quantity::number, 1.01, 10, "a limit of stretch",
+                  "principal stretch above which the event overstretch is raised")}),
+      keys_of<Fibres>(
+          "fibres",
+          "Two families of fibres (Holzapfel, Gasser, Ogden) on either side of the axis; they bear tension "
+          "only.",
+          {number("stiffness", &Fibres::stiffness, quantity::pressure, 0, 100e3 * kPa,
+                  "a stiffness of fibres",
+                  "k1 of each family; each adds 4 k1 to Young's modulus along itself"),
+           number("stiffening", &Fibres::stiffening, quantity::number, 0, 1000,
+                  "an exponent of fibres' stiffening", "exponent k2; 0: they do not stiffen"),
+           number("angle", &Fibres::angle, quantity::angle, 0, 90 * deg,
+                  "an angle of fibres from the organ's axis",
+                  "from the axis, neck to fundus: 0 longitudinal, 90 * deg circumferential")}),
+      keys_of<Bile>(
+          "bile",
+          "The filling. Give the volume or the pressure, the other follows; neither: the unstressed volume.",
+          {number("density", &Bile::density, quantity::density, 500, 2000, "bile's density",
+                  "kg/m^3; 1010 to 1040 is usual"),
+           number("fill_volume", &Bile::fill_volume, quantity::volume, 0.5 * mL, 1000 * mL,
+                  "a gallbladder's filling", "volume of the filling"),
+           number("fill_pressure", &Bile::fill_pressure, quantity::pressure, 0, 40 * kPa,
+                  "a pressure of bile", "gauge pressure at the highest point; 10 to 15 mmHg is usual")}),
+      keys_of<HeldRegion>(
+          "held", "An elastic foundation under the skin near a landmark: the cystic plate, the duct's root.",
+          {text("name", &HeldRegion::name, "its name, unique within the organ"),
+           required(
+               choice("landmark", &HeldRegion::landmark, organ_landmarks(), "the landmark it surrounds")),
+           number("radius", &HeldRegion::radius, quantity::length, 0.5 * mm, 250 * mm,
+                  "a held region's radius", "how far it reaches"),
+           number("stiffness", &HeldRegion::stiffness, quantity::foundation, 1, 1e10,
+                  "a foundation's stiffness a unit area", "N/m per m^2 of skin")}),
+  };
+}
+
+std::vector<KeyTable> shape_tables() {
+  const auto type = [](const std::string& name) {
+    return choice("type", {"pear", "sphere", "obj"}, "\"pear\"", "which shape: this one is \"" + name + "\"");
+  };
+  return {
+      keys_of<PearShape>("shape_pear", "A gallbladder: round fundus, tapering body, slim neck.",
+                         {type("pear"),
+                          number("length", &PearShape::length, quantity::length, 30 * mm, 250 * mm,
+                                 "a gallbladder's length", "neck to fundus; 70 to 100 mm is usual"),
+                          number("width", &PearShape::width, quantity::length, 10 * mm, 120 * mm,
+                                 "a gallbladder's width", "largest diameter; 30 to 40 mm is usual"),
+                          number("refine", &PearShape::refine, quantity::number, 1, 8, "a refinement",
+                                 "control nodes are closer by this factor near the fundus"),
+                          number("refine_radius", &PearShape::refine_radius, quantity::length, 1 * mm,
+                                 250 * mm, "a radius of refinement", "how far from the fundus they are")}),
+      keys_of<SphereShape>("shape_sphere", "A ball, as in the paper's experiments.",
+                           {type("sphere"), number("radius", &SphereShape::radius, quantity::length, 5 * mm,
+                                                   100 * mm, "an organ's radius", "radius at rest")}),
+      keys_of<MeshFile>(
+          "shape_obj", "A closed control mesh from a Wavefront OBJ file.",
+          {type("obj"),
+           required(text("path", "", "file below the scenario's folder or the project's assets folder")),
+           number("scale", &MeshFile::scale, quantity::number, 1e-9, 1e3,
+                  "a scale from a mesh file to metres", "the file's coordinates times this are metres")}),
+  };
+}
+
+}  // namespace
+
+const std::vector<KeyTable>& scene_key_tables() {
+  static const std::vector<KeyTable> tables = [] {
+    std::vector<KeyTable> all;
+    for (auto* some : {&field_tables, &organ_tables, &shape_tables})
+      for (KeyTable& table : (*some)()) {
+        table.checked_by_validate = true;
+        all.push_back(std::move(table));
+      }
+    return all;
+  }();
+  return tables;
+}
+
+}  // namespace calot
