@@ -12,11 +12,11 @@
 ---@field id string short name: small letters, digits and hyphens
 ---@field title string one line for people
 ---@field time_limit? number the session ends then at the latest; default 120 * s; 1 to 3600 s
----@field params? table<string, calot.param> what can be chosen when it is started; scene gets the values
+---@field params? table<string, calot.param> what can be chosen when it is started: the p of scene, steps, demo and a score's function
 ---@field scene fun(p: table<string, any>): calot.scene returns the operating field
----@field steps fun(t: calot.Steps) the operation's steps, a coroutine
----@field demo? fun(t: calot.Demo) an expert's instrument path, a coroutine
----@field score calot.weighted what counts: calot.score.weighted { ... }
+---@field steps fun(t: calot.Steps, p: table<string, any>) the operation's steps, a coroutine
+---@field demo? fun(t: calot.Demo, p: table<string, any>) an expert's instrument path, a coroutine
+---@field score calot.weighted|fun(p: table<string, any>): calot.weighted what counts: calot.score.weighted { ... }, or function(p) that returns it
 ---@field golden? calot.golden when pictures are compared
 
 ---Something that can be chosen when the exercise is started (--param name=value).
@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"release"|"slip"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
@@ -165,7 +165,7 @@
 ---An elastic foundation under the skin near a landmark: the cystic plate, the duct's root.
 ---@class calot.held
 ---@field name? string its name, unique within the organ; default "bed"
----@field landmark "neck"|"fundus"|"body"|"bed" the landmark it surrounds
+---@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed" the landmark it surrounds
 ---@field radius? number how far it reaches; default 10 * mm; 0.5 to 250 mm
 ---@field stiffness? number N/m per m^2 of skin; default 300000; 1 to 1e+10 N/m^3
 
@@ -215,6 +215,11 @@ function Session:pressure(organ) end
 ---@return number
 function Session:volume(organ) end
 
+---Where a landmark is now on the skin, {x, y, z} in m.
+---@param landmark string a landmark such as "gallbladder.fundus"
+---@return calot.point
+function Session:place(landmark) end
+
 ---The t of steps = function(t): the operation's steps, what to wait for, what to measure.
 ---@class calot.Steps: calot.Session
 ---@field [string] calot.Instrument
@@ -232,6 +237,12 @@ function Steps:step(name, title, options) end
 ---@param duration number time in all; 0.001 to 3600 s
 ---@return boolean
 function Steps:hold(name, predicate, duration) end
+
+---Puts a value into the report, its time and step with it. A number is the metric note.<name> too: its last value, to score by.
+---@param name string its name: letters, digits and _
+---@param value any a finite number, a text of up to 200 bytes, or true or false
+---@param unit? string its unit, for people
+function Steps:note(name, value, unit) end
 
 ---The t of demo = function(t): moves the instruments.
 ---@class calot.Demo: calot.Session
@@ -267,6 +278,11 @@ function Instrument:touching() end
 ---Its tip's place, {x, y, z} in m.
 ---@return calot.point
 function Instrument:tip() end
+
+---How far its tip is from a landmark, m.
+---@param landmark string a landmark such as "gallbladder.fundus"
+---@return number
+function Instrument:distance(landmark) end
 
 ---An instrument as the demo moves it. Motions return when they have ended.
 ---@class calot.DemoInstrument: calot.Instrument

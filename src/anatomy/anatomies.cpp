@@ -50,8 +50,28 @@ std::vector<PortDefinition> default_ports() {
           {"subcostal", {-80 * mm, 80 * mm, -5 * mm}}};
 }
 
-const std::vector<std::string>& organ_landmarks() {
-  static const std::vector<std::string> names = {"neck", "fundus", "body", "bed"};
+const std::vector<Landmark>& landmark_rows() {
+  static const std::vector<Landmark> rows = {
+      {"neck", "the end at the cystic duct", 0, 0},
+      {"fundus", "the free, round end", 1, 0},
+      {"infundibulum", "Hartmann's pouch: next to the neck, on the free side", 0.2, -1},
+      {"free_side", "the middle of the body on its free (peritoneal) side", 0.5, -1},
+      {"liver_side", "the middle of the body on the liver's side", 0.5, 1},
+      {"body", "another name of free_side", 0.5, -1},
+      {"bed", "another name of liver_side", 0.5, 1}};
+  return rows;
+}
+
+std::vector<std::string> organ_landmarks() {
+  std::vector<std::string> names;
+  for (const Landmark& landmark : landmark_rows()) names.emplace_back(landmark.name);
+  return names;
+}
+
+std::vector<std::string> landmark_names(const std::vector<OrganDefinition>& organs) {
+  std::vector<std::string> names;
+  for (const OrganDefinition& organ : organs)
+    for (const Landmark& landmark : landmark_rows()) names.push_back(organ.name + "." + landmark.name);
   return names;
 }
 

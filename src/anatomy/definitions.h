@@ -69,7 +69,7 @@ struct BileDefinition {
 /// An elastic foundation under the skin within `radius` of a place: the cystic plate, the duct's root.
 struct HeldRegion {
   std::string name = "bed";
-  std::string landmark;    ///< a landmark of the organ: "neck", "fundus", "body", "bed"
+  std::string landmark;    ///< a landmark of the organ, see landmark_rows()
   double radius = 10e-3;   ///< m, geodesically coarse: straight distance at rest
   double stiffness = 3e5;  ///< N/m per m^2 of skin (d)
 };
@@ -173,9 +173,17 @@ struct SceneDefinition {
 /// umbilical, epigastric, right_subcostal, right_lateral, left_upper, right_flank, subcostal (d).
 std::vector<PortDefinition> default_ports();
 
-/// "neck", "fundus", "body" (middle of the axis on the free side), "bed" (middle of the axis on the liver
-/// side).
-const std::vector<std::string>& organ_landmarks();
+/// A place on every organ: on the skin next to a point of the box around it.
+struct Landmark {
+  const char* name;
+  const char* doc;
+  double along;  ///< share of the way from the neck's end to the fundus' end
+  double side;   ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side
+};
+const std::vector<Landmark>& landmark_rows();
+std::vector<std::string> organ_landmarks();
+/// Every "organ.landmark" of a scene.
+std::vector<std::string> landmark_names(const std::vector<OrganDefinition>& organs);
 
 /// The anatomies an author names: "standard" (a pear filled to 12 mmHg on its bed), "hydrops" (tense, 70 mL).
 Result<AnatomyDefinition> named_anatomy(const std::string& name);

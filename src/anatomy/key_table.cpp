@@ -106,6 +106,9 @@ Key choice(std::string name, std::vector<std::string> choices, std::string fallb
 Key table(std::string name, std::string of, std::string doc) {
   return compound(KeyKind::table, std::move(name), std::move(of), std::move(doc));
 }
+Key made_table(std::string name, std::string of, std::string doc) {
+  return compound(KeyKind::made_table, std::move(name), std::move(of), std::move(doc));
+}
 Key list(std::string name, std::string of, std::string doc) {
   return compound(KeyKind::list, std::move(name), std::move(of), std::move(doc));
 }

@@ -24,9 +24,10 @@ enum class KeyKind {
   point,   ///< {x, y, z}
   place,   ///< {x, y, z} or a landmark "organ.landmark"
   function,
-  table,  ///< of the keys of table `of`
-  list,   ///< items of table `of`, or of numbers or texts ("number", "text")
-  map,    ///< author's names to tables `of`, or to points ("point")
+  table,       ///< of the keys of table `of`
+  made_table,  ///< such a table, or a function of the parameters that returns it
+  list,        ///< items of table `of`, or of numbers or texts ("number", "text")
+  map,         ///< author's names to tables `of`, or to points ("point")
   any
 };
 
@@ -99,6 +100,7 @@ Key text(std::string name, std::string fallback, std::string doc);
 Key flag(std::string name, std::string fallback, std::string doc);
 Key choice(std::string name, std::vector<std::string> choices, std::string fallback, std::string doc);
 Key table(std::string name, std::string of, std::string doc);
+Key made_table(std::string name, std::string of, std::string doc);
 Key list(std::string name, std::string of, std::string doc);
 Key map(std::string name, std::string of, std::string doc);
 Key function(std::string name, std::string signature, std::string doc);

@@ -203,10 +203,7 @@ void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition
 void check_look_at(FieldCheck& check, const std::string& look_at,
                    const std::vector<OrganDefinition>& organs) {
   if (organs.empty()) return;  // said already
-  std::vector<std::string> targets;
-  for (const OrganDefinition& organ : organs)
-    for (const std::string& landmark : organ_landmarks()) targets.push_back(organ.name + "." + landmark);
-  check.known("scene.laparoscope.look_at", look_at, targets, "place to look at");
+  check.known("scene.laparoscope.look_at", look_at, landmark_names(organs), "place to look at");
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ nlohmann::ordered_json checked_json(const Checked& checked) {
     json["scenario"] = exercise.id;
     json["title"] = exercise.title;
     json["steps"] = exercise.step_names;
-    json["metrics"] = metric_names(exercise.scene, exercise.step_names, exercise.hold_names);
+    json["metrics"] = metric_names(exercise);
   }
   json["problems"] = nlohmann::json::array();
   for (const Problem& problem : checked.failure.problems) {

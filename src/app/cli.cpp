@@ -19,6 +19,7 @@ struct Program {
   RunCommand run;
   ReplayCommand replay;
   CheckCommand check;
+  ListCommand list;
   NewCommand fresh;
   GoldenCommand golden;
   BenchCommand bench;
@@ -31,6 +32,10 @@ void add_session_options(CLI::App& command, SessionCommand& options) {
   command.add_option("--size", options.size, "size of the frames, px")
       ->type_name("WxH")
       ->capture_default_str();
+  command.add_option("--at", options.at, "draw frames at these times too, s: --at 3,4.5")
+      ->type_name("TIMES")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 3600.0));
   command.add_option("--fail-below", options.fail_below, "exit with 1 when the score is below this")
       ->type_name("S")
       ->check(CLI::Range(0.0, 100.0));
@@ -69,6 +74,15 @@ void add_check(Program& program) {
   command.add_option("scenarios", program.check.scenarios, "files, or folders of scenarios")->required();
   command.add_flag("--json", program.check.json, "print the findings as JSON, and nothing else, to stdout");
   command.callback([&program] { program.chosen = [&program] { return check_command(program.check); }; });
+}
+
+void add_list(Program& program) {
+  CLI::App& command = *program.app.add_subcommand(
+      "list", "list what a scenario can name: ports, landmarks, instruments, events, metrics");
+  command.add_option("scenario", program.list.scenario,
+                     "list what this one has, with its parameters and steps");
+  command.add_flag("--json", program.list.json, "print the lists as JSON, and nothing else, to stdout");
+  command.callback([&program] { program.chosen = [&program] { return list_command(program.list); }; });
 }
 
 void add_new(Program& program) {
@@ -140,6 +154,7 @@ int parse_and_run(int argc, char** argv) {
   add_run(program);
   add_replay(program);
   add_check(program);
+  add_list(program);
   add_new(program);
   add_golden(program);
   add_bench(program);

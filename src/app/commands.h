@@ -14,6 +14,7 @@ struct SessionCommand {
   std::string output;  ///< folder
   bool json = false, no_render = false;
   std::string size = "960x540";      ///< "WxH", px
+  std::vector<double> at;            ///< s, of frames besides the scenario's own
   std::optional<double> fail_below;  ///< points of 100
 };
 
@@ -35,6 +36,12 @@ struct CheckCommand {
   bool json = false;
 };
 ExitCode check_command(const CheckCommand& command);
+
+struct ListCommand {
+  std::string scenario;  ///< empty: what every scenario can name
+  bool json = false;
+};
+ExitCode list_command(const ListCommand& command);
 
 struct NewCommand {
   std::string name;

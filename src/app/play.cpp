@@ -17,6 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Golden times and those asked for, each once: two that share a name would share a file.
+std::vector<double> frame_times(const ExerciseDefinition& exercise, const PlayRequest& request) {
+  std::vector<double> times = exercise.golden.at;
+  times.insert(times.end(), request.at.begin(), request.at.end());
+  std::sort(times.begin(), times.end());
+  const auto same_file = [](double a, double b) { return frame_name(a) == frame_name(b); };
+  times.erase(std::unique(times.begin(), times.end(), same_file), times.end());
+  return times;
+}
+
 /// Draws a frame when its golden time has come, and one at the end.
 class FrameCapture {
  public:
@@ -25,10 +35,8 @@ class FrameCapture {
       : renderer_(renderer),
         request_(request),
         output_(output),
-        times_(exercise.golden.at),
-        half_step_(0.5 / exercise.scene.solver.rate) {
-    std::sort(times_.begin(), times_.end());
-  }
+        times_(frame_times(exercise, request)),
+        half_step_(0.5 / exercise.scene.solver.rate) {}
 
   void observe(const World& world, bool last) {
     if (!builder_) builder_.emplace(world);  // at rest: the laparoscope is held still from then on
@@ -177,6 +185,7 @@ Result<Played> play(const PlayRequest& request) {
     if (std::optional<Failure> wrong = check_replay(*request.replay, exercise)) return *wrong;
   }
   Played played;
+  played.frame_times = frame_times(exercise, request);
   if (request.write) played.output = request.output.empty() ? fs::path("out") / exercise.id : request.output;
   std::optional<OffscreenRenderer> renderer;
   std::optional<FrameCapture> capture;

@@ -21,6 +21,7 @@ struct PlayRequest {
   std::uint64_t seed = 1;
   bool render = true;
   int width = 960, height = 540;      ///< px
+  std::vector<double> at;             ///< s, of frames besides the golden ones
   bool write = false;                 ///< write report, frames, table and recording into `output`
   std::filesystem::path output;       ///< folder; empty: out/<scenario id>
   const Recording* replay = nullptr;  ///< play these inputs instead of the scenario's demo
@@ -39,7 +40,8 @@ struct Played {
   ExerciseDefinition exercise;
   SessionResult session;
   SessionReport report;
-  std::string json;  ///< the report
+  std::string json;                 ///< the report
+  std::vector<double> frame_times;  ///< s, asked for: golden ones and the request's, ascending
   std::vector<Frame> frames;
   std::string renderer;          ///< what drew them; empty without rendering
   std::filesystem::path output;  ///< where it was written; empty: nowhere

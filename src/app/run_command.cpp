@@ -41,10 +41,10 @@ std::optional<Failure> read_params(const std::vector<std::string>& pairs, PlayRe
   return std::nullopt;
 }
 
-/// Golden times after the session's end are no error, but an author should know.
+/// Times of frames after the session's end are no error, but an author should know.
 void note_missing_frames(const Played& played) {
   const double end = played.session.traces.time.back();
-  for (const double time : played.exercise.golden.at) {
+  for (const double time : played.frame_times) {
     if (time <= end) continue;
     log_info(fmt::format("There is no picture at {:g} s: the session ended at {:g} s.", time, end));
   }
@@ -127,6 +127,7 @@ ExitCode run_command(const RunCommand& command) {
   PlayRequest request;
   request.scenario = command.scenario;
   request.render = !command.no_render;
+  request.at = command.at;
   if (command.seed) request.seed = *command.seed;
   std::optional<Failure> wrong = read_size(command.size, request);
   if (!wrong) wrong = read_params(command.params, request);
@@ -156,6 +157,7 @@ ExitCode replay_command(const ReplayCommand& command) {
   request.seed = recording->header.seed;
   request.replay = &recording.value();
   request.render = !command.no_render && !command.output.empty();
+  request.at = command.at;
   request.write = !command.output.empty();
   request.output = command.output;
   if (const std::optional<Failure> wrong = read_size(command.size, request)) {

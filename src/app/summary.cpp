@@ -32,9 +32,9 @@ std::string steps_text(const Progress& progress) {
 std::string events_text(const Progress& progress) {
   std::vector<std::pair<std::string, std::vector<double>>> kinds;
   for (const SessionEvent& event : progress.events()) {
-    if (!event.step.empty() && event.kind.starts_with("step_")) continue;  // the steps' table says it
+    if (ends_a_step(event.kind)) continue;  // the steps' table says it
     const std::string who = event.instrument.empty() ? event.organ : event.instrument;
-    const std::string name = fmt::format("{}{}{}", event.kind, who.empty() ? "" : " ", who);
+    const std::string name = fmt::format("{}{}{}", to_text(event.kind), who.empty() ? "" : " ", who);
     auto found =
         std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return kind.first == name; });
     if (found == kinds.end()) found = kinds.insert(kinds.end(), {name, {}});
@@ -51,6 +51,18 @@ std::string metrics_text(const std::map<std::string, double>& metrics) {
   return table(rows, "lr");
 }
 
+std::string notes_text(const Progress& progress) {
+  Rows rows;
+  for (const Note& note : progress.notes()) {
+    std::string value = "false";
+    if (const auto* number = std::get_if<double>(&note.value)) value = fmt::format("{:.5g}", *number);
+    if (const auto* text = std::get_if<std::string>(&note.value)) value = *text;
+    if (const auto* flag = std::get_if<bool>(&note.value); flag != nullptr && *flag) value = "true";
+    rows.push_back({note.name, value, note.unit, fmt::format("at {:.2f} s", note.time)});
+  }
+  return table(rows, "lrll");
+}
+
 std::string score_text(const Score& score) {
   Rows rows;
   for (const ScoredPart& part : score.parts) {
@@ -63,7 +75,7 @@ std::string score_text(const Score& score) {
 
 std::string verdict(const Score& score) {
   if (score.passed) return green("passed");
-  if (!score.critical.empty()) return red("failed: critical event " + score.critical.front().event);
+  if (!score.critical.empty()) return red("failed: critical event " + to_text(score.critical.front().event));
   return red(score.completed ? "not passed" : "not passed: not every step was done");
 }
 
@@ -75,11 +87,13 @@ std::string summary(const Played& played) {
   std::string text = fmt::format("{} ({})\n", bold(played.exercise.title), played.exercise.id);
   text += fmt::format("\n{}\n{}", bold("Steps"), steps_text(session.progress));
   text += fmt::format("\n{}\n{}", bold("Events"), events_text(session.progress));
+  if (!session.progress.notes().empty())
+    text += fmt::format("\n{}\n{}", bold("Noted"), notes_text(session.progress));
   text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(played.report.metrics));
   text += fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
                       verdict(score), played.exercise.score.pass);
   for (const CriticalEvent& event : score.critical) {
-    text += fmt::format("  critical: {} {}; the total is capped at {:.0f}\n", event.event,
+    text += fmt::format("  critical: {} {}; the total is capped at {:.0f}\n", to_text(event.event),
                         times_text(event.times), played.exercise.score.cap);
   }
   text += score_text(score);

@@ -23,11 +23,15 @@ KeyTable exercise_table() {
        required(text("title", &Exercise::title, "one line for people")),
        number("time_limit", &Exercise::time_limit, quantity::time, 1 * s, 3600 * s, "",
               "the session ends then at the latest"),
-       map("params", "param", "what can be chosen when it is started; scene gets the values"),
+       map("params", "param",
+           "what can be chosen when it is started: the p of scene, steps, demo and a score's function"),
        required(function("scene", "fun(p: table<string, any>): calot.scene", "returns the operating field")),
-       required(function("steps", "fun(t: calot.Steps)", "the operation's steps, a coroutine")),
-       function("demo", "fun(t: calot.Demo)", "an expert's instrument path, a coroutine"),
-       required(table("score", "weighted", "what counts: calot.score.weighted { ... }")),
+       required(function("steps", "fun(t: calot.Steps, p: table<string, any>)",
+                         "the operation's steps, a coroutine")),
+       function("demo", "fun(t: calot.Demo, p: table<string, any>)",
+                "an expert's instrument path, a coroutine"),
+       required(made_table("score", "weighted",
+                           "what counts: calot.score.weighted { ... }, or function(p) that returns it")),
        table("golden", "golden", "when pictures are compared")});
 }
 
@@ -59,7 +63,7 @@ std::vector<KeyTable> score_tables() {
                            "earns all, in the metric's unit"))}),
       keys_of<ScorePart>(
           "penalty", "Full marks, less a share for each event of a kind.",
-          {required(choice("event", &ScorePart::event, event_kinds(), "the kind of event")),
+          {required(choice("event", &ScorePart::event, event_names(), "the kind of event")),
            number("each", &ScorePart::each, quantity::number, 0, 1, "", "share lost with each")}),
   };
 }

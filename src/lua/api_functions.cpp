@@ -25,6 +25,8 @@ Key organ(bool needed) {
   return key;
 }
 
+Key landmark() { return required(text("landmark", "", "a landmark such as \"gallbladder.fundus\"")); }
+
 std::vector<ApiFunction> module_functions() {
   return {
       {"calot",
@@ -57,6 +59,7 @@ std::vector<ApiFunction> module_functions() {
 }
 
 std::vector<ApiFunction> session_functions() {
+  const Key noted{"value", KeyKind::any, "a finite number, a text of up to 200 bytes, or true or false"};
   return {
       {"Session", "wait", "Waits.", {seconds("duration", 0, "how long")}, ""},
       {"Session",
@@ -71,6 +74,11 @@ std::vector<ApiFunction> session_functions() {
        {organ(true)},
        "number"},
       {"Session", "volume", "Volume the organ encloses, m^3.", {organ(true)}, "number"},
+      {"Session",
+       "place",
+       "Where a landmark is now on the skin, {x, y, z} in m.",
+       {landmark()},
+       "calot.point"},
       {"Steps",
        "step",
        "Ends the running step as done and starts the next.",
@@ -86,6 +94,14 @@ std::vector<ApiFunction> session_functions() {
        {required(text("name", "", "short name, for the metric: letters, digits and _")),
         predicate("asked after every simulated step"), seconds("duration", 1 * ms, "time in all")},
        "boolean"},
+      {"Steps",
+       "note",
+       "Puts a value into the report, its time and step with it. A number is the metric note.<name> too: its "
+       "last "
+       "value, to score by.",
+       {required(text("name", "", "its name: letters, digits and _")), required(noted),
+        text("unit", "", "its unit, for people")},
+       ""},
       {"Demo",
        "together",
        "Runs functions side by side, one for each instrument say, until all have ended.",
@@ -102,7 +118,6 @@ std::vector<ApiFunction> instrument_functions() {
   target.quantity = &quantity::length;
   target.low = -500 * mm;
   target.high = 500 * mm;
-  const Key landmark = required(text("landmark", "", "a landmark such as \"gallbladder.fundus\""));
   return {
       {"Instrument",
        "holds",
@@ -113,12 +128,13 @@ std::vector<ApiFunction> instrument_functions() {
       {"Instrument", "handle_force", "Force felt at its handle, N.", {}, "number"},
       {"Instrument", "touching", "Whether it touches tissue.", {}, "boolean"},
       {"Instrument", "tip", "Its tip's place, {x, y, z} in m.", {}, "calot.point"},
+      {"Instrument", "distance", "How far its tip is from a landmark, m.", {landmark()}, "number"},
       {"DemoInstrument",
        "approach",
        "Opens the jaws, if it has any, and goes to a landmark from outside, ending pressed onto the tissue, "
        "ready to "
        "close.",
-       {landmark, table("options", "approach_options", "how")},
+       {landmark(), table("options", "approach_options", "how")},
        ""},
       {"DemoInstrument",
        "open",

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "anatomy/definitions.h"
+#include "base/units.h"
 #include "lua/api_text.h"
 #include "lua/sandbox_library.h"
+#include "session/metrics.h"
 
 namespace calot {
 namespace {
@@ -95,6 +98,29 @@ std::string describe_function(const ApiFunction& function) {
   return text;
 }
 
+std::string in_mm(const Vec3& place) {
+  return fmt::format("{{ {:g} * mm, {:g} * mm, {:g} * mm }}", place.x() / units::mm, place.y() / units::mm,
+                     place.z() / units::mm);
+}
+
+/// What a scenario names: ports, landmarks, events, metrics. `calot list` prints the same.
+std::string describe_names() {
+  std::string text = "\n## Ports\n\n| port | place |\n|---|---|\n";
+  for (const PortDefinition& port : default_ports())
+    text += fmt::format("| `{}` | `{}` |\n", port.name, in_mm(port.position));
+  text += "\n## Landmarks\n\nOf every organ: `gallbladder.fundus`.\n\n| landmark | |\n|---|---|\n";
+  for (const Landmark& landmark : landmark_rows())
+    text += fmt::format("| `{}` | {} |\n", landmark.name, landmark.doc);
+  text += "\n## Events\n\n| event | raised when | value |\n|---|---|---|\n";
+  for (const EventRow& event : event_rows())
+    text += fmt::format("| `{}` | {} | {} |\n", event.name, event.doc, event.value);
+  text += "\n## Metrics\n\np: tip, u: direction of the shaft, d: depth, psi: turn about the shaft.\n";
+  text += "\n| metric | |\n|---|---|\n";
+  for (const MetricRow& metric : metric_rows())
+    text += fmt::format("| `{}` | {} |\n", pattern(metric), metric.doc);
+  return text;
+}
+
 }  // namespace
 
 std::string generate_annotations() {
@@ -157,6 +183,7 @@ std::string generate_reference() {
   }
   text += "\n## Tables\n";
   for (const KeyTable& table : api_tables()) text += describe_table(table);
+  text += describe_names();
   text += "\n## Units\n\n";
   for (const ApiUnit& unit : api_units())
     text += fmt::format("- `calot.units.{}`: {}\n", unit.name, unit.doc);

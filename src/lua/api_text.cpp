@@ -50,6 +50,8 @@ std::string type_text(const Key& key) {
       return key.signature;
     case KeyKind::table:
       return named(key.of);
+    case KeyKind::made_table:
+      return fmt::format("{0}|fun(p: table<string, any>): {0}", named(key.of));
     case KeyKind::list:
       return named(key.of) + "[]";
     case KeyKind::map:

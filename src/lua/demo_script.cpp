@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/units.h"
-#include "lua/handles.h"
 #include "lua/lua_headers.h"
 
 namespace calot {
@@ -19,8 +18,8 @@ constexpr double dry_motion_duration = 0.1;  // s: what a motion counts for in a
 }  // namespace
 
 DemoScript::DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
-                       std::vector<Problem>* problems)
-    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", problems), function_(function) {}
+                       const Parameters& parameters, std::vector<Problem>* problems)
+    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", parameters, problems), function_(function) {}
 
 double DemoScript::time() const {
   if (checking()) return dry_time();
@@ -30,12 +29,11 @@ double DemoScript::time() const {
 // ---- running
 
 std::optional<Failure> DemoScript::start() {
-  Result<lua_State*> thread =
-      sandbox().start_thread(function_, [this](lua_State* L) { push_session_handle(L, *this); });
+  Result<lua_State*> thread = start_main(function_);
   if (!thread) return thread.failure();
   Task root;
   root.thread = thread.value();
-  root.arguments = 1;
+  root.arguments = 2;
   root.clock = step_start_;
   tasks_.push_back(root);
   return std::nullopt;
@@ -198,10 +196,6 @@ int DemoScript::together(lua_State* L) {
   tasks_[parent].state = Task::children;
   if (checking()) return dry_wait(L, 0);
   return lua_yield(L, 0);
-}
-
-Vec3 DemoScript::landmark(lua_State* L, const std::string& name) const {
-  return checking() ? Vec3::Zero() : world(L).landmark(name);
 }
 
 InstrumentPath* DemoScript::free_path(lua_State* L, int instrument) {

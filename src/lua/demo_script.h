@@ -23,7 +23,7 @@ struct Approach {
 class DemoScript final : public ScriptSession, public InputSource {
  public:
   /// `function` is a registry reference; 0: there is no demo, and the source ends at once.
-  DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
+  DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function, const Parameters& parameters,
              std::vector<Problem>* problems = nullptr);
 
   Result<std::optional<StepInput>> next(const World& world, double dt) override;
@@ -41,8 +41,6 @@ class DemoScript final : public ScriptSession, public InputSource {
   int move_to(lua_State* L, int instrument, const Vec3& tip, double speed);
   int move_by(lua_State* L, int instrument, const Vec3& vector, double speed);
   int rotate(lua_State* L, int instrument, double angle, double speed);
-  /// Where a landmark is now; the origin in a dry run.
-  Vec3 landmark(lua_State* L, const std::string& name) const;
 
  private:
   /// A coroutine: the demo itself, or a function given to t:together.

@@ -39,6 +39,8 @@ class Loader {
  private:
   Result<Script> open(bool quiet, FieldCheck& check);
   std::optional<Failure> call_scene(Script& script);
+  /// A score that is a function of the parameters; a plain table has been read with the exercise.
+  std::optional<Failure> call_score(Script& script, FieldCheck& check);
   ExerciseDefinition define(Script& script, FieldCheck& check);
   /// A failure is of resources; the scripts' own become problems.
   std::optional<Failure> run_dry(Script& script, ExerciseDefinition& definition, FieldCheck& check);
@@ -58,8 +60,8 @@ class LuaExercise final : public ExerciseScript {
   LuaExercise(Script script, ExerciseDefinition definition)
       : script_(std::move(script)),
         definition_(std::move(definition)),
-        steps_(*script_.sandbox, definition_, script_.table.steps),
-        demo_(*script_.sandbox, definition_, script_.table.demo) {}
+        steps_(*script_.sandbox, definition_, script_.table.steps, script_.table.parameters),
+        demo_(*script_.sandbox, definition_, script_.table.demo, script_.table.parameters) {}
 
   const ExerciseDefinition& definition() const override { return definition_; }
   InputSource& demo() override { return demo_; }
@@ -80,16 +82,6 @@ class LuaExercise final : public ExerciseScript {
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-void push_parameters(lua_State* L, const std::map<std::string, ParameterValue>& parameters) {
-  lua_newtable(L);
-  for (const auto& [name, value] : parameters) {
-    if (const auto* number = std::get_if<double>(&value)) lua_pushnumber(L, *number);
-    if (const auto* boolean = std::get_if<bool>(&value)) lua_pushboolean(L, *boolean);
-    if (const auto* text = std::get_if<std::string>(&value)) lua_pushlstring(L, text->data(), text->size());
-    lua_setfield(L, -2, name.c_str());
-  }
 }
 
 /// Whether one field contains the other, or is it.
@@ -129,13 +121,26 @@ Result<Script> Loader::open(bool quiet, FieldCheck& check) {
   return script;
 }
 
-std::optional<Failure> Loader::call_scene(Script& script) {
+/// What one of the exercise's functions gives for the parameters.
+std::optional<Failure> call(Script& script, int function, Value& result) {
   return script.sandbox->protect([&](lua_State* L) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, script.table.scene);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
     push_parameters(L, script.table.parameters);
     lua_call(L, 1, 1);
-    script.scene = read_value(L, -1);
+    result = read_value(L, -1);
   });
+}
+
+std::optional<Failure> Loader::call_scene(Script& script) {
+  return call(script, script.table.scene, script.scene);
+}
+
+std::optional<Failure> Loader::call_score(Script& script, FieldCheck& check) {
+  if (script.table.score == 0) return std::nullopt;
+  Value score;
+  std::optional<Failure> failure = call(script, script.table.score, score);
+  if (!failure) script.table.definition.score = read_score(check, score);
+  return failure;
 }
 
 ExerciseDefinition Loader::define(Script& script, FieldCheck& check) {
@@ -148,13 +153,14 @@ ExerciseDefinition Loader::define(Script& script, FieldCheck& check) {
 
 std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& definition, FieldCheck& check) {
   // Both outlive both runs: a handle that one leaves behind may be met in the other.
-  StepsScript steps(*script.sandbox, definition, script.table.steps, &problems_);
-  DemoScript demo(*script.sandbox, definition, script.table.demo, &problems_);
+  StepsScript steps(*script.sandbox, definition, script.table.steps, script.table.parameters, &problems_);
+  DemoScript demo(*script.sandbox, definition, script.table.demo, script.table.parameters, &problems_);
   if (script.table.steps != 0) {
     Result<StepsScript::Declared> declared = steps.run_dry();
     if (declared) {
       definition.step_names = declared->steps;
       definition.hold_names = declared->holds;
+      definition.note_names = declared->notes;
       // Steps that were not reached have metrics nobody knows of: say nothing about them.
       if (declared->complete) check_metrics(check, definition);
     } else if (declared.failure().kind == FailureKind::resource) {
@@ -213,6 +219,10 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
     collect(*failure);
     return all_problems();
   }
+  if (std::optional<Failure> failure = call_score(checked.value(), check)) {
+    if (failure->kind != FailureKind::scenario) return *failure;
+    collect(*failure);
+  }
   ExerciseDefinition definition = define(checked.value(), check);
   collect(check.take());
   collect_validation(validate(definition.scene));
@@ -225,6 +235,7 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   Result<Script> script = open(true, again);
   if (!script) return script.failure();
   if (std::optional<Failure> failure = call_scene(script.value())) return *failure;
+  if (std::optional<Failure> failure = call_score(script.value(), again)) return *failure;
   script->sandbox->set_quiet(false);
   definition.source_hash = script->sandbox->source_hash();
   for (ScorePart& part : definition.score.parts) {

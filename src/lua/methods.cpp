@@ -72,6 +72,29 @@ int volume(lua_State* L) {
   return 1;
 }
 
+/// {x, y, z}
+int push_vector(lua_State* L, const Vec3& vector) {
+  lua_createtable(L, 3, 0);
+  for (int i = 0; i < 3; ++i) {
+    lua_pushnumber(L, vector[i]);
+    lua_rawseti(L, -2, i + 1);
+  }
+  return 1;
+}
+
+/// Where the landmark is; none after a complaint.
+std::optional<Vec3> landmark_argument(lua_State* L, ScriptSession& session, const Arguments& arguments) {
+  const std::string name = arguments.text("landmark");
+  if (!arguments.good() || !session.is_landmark(L, name)) return std::nullopt;
+  return session.landmark(L, name);
+}
+
+int place(lua_State* L) {
+  ScriptSession& session = session_target(L, "place");
+  const Arguments arguments(L, session, "Session", "place");
+  return push_vector(L, landmark_argument(L, session, arguments).value_or(Vec3::Zero()));
+}
+
 // ---- instruments
 
 const InstrumentState& instrument_state(lua_State* L, const HandleTarget& target) {
@@ -118,12 +141,16 @@ int handle_force(lua_State* L) {
 }
 
 int tip(lua_State* L) {
-  const Vec3 place = instrument_state(L, "tip").tip;
-  lua_createtable(L, 3, 0);
-  for (int i = 0; i < 3; ++i) {
-    lua_pushnumber(L, place[i]);
-    lua_rawseti(L, -2, i + 1);
-  }
+  const HandleTarget target = instrument_target(L, "tip");
+  take_nothing(L, *target.session, "tip");
+  return push_vector(L, target.session->tip(L, target.instrument));
+}
+
+int distance(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "distance");
+  const Arguments arguments(L, *target.session, "Instrument", "distance");
+  const std::optional<Vec3> place = landmark_argument(L, *target.session, arguments);
+  lua_pushnumber(L, place ? (target.session->tip(L, target.instrument) - *place).norm() : 0);
   return 1;
 }
 
@@ -141,6 +168,14 @@ int step(lua_State* L) {
   double limit = 0;
   arguments.options("step_options").take("limit", limit);
   if (arguments.finish()) steps.step(L, arguments.text("name"), arguments.text("title"), limit);
+  return 0;
+}
+
+int note(lua_State* L) {
+  StepsScript& steps = steps_of(L, "note");
+  const Arguments arguments(L, steps, "Steps", "note");
+  if (!arguments.good()) return 0;
+  steps.note(L, arguments.text("name"), *arguments.read().take("value"), arguments.text("unit"));
   return 0;
 }
 
@@ -257,14 +292,17 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "time", guarded<time>},
                           {"Session", "pressure", guarded<pressure>},
                           {"Session", "volume", guarded<volume>},
+                          {"Session", "place", guarded<place>},
                           {"Steps", "step", guarded<step>},
                           {"Steps", "hold", guarded<hold>},
+                          {"Steps", "note", guarded<note>},
                           {"Demo", "together", guarded<together>},
                           {"Instrument", "holds", guarded<holds>},
                           {"Instrument", "force", guarded<force>},
                           {"Instrument", "handle_force", guarded<handle_force>},
                           {"Instrument", "touching", guarded<touching>},
                           {"Instrument", "tip", guarded<tip>},
+                          {"Instrument", "distance", guarded<distance>},
                           {"DemoInstrument", "approach", guarded<approach>},
                           {"DemoInstrument", "open", guarded<open>},
                           {"DemoInstrument", "close", guarded<close>},

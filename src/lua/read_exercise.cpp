@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/suggest.h"
-#include "lua/read_parameters.h"
 #include "lua/table_reader.h"
 #include "session/metrics.h"
 
@@ -37,7 +36,8 @@ class ScoreReader {
   ScoreDefinition read() {
     ScoreDefinition score;
     if (kind_of(value_) != "weighted") {
-      check_.problem("score", "this is no score", "write score = calot.score.weighted { ... }");
+      check_.problem("score", "this is no score",
+                     "write score = calot.score.weighted { ... }, or a function that returns one");
       return score;
     }
     const TableReader reader(check_, &value_, "score", api_table("weighted"));
@@ -52,14 +52,14 @@ class ScoreReader {
   }
 
  private:
-  std::vector<std::string> read_critical(const Value& list) {
-    std::vector<std::string> events;
+  std::vector<EventKind> read_critical(const Value& list) {
+    std::vector<EventKind> events;
     for (std::size_t i = 0; i < list.items.size(); ++i) {
       const std::string path = indexed("score.critical", i);
       if (!list.items[i].is(Value::Kind::text)) {
-        check_.problem(path, "this must be an event's name", suggestion("", event_kinds()));
-      } else if (check_.known(path, list.items[i].text, event_kinds(), "event")) {
-        events.push_back(list.items[i].text);
+        check_.problem(path, "this must be an event's name", suggestion("", event_names()));
+      } else if (check_.known(path, list.items[i].text, event_names(), "event")) {
+        events.push_back(*event_called(list.items[i].text));
       }
     }
     return events;
@@ -101,7 +101,7 @@ class ScoreReader {
     const TableReader reader(check_, &value, path, api_table("penalty"));
     part.kind = ScorePartKind::penalty;
     reader.read(part);
-    part.name = part.event;
+    part.name = to_text(part.event);
   }
 
   void check_weights(const std::vector<ScorePart>& parts) {
@@ -158,9 +158,14 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
   const TableReader reader(check, &exercise, "", api_table("exercise"));
   reader.read(definition);
   if (reader.has("id")) check_id(check, definition.id);
-  result.parameters = read_parameters(check, reader.take("params"), chosen, result.usage);
-  for (const auto& [name, value] : result.parameters) definition.params[name] = to_text(value);
-  if (const Value* score = reader.take("score")) definition.score = ScoreReader(check, *score).read();
+  ReadParameters parameters = read_parameters(check, reader.take("params"), chosen);
+  result.parameters = std::move(parameters.values);
+  result.usage = std::move(parameters.usage);
+  definition.parameters = std::move(parameters.definitions);
+  for (const ParameterDefinition& parameter : definition.parameters)
+    definition.params[parameter.name] = parameter.value;
+  const Value* score = reader.take("score");
+  if (score != nullptr && score->function == 0) definition.score = read_score(check, *score);
   definition.golden = read_golden(check, reader.take("golden"), definition.time_limit);
   const auto reference = [&](const char* key) {
     const Value* value = reader.take(key);
@@ -169,12 +174,14 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
   result.scene = reference("scene");
   result.steps = reference("steps");
   result.demo = reference("demo");
+  result.score = reference("score");
   return result;
 }
 
+ScoreDefinition read_score(FieldCheck& check, const Value& score) { return ScoreReader(check, score).read(); }
+
 void check_metrics(FieldCheck& check, const ExerciseDefinition& exercise) {
-  const std::vector<std::string> names =
-      metric_names(exercise.scene, exercise.step_names, exercise.hold_names);
+  const std::vector<std::string> names = metric_names(exercise);
   for (const ScorePart& part : exercise.score.parts) {
     if (part.kind != ScorePartKind::benchmark || part.metric.empty()) continue;
     if (std::find(names.begin(), names.end(), part.metric) != names.end()) continue;

@@ -3,22 +3,21 @@
 
 #include <map>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "anatomy/field_check.h"
+#include "lua/read_parameters.h"
 #include "lua/value.h"
 #include "session/exercise.h"
 
 namespace calot {
 
-using ParameterValue = std::variant<double, bool, std::string>;
-
 /// The exercise's table, read; functions as registry references, 0 when there is none.
 struct ExerciseTable {
   ExerciseDefinition definition;  ///< without scene and script-declared names; the score's metrics unchecked
-  std::map<std::string, ParameterValue> parameters;
+  Parameters parameters;
   int scene = 0, steps = 0, demo = 0;
+  int score = 0;  ///< gives the score for the parameters; 0 where it is a plain table, and read already
   std::vector<Problem> usage;  ///< what is wrong with the parameters that the user chose
 };
 
@@ -26,9 +25,10 @@ struct ExerciseTable {
 ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
                             const std::map<std::string, std::string>& chosen);
 
+/// Reads what the score's function returned.
+ScoreDefinition read_score(FieldCheck& check, const Value& score);
+
 /// Checks the score's metrics against those that the scene and the declared steps and holds have.
 void check_metrics(FieldCheck& check, const ExerciseDefinition& exercise);
-
-std::string to_text(const ParameterValue& value);
 
 }  // namespace calot

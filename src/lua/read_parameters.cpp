@@ -5,16 +5,19 @@
 #include <charconv>
 
 #include "base/suggest.h"
+#include "lua/lua_headers.h"
 #include "lua/table_reader.h"
 
 namespace calot {
 namespace {
 
-struct Parameter {
-  std::string type;
-  std::vector<std::string> choices;
-  std::optional<double> low, high;
-};
+using Parameter = ParameterDefinition;
+
+std::string to_text(const ParameterValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* boolean = std::get_if<bool>(&value)) return *boolean ? "true" : "false";
+  return std::get<std::string>(value);
+}
 
 std::string wanted(const Parameter& parameter) {
   if (parameter.type == "boolean") return "true or false";
@@ -56,6 +59,7 @@ std::optional<ParameterValue> parse(const Parameter& parameter, const std::strin
 Parameter read_parameter(FieldCheck& check, const TableReader& reader) {
   Parameter parameter;
   reader.take("type", parameter.type);
+  reader.take("title", parameter.title);
   reader.take("min", parameter.low);
   reader.take("max", parameter.high);
   if (const Value* choices = reader.take("choices")) {
@@ -73,50 +77,56 @@ Parameter read_parameter(FieldCheck& check, const TableReader& reader) {
 
 }  // namespace
 
-std::string to_text(const ParameterValue& value) {
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  if (const auto* boolean = std::get_if<bool>(&value)) return *boolean ? "true" : "false";
-  return std::get<std::string>(value);
-}
-
-std::map<std::string, ParameterValue> read_parameters(FieldCheck& check, const Value* params,
-                                                      const std::map<std::string, std::string>& chosen,
-                                                      std::vector<Problem>& usage) {
-  std::map<std::string, ParameterValue> values;
+ReadParameters read_parameters(FieldCheck& check, const Value* params,
+                               const std::map<std::string, std::string>& chosen) {
+  ReadParameters result;
   std::vector<std::string> names;
   if (params != nullptr) {
     for (const auto& [name, value] : params->fields) {
       const std::string path = "params." + name;
       names.push_back(name);
       const TableReader reader(check, &value, path, api_table("param"));
-      const Parameter parameter = read_parameter(check, reader);
+      Parameter parameter = read_parameter(check, reader);
+      parameter.name = name;
       const Value* fallback = reader.take("default");
       if (parameter.type.empty() || fallback == nullptr) continue;  // said already
-      const std::optional<ParameterValue> standard = fit(parameter, *fallback);
-      if (!standard) {
+      std::optional<ParameterValue> now = fit(parameter, *fallback);
+      if (!now) {
         check.problem(path + ".default", "this default does not fit", "give " + wanted(parameter));
         continue;
       }
-      values[name] = *standard;
-      const auto given = chosen.find(name);
-      if (given == chosen.end()) continue;
-      const std::optional<ParameterValue> value_given = parse(parameter, given->second);
-      if (value_given) {
-        values[name] = *value_given;
-      } else {
-        usage.push_back({{},
-                         fmt::format("parameter {} cannot be \"{}\"", name, given->second),
-                         "give " + wanted(parameter)});
+      parameter.fallback = to_text(*now);
+      if (const auto given = chosen.find(name); given != chosen.end()) {
+        if (const std::optional<ParameterValue> parsed = parse(parameter, given->second)) {
+          now = parsed;
+        } else {
+          result.usage.push_back({{},
+                                  fmt::format("parameter {} cannot be \"{}\"", name, given->second),
+                                  "give " + wanted(parameter)});
+        }
       }
+      parameter.value = to_text(*now);
+      result.values[name] = *now;
+      result.definitions.push_back(std::move(parameter));
     }
   }
   for (const auto& [name, text] : chosen) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      usage.push_back(
+      result.usage.push_back(
           {{}, fmt::format("the scenario has no parameter \"{}\"", name), suggestion(name, names)});
     }
   }
-  return values;
+  return result;
+}
+
+void push_parameters(lua_State* L, const Parameters& parameters) {
+  lua_newtable(L);
+  for (const auto& [name, value] : parameters) {
+    if (const auto* number = std::get_if<double>(&value)) lua_pushnumber(L, *number);
+    if (const auto* boolean = std::get_if<bool>(&value)) lua_pushboolean(L, *boolean);
+    if (const auto* text = std::get_if<std::string>(&value)) lua_pushlstring(L, text->data(), text->size());
+    lua_setfield(L, -2, name.c_str());
+  }
 }
 
 }  // namespace calot

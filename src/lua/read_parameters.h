@@ -1,14 +1,31 @@
 #pragma once
 // An exercise's params, and the values that the user chose for them.
 
-#include "lua/read_exercise.h"
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "anatomy/field_check.h"
+#include "lua/value.h"
+#include "session/exercise.h"
 
 namespace calot {
 
-/// The value of every parameter: chosen or default. Problems of the declaration go to `check`, those of the
-/// choice to `usage`. `params` may be null.
-std::map<std::string, ParameterValue> read_parameters(FieldCheck& check, const Value* params,
-                                                      const std::map<std::string, std::string>& chosen,
-                                                      std::vector<Problem>& usage);
+using ParameterValue = std::variant<double, bool, std::string>;
+using Parameters = std::map<std::string, ParameterValue>;
+
+struct ReadParameters {
+  Parameters values;                             ///< of every parameter: chosen or default
+  std::vector<ParameterDefinition> definitions;  ///< ordered by name
+  std::vector<Problem> usage;                    ///< what is wrong with what the user chose
+};
+
+/// Problems of the declaration go to `check`. `params` may be null; `chosen` are values as the user wrote them.
+ReadParameters read_parameters(FieldCheck& check, const Value* params,
+                               const std::map<std::string, std::string>& chosen);
+
+/// Pushes the table p that scene, steps, demo and a score's function are given.
+void push_parameters(lua_State* L, const Parameters& parameters);
 
 }  // namespace calot

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "base/suggest.h"
+#include "lua/handles.h"
 #include "lua/lua_headers.h"
 
 namespace calot {
@@ -19,12 +20,21 @@ std::string with_hint(const std::string& message, const std::string& hint) {
 }  // namespace
 
 ScriptSession::ScriptSession(Sandbox& sandbox, const ExerciseDefinition& exercise, std::string class_name,
-                             std::string instrument_class, std::vector<Problem>* problems)
+                             std::string instrument_class, const Parameters& parameters,
+                             std::vector<Problem>* problems)
     : sandbox_(sandbox),
       exercise_(exercise),
       class_name_(std::move(class_name)),
       instrument_class_(std::move(instrument_class)),
+      parameters_(parameters),
       problems_(problems) {}
+
+Result<lua_State*> ScriptSession::start_main(int function) {
+  return sandbox_.start_thread(function, [this](lua_State* L) {
+    push_session_handle(L, *this);
+    push_parameters(L, parameters_);
+  });
+}
 
 const World& ScriptSession::world(lua_State* L) const {
   if (world_ == nullptr) {
@@ -59,14 +69,28 @@ int ScriptSession::organ(lua_State* L, const std::string& name) {
 }
 
 bool ScriptSession::is_landmark(lua_State* L, const std::string& name) {
-  std::vector<std::string> names;
-  for (const OrganDefinition& organ : scene().anatomy.organs) {
-    for (const std::string& landmark : organ_landmarks())
-      names.push_back(fmt::format("{}.{}", organ.name, landmark));
-  }
+  const std::vector<std::string> names = landmark_names(scene().anatomy.organs);
   if (std::find(names.begin(), names.end(), name) != names.end()) return true;
   complain(L, fmt::format("unknown landmark \"{}\"", name), suggestion(name, names));
   return false;
+}
+
+Vec3 ScriptSession::landmark(lua_State* L, const std::string& name) const {
+  if (!checking()) return world(L).landmark(name);
+  for (const OrganDefinition& organ : scene().anatomy.organs)
+    for (const Landmark& row : landmark_rows())
+      if (name == organ.name + "." + row.name) return organ.neck + row.along * (organ.fundus - organ.neck);
+  return Vec3::Zero();  // complained about already
+}
+
+Vec3 ScriptSession::tip(lua_State* L, int instrument) const {
+  const std::size_t index = static_cast<std::size_t>(instrument);
+  if (!checking()) return world(L).report().instruments[index].tip;
+  constexpr double waiting_depth = 30e-3;  // m
+  const std::vector<PortDefinition> ports = scene().ports.empty() ? default_ports() : scene().ports;
+  for (const PortDefinition& port : ports)
+    if (port.name == scene().instruments[index].port) return port.position - waiting_depth * Vec3::UnitZ();
+  return Vec3::Zero();  // the port has been complained about
 }
 
 bool ScriptSession::end_dry_run(double duration) {

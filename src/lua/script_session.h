@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lua/read_parameters.h"
 #include "lua/sandbox.h"
 #include "lua/table_reader.h"
 #include "session/exercise.h"
@@ -18,7 +19,7 @@ class ScriptSession {
  public:
   /// `problems` set: a dry run, in which waits return at once and mistakes are collected instead of raised.
   ScriptSession(Sandbox& sandbox, const ExerciseDefinition& exercise, std::string class_name,
-                std::string instrument_class, std::vector<Problem>* problems);
+                std::string instrument_class, const Parameters& parameters, std::vector<Problem>* problems);
   virtual ~ScriptSession() = default;
   ScriptSession(const ScriptSession&) = delete;
   ScriptSession& operator=(const ScriptSession&) = delete;
@@ -46,6 +47,10 @@ class ScriptSession {
   int organ(lua_State* L, const std::string& name);
   /// "organ.landmark" of this scene; complains when it is none.
   bool is_landmark(lua_State* L, const std::string& name);
+  /// Where a landmark of this scene is now, m; in a dry run about where it will be.
+  Vec3 landmark(lua_State* L, const std::string& name) const;
+  /// Where an instrument's tip is now, m; in a dry run where it waits in its trocar.
+  Vec3 tip(lua_State* L, int instrument) const;
   /// In a dry run: what a yes-or-no question is answered, in turns, so that loops for either end.
   bool next_guess() { return guess_ = !guess_; }
 
@@ -56,11 +61,14 @@ class ScriptSession {
   bool end_dry_run(double duration);
   double dry_time() const { return dry_time_; }
   std::vector<Problem>* problems() const { return problems_; }
+  /// Starts the coroutine of steps or demo, to be resumed with two arguments: t and p.
+  Result<lua_State*> start_main(int function);
 
  private:
   Sandbox& sandbox_;
   const ExerciseDefinition& exercise_;
   std::string class_name_, instrument_class_;
+  const Parameters& parameters_;
   std::vector<Problem>* problems_;
   const World* world_ = nullptr;
   std::string ended_;

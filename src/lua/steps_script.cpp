@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
-#include "lua/handles.h"
+#include <cmath>
+
 #include "lua/lua_headers.h"
 
 namespace calot {
 namespace {
 
 constexpr double slack = 1e-9;  // s: what a sum of steps may be off
+
+constexpr std::size_t most_notes = 1000, longest_note = 200, longest_unit = 20;  // what a report has room for
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -17,15 +20,14 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 StepsScript::StepsScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
-                         std::vector<Problem>* problems)
-    : ScriptSession(sandbox, exercise, "Steps", "Instrument", problems), function_(function) {}
+                         const Parameters& parameters, std::vector<Problem>* problems)
+    : ScriptSession(sandbox, exercise, "Steps", "Instrument", parameters, problems), function_(function) {}
 
 std::optional<Failure> StepsScript::start() {
-  Result<lua_State*> thread =
-      sandbox().start_thread(function_, [this](lua_State* L) { push_session_handle(L, *this); });
+  Result<lua_State*> thread = start_main(function_);
   if (!thread) return thread.failure();
   thread_ = thread.value();
-  Result<bool> finished = sandbox().resume(thread_, 1);
+  Result<bool> finished = sandbox().resume(thread_, 2);
   if (!finished) return finished.failure();
   finished_ = finished.value();
   return std::nullopt;
@@ -176,7 +178,7 @@ int StepsScript::wait_until(lua_State* L, int predicate) {
 
 void StepsScript::step(lua_State* L, const std::string& name, const std::string& title, double limit) {
   if (!may_wait(L, "step") || !is_name(L, "step", name)) return;
-  std::vector<std::string> taken = {"total"};
+  std::vector<std::string> taken = {"total", "note"};
   for (const InstrumentDefinition& instrument : scene().instruments) taken.push_back(instrument.name);
   for (const OrganDefinition& organ : scene().anatomy.organs) taken.push_back(organ.name);
   if (contains(taken, name))
@@ -189,6 +191,37 @@ void StepsScript::step(lua_State* L, const std::string& name, const std::string&
   if (checking()) return;
   timed_out_ = false;
   progress_->begin_step(now_, name, title, limit);
+}
+
+void StepsScript::note(lua_State* L, const std::string& name, const Value& value, const std::string& unit) {
+  if (!is_name(L, "note", name)) return;
+  Note note{now_, {}, name, {}, unit};
+  switch (value.kind) {
+    case Value::Kind::number:
+      if (!std::isfinite(value.number))
+        return complain(L, fmt::format("{} = {} cannot be noted", name, value.number),
+                        "give a finite number");
+      if (!contains(declared_.notes, name)) declared_.notes.push_back(name);
+      note.value = value.number;
+      break;
+    case Value::Kind::boolean:
+      note.value = value.boolean;
+      break;
+    case Value::Kind::text:
+      note.value = value.text;
+      break;
+    default:
+      return complain(L, fmt::format("{} cannot be noted as {}", name, name_of(value.kind)),
+                      "give a number, a text, or true or false");
+  }
+  if (value.text.size() > longest_note || unit.size() > longest_unit)
+    return complain(L, "this note is too long",
+                    fmt::format("a text has up to {} bytes, a unit {}", longest_note, longest_unit));
+  if (checking()) return;
+  if (progress_->notes().size() >= most_notes)
+    return complain(L, fmt::format("there are {} notes already", most_notes),
+                    "note a value when it is final, not in every step of the simulation");
+  progress_->add_note(std::move(note));
 }
 
 int StepsScript::hold(lua_State* L, const std::string& name, int predicate, double duration) {

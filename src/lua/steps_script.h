@@ -9,14 +9,14 @@ class StepsScript final : public ScriptSession {
  public:
   /// `function` is a registry reference.
   StepsScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
-              std::vector<Problem>* problems = nullptr);
+              const Parameters& parameters, std::vector<Problem>* problems = nullptr);
 
   /// See ExerciseScript::advance.
   Result<bool> advance(const World& world, Progress& progress, double dt);
 
   /// What a dry run found. `complete`: the function ran to its end.
   struct Declared {
-    std::vector<std::string> steps, holds;  ///< holds are "step.hold"
+    std::vector<std::string> steps, holds, notes;  ///< holds are "step.hold"; notes those of numbers
     bool complete = false;
   };
   /// Runs the function with waits that return at once. A failure is the script's.
@@ -26,6 +26,7 @@ class StepsScript final : public ScriptSession {
   int wait(lua_State* L, double duration) override;
   int wait_until(lua_State* L, int predicate) override;
   void step(lua_State* L, const std::string& name, const std::string& title, double limit);
+  void note(lua_State* L, const std::string& name, const Value& value, const std::string& unit);
   int hold(lua_State* L, const std::string& name, int predicate, double duration);
 
  private:

@@ -28,6 +28,8 @@ std::string wanted(const Key& key) {
     case KeyKind::table:
     case KeyKind::map:
       return "a table { key = value }";
+    case KeyKind::made_table:
+      return "a table, or a function that returns it";
     case KeyKind::list:
       return "a list { a, b, c }";
     case KeyKind::any:
@@ -53,6 +55,8 @@ bool has_kind(const Key& key, const Value& value) {
       return value.is(Value::Kind::table) && value.items.empty() && !value.has_other_keys;
     case KeyKind::place:
       return value.is(Value::Kind::table) || value.is(Value::Kind::text);
+    case KeyKind::made_table:
+      return value.is(Value::Kind::table) || value.is(Value::Kind::function);
     case KeyKind::point:
     case KeyKind::table:
       return value.is(Value::Kind::table);

@@ -25,20 +25,29 @@ struct ScorePart {
   ScorePartKind kind = ScorePartKind::benchmark;
   std::string metric;  ///< benchmark
   double novice = 0, expert = 1;
-  std::string event;  ///< penalty
+  EventKind event = EventKind::contact;  ///< penalty
   double each = 0.25;
   double weight = 1;
   Place place;  ///< where the author wrote it
 };
 
 struct ScoreDefinition {
-  std::vector<ScorePart> parts;       ///< weights sum to 1
-  std::vector<std::string> critical;  ///< events that cap the total at `cap` and fail the exercise
-  double cap = 40, pass = 80;         ///< points of 100
+  std::vector<ScorePart> parts;     ///< weights sum to 1
+  std::vector<EventKind> critical;  ///< events that cap the total at `cap` and fail the exercise
+  double cap = 40, pass = 80;       ///< points of 100
 };
 
 struct GoldenDefinition {
   std::vector<double> at;  ///< s
+};
+
+/// Something that can be chosen when the exercise is started. Values as the user writes them.
+struct ParameterDefinition {
+  std::string name, title;
+  std::string type;  ///< "choice", "number" or "boolean"
+  std::vector<std::string> choices;
+  std::optional<double> low, high;
+  std::string fallback, value;  ///< when nothing is chosen; now
 };
 
 struct ExerciseDefinition {
@@ -49,11 +58,12 @@ struct ExerciseDefinition {
   SceneDefinition scene;
   ScoreDefinition score;
   GoldenDefinition golden;
-  /// Steps and holds the script declares, found by running it dry: metrics are named after them.
-  std::vector<std::string> step_names, hold_names;  ///< hold_names are "step.hold"
-  std::string file;                                 ///< the scenario's path
-  std::uint64_t source_hash = 0;                    ///< of the scenario's text and the modules it required
-  std::map<std::string, std::string> params;        ///< every parameter's value as text, defaults included
+  /// Steps, holds and noted numbers of the script, found by running it dry: metrics are named after them.
+  std::vector<std::string> step_names, hold_names, note_names;  ///< hold_names are "step.hold"
+  std::string file;                                             ///< the scenario's path
+  std::uint64_t source_hash = 0;                ///< of the scenario's text and the modules it required
+  std::map<std::string, std::string> params;    ///< every parameter's value as text, defaults included
+  std::vector<ParameterDefinition> parameters;  ///< ordered by name
 };
 
 /// Where inputs come from: a scenario's demo, a recording, later a live device.

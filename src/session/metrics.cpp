@@ -13,23 +13,6 @@ constexpr double idle_duration = 0.5;    // s (c)
 constexpr double smallest_force = 1e-3;  // N; below it an instrument counts as unloaded
 constexpr double smallest_path = 1e-6;   // m; a shorter path is rounding, and has no economy
 
-const char* const instrument_metrics[] = {"path_length_mm",
-                                          "time_s",
-                                          "idle_time_s",
-                                          "economy",
-                                          "depth_perception_mm",
-                                          "angular_path_deg",
-                                          "response_orientation_deg",
-                                          "peak_force_N",
-                                          "mean_force_N",
-                                          "peak_handle_force_N",
-                                          "grasps",
-                                          "releases",
-                                          "slips"};
-const char* const organ_metrics[] = {"peak_pressure_Pa", "max_stretch", "lowest_frequency_Hz"};
-
-const char* const difference_metrics[] = {"mean_difference_pct", "largest_difference_pct"};
-
 using Metrics = std::map<std::string, double>;
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -38,8 +21,9 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b
 std::vector<double> leg_ends(const Progress& progress, const std::string& instrument) {
   std::vector<double> times;
   for (const SessionEvent& event : progress.events()) {
-    const bool own = event.instrument == instrument && (event.kind == "grasp" || event.kind == "release");
-    if (own || event.kind == "step_done" || event.kind == "step_timeout") times.push_back(event.time);
+    const bool own = event.instrument == instrument &&
+                     (event.kind == EventKind::grasp || event.kind == EventKind::release);
+    if (own || ends_a_step(event.kind)) times.push_back(event.time);
   }
   std::sort(times.begin(), times.end());
   return times;
@@ -115,36 +99,110 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
   metrics[prefix + "mean_force_N"] = loaded > 0 ? sum / loaded : 0.0;
 }
 
-void count_grips(const Progress& progress, const std::string& instrument, Metrics& metrics) {
-  double grasps = 0, releases = 0, slips = 0;
-  for (const SessionEvent& event : progress.events()) {
-    if (event.instrument != instrument) continue;
-    if (event.kind == "grasp") ++grasps;
-    if (event.kind == "release") ++releases;
-    if (event.kind == "slip") ++slips;
+void count_events(const Progress& progress, const std::string& instrument, Metrics& metrics) {
+  for (const MetricRow& row : metric_rows()) {
+    if (!row.counts) continue;
+    metrics[instrument + "." + row.name] = static_cast<double>(
+        std::count_if(progress.events().begin(), progress.events().end(), [&](const SessionEvent& event) {
+          return event.kind == row.event && event.instrument == instrument;
+        }));
   }
-  metrics[instrument + ".grasps"] = grasps;
-  metrics[instrument + ".releases"] = releases;
-  metrics[instrument + ".slips"] = slips;
+}
+
+/// The owners' names of the exercise, "" for the total.
+std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner owner) {
+  std::vector<std::string> names;
+  switch (owner) {
+    case MetricOwner::instrument:
+      for (const InstrumentDefinition& instrument : exercise.scene.instruments)
+        names.push_back(instrument.name);
+      return names;
+    case MetricOwner::organ:
+      for (const OrganDefinition& organ : exercise.scene.anatomy.organs) names.push_back(organ.name);
+      return names;
+    case MetricOwner::compared_organ:
+      for (const OrganDefinition& organ : exercise.scene.anatomy.organs)
+        if (!organ.compared_with.empty()) names.push_back(organ.name);
+      return names;
+    case MetricOwner::step:
+      return exercise.step_names;
+    case MetricOwner::hold:
+      return exercise.hold_names;
+    case MetricOwner::note:
+      return exercise.note_names;
+    case MetricOwner::total:
+      break;
+  }
+  return {"total"};
 }
 
 }  // namespace
 
-std::vector<std::string> metric_names(const SceneDefinition& scene, const std::vector<std::string>& steps,
-                                      const std::vector<std::string>& holds) {
+const std::vector<MetricRow>& metric_rows() {
+  using enum MetricOwner;
+  static const std::vector<MetricRow> rows = {
+      {"path_length_mm", instrument, "length of the tip's path, sum |dp|"},
+      {"time_s", instrument, "from the first movement to the last (movement: not idle)"},
+      {"idle_time_s", instrument, "time at less than 5 mm/s, counted where it lasts 0.5 s or more"},
+      {"economy", instrument,
+       "sum of straight legs / path length, 0 to 1; a leg ends at each grasp, release and step"},
+      {"depth_perception_mm", instrument, "way in and out along the shaft, sum |dd|"},
+      {"angular_path_deg", instrument, "sum of the angle between u and the next u"},
+      {"response_orientation_deg", instrument, "turning about the shaft, sum |dpsi|"},
+      {"peak_force_N", instrument, "largest force of the tissue on it, raw", EventKind::overforce},
+      {"mean_force_N", instrument, "mean of that force where it is above 1 mN, raw", EventKind::overforce},
+      {"peak_handle_force_N", instrument, "largest force felt at its handle, raw", EventKind::overforce},
+      {"grasps", instrument, "how often it took hold", EventKind::grasp, true},
+      {"empty_grasps", instrument, "how often it closed on nothing", EventKind::empty_grasp, true},
+      {"releases", instrument, "how often it let go", EventKind::release, true},
+      {"slips", instrument, "how often what it held slid", EventKind::slip, true},
+      {"peak_pressure_Pa", organ, "largest pressure of its filling"},
+      {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
+      {"lowest_frequency_Hz", organ,
+       "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
+      {"mean_difference_pct", compared_organ,
+       "mean departure from the motion of the organ it is compared with, when the session ends"},
+      {"largest_difference_pct", compared_organ, "the largest such departure"},
+      {"time_in_s", hold, "time for which the predicate of t:hold held"},
+      {"time_s", step, "how long the step lasted"},
+      {"note", note, "the number that t:note gave last under this name"},
+      {"time_s", total, "how long the session lasted"},
+  };
+  return rows;
+}
+
+std::string pattern(const MetricRow& row) {
+  const auto of = [&](const char* owner) { return std::string(owner) + "." + row.name; };
+  switch (row.owner) {
+    case MetricOwner::instrument:
+      return of("<instrument>");
+    case MetricOwner::organ:
+    case MetricOwner::compared_organ:
+      return of("<organ>");
+    case MetricOwner::step:
+      return of("<step>");
+    case MetricOwner::hold:
+      return of("<step>.<hold>");
+    case MetricOwner::note:
+      return "note.<name>";
+    case MetricOwner::total:
+      break;
+  }
+  return of("total");
+}
+
+std::vector<std::string> metric_names(const ExerciseDefinition& exercise) {
   std::vector<std::string> names;
-  for (const InstrumentDefinition& instrument : scene.instruments) {
-    for (const char* metric : instrument_metrics) names.push_back(instrument.name + "." + metric);
-  }
-  for (const OrganDefinition& organ : scene.anatomy.organs) {
-    for (const char* metric : organ_metrics) names.push_back(organ.name + "." + metric);
-    if (organ.compared_with.empty()) continue;
-    for (const char* metric : difference_metrics) names.push_back(organ.name + "." + metric);
-  }
-  for (const std::string& hold : holds) names.push_back(hold + ".time_in_s");
-  for (const std::string& step : steps) names.push_back(step + ".time_s");
-  names.push_back("total.time_s");
+  for (const MetricRow& row : metric_rows())
+    for (const std::string& owner : owners(exercise, row.owner))
+      names.push_back(row.owner == MetricOwner::note ? "note." + owner : owner + "." + row.name);
   return names;
+}
+
+std::optional<EventKind> event_behind(const std::string& metric) {
+  for (const MetricRow& row : metric_rows())
+    if (row.name == metric) return row.event;
+  return std::nullopt;
 }
 
 std::map<std::string, double> measure(const SceneDefinition& scene, const Traces& traces,
@@ -156,7 +214,7 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
     if (motion.empty()) continue;
     measure_motion(motion, leg_ends(progress, name), name + ".", metrics);
     measure_forces(traces.instruments[i], name + ".", metrics);
-    count_grips(progress, name, metrics);
+    count_events(progress, name, metrics);
   }
   for (std::size_t i = 0; i < traces.organs.size(); ++i) {
     if (traces.organs[i].empty()) continue;

@@ -17,7 +17,7 @@ void Progress::end_step(double time, const std::string& outcome) {
   StepRecord& step = steps_.back();
   if (outcome == "done" || outcome == "timeout") {
     WorldEvent event;
-    event.kind = "step_" + outcome;
+    event.kind = outcome == "done" ? EventKind::step_done : EventKind::step_timeout;
     event.time = time;
     event.value = time - step.started;
     add_event(event);  // while the step still runs, so that the event carries its name
@@ -35,12 +35,12 @@ void Progress::add_event(const WorldEvent& event) {
   events_.push_back({event, step != nullptr ? step->name : std::string()});
 }
 
-void Progress::set_metric(const std::string& name, double value) { metrics_[name] = value; }
-
-const std::vector<std::string>& event_kinds() {
-  static const std::vector<std::string> kinds{"contact",   "grasp",       "release",   "slip",
-                                              "overforce", "overstretch", "step_done", "step_timeout"};
-  return kinds;
+void Progress::add_note(Note note) {
+  if (const StepRecord* step = running()) note.step = step->name;
+  if (const double* number = std::get_if<double>(&note.value)) set_metric("note." + note.name, *number);
+  notes_.push_back(std::move(note));
 }
+
+void Progress::set_metric(const std::string& name, double value) { metrics_[name] = value; }
 
 }  // namespace calot

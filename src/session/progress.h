@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "sim/world.h"
@@ -21,6 +22,15 @@ struct SessionEvent : WorldEvent {
   std::string step;  ///< empty before the first step
 };
 
+/// A value that the script puts into the report.
+struct Note {
+  double time = 0;   ///< s
+  std::string step;  ///< empty before the first step
+  std::string name;
+  std::variant<double, bool, std::string> value;
+  std::string unit;  ///< may be empty
+};
+
 /// Everything the report and the score are made from.
 class Progress {
  public:
@@ -32,17 +42,18 @@ class Progress {
   const StepRecord* running() const;
   void add_event(const WorldEvent& event);
   void set_metric(const std::string& name, double value);
+  /// A number is the metric note.<name> too.
+  void add_note(Note note);
   const std::vector<StepRecord>& steps() const { return steps_; }
   const std::vector<SessionEvent>& events() const { return events_; }
   const std::map<std::string, double>& metrics() const { return metrics_; }
+  const std::vector<Note>& notes() const { return notes_; }
 
  private:
   std::vector<StepRecord> steps_;
   std::vector<SessionEvent> events_;
   std::map<std::string, double> metrics_;
+  std::vector<Note> notes_;
 };
-
-/// The kinds of event a score may name.
-const std::vector<std::string>& event_kinds();
 
 }  // namespace calot

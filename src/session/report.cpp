@@ -22,21 +22,26 @@ Json steps_json(const Progress& progress) {
   return list;
 }
 
-/// The key that says what an event's value is; null where the kind has none.
-const char* value_key(const std::string& kind) {
-  if (kind == "overforce" || kind == "slip") return "force_N";
-  if (kind == "overstretch") return "stretch";
-  if (kind == "step_done" || kind == "step_timeout") return "duration_s";
-  return nullptr;
-}
-
 Json events_json(const Progress& progress) {
   Json list = Json::array();
   for (const SessionEvent& event : progress.events()) {
-    Json json = {{"event", event.kind}, {"time_s", event.time}, {"step", event.step}};
+    Json json = {{"event", to_text(event.kind)}, {"time_s", event.time}, {"step", event.step}};
     if (!event.instrument.empty()) json["instrument"] = event.instrument;
     if (!event.organ.empty()) json["organ"] = event.organ;
-    if (const char* key = value_key(event.kind)) json[key] = event.value;
+    if (const char* key = event_row(event.kind).value; *key != 0) json[key] = event.value;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json notes_json(const Progress& progress) {
+  Json list = Json::array();
+  for (const Note& note : progress.notes()) {
+    Json json = {{"name", note.name}};
+    std::visit([&](const auto& value) { json["value"] = value; }, note.value);
+    json["unit"] = note.unit;
+    json["time_s"] = note.time;
+    json["step"] = note.step;
     list.push_back(std::move(json));
   }
   return list;
@@ -48,7 +53,7 @@ Json benchmark_json(const ScorePart& part) {
   if (part.kind == ScorePartKind::benchmark) {
     json = {{"metric", part.metric}, {"novice", part.novice}, {"expert", part.expert}};
   } else {
-    json = {{"event", part.event}, {"each", part.each}};
+    json = {{"event", to_text(part.event)}, {"each", part.each}};
   }
   json["calibration"] = "uncalibrated";
   return json;
@@ -61,7 +66,7 @@ Json score_json(const ExerciseDefinition& exercise, const Score& score) {
   json["critical"] = Json::array();
   for (const CriticalEvent& event : score.critical) {
     json["critical"].push_back(
-        {{"event", event.event}, {"times_s", event.times}, {"cap", exercise.score.cap}});
+        {{"event", to_text(event.event)}, {"times_s", event.times}, {"cap", exercise.score.cap}});
   }
   json["parts"] = Json::array();
   for (const ScoredPart& part : score.parts) {
@@ -111,6 +116,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   json["steps"] = steps_json(session.progress);
   json["events"] = events_json(session.progress);
   json["metrics"] = report.metrics;
+  json["noted"] = notes_json(session.progress);
   json["notes"] = session.notes;
   json["motion_processing"] = {{"version", MotionProcessing::version},
                                {"rate_Hz", MotionProcessing::rate},

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 
+#include "session/metrics.h"
+
 namespace calot {
 namespace {
 
-std::vector<double> times_of(const Progress& progress, const std::string& kind) {
+std::vector<double> times_of(const Progress& progress, EventKind kind) {
   std::vector<double> times;
   for (const SessionEvent& event : progress.events()) {
     if (event.kind == kind) times.push_back(event.time);
@@ -19,16 +21,11 @@ std::vector<double> times_of(const Progress& progress, const std::string& kind) 
 std::vector<double> times_behind(const Progress& progress, const std::string& metric) {
   const std::size_t dot = metric.find('.');
   const std::string owner = metric.substr(0, dot), what = metric.substr(dot + 1);
-  std::string kind;
-  if (what == "grasps") kind = "grasp";
-  if (what == "releases") kind = "release";
-  if (what == "slips") kind = "slip";
-  if (what == "peak_force_N" || what == "mean_force_N" || what == "peak_handle_force_N") kind = "overforce";
-  if (what == "max_stretch") kind = "overstretch";
+  const std::optional<EventKind> kind = event_behind(what);
   std::vector<double> times;
   for (const SessionEvent& event : progress.events()) {
     const bool owned = event.kind == kind && (event.instrument == owner || event.organ == owner);
-    const bool ends_step = (event.kind == "step_done" || event.kind == "step_timeout") && event.step == owner;
+    const bool ends_step = ends_a_step(event.kind) && event.step == owner;
     if (owned || ends_step) times.push_back(event.time);
   }
   return times;
@@ -78,8 +75,8 @@ ScoredPart score_penalty(const ScorePart& part, const Progress& progress) {
   scored.measured = count;
   scored.fraction = std::max(0.0, 1 - part.each * count);
   scored.explanation =
-      count == 0 ? fmt::format("no {}", part.event)
-                 : fmt::format("{:.0f} x {}, {:.4g} of the part each", count, part.event, part.each);
+      count == 0 ? fmt::format("no {}", to_text(part.event))
+                 : fmt::format("{:.0f} x {}, {:.4g} of the part each", count, to_text(part.event), part.each);
   return scored;
 }
 
@@ -106,7 +103,7 @@ Score score(const ExerciseDefinition& exercise, const std::map<std::string, doub
     result.uncapped += scored.points;
     result.parts.push_back(std::move(scored));
   }
-  for (const std::string& kind : exercise.score.critical) {
+  for (const EventKind kind : exercise.score.critical) {
     std::vector<double> times = times_of(progress, kind);
     if (!times.empty()) result.critical.push_back({kind, std::move(times)});
   }

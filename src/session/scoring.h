@@ -23,7 +23,7 @@ struct ScoredPart {
 };
 
 struct CriticalEvent {
-  std::string event;
+  EventKind event = EventKind::contact;
   std::vector<double> times;  ///< s
 };
 

@@ -214,12 +214,12 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     const Result<double> pull = slip(field, index, statistics);
     if (!pull) return pull.failure();
     if (pull.value() > 0 && !tool.slipping && !slipped_before[i])
-      events.push_back({"slip", 0, tool.definition.name, organ, pull.value()});
+      events.push_back({EventKind::slip, 0, tool.definition.name, organ, pull.value()});
     tool.slipping |= pull.value() > 0;
     if (both_pads_hold(field, index)) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     tool.jaw_stopped = false;
-    events.push_back({"release", 0, tool.definition.name, organ, 0});
+    events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
   }
   return true;
 }
@@ -327,7 +327,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     const std::string organ = held_organ(field, index);
     if (organ.empty()) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
-    if (tool.jaw_stopped) events.push_back({"release", 0, tool.definition.name, organ, 0});
+    if (tool.jaw_stopped) events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
     tool.jaw_stopped = false;
   }
   const Poses to = reachable(field, targets), start = present_poses(field);
@@ -349,13 +349,15 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       if (tool.jaw_stopped || !std::binary_search(own.begin(), own.end(), stop)) continue;
       take_hold(field, index);
       if (!fold_fills_jaws(field, index)) {
-        if (tool.pose.jaw > 0.5 * grip_grid || held_organ(field, index).empty()) continue;
+        if (tool.pose.jaw > 0.5 * grip_grid) continue;
+        events.push_back({EventKind::empty_grasp, 0, tool.definition.name, {}, 0});
+        if (held_organ(field, index).empty()) continue;
         // Closed, and only one pad holds: what it dragged along slips back.
         if (Result<bool> slipped = release(field, index, statistics); !slipped) return slipped.failure();
         continue;
       }
       tool.jaw_stopped = true;
-      events.push_back({"grasp", 0, tool.definition.name, held_organ(field, index), 0});
+      events.push_back({EventKind::grasp, 0, tool.definition.name, held_organ(field, index), 0});
     }
   }
   return events;

@@ -95,12 +95,12 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
   const Pose frame = organ_frame(definition);
   Eigen::AlignedBox3d box;
   for (const Vec3& p : skin) box.extend(frame.inverse() * p);
-  const Vec3 middle = box.center();
   std::map<std::string, Vec3> places;
-  places["neck"] = frame * Vec3(middle.x(), middle.y(), box.min().z());
-  places["fundus"] = frame * Vec3(middle.x(), middle.y(), box.max().z());
-  places["bed"] = frame * Vec3(box.max().x(), middle.y(), middle.z());
-  places["body"] = frame * Vec3(box.min().x(), middle.y(), middle.z());
+  for (const Landmark& row : landmark_rows()) {
+    const Vec3 share(0.5 * (1 + row.side), 0.5, row.along);
+    places[row.name] =
+        frame * Vec3(share.cwiseProduct(box.max()) + (Vec3::Ones() - share).cwiseProduct(box.min()));
+  }
   return places;
 }
 

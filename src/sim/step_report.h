@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/events.h"
 #include "sim/instrument.h"
 
 namespace calot {
@@ -14,15 +15,6 @@ namespace calot {
 struct StepInput {
   std::vector<InstrumentPose> instruments;
   bool operator==(const StepInput&) const = default;
-};
-
-/// Kinds: contact, grasp, release, slip, overforce, overstretch.
-struct WorldEvent {
-  std::string kind;
-  double time = 0;         ///< s
-  std::string instrument;  ///< may be empty
-  std::string organ;       ///< may be empty
-  double value = 0;        ///< N for forces, stretch for overstretch, else 0
 };
 
 struct InstrumentState {

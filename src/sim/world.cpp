@@ -193,10 +193,10 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
     Tool& tool = field.tools[i];
     const InstrumentState& state = report.instruments[i];
     const std::string& organ = loads[i].organ;
-    if (state.touching && !tool.touched) events.push_back({"contact", 0, tool.definition.name, organ, 0});
+    if (state.touching && !tool.touched) events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0});
     const double force = state.tip_force.norm();
     const bool over = force > tool.definition.force_limit;
-    if (over && !tool.over_limit) events.push_back({"overforce", 0, tool.definition.name, organ, force});
+    if (over && !tool.over_limit) events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force});
     tool.touched = state.touching;
     tool.over_limit = over;
   }
@@ -204,7 +204,7 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
     const double limit = field.organs[k].definition.wall.overstretch;
     const bool was = k < before.size() && before[k].max_stretch > limit;
     if (report.organs[k].max_stretch > limit && !was)
-      events.push_back({"overstretch", 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
+      events.push_back({EventKind::overstretch, 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
   }
   for (WorldEvent& event : events) event.time = report.time;
   report.events = std::move(events);

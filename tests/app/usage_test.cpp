@@ -16,7 +16,7 @@ TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
   const Outcome outcome = calot({});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
-  for (const char* command : {"run", "replay", "check", "new", "golden", "bench", "doctor"}) {
+  for (const char* command : {"run", "replay", "check", "list", "new", "golden", "bench", "doctor"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
   }
 }
@@ -25,6 +25,7 @@ TEST_F(Usage, EveryCommandHasHelp) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"run"},
                                                                                      {"replay"},
                                                                                      {"check"},
+                                                                                     {"list"},
                                                                                      {"new"},
                                                                                      {"golden"},
                                                                                      {"golden", "test"},
@@ -56,6 +57,9 @@ TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
       {"run", "small.lua", "--fail-below", "120"},
       {"run", "."},
       {"run", "none.lua"},
+      {"run", "small.lua", "--at", "soon"},
+      {"run", "small.lua", "--at", "-1"},
+      {"list", "none.lua"},
       {"check"},
       {"check", "none.lua"},
       {"replay", "none.jsonl"},

@@ -57,8 +57,8 @@ TEST(Api, LuacheckKnowsWhatTheSandboxLacks) {
   const Folder folder;
   const std::string file = folder.write("bad.lua", "print(os.time(), string.dump)\n").string();
   const std::string command = "luacheck --config '" + source_dir() +
-                              "/.luacheckrc' --no-color --formatter plain " +
-                              file + " > " + (folder.path() / "out").string();
+                              "/.luacheckrc' --no-color --formatter plain " + file + " > " +
+                              (folder.path() / "out").string();
   EXPECT_NE(std::system(command.c_str()), 0);
   std::ifstream out(folder.path() / "out");
   const std::string text{std::istreambuf_iterator<char>(out), std::istreambuf_iterator<char>()};

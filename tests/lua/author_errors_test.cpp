@@ -63,6 +63,18 @@ ScenarioText with_head(const std::string& head) {
   return text;
 }
 
+ScenarioText noted_score(const std::string& metric) {
+  ScenarioText text = with_score("{ calot.score.benchmark {\n metric = '" + metric +
+                                 "', novice = 2, expert = 1 }, weight = 1 }");
+  text.steps = "t:step('a', 'A') t:note('force', 1, 'N')";
+  return text;
+}
+ScenarioText score_function(const std::string& score) {
+  ScenarioText text;
+  text.score = score;
+  return text;
+}
+
 std::vector<Mistake> mistakes() {
   const std::string whole_weight =
       "{ calot.score.benchmark { metric = 'total.time_s', novice = 2, expert = 1 }, weight = 1 }";
@@ -193,6 +205,26 @@ std::vector<Mistake> mistakes() {
        "start a step"},
       {"ErrorInSteps", with_steps("t:wait(1 * s)\nerror('broken')"), "error('broken')", "broken", ""},
       {"ErrorInDemo", with_demo("t:wait(1 * s)\nlocal x = nil + 1"), "nil + 1", "arithmetic", ""},
+      {"NoteOfATable", with_steps("\nt:note('way', { 1, 2 })"), "t:note", "cannot be noted as a table",
+       "give a number"},
+      {"NoteThatIsNotFinite", with_steps("\nt:note('way', 1 / 0)"), "t:note", "cannot be noted", "finite"},
+      {"NoteWithoutAName", with_steps("\nt:note('a way', 1)"), "t:note", "not a name", "letters"},
+      {"NoteTooLong", with_steps("\nt:note('way', ('x'):rep(201))"), "t:note", "too long", "200"},
+      {"NoteInADemo", with_demo("\nt:note('way', 1)"), "t:note", "t has no \"note\"", ""},
+      {"MetricOfAnUnknownNote", noted_score("note.forse"), "note.forse", "unknown metric", "note.force"},
+      {"UnknownPlace", with_steps("\nlocal x = t:place('gallbladder.infundibulm')"), "t:place",
+       "unknown landmark", "gallbladder.infundibulum"},
+      {"UnknownPlaceToMeasureTo", with_steps("\nlocal x = t.left:distance('gallbladder.fundas')"), "distance",
+       "unknown landmark", "gallbladder.fundus"},
+      {"ScoreThatIsNeither", score_function("7"), "score = 7", "a table, or a function", ""},
+      {"ErrorInTheScoresFunction", score_function("function(p)\nreturn nil + 1 end"), "nil + 1", "arithmetic",
+       ""},
+      {"ScoresFunctionThatReturnsNone", score_function("function(p) end"), "score = function", "no score",
+       "calot.score.weighted"},
+      {"UnknownMetricInTheScoresFunction",
+       score_function("function(p) return calot.score.weighted {\n{ calot.score.benchmark {\n metric = "
+                      "'total.tme_s', novice = 2, expert = 1 }, weight = 1 } } end"),
+       "total.tme_s", "unknown metric", "total.time_s"},
       {"MissingModule", with_head("local g = require 'grips'"), "require 'grips'", "no module", "looked for"},
       {"ModuleUpward", with_head("local g = require '../grips'"), "require '../grips'", "no module's name",
        "letters"},

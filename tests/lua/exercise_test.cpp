@@ -52,6 +52,43 @@ TEST(Parameters, HaveTheirDefaultsOrTheUsersValues) {
   EXPECT_EQ(chosen.value()->definition().params.at("limit"), "2.5");
 }
 
+TEST(Parameters, ReachStepsDemoAndTheScoresFunction) {
+  ScenarioText text = with_parameters();
+  text.steps = "t:step('on_' .. p.anatomy, 'A') t:note('limit', p.limit, 'N')";
+  text.demo = "assert(p.anatomy == 'hydrops') t:wait(p.limit * s)";
+  text.score =
+      "function(p) return calot.score.weighted { { calot.score.benchmark { metric = 'note.limit', novice = "
+      "0,\n"
+      "expert = p.limit }, weight = 1 }, pass = p.hard and 90 or 70 } end";
+  const Folder folder;
+  LoadOptions options;
+  options.params = {{"hard", "true"}, {"limit", "2.5"}, {"anatomy", "hydrops"}};
+  const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, text.text(), options);
+  ASSERT_TRUE(loaded) << to_text(loaded.failure());
+  const ExerciseDefinition& exercise = loaded.value()->definition();
+  EXPECT_THAT(exercise.step_names, ::testing::ElementsAre("on_hydrops"));
+  EXPECT_THAT(exercise.note_names, ::testing::ElementsAre("limit"));
+  EXPECT_EQ(exercise.score.pass, 90);
+  EXPECT_EQ(exercise.score.parts.at(0).expert, 2.5);
+  EXPECT_EQ(exercise.score.parts.at(0).place.line, test::line_of(text.text(), "return calot.score"));
+}
+
+TEST(Parameters, AreDeclaredWithTheirTypesAndDefaults) {
+  const Folder folder;
+  LoadOptions options;
+  options.params = {{"limit", "2.5"}};
+  const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, with_parameters().text(), options);
+  ASSERT_TRUE(loaded) << to_text(loaded.failure());
+  const std::vector<ParameterDefinition>& list = loaded.value()->definition().parameters;
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_EQ(list[0].name, "anatomy");
+  EXPECT_THAT(list[0].choices, ::testing::ElementsAre("standard", "hydrops"));
+  EXPECT_EQ(list[2].name, "limit");
+  EXPECT_EQ(list[2].fallback, "3");
+  EXPECT_EQ(list[2].value, "2.5");
+  EXPECT_EQ(list[2].high, 5);
+}
+
 TEST(Parameters, ThatAreUnknownOrUnfitAreUsageFailures) {
   for (const auto& [name, value] : std::map<std::string, std::string>{
            {"anatmy", "hydrops"}, {"anatomy", "hydropic"}, {"limit", "9"}, {"hard", "yes"}}) {

@@ -55,8 +55,8 @@ struct ScenarioText {
            "local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg\n" +
            head +
            "\nreturn calot.exercise {\n  api = 1, id = \"test\", title = \"Test\",\n  params = " + params +
-           ",\n  scene = function(p)\n" + scene + "\nend,\n  steps = function(t)\n" + steps +
-           "\nend,\n  demo = function(t)\n" + demo + "\nend,\n  score = " + score + ",\n" + more + "\n}\n";
+           ",\n  scene = function(p)\n" + scene + "\nend,\n  steps = function(t, p)\n" + steps +
+           "\nend,\n  demo = function(t, p)\n" + demo + "\nend,\n  score = " + score + ",\n" + more + "\n}\n";
   }
 };
 

@@ -232,6 +232,63 @@ TEST(Demo, CannotBeDrivenFromACoroutineOrPredicateOfItsOwn) {
 
 // ---- steps
 
+TEST(Steps, NoteValuesWithTheirTimeAndStep) {
+  const Played played = play(with_steps("t:step('a', 'A') t:wait(0.1 * s) t:note('reach', 12.5, 'mm')\n"
+                                        "t:note('word', 'well done') t:note('ok', true) t:note('reach', 14)"),
+                             50, 0.2);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  const std::vector<Note>& notes = played.progress.notes();
+  ASSERT_EQ(notes.size(), 4u);
+  EXPECT_EQ(notes[0].name, "reach");
+  EXPECT_EQ(notes[0].unit, "mm");
+  EXPECT_EQ(notes[0].step, "a");
+  EXPECT_NEAR(notes[0].time, 0.1, rounding);
+  EXPECT_EQ(std::get<double>(notes[0].value), 12.5);
+  EXPECT_EQ(std::get<std::string>(notes[1].value), "well done");
+  EXPECT_TRUE(std::get<bool>(notes[2].value));
+  EXPECT_EQ(played.progress.metrics().at("note.reach"), 14) << "the last one counts";
+  EXPECT_EQ(played.progress.metrics().count("note.ok"), 0u);
+}
+
+TEST(Steps, CannotNoteWithoutEnd) {
+  const Played played = play(with_steps("for i = 1, 2000 do t:note('n', i) end"), 50, 0.1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_EQ(played.failure->kind, FailureKind::scenario);
+  EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "t:note"));
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("1000 notes"));
+}
+
+/// What steps print of a ball's places, in mm.
+TEST(Steps, LearnWherePlacesAreAndHowFarATipIs) {
+  const Played played = play(
+      with_steps(
+          "t:wait(0.1 * s)\n"
+          "local function apart(a, b) local sum = 0 a, b = t:place('ball.' .. a), t:place('ball.' .. b)\n"
+          "for i = 1, 3 do sum = sum + (a[i] - b[i]) ^ 2 end return math.sqrt(sum) / mm end\n"
+          "print(#t:place('ball.fundus'), apart('fundus', 'neck') > 30, apart('fundus', 'neck') < 45)\n"
+          "print(apart('free_side', 'body'), apart('liver_side', 'bed'))\n"
+          "print(apart('infundibulum', 'neck') < apart('body', 'neck'),\n"
+          "      apart('infundibulum', 'body') < apart('infundibulum', 'bed'))\n"
+          "local tip, place = t.left:tip(), t:place('ball.fundus')\n"
+          "local d = math.sqrt((tip[1] - place[1]) ^ 2 + (tip[2] - place[2]) ^ 2 + (tip[3] - place[3]) ^ 2)\n"
+          "print(math.abs(d - t.left:distance('ball.fundus')) < 1e-12, d > 0.2)"),
+      50, 0.2);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed,
+              ::testing::ElementsAre("3\ttrue\ttrue", "0.0\t0.0", "true\ttrue", "true\ttrue"));
+}
+
+TEST(Demo, GoesToWhereAPlaceIsByItsOwnReckoning) {
+  const Played played =
+      play(with_demo("local from, to = t.left:tip(), { -60 * mm, 90 * mm, -90 * mm }\n"
+                     "t.left:move_by({ to[1] - from[1], to[2] - from[2], to[3] - from[3] })\n"
+                     "print(t.left:distance('ball.fundus') < 0.35, #t:place('ball.neck'))"),
+           50, 5);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("true\t3"));
+  EXPECT_LT((played.moments.back().tips[0] - Vec3(-60e-3, 90e-3, -90e-3)).norm(), 1e-6);
+}
+
 TEST(Steps, BeginAtTimeZeroAndEndAsTheyShould) {
   const Played played = play(with_steps("t:step('a', 'A') t:wait(0.5 * s)\n"
                                         "t:step('b', 'B', { limit = 0.3 * s })\n"

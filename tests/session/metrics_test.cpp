@@ -114,7 +114,7 @@ TEST(Metrics, EconomyIsOneForStraightLegsBetweenGraspAndRelease) {
   EXPECT_NEAR(measured(traces, "left.economy"), 0, 1e-6);
   Progress progress;
   WorldEvent grasp;
-  grasp.kind = "grasp";
+  grasp.kind = EventKind::grasp;
   grasp.instrument = "left";
   grasp.time = 2.5;
   progress.add_event(grasp);
@@ -193,7 +193,10 @@ TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   progress.set_metric("ball.lowest_frequency_Hz", 12);  // by the runner
   progress.end_step(1, "done");
   const auto metrics = measure(test::small_scene(), traces, progress);
-  std::vector<std::string> names = metric_names(test::small_scene(), {"grasp", "hold"}, {"hold.band"});
+  ExerciseDefinition exercise = test::small_exercise();
+  exercise.step_names = {"grasp", "hold"};
+  exercise.hold_names = {"hold.band"};
+  std::vector<std::string> names = metric_names(exercise);
   std::vector<std::string> found;
   for (const auto& [name, value] : metrics) found.push_back(name);
   std::sort(names.begin(), names.end());

@@ -24,7 +24,7 @@ TEST(Progress, AnEndedStepRaisesItsEventWithNameAndDuration) {
   progress.begin_step(3.5, "hold", "", 0);
   progress.end_step(5, "aborted");
   ASSERT_EQ(progress.events().size(), 1u);  // an aborted step was neither done nor too late
-  EXPECT_EQ(progress.events()[0].kind, "step_timeout");
+  EXPECT_EQ(progress.events()[0].kind, EventKind::step_timeout);
   EXPECT_EQ(progress.events()[0].step, "grasp");
   EXPECT_EQ(progress.events()[0].time, 3.5);
   EXPECT_EQ(progress.events()[0].value, 2.5);
@@ -44,7 +44,7 @@ TEST(Progress, EndingWithoutARunningStepChangesNothing) {
 TEST(Progress, AnEventCarriesTheStepItFellInto) {
   Progress progress;
   WorldEvent event;
-  event.kind = "contact";
+  event.kind = EventKind::contact;
   progress.add_event(event);
   progress.begin_step(0, "grasp", "", 0);
   progress.add_event(event);

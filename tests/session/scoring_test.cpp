@@ -18,16 +18,17 @@ ScorePart benchmark(const std::string& metric, double novice, double expert, dou
   return part;
 }
 
-ScorePart penalty(const std::string& event, double each, double weight) {
+ScorePart penalty(EventKind event, double each, double weight) {
   ScorePart part;
   part.kind = ScorePartKind::penalty;
-  part.name = part.event = event;
+  part.name = to_text(event);
+  part.event = event;
   part.each = each;
   part.weight = weight;
   return part;
 }
 
-WorldEvent event(const std::string& kind, double time, const std::string& instrument = "left") {
+WorldEvent event(EventKind kind, double time, const std::string& instrument = "left") {
   WorldEvent event;
   event.kind = kind;
   event.time = time;
@@ -39,8 +40,9 @@ WorldEvent event(const std::string& kind, double time, const std::string& instru
 ExerciseDefinition exercise() {
   ExerciseDefinition definition = test::small_exercise();
   definition.score.parts = {benchmark("hold.band.time_in_s", 6, 18, 0.5),
-                            benchmark("left.path_length_mm", 400, 120, 0.2), penalty("overforce", 0.25, 0.3)};
-  definition.score.critical = {"overstretch"};
+                            benchmark("left.path_length_mm", 400, 120, 0.2),
+                            penalty(EventKind::overforce, 0.25, 0.3)};
+  definition.score.critical = {EventKind::overstretch};
   return definition;
 }
 
@@ -54,7 +56,7 @@ Progress finished() {
 TEST(Scoring, EachPartIsItsShareOfTheWayFromNoviceToExpert) {
   // F2: 100 sum w clamp((N - m) / (N - E)); penalties 1 - each n.
   Progress progress = finished();
-  progress.add_event(event("overforce", 2));
+  progress.add_event(event(EventKind::overforce, 2));
   const Score result =
       score(exercise(), {{"hold.band.time_in_s", 15}, {"left.path_length_mm", 190}}, progress);
   EXPECT_NEAR(result.parts[0].points, 100 * 0.5 * (6.0 - 15) / (6 - 18), 1e-12);
@@ -88,7 +90,7 @@ TEST(Scoring, WhatWasNeverMeasuredEarnsNothingAndSaysSo) {
 
 TEST(Scoring, APenaltyNeverCostsMoreThanItsPart) {
   Progress progress = finished();
-  for (int i = 0; i < 9; ++i) progress.add_event(event("overforce", i));
+  for (int i = 0; i < 9; ++i) progress.add_event(event(EventKind::overforce, i));
   const Score result = score(exercise(), {}, progress);
   EXPECT_EQ(result.parts[2].points, 0);
   EXPECT_EQ(*result.parts[2].measured, 9);
@@ -99,7 +101,7 @@ TEST(Scoring, ACriticalEventCapsTheTotalAndFailsTheExercise) {
   const std::map<std::string, double> perfect{{"hold.band.time_in_s", 20}, {"left.path_length_mm", 100}};
   EXPECT_TRUE(score(exercise(), perfect, finished()).passed);
   Progress progress = finished();
-  progress.add_event(event("overstretch", 3.5, ""));
+  progress.add_event(event(EventKind::overstretch, 3.5, ""));
   const Score result = score(exercise(), perfect, progress);
   EXPECT_EQ(result.total, 40);
   EXPECT_EQ(result.uncapped, 100);
@@ -110,8 +112,8 @@ TEST(Scoring, ACriticalEventCapsTheTotalAndFailsTheExercise) {
 
 TEST(Scoring, ALowTotalIsNotRaisedToTheCap) {
   Progress progress = finished();
-  progress.add_event(event("overstretch", 3.5, ""));
-  for (int i = 0; i < 4; ++i) progress.add_event(event("overforce", i));
+  progress.add_event(event(EventKind::overstretch, 3.5, ""));
+  for (int i = 0; i < 4; ++i) progress.add_event(event(EventKind::overforce, i));
   EXPECT_EQ(score(exercise(), {}, progress).total, 0);
 }
 
@@ -131,8 +133,8 @@ TEST(Scoring, AForcePartPointsAtTheTimesOfItsOwnInstrumentsOverforce) {
   ExerciseDefinition definition = exercise();
   definition.score.parts = {benchmark("left.peak_force_N", 8, 3, 1)};
   Progress progress = finished();
-  progress.add_event(event("overforce", 2, "left"));
-  progress.add_event(event("overforce", 5, "right"));
+  progress.add_event(event(EventKind::overforce, 2, "left"));
+  progress.add_event(event(EventKind::overforce, 5, "right"));
   EXPECT_EQ(score(definition, {{"left.peak_force_N", 9}}, progress).parts[0].times, (std::vector<double>{2}));
 }
 

@@ -72,7 +72,7 @@ TEST(Grasp, ReleasedOrganReturnsToItsRest) {
   const std::vector<Vec3> skin = path.world.skin_positions(0);
   ASSERT_TRUE(path.grasp() && path.lift() && path.release() && path.withdraw()) << path.driver.why();
   const OrganState after = path.world.report().organs[0];
-  EXPECT_EQ(path.driver.count("release"), 1);
+  EXPECT_EQ(path.driver.count(EventKind::release), 1);
   EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);
   EXPECT_EQ(path.world.report().instruments[0].tip_force, Vec3::Zero());
   // Equilibrium is found to 1e-6 of the nodal forces: the energy follows to second order, but for the bile's
@@ -109,22 +109,22 @@ TEST(Events, AreRaisedOnceWhenTheirConditionBegins) {
     const InstrumentState& tool = report.instruments[0];
     const Conditions now{tool.touching, !tool.holds.empty(), tool.tip_force.norm() > 1.0,
                          report.organs[0].max_stretch > 1.3};
-    const auto expect = [&](const std::string& kind, bool begins) {
+    const auto expect = [&](EventKind kind, bool begins) {
       const auto is_kind = [&](const WorldEvent& e) { return e.kind == kind; };
       EXPECT_EQ(std::count_if(report.events.begin(), report.events.end(), is_kind), begins)
-          << kind << " at " << report.time;
+          << to_text(kind) << " at " << report.time;
     };
-    expect("contact", now.contact && !before.contact);
-    expect("grasp", now.grasp && !before.grasp);
-    expect("release", !now.grasp && before.grasp);
-    expect("overforce", now.overforce && !before.overforce);
-    expect("overstretch", now.overstretch && !before.overstretch);
+    expect(EventKind::contact, now.contact && !before.contact);
+    expect(EventKind::grasp, now.grasp && !before.grasp);
+    expect(EventKind::release, !now.grasp && before.grasp);
+    expect(EventKind::overforce, now.overforce && !before.overforce);
+    expect(EventKind::overstretch, now.overstretch && !before.overstretch);
     for (const WorldEvent& event : report.events) {
       EXPECT_EQ(event.time, report.time);
-      EXPECT_EQ(event.instrument, event.kind == "overstretch" ? "" : "left");
-      const double value = event.kind == "overforce"     ? tool.tip_force.norm()
-                           : event.kind == "overstretch" ? report.organs[0].max_stretch
-                                                         : 0.0;
+      EXPECT_EQ(event.instrument, event.kind == EventKind::overstretch ? "" : "left");
+      const double value = event.kind == EventKind::overforce     ? tool.tip_force.norm()
+                           : event.kind == EventKind::overstretch ? report.organs[0].max_stretch
+                                                                  : 0.0;
       EXPECT_EQ(event.value, value);
     }
     before = now;
@@ -132,9 +132,11 @@ TEST(Events, AreRaisedOnceWhenTheirConditionBegins) {
   // Twice lifted, so that the force passes its limit twice.
   ASSERT_TRUE(path.grasp() && path.lift() && path.lower() && path.lift() && path.release() && path.withdraw())
       << path.driver.why();
-  for (const char* kind : {"contact", "grasp", "release", "overstretch"})
-    EXPECT_EQ(path.driver.count(kind), 1) << kind;
-  EXPECT_EQ(path.driver.count("overforce"), 2);
+  for (const EventKind kind :
+       {EventKind::contact, EventKind::grasp, EventKind::release, EventKind::overstretch})
+    EXPECT_EQ(path.driver.count(kind), 1) << to_text(kind);
+  EXPECT_EQ(path.driver.count(EventKind::empty_grasp), 0);
+  EXPECT_EQ(path.driver.count(EventKind::overforce), 2);
 }
 
 }  // namespace

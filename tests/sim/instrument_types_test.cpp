@@ -26,8 +26,8 @@ TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
   EXPECT_FALSE(path.world.report().instruments[0].touching);
   // A state is known to the solver's tolerance of the organ's size.
   EXPECT_LT((path.world.landmark("gallbladder.fundus") - path.fundus).norm(), 1e-5);
-  EXPECT_EQ(path.driver.count("contact"), 1);
-  EXPECT_EQ(path.driver.count("grasp"), 0);
+  EXPECT_EQ(path.driver.count(EventKind::contact), 1);
+  EXPECT_EQ(path.driver.count(EventKind::grasp), 0);
 }
 
 TEST(Electrode, RefusesAJawAngle) {
@@ -57,7 +57,7 @@ TEST(SemmGrasp, GripsLiftsAndLetsGo) {
   EXPECT_LT(path.world.report().instruments[0].tip_force.dot(path.out), -0.2) << "it pulls";
   ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
   EXPECT_EQ(path.world.report().instruments[0].holds, "");
-  EXPECT_EQ(path.driver.count("release"), 1);
+  EXPECT_EQ(path.driver.count(EventKind::release), 1);
   EXPECT_LT(deepest, 0.1e-3);
 }
 

@@ -28,7 +28,7 @@ TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
   const auto pulled = [](int steps) {
     test::FundusPath path(test::grasper_scene());
     EXPECT_TRUE(path.grasp() && path.lift(steps)) << path.driver.why();
-    EXPECT_EQ(path.driver.count("slip"), 0);
+    EXPECT_EQ(path.driver.count(EventKind::slip), 0);
     return path.world.skin_positions(0);
   };
   // 8 mm: 400 mm/s in one step, 20 mm/s in twenty.

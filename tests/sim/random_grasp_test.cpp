@@ -53,7 +53,7 @@ TEST_P(RandomGrasps, StayOutOfTheSkinAndFailCleanlyIfAtAll) {
     EXPECT_LT(here, most_depth) << "grasp " << number;
     deepest = std::max(deepest, here);
     followed += arrived;
-    grasped += driver.count("grasp") == 1;
+    grasped += driver.count(EventKind::grasp) == 1;
     if (arrived) continue;
     fmt::print("grasp {}: {}", number, driver.why());
     EXPECT_EQ(driver.failure->kind, FailureKind::simulation);

@@ -75,7 +75,7 @@ class Driver {
   }
 
   const Vec3& trocar() const { return trocar_; }
-  int count(const std::string& kind) const {
+  int count(EventKind kind) const {
     int n = 0;
     for (const WorldEvent& event : events) n += event.kind == kind;
     return n;

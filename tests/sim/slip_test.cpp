@@ -36,9 +36,9 @@ Pull pull(const SceneDefinition& scene, int steps = 24) {
   };
   if (!path.driver.go(path.fundus + 20e-3 * path.out, 0.0, steps)) out.why = path.driver.why();
   for (const WorldEvent& event : path.driver.events)
-    if (event.kind == "slip" && out.first_slip == 0) out.first_slip = event.value;
-  out.slips = path.driver.count("slip");
-  out.releases = path.driver.count("release");
+    if (event.kind == EventKind::slip && out.first_slip == 0) out.first_slip = event.value;
+  out.slips = path.driver.count(EventKind::slip);
+  out.releases = path.driver.count(EventKind::release);
   return out;
 }
 
@@ -160,8 +160,8 @@ TEST(Slip, AFoldPulledOutOfTheJawsIsReleasedAndTheOrganReturnsToItsRest) {
   const double energy = path.world.report().organs[0].energy;
   ASSERT_TRUE(path.grasp()) << path.driver.why();
   ASSERT_TRUE(path.driver.go(path.fundus + 35e-3 * path.out, 0.0, 30)) << path.driver.why();
-  EXPECT_GE(path.driver.count("slip"), 1);
-  EXPECT_EQ(path.driver.count("release"), 1);
+  EXPECT_GE(path.driver.count(EventKind::slip), 1);
+  EXPECT_EQ(path.driver.count(EventKind::release), 1);
   EXPECT_EQ(path.world.report().instruments[0].holds, "");
   EXPECT_EQ(path.world.report().instruments[0].tip_force, Vec3::Zero());
   EXPECT_NEAR(path.world.report().organs[0].energy / energy, 1, 1e-5);

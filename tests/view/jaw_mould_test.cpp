@@ -112,7 +112,7 @@ TEST_P(JawMouldGrasp, KeepsOutOfTheInstrumentComesAndGoesWithoutAJumpAndLeavesNo
   };
   ASSERT_TRUE(path.grasp() && path.driver.stay(12) && path.lift() && path.release() && path.withdraw())
       << path.driver.why();
-  EXPECT_EQ(path.driver.count("release"), 1);
+  EXPECT_EQ(path.driver.count(EventKind::release), 1);
   ASSERT_TRUE(path.driver.stay(10)) << path.driver.why();
   expect_touched_skin(moulds, path.world);
 }

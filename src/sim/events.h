@@ -1,0 +1,50 @@
+#pragma once
+// What can happen in a session, one row a kind: who raises it says the kind, and score, report, metrics and reference
+// know the rest from here.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace calot {
+
+enum class EventKind {
+  contact,
+  grasp,
+  empty_grasp,
+  release,
+  slip,
+  overforce,
+  overstretch,
+  step_done,
+  step_timeout,
+};
+
+struct EventRow {
+  EventKind kind;
+  const char* name;
+  const char* doc;
+  const char*
+      value;  ///< what its value is, with the unit, as the report's key: "force_N"; empty: it has none
+  bool of_instrument, of_organ;
+};
+
+/// In the order of the kinds.
+const std::vector<EventRow>& event_rows();
+const EventRow& event_row(EventKind kind);
+std::string to_text(EventKind kind);
+std::optional<EventKind> event_called(const std::string& name);
+std::vector<std::string> event_names();
+inline bool ends_a_step(EventKind kind) {
+  return kind == EventKind::step_done || kind == EventKind::step_timeout;
+}
+
+struct WorldEvent {
+  EventKind kind = EventKind::contact;
+  double time = 0;         ///< s
+  std::string instrument;  ///< may be empty
+  std::string organ;       ///< may be empty
+  double value = 0;        ///< as the kind's row says, else 0
+};
+
+}  // namespace calot
