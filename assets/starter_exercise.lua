@@ -28,13 +28,16 @@ return calot.exercise {
     }
   end,
 
+  -- `calot list` names all ports, landmarks, events and metrics; `calot list FILE` those of this exercise.
+
   -- What the trainee has to do, in order. wait_until and hold ask again after every simulated step.
   steps = function(t)
     t:step("grasp", "Grasp the fundus", { limit = 20 * s })
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
     t:step("lift", "Lift with at least 0.3 N for 2 s", { limit = 20 * s })
-    t:hold("tension", function() return t.left:force() > 0.3 * N end, 2 * s)
+    t:hold("tension", function() return t.left:force("jaws") > 0.3 * N end, 2 * s) -- not what leans on the shaft
+    t:note("lifted_to", t.left:distance("gallbladder.neck") / mm, "mm") -- into the report, beside the metrics
   end,
 
   -- How an expert would do it; this plays when nobody else moves the instruments.
@@ -47,7 +50,7 @@ return calot.exercise {
 
   -- Each part earns between nothing (novice) and all (expert) of its weight; the weights sum to 1.
   -- Metrics are named <instrument>.<metric>, <step>.time_s, <step>.<hold>.time_in_s;
-  -- `calot check --json FILE` lists all that this exercise measures.
+  -- `calot list FILE` lists all that this exercise measures.
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "lift.tension.time_in_s", novice = 0, expert = 2 }, weight = 0.5 },
     { calot.score.benchmark { metric = "left.path_length_mm", novice = 400, expert = 150 }, weight = 0.2 },

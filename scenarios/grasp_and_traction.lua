@@ -41,9 +41,10 @@ return calot.exercise {
 
     t:step("hold", "Lift it and hold 1.5 to 3 N for 10 s", { limit = 40 * s })
     t:hold("band", function()
-      local force = t.left:force()
+      local force = t.left:force("jaws")
       return t.left:holds("gallbladder") and force > least and force < most
     end, 10 * s)
+    t:note("pull", t.left:pull(), "N") -- along the shaft, at the end of the hold
 
     t:step("release", "Lower it and let go", { limit = 20 * s })
     t:wait_until(function() return not t.left:holds() end)

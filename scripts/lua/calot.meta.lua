@@ -68,6 +68,12 @@
 ---@class calot.rotate_options
 ---@field speed? number largest angular speed, rad/s; default 90 * deg; 1 to 1000 deg
 
+---Options of a motion that ends when a condition holds.
+---@class calot.move_until_options
+---@field along? calot.point direction, patient's frame, of any length; left out: along the shaft, into the body
+---@field speed? number largest speed of the tip; default 5 * mm / s; 0.1 to 500 mm / s
+---@field limit? number how far the tip goes at most; default 20 * mm; 0.1 to 200 mm
+
 ---Options of an approach.
 ---@class calot.approach_options
 ---@field speed? number largest speed of the tip; default 30 * mm / s; 0.1 to 500 mm / s
@@ -188,6 +194,14 @@
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
 
+---Where an instrument touches, as contact returns it.
+---@class calot.contact
+---@field part "tip"|"jaws"|"shaft" the part that touches
+---@field organ string the organ that it touches
+---@field place calot.point the point that is pressed hardest, m
+---@field landmark string the landmark nearest to it, such as "gallbladder.fundus"
+---@field force number of the tissue on the whole part, N
+
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
 ---@class calot.Session
 local Session = {}
@@ -258,22 +272,48 @@ function Demo:together(first, second) end
 ---@class calot.Instrument
 local Instrument = {}
 
----Whether it holds the organ, or anything when none is named.
+---Whether it holds the organ, or anything when none is named; grip says why not.
 ---@param organ? string an organ's name
 ---@return boolean
 function Instrument:holds(organ) end
 
----Force of the tissue on its tip, N.
+---Force of the tissue on it, N: on the whole instrument, or on the part named.
+---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
 ---@return number
-function Instrument:force() end
+function Instrument:force(part) end
+
+---The same with its direction, {x, y, z} in N, patient's frame.
+---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
+---@return number[]
+function Instrument:force_vector(part) end
+
+---How hard it is drawn along its shaft into the body, N: what it holds resists being drawn towards the port. 0 where it is pushed back.
+---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
+---@return number
+function Instrument:pull(part) end
+
+---How hard it is pushed back along its shaft, N: it presses into the tissue. 0 where it is drawn in.
+---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
+---@return number
+function Instrument:push(part) end
 
 ---Force felt at its handle, N.
 ---@return number
 function Instrument:handle_force() end
 
----Whether it touches tissue.
+---Whether it touches tissue, or the part named does.
+---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
 ---@return boolean
-function Instrument:touching() end
+function Instrument:touching(part) end
+
+---Where it touches, or the part named does, at the point that is pressed hardest; nil where it does not.
+---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
+---@return calot.contact?
+function Instrument:contact(part) end
+
+---What its jaws are doing: "holding"; "open", or not yet closed; closed and "empty", with nothing between them; closed "beside" what they touch; or "slipped", after what they held slid off. It says why holds is false.
+---@return string
+function Instrument:grip() end
 
 ---Its tip's place, {x, y, z} in m.
 ---@return calot.point
@@ -309,6 +349,12 @@ function DemoInstrument:move_to(target, options) end
 ---@param vector calot.point how far, {x, y, z} in m
 ---@param options? calot.move_options how fast
 function DemoInstrument:move_by(vector, options) end
+
+---Moves the tip straight on until the predicate holds, and stops there; the limit ends it too. Returns whether it held, and how far the tip went, m.
+---@param predicate fun(): boolean asked after every simulated step
+---@param options? calot.move_until_options where to
+---@return boolean, number
+function DemoInstrument:move_until(predicate, options) end
 
 ---Turns about the shaft.
 ---@param angle number right-handed about the direction of the tip; -360 to 360 deg

@@ -90,8 +90,12 @@ std::string summary(const Played& played) {
   if (!session.progress.notes().empty())
     text += fmt::format("\n{}\n{}", bold("Noted"), notes_text(session.progress));
   text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(played.report.metrics));
-  text += fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
-                      verdict(score), played.exercise.score.pass);
+  if (session.end == SessionEnd::failed || session.end == SessionEnd::interrupted) {
+    text += fmt::format("\n{} none: the session was broken off. Its parts so far:\n", bold("Score"));
+  } else {
+    text += fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
+                        verdict(score), played.exercise.score.pass);
+  }
   for (const CriticalEvent& event : score.critical) {
     text += fmt::format("  critical: {} {}; the total is capped at {:.0f}\n", to_text(event.event),
                         times_text(event.times), played.exercise.score.cap);

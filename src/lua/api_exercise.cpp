@@ -14,6 +14,14 @@ using units::s;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// Left out, it is the shaft's own direction.
+Key along() {
+  Key key = direction("along", &MoveUntil::along,
+                      "direction, patient's frame, of any length; left out: along the shaft, into the body");
+  key.fallback.clear();
+  return key;
+}
+
 KeyTable exercise_table() {
   using Exercise = ExerciseDefinition;
   return keys_of<Exercise>(
@@ -82,6 +90,12 @@ std::vector<KeyTable> option_tables() {
        "Options of a rotation.",
        {number("speed", quantity::angle, 1 * deg, 1000 * deg, written(default_turning_speed, quantity::angle),
                "largest angular speed, rad/s")}},
+      keys_of<MoveUntil>("move_until_options", "Options of a motion that ends when a condition holds.",
+                         {along(),
+                          number("speed", &MoveUntil::speed, quantity::speed, 0.1 * mm / s, 500 * mm / s, "",
+                                 "largest speed of the tip"),
+                          number("limit", &MoveUntil::limit, quantity::length, 0.1 * mm, 200 * mm, "",
+                                 "how far the tip goes at most")}),
       keys_of<Approach>(
           "approach_options", "Options of an approach.",
           {bound(speed(), &Approach::speed),

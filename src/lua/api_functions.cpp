@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "lua/api_parts.h"
 #include "sim/instrument.h"
+#include "sim/part_load.h"
 
 namespace calot {
 namespace {
@@ -114,6 +115,9 @@ std::vector<ApiFunction> session_functions() {
 std::vector<ApiFunction> instrument_functions() {
   const Key options = table("options", "move_options", "how fast");
   const double open = InstrumentGeometry{}.jaw_opening;
+  const Key part =
+      choice("part", tool_part_names(), "",
+             "shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip");
   Key target{"target", KeyKind::place, "a point, m, or a landmark such as \"gallbladder.fundus\"", true};
   target.quantity = &quantity::length;
   target.low = -500 * mm;
@@ -121,12 +125,48 @@ std::vector<ApiFunction> instrument_functions() {
   return {
       {"Instrument",
        "holds",
-       "Whether it holds the organ, or anything when none is named.",
+       "Whether it holds the organ, or anything when none is named; grip says why not.",
        {organ(false)},
        "boolean"},
-      {"Instrument", "force", "Force of the tissue on its tip, N.", {}, "number"},
+      {"Instrument",
+       "force",
+       "Force of the tissue on it, N: on the whole instrument, or on the part named.",
+       {part},
+       "number"},
+      {"Instrument",
+       "force_vector",
+       "The same with its direction, {x, y, z} in N, patient's frame.",
+       {part},
+       "number[]"},
+      {"Instrument",
+       "pull",
+       "How hard it is drawn along its shaft into the body, N: what it holds resists being drawn towards the "
+       "port. 0 "
+       "where it is pushed back.",
+       {part},
+       "number"},
+      {"Instrument",
+       "push",
+       "How hard it is pushed back along its shaft, N: it presses into the tissue. 0 where it is drawn in.",
+       {part},
+       "number"},
       {"Instrument", "handle_force", "Force felt at its handle, N.", {}, "number"},
-      {"Instrument", "touching", "Whether it touches tissue.", {}, "boolean"},
+      {"Instrument", "touching", "Whether it touches tissue, or the part named does.", {part}, "boolean"},
+      {"Instrument",
+       "contact",
+       "Where it touches, or the part named does, at the point that is pressed hardest; nil where it does "
+       "not.",
+       {part},
+       "calot.contact?"},
+      {"Instrument",
+       "grip",
+       "What its jaws are doing: \"holding\"; \"open\", or not yet closed; closed and \"empty\", with "
+       "nothing "
+       "between them; closed \"beside\" what they touch; or \"slipped\", after what they held slid off. It "
+       "says "
+       "why holds is false.",
+       {},
+       "string"},
       {"Instrument", "tip", "Its tip's place, {x, y, z} in m.", {}, "calot.point"},
       {"Instrument", "distance", "How far its tip is from a landmark, m.", {landmark()}, "number"},
       {"DemoInstrument",
@@ -148,6 +188,13 @@ std::vector<ApiFunction> instrument_functions() {
        "Moves the tip straight by a vector, patient's frame.",
        {required(point("vector", quantity::length, 300 * mm, "", "how far, {x, y, z} in m")), options},
        ""},
+      {"DemoInstrument",
+       "move_until",
+       "Moves the tip straight on until the predicate holds, and stops there; the limit ends it too. Returns "
+       "whether it "
+       "held, and how far the tip went, m.",
+       {predicate("asked after every simulated step"), table("options", "move_until_options", "where to")},
+       "boolean, number"},
       {"DemoInstrument",
        "rotate",
        "Turns about the shaft.",

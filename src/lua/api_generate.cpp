@@ -98,6 +98,17 @@ std::string describe_function(const ApiFunction& function) {
   return text;
 }
 
+/// What t.left:contact() returns.
+KeyTable contact_table() {
+  return {"contact",
+          "Where an instrument touches, as contact returns it.",
+          {required(choice("part", tool_part_names(), "", "the part that touches")),
+           required(text("organ", "", "the organ that it touches")),
+           required(point("place", quantity::length, 0, "", "the point that is pressed hardest, m")),
+           required(text("landmark", "", "the landmark nearest to it, such as \"gallbladder.fundus\"")),
+           required(number("force", quantity::force, 0, 0, "", "of the tissue on the whole part, N"))}};
+}
+
 std::string in_mm(const Vec3& place) {
   return fmt::format("{{ {:g} * mm, {:g} * mm, {:g} * mm }}", place.x() / units::mm, place.y() / units::mm,
                      place.z() / units::mm);
@@ -131,6 +142,7 @@ std::string generate_annotations() {
   text += "---z out of the abdomen, from the navel.\n---@alias calot.point number[]\n";
   text += fmt::format("---@alias calot.shape {}\n", shape_types());
   for (const KeyTable& table : api_tables()) text += annotate_table(table);
+  text += annotate_table(contact_table());
   for (const ApiClass& handle : api_classes()) text += annotate_class(handle);
   text +=
       "\n---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.\n---@class "
@@ -183,6 +195,7 @@ std::string generate_reference() {
   }
   text += "\n## Tables\n";
   for (const KeyTable& table : api_tables()) text += describe_table(table);
+  text += describe_table(contact_table());
   text += describe_names();
   text += "\n## Units\n\n";
   for (const ApiUnit& unit : api_units())

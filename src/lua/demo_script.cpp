@@ -81,14 +81,26 @@ std::optional<Failure> DemoScript::ask_conditions(double now) {
       answer = lua_toboolean(L, -1) != 0;
     });
     if (failure) return failure;
-    if (!answer) continue;
+    if (!end_condition(task, answer, now)) continue;
     luaL_unref(sandbox().state(), LUA_REGISTRYINDEX, task.predicate);
-    lua_pushboolean(task.thread, 1);
-    task.arguments = 1;
     task.clock = now;
     task.state = Task::ready;
   }
   return std::nullopt;
+}
+
+bool DemoScript::end_condition(Task& task, bool answer, double now) {
+  const bool arrived = task.moving >= 0 && now >= task.arrives - slack;
+  if (!answer && !arrived) return false;
+  lua_pushboolean(task.thread, answer);
+  task.arguments = 1;
+  if (task.moving < 0) return true;
+  InstrumentPath& path = paths_[static_cast<std::size_t>(task.moving)];
+  path.halt(now);
+  lua_pushnumber(task.thread, (path.tip() - task.moved_from).norm());
+  task.arguments = 2;
+  task.moving = -1;
+  return true;
 }
 
 /// Runs what is due before `end`, earliest first.
@@ -212,16 +224,6 @@ InstrumentGeometry DemoScript::geometry(int instrument) const {
   return instrument_geometry(scene().instruments[static_cast<std::size_t>(instrument)].type);
 }
 
-bool DemoScript::can_use_jaws(lua_State* L, int instrument, const std::string& command) {
-  const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
-  if (has_jaws(definition.type)) return true;
-  complain(L,
-           fmt::format("{} is for jaws, and {} is a {}, which has none", command, definition.name,
-                       to_text(definition.type)),
-           "push with approach and move_by, or give it another type");
-  return false;
-}
-
 bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip) {
   using units::mm;
   const double distance = (tip - path.trocar()).norm();
@@ -285,6 +287,28 @@ int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double
   if (!can_reach(L, *path, tip)) return 0;
   path->move(current(L)->clock, tip, speed);
   return sleep_until(L, path->busy_until());
+}
+
+int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
+  if (checking()) {
+    if (end_dry_run(dry_motion_duration)) return lua_yield(L, 0);
+    lua_pushboolean(L, next_guess());
+    lua_pushnumber(L, how.limit);
+    return 2;
+  }
+  InstrumentPath* path = free_path(L, instrument);
+  if (path == nullptr) return 0;
+  const Vec3 along = how.along.isZero() ? Vec3(path->tip() - path->trocar()) : how.along;
+  const Vec3 furthest = path->tip() + how.limit * along.normalized();
+  if (!can_reach(L, *path, furthest)) return 0;
+  Task& task = *current(L);
+  task.moving = instrument;
+  task.moved_from = path->tip();
+  path->move(task.clock, furthest, how.speed);
+  task.arrives = path->busy_until();
+  task.predicate = how.predicate;
+  task.state = Task::condition;
+  return lua_yield(L, 0);
 }
 
 int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {

@@ -20,6 +20,13 @@ struct Approach {
   Vec3 offset = Vec3::Zero();
 };
 
+struct MoveUntil {
+  int predicate = 0;          ///< registry reference
+  Vec3 along = Vec3::Zero();  ///< direction; zero: along the shaft, into the body
+  double speed = 5e-3;        ///< m/s
+  double limit = 20e-3;       ///< m
+};
+
 class DemoScript final : public ScriptSession, public InputSource {
  public:
   /// `function` is a registry reference; 0: there is no demo, and the source ends at once.
@@ -40,6 +47,8 @@ class DemoScript final : public ScriptSession, public InputSource {
   int set_jaw(lua_State* L, int instrument, const std::string& method, std::optional<double> angle);
   int move_to(lua_State* L, int instrument, const Vec3& tip, double speed);
   int move_by(lua_State* L, int instrument, const Vec3& vector, double speed);
+  /// Returns to Lua whether the predicate came to hold, and how far the tip was moved, m.
+  int move_until(lua_State* L, int instrument, const MoveUntil& how);
   int rotate(lua_State* L, int instrument, double angle, double speed);
 
  private:
@@ -51,6 +60,10 @@ class DemoScript final : public ScriptSession, public InputSource {
     double clock = 0;  ///< s
     int arguments = 0;
     int predicate = 0;  ///< of a condition waited for
+    /// Of an instrument that moves until the condition holds; -1: none moves.
+    int moving = -1;
+    Vec3 moved_from = Vec3::Zero();  ///< m, its tip's place when it set out
+    double arrives = 0;              ///< s, when it has gone as far as it may
     enum { ready, until, condition, children, finished } state = ready;
   };
 
@@ -63,13 +76,13 @@ class DemoScript final : public ScriptSession, public InputSource {
   bool can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip);
   std::optional<Failure> start();
   std::optional<Failure> ask_conditions(double now);
+  /// Whether the wait of a task whose condition was just answered is over; pushes what it returns.
+  bool end_condition(Task& task, bool answer, double now);
   std::optional<Failure> run_until(double end);
   std::optional<Failure> resume(std::size_t task);
   void finish(std::size_t task);
 
   InstrumentGeometry geometry(int instrument) const;
-  /// Complains about a command for jaws that the instrument does not have.
-  bool can_use_jaws(lua_State* L, int instrument, const std::string& command);
 
   int function_;
   std::vector<Task> tasks_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "lua/binding.h"
@@ -110,6 +111,13 @@ const InstrumentState& instrument_state(lua_State* L, const char* method) {
   return instrument_state(L, target);
 }
 
+/// None without a name, or after a complaint.
+std::optional<ToolPart> part_called(const std::string& name) {
+  const std::vector<std::string>& names = tool_part_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? std::nullopt : std::optional(static_cast<ToolPart>(found - names.begin()));
+}
+
 int holds(lua_State* L) {
   const HandleTarget target = instrument_target(L, "holds");
   const Arguments arguments(L, *target.session, "Instrument", "holds");
@@ -122,16 +130,100 @@ int holds(lua_State* L) {
   return 1;
 }
 
+/// The load on the part that the call names, or on the whole instrument without a name.
+struct Load {
+  Vec3 force = Vec3::Zero(), axis = -Vec3::UnitZ();
+  bool touching = false;
+};
+Load load_of(lua_State* L, const HandleTarget& target, const Arguments& arguments) {
+  Load load;
+  if (target.session->checking()) return load;
+  const InstrumentState& state = instrument_state(L, target);
+  load = {state.tip_force, target.session->shaft_axis(L, target.instrument), state.touching};
+  if (const std::optional<ToolPart> part = part_called(arguments.text("part"))) {
+    const PartLoad& of_part = state.parts[static_cast<std::size_t>(*part)];
+    load.force = of_part.force;
+    load.touching = of_part.touches > 0;
+  }
+  return load;
+}
+Load load_of(lua_State* L, const char* method) {
+  const HandleTarget target = instrument_target(L, method);
+  return load_of(L, target, Arguments(L, *target.session, "Instrument", method));
+}
+
 int touching(lua_State* L) {
   const HandleTarget target = instrument_target(L, "touching");
-  take_nothing(L, *target.session, "touching");
+  const Load load = load_of(L, target, Arguments(L, *target.session, "Instrument", "touching"));
   const bool guess = target.session->checking() && target.session->next_guess();
-  lua_pushboolean(L, guess || instrument_state(L, target).touching);
+  lua_pushboolean(L, guess || load.touching);
   return 1;
 }
 
 int force(lua_State* L) {
-  lua_pushnumber(L, instrument_state(L, "force").tip_force.norm());
+  lua_pushnumber(L, load_of(L, "force").force.norm());
+  return 1;
+}
+
+int force_vector(lua_State* L) { return push_vector(L, load_of(L, "force_vector").force); }
+
+int pull(lua_State* L) {
+  const Load load = load_of(L, "pull");
+  lua_pushnumber(L, std::max(0.0, load.force.dot(load.axis)));
+  return 1;
+}
+
+int push(lua_State* L) {
+  const Load load = load_of(L, "push");
+  lua_pushnumber(L, std::max(0.0, -load.force.dot(load.axis)));
+  return 1;
+}
+
+int grip(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "grip");
+  target.session->can_use_jaws(L, target.instrument, "grip");
+  const GripState state = instrument_state(L, "grip").grip;
+  lua_pushstring(L, grip_state_names()[static_cast<std::size_t>(state)].c_str());
+  return 1;
+}
+
+void push_text_field(lua_State* L, const char* key, const std::string& text) {
+  lua_pushstring(L, text.c_str());
+  lua_setfield(L, -2, key);
+}
+
+/// The part that was asked for, or the one that is pressed hardest; the tip where it is the tip's hardest point.
+ToolPart hardest_part(const InstrumentState& state, const std::optional<ToolPart>& asked) {
+  const auto load = [&](ToolPart part) -> const PartLoad& {
+    return state.parts[static_cast<std::size_t>(part)];
+  };
+  ToolPart part =
+      load(ToolPart::jaws).largest >= load(ToolPart::shaft).largest ? ToolPart::jaws : ToolPart::shaft;
+  if (load(ToolPart::jaws).touches == 0) part = ToolPart::shaft;
+  if (load(ToolPart::shaft).touches == 0) part = ToolPart::jaws;
+  if (asked) part = *asked;
+  const bool at_tip = load(ToolPart::tip).touches > 0 && load(ToolPart::tip).at == load(ToolPart::jaws).at;
+  return part == ToolPart::jaws && at_tip ? ToolPart::tip : part;
+}
+
+int contact(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "contact");
+  const Arguments arguments(L, *target.session, "Instrument", "contact");
+  const std::optional<ToolPart> asked = part_called(arguments.text("part"));
+  const ContactPlace place = target.session->contact(
+      L, target.instrument, [&](const InstrumentState& state) { return hardest_part(state, asked); });
+  if (place.organ.empty()) {
+    lua_pushnil(L);
+    return 1;
+  }
+  lua_createtable(L, 0, 5);
+  push_text_field(L, "part", tool_part_names()[static_cast<std::size_t>(place.part)]);
+  push_text_field(L, "organ", place.organ);
+  push_text_field(L, "landmark", place.landmark);
+  push_vector(L, place.at);
+  lua_setfield(L, -2, "place");
+  lua_pushnumber(L, place.force);
+  lua_setfield(L, -2, "force");
   return 1;
 }
 
@@ -164,6 +256,7 @@ StepsScript& steps_of(lua_State* L, const char* method) {
 
 int step(lua_State* L) {
   StepsScript& steps = steps_of(L, "step");
+  steps.try_step();
   Arguments arguments(L, steps, "Steps", "step");
   double limit = 0;
   arguments.options("step_options").take("limit", limit);
@@ -267,6 +360,21 @@ int move_by(lua_State* L) {
   return call.demo.move_by(L, call.instrument, vector, speed);
 }
 
+int move_until(lua_State* L) {
+  const DemoCall call = demo_call(L, "move_until");
+  Arguments arguments(L, call.demo, "DemoInstrument", "move_until");
+  MoveUntil how;
+  how.predicate = arguments.function("predicate");
+  const TableReader options = arguments.options("move_until_options");
+  options.read(how);
+  if (!arguments.finish()) return 0;
+  if (options.has("along") && how.along.isZero()) {
+    call.demo.complain(L, "along points nowhere", "give a direction such as { 0, 0, -1 }, or leave it out");
+    return 0;
+  }
+  return call.demo.move_until(L, call.instrument, how);
+}
+
 int rotate(lua_State* L) {
   const DemoCall call = demo_call(L, "rotate");
   Arguments arguments(L, call.demo, "DemoInstrument", "rotate");
@@ -303,6 +411,12 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Instrument", "touching", guarded<touching>},
                           {"Instrument", "tip", guarded<tip>},
                           {"Instrument", "distance", guarded<distance>},
+                          {"Instrument", "force_vector", guarded<force_vector>},
+                          {"Instrument", "pull", guarded<pull>},
+                          {"Instrument", "push", guarded<push>},
+                          {"Instrument", "grip", guarded<grip>},
+                          {"Instrument", "contact", guarded<contact>},
+                          {"DemoInstrument", "move_until", guarded<move_until>},
                           {"DemoInstrument", "approach", guarded<approach>},
                           {"DemoInstrument", "open", guarded<open>},
                           {"DemoInstrument", "close", guarded<close>},

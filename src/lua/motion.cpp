@@ -62,13 +62,23 @@ double InstrumentPath::scalar(const Segment& segment, double time) const {
   return segment.from.x() + (segment.to.x() - segment.from.x()) * segment.travel.share(time - segment.start);
 }
 
-InstrumentPose InstrumentPath::pose(double time) const {
+Vec3 InstrumentPath::tip_at(double time) const {
   Vec3 tip = moves_.empty() ? to_tip_ : moves_.front().from;
   for (const Segment& move : moves_) {
     if (time < move.start) break;
     tip = move.from + (move.to - move.from) * move.travel.share(time - move.start);
   }
-  InstrumentPose pose = pose_reaching(trocar_, tip, scalar(roll_, time), 0, geometry_);
+  return tip;
+}
+
+void InstrumentPath::halt(double time) {
+  to_tip_ = tip_at(time);
+  moves_.clear();
+  busy_until_ = std::min(busy_until_, time);
+}
+
+InstrumentPose InstrumentPath::pose(double time) const {
+  InstrumentPose pose = pose_reaching(trocar_, tip_at(time), scalar(roll_, time), 0, geometry_);
   pose.jaw = scalar(jaw_, time);
   return pose;
 }

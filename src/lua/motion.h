@@ -42,6 +42,9 @@ class InstrumentPath {
   void rotate(double time, double roll, double speed);
   void set_jaw(double time, double jaw, double duration);
 
+  /// Ends the moves of the tip where they are at `time`.
+  void halt(double time);
+
   InstrumentPose pose(double time) const;
 
  private:
@@ -51,6 +54,7 @@ class InstrumentPath {
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();
   };
   double scalar(const Segment& segment, double time) const;
+  Vec3 tip_at(double time) const;
 
   Vec3 trocar_;
   InstrumentGeometry geometry_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <limits>
 
 #include "base/suggest.h"
 #include "lua/handles.h"
@@ -75,6 +76,16 @@ bool ScriptSession::is_landmark(lua_State* L, const std::string& name) {
   return false;
 }
 
+bool ScriptSession::can_use_jaws(lua_State* L, int instrument, const std::string& command) {
+  const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
+  if (has_jaws(definition.type)) return true;
+  complain(L,
+           fmt::format("{} is for jaws, and {} is a {}, which has none", command, definition.name,
+                       to_text(definition.type)),
+           "push with approach and move_by, or give it another type");
+  return false;
+}
+
 Vec3 ScriptSession::landmark(lua_State* L, const std::string& name) const {
   if (!checking()) return world(L).landmark(name);
   for (const OrganDefinition& organ : scene().anatomy.organs)
@@ -91,6 +102,40 @@ Vec3 ScriptSession::tip(lua_State* L, int instrument) const {
   for (const PortDefinition& port : ports)
     if (port.name == scene().instruments[index].port) return port.position - waiting_depth * Vec3::UnitZ();
   return Vec3::Zero();  // the port has been complained about
+}
+
+Vec3 ScriptSession::shaft_axis(lua_State* L, int instrument) const {
+  if (checking()) return -Vec3::UnitZ();
+  const std::string& port = scene().instruments[static_cast<std::size_t>(instrument)].port;
+  return (tip(L, instrument) - world(L).port_position(port)).normalized();
+}
+
+ContactPlace ScriptSession::contact(lua_State* L, int instrument,
+                                    const std::function<ToolPart(const InstrumentState&)>& choose) const {
+  const std::vector<std::string> landmarks = landmark_names(scene().anatomy.organs);
+  ContactPlace place;
+  if (checking()) {
+    if (landmarks.empty()) return place;
+    place.organ = scene().anatomy.organs.front().name;
+    place.landmark = landmarks.front();
+    place.at = landmark(L, place.landmark);
+    return place;
+  }
+  const InstrumentState& state = world(L).report().instruments[static_cast<std::size_t>(instrument)];
+  place.part = choose(state);
+  const PartLoad& load = state.parts[static_cast<std::size_t>(place.part)];
+  if (load.touches == 0) return place;
+  place.at = load.at;
+  place.organ = load.organ;
+  place.force = load.force.norm();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::string& name : landmarks) {
+    const double distance = (world(L).landmark(name) - load.at).norm();
+    if (!name.starts_with(load.organ + ".") || distance >= nearest) continue;
+    nearest = distance;
+    place.landmark = name;
+  }
+  return place;
 }
 
 bool ScriptSession::end_dry_run(double duration) {

@@ -2,6 +2,7 @@
 // What a script's t and its instruments answer to, in steps, in the demo, and while both are only being
 // checked.
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,6 +13,15 @@
 #include "session/exercise.h"
 
 namespace calot {
+
+/// Where an instrument touches an organ.
+struct ContactPlace {
+  ToolPart part = ToolPart::tip;
+  Vec3 at = Vec3::Zero();  ///< m
+  std::string organ;       ///< empty: nowhere
+  std::string landmark;    ///< the nearest, "organ.landmark"
+  double force = 0;        ///< N, on the whole part
+};
 
 /// One run of steps or demo. Handles in Lua point to it, so it lives at least as long as its sandbox's last
 /// call.
@@ -47,10 +57,17 @@ class ScriptSession {
   int organ(lua_State* L, const std::string& name);
   /// "organ.landmark" of this scene; complains when it is none.
   bool is_landmark(lua_State* L, const std::string& name);
+  /// Complains about what needs jaws, of an instrument that has none.
+  bool can_use_jaws(lua_State* L, int instrument, const std::string& command);
   /// Where a landmark of this scene is now, m; in a dry run about where it will be.
   Vec3 landmark(lua_State* L, const std::string& name) const;
   /// Where an instrument's tip is now, m; in a dry run where it waits in its trocar.
   Vec3 tip(lua_State* L, int instrument) const;
+  /// From its port to its tip, unit; straight down in a dry run.
+  Vec3 shaft_axis(lua_State* L, int instrument) const;
+  /// Where the part that `choose` picks is pressed hardest; a stand-in in a dry run.
+  ContactPlace contact(lua_State* L, int instrument,
+                       const std::function<ToolPart(const InstrumentState&)>& choose) const;
   /// In a dry run: what a yes-or-no question is answered, in turns, so that loops for either end.
   bool next_guess() { return guess_ = !guess_; }
 

@@ -227,7 +227,8 @@ void StepsScript::note(lua_State* L, const std::string& name, const Value& value
 int StepsScript::hold(lua_State* L, const std::string& name, int predicate, double duration) {
   if (!may_wait(L, "hold") || !is_name(L, "hold", name)) return 0;
   if (current_.empty()) {
-    complain(L, "t:hold before the first t:step", "start a step: its name is part of the metric's");
+    if (!step_tried_)
+      complain(L, "t:hold before the first t:step", "start a step: its name is part of the metric's");
     return 0;
   }
   const std::string full = current_ + "." + name;

@@ -25,6 +25,8 @@ class StepsScript final : public ScriptSession {
   double time() const override { return checking() ? dry_time() : now_; }
   int wait(lua_State* L, double duration) override;
   int wait_until(lua_State* L, int predicate) override;
+  /// A step is about to be declared: what is said of it stands for what follows from it.
+  void try_step() { step_tried_ = true; }
   void step(lua_State* L, const std::string& name, const std::string& title, double limit);
   void note(lua_State* L, const std::string& name, const Value& value, const std::string& unit);
   int hold(lua_State* L, const std::string& name, int predicate, double duration);
@@ -61,7 +63,8 @@ class StepsScript final : public ScriptSession {
       false;  ///< the step's limit has passed: conditions are not waited for until the next step
   Progress* progress_ = nullptr;
   Declared declared_;
-  std::string current_;  ///< the step declared last
+  std::string current_;      ///< the step declared last
+  bool step_tried_ = false;  ///< one was, well or not
 };
 
 }  // namespace calot

@@ -142,7 +142,7 @@ bool TableReader::check_number(const Key& key, const Value& value) {
   if (std::isfinite(value.number) && value.number >= key.low && value.number <= key.high) return true;
   if (key.low == key.high && std::isfinite(value.number)) {
     check_.problem(path_of(key.name), fmt::format("{} = {:g} is not available", key.name, value.number),
-                   fmt::format("only {:g} is: {}", key.low, api_.doc));
+                   fmt::format("write {} = {:g}", key.name, key.low));
     return false;
   }
   check_.in_range(path_of(key.name), value.number, *key.quantity, key.low, key.high, key.expected());

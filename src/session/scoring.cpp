@@ -54,15 +54,16 @@ ScoredPart score_benchmark(const ScorePart& part, const std::map<std::string, do
   scored.measured = found->second;
   // + 0.0: a novice's very value gives minus zero, which would be printed as such.
   scored.fraction = std::clamp((part.novice - found->second) / (part.novice - part.expert), 0.0, 1.0) + 0.0;
-  scored.explanation =
-      fmt::format("{} = {:.4g}, between novice {:.4g} (no points) and expert {:.4g} (all points)",
-                  part.metric, found->second, part.novice, part.expert);
-  if (scored.fraction == 0) {
-    scored.explanation =
-        fmt::format("{} = {:.4g}, no better than novice {:.4g}", part.metric, found->second, part.novice);
-  } else if (scored.fraction == 1) {
-    scored.explanation =
-        fmt::format("{} = {:.4g}, as good as expert {:.4g}", part.metric, found->second, part.expert);
+  const std::string value = fmt::format("{:.4g}", found->second), novice = fmt::format("{:.4g}", part.novice),
+                    expert = fmt::format("{:.4g}", part.expert);
+  // What is printed alike is called alike: 4.99996 beside 5 is as good as it.
+  if (scored.fraction == 0 || value == novice) {
+    scored.explanation = fmt::format("{} = {}, no better than novice {}", part.metric, value, novice);
+  } else if (scored.fraction == 1 || value == expert) {
+    scored.explanation = fmt::format("{} = {}, as good as expert {}", part.metric, value, expert);
+  } else {
+    scored.explanation = fmt::format("{} = {}, between novice {} (no points) and expert {} (all points)",
+                                     part.metric, value, novice, expert);
   }
   return scored;
 }

@@ -53,6 +53,8 @@ void append_sample(const World& world, Traces& traces) {
     sample.roll = state.pose.roll;
     sample.tip_force = state.tip_force.norm();
     sample.handle_force = state.handle_force.norm();
+    sample.jaws_force = state.parts[static_cast<std::size_t>(ToolPart::jaws)].force.norm();
+    sample.shaft_force = state.parts[static_cast<std::size_t>(ToolPart::shaft)].force.norm();
     traces.instruments[i].push_back(sample);
   }
   for (std::size_t i = 0; i < report.organs.size(); ++i) {

@@ -13,12 +13,13 @@
 namespace calot {
 
 struct InstrumentSample {
-  Vec3 tip = Vec3::Zero();   ///< m
-  Vec3 axis = Vec3::Zero();  ///< unit, along the shaft from trocar to tip
-  double insertion = 0;      ///< m
-  double roll = 0;           ///< rad, not wrapped
-  double tip_force = 0;      ///< N, magnitude
-  double handle_force = 0;   ///< N, magnitude
+  Vec3 tip = Vec3::Zero();                 ///< m
+  Vec3 axis = Vec3::Zero();                ///< unit, along the shaft from trocar to tip
+  double insertion = 0;                    ///< m
+  double roll = 0;                         ///< rad, not wrapped
+  double tip_force = 0;                    ///< N, magnitude
+  double handle_force = 0;                 ///< N, magnitude
+  double jaws_force = 0, shaft_force = 0;  ///< N, magnitudes; what the jaws hold pulls on them
 };
 
 struct OrganSample {

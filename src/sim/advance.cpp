@@ -219,6 +219,7 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     if (both_pads_hold(field, index)) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     tool.jaw_stopped = false;
+    tool.lost = true;
     events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
   }
   return true;
@@ -322,6 +323,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     Tool& tool = field.tools[i];
     // Opening lets go; so do jaws that stop closing before a fold fills them, as they press on nothing.
     const bool closing = targets[i].jaw < tool.pose.jaw;
+    if (targets[i].jaw > tool.pose.jaw) tool.lost = tool.beside = false;
     if (closing || (tool.jaw_stopped && targets[i].jaw == tool.pose.jaw)) continue;
     const int index = static_cast<int>(i);
     const std::string organ = held_organ(field, index);
@@ -351,12 +353,14 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       if (!fold_fills_jaws(field, index)) {
         if (tool.pose.jaw > 0.5 * grip_grid) continue;
         events.push_back({EventKind::empty_grasp, 0, tool.definition.name, {}, 0});
-        if (held_organ(field, index).empty()) continue;
+        tool.beside = !held_organ(field, index).empty();
+        if (!tool.beside) continue;
         // Closed, and only one pad holds: what it dragged along slips back.
         if (Result<bool> slipped = release(field, index, statistics); !slipped) return slipped.failure();
         continue;
       }
       tool.jaw_stopped = true;
+      tool.lost = tool.beside = false;
       events.push_back({EventKind::grasp, 0, tool.definition.name, held_organ(field, index), 0});
     }
   }

@@ -9,7 +9,8 @@ namespace calot {
 
 struct ToolSnapshot {
   InstrumentPose pose;
-  bool touched = false, over_limit = false, jaw_stopped = false, slipping = false;
+  bool touched = false, over_limit = false, jaw_stopped = false, lost = false, beside = false,
+       slipping = false;
 };
 
 struct FieldState {

@@ -7,6 +7,7 @@
 
 #include "sim/events.h"
 #include "sim/instrument.h"
+#include "sim/part_load.h"
 
 namespace calot {
 
@@ -22,9 +23,11 @@ struct InstrumentState {
   Vec3 tip = Vec3::Zero();           ///< m
   Vec3 tip_force = Vec3::Zero();     ///< N, of the tissue on the instrument
   Vec3 handle_force = Vec3::Zero();  ///< N, felt at the handle, lever about the trocar
+  PartLoads parts;                   ///< by ToolPart
   bool touching = false;
   std::string holds;  ///< organ's name, empty when nothing is held
   int grip_points = 0;
+  GripState grip = GripState::open;
 };
 
 struct OrganState {

@@ -16,7 +16,10 @@ struct Tool {
   InstrumentPose pose;
   bool touched = false, over_limit = false;  ///< at the last step, for events
   bool jaw_stopped = false;                  ///< the jaws rest on the fold they hold
-  bool slipping = false;                     ///< the fold slid through the jaws at the last step, for events
+  bool lost = false;  ///< what it held slid off; until the jaws open or hold again; for reports
+  bool beside =
+      false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
+  bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

@@ -10,33 +10,35 @@ class LoadSum {
  public:
   explicit LoadSum(const Field& field) : field_(field), loads_(field.tools.size()) {}
 
-  /// Null for what is no tool's: the support.
-  PartLoad* part(int shape) {
-    const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
-    return tool < loads_.size() ? &loads_[tool].parts[shape % shapes_per_tool] : nullptr;
-  }
-  void add_force(int shape, const Vec3& at, const Vec3& force) {
+  /// False for the support's shape.
+  bool is_tool(int shape) const { return shape / shapes_per_tool < static_cast<int>(loads_.size()); }
+  /// A force (N) at a point (m) of a tool's shape; `touches`: the point counts, with its organ.
+  void add(int shape, const Vec3& at, const Vec3& force, bool touches, const std::string& organ) {
+    const Tool& tool = field_.tools[shape / shapes_per_tool];
     ToolLoad& load = loads_[shape / shapes_per_tool];
     load.force += force;
-    load.moment += (at - field_.tools[shape / shapes_per_tool].trocar).cross(force);
-    PartLoad& on = *part(shape);
-    on.place += force.norm() * at;
-    on.carried += force.norm();
+    load.moment += (at - tool.trocar).cross(force);
+    if (touches && load.touches++ == 0) load.organ = organ;
+    const bool is_shaft = shape % shapes_per_tool == 0;
+    add(load.parts, is_shaft ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
+    const Vec3 tip = tip_position(tool.trocar, tool.pose, tool.geometry);
+    if (!is_shaft && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)
+      add(load.parts, ToolPart::tip, at, force, touches, organ);
   }
-  void count_touch(int shape, int organ) {
-    ToolLoad& load = loads_[shape / shapes_per_tool];
-    if (load.touches++ == 0) load.organ = field_.organs[organ].definition.name;
-    PartLoad& on = *part(shape);
-    if (on.touches++ == 0) on.organ = organ;
-  }
-  std::vector<ToolLoad> take() {
-    for (ToolLoad& load : loads_)
-      for (PartLoad& part : load.parts)
-        if (part.carried > 0) part.place /= part.carried;
-    return std::move(loads_);
-  }
+  std::vector<ToolLoad> take() { return std::move(loads_); }
 
  private:
+  static void add(PartLoads& parts, ToolPart which, const Vec3& at, const Vec3& force, bool touches,
+                  const std::string& organ) {
+    PartLoad& part = parts[static_cast<std::size_t>(which)];
+    part.force += force;
+    if (!touches) return;
+    if (part.touches++ > 0 && force.norm() <= part.largest) return;
+    part.at = at;
+    part.largest = force.norm();
+    part.organ = organ;
+  }
+
   const Field& field_;
   std::vector<ToolLoad> loads_;
 };
@@ -46,35 +48,24 @@ class LoadSum {
 std::vector<ToolLoad> tool_loads(const Field& field) {
   LoadSum sum(field);
   const std::vector<InstrumentPose> poses = present_poses(field);
-  for (int index = 0; index < static_cast<int>(field.organs.size()); ++index) {
-    const Organ& organ = field.organs[index];
+  for (const Organ& organ : field.organs) {
+    const std::string& name = organ.definition.name;
     const ContactLoads now = contact_loads(field, organ, poses);
     const std::vector<Touch>& touching = organ.search.touching(organ.body, organ.state.x, now);
-    for (const ContactForce& contact : contact_forces(organ.body, now, touching)) {
-      PartLoad* part = sum.part(contact.shape);
-      if (!part) continue;
-      part->contact += contact.on_shape;
-      part->pressing += contact.on_shape.norm();
-      sum.add_force(contact.shape, contact.at, contact.on_shape);
-      sum.count_touch(contact.shape, index);
-    }
+    for (const ContactForce& contact : contact_forces(organ.body, now, touching))
+      if (sum.is_tool(contact.shape)) sum.add(contact.shape, contact.at, contact.on_shape, true, name);
     ContactPlaces places(organ.body.skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points) {
-      PartLoad* part = sum.part(rubbing.shape);
-      if (!part) continue;
+      if (!sum.is_tool(rubbing.shape)) continue;
       // The point is counted where it presses.
-      const Vec3 at = places.at(rubbing.point), rub = rubbing.hold.sample(at).gradient;
-      part->contact += rub;
-      sum.add_force(rubbing.shape, at, rub);
+      const Vec3 at = places.at(rubbing.point);
+      sum.add(rubbing.shape, at, rubbing.hold.sample(at).gradient, false, name);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const GripPoint& grip = organ.grips[g];
-      const int shape = shapes_per_tool * grip.instrument + 1 + grip.jaw;
       const Vec3 at = organ.body.skin_point(grip.skin_point, organ.state.x);
-      const Vec3 force = now.grip.stiffness[g] * (at - now.grip.target[g]);
-      sum.part(shape)->grip += force;
-      sum.add_force(shape, at, force);
-      sum.count_touch(shape, index);
+      sum.add(shapes_per_tool * grip.instrument + 1 + grip.jaw, at,
+              now.grip.stiffness[g] * (at - now.grip.target[g]), true, name);
     }
   }
   return sum.take();

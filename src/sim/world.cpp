@@ -164,6 +164,16 @@ InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad&
     if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
   }
   state.touching = load.touches > 0;
+  state.parts = load.parts;
+  const bool closed = tool.pose.jaw <= 0.5 * grip_grid;
+  const bool touches_jaws = load.parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0;
+  if (!state.holds.empty()) {
+    state.grip = GripState::holding;
+  } else if (tool.lost) {
+    state.grip = GripState::slipped;
+  } else if (closed) {
+    state.grip = tool.beside || touches_jaws ? GripState::beside : GripState::empty;
+  }
   return state;
 }
 
@@ -193,10 +203,12 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
     Tool& tool = field.tools[i];
     const InstrumentState& state = report.instruments[i];
     const std::string& organ = loads[i].organ;
-    if (state.touching && !tool.touched) events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0});
+    if (state.touching && !tool.touched)
+      events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0});
     const double force = state.tip_force.norm();
     const bool over = force > tool.definition.force_limit;
-    if (over && !tool.over_limit) events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force});
+    if (over && !tool.over_limit)
+      events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force});
     tool.touched = state.touching;
     tool.over_limit = over;
   }
@@ -204,7 +216,8 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
     const double limit = field.organs[k].definition.wall.overstretch;
     const bool was = k < before.size() && before[k].max_stretch > limit;
     if (report.organs[k].max_stretch > limit && !was)
-      events.push_back({EventKind::overstretch, 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
+      events.push_back(
+          {EventKind::overstretch, 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
   }
   for (WorldEvent& event : events) event.time = report.time;
   report.events = std::move(events);

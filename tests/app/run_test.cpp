@@ -90,6 +90,7 @@ TEST_F(Run, AnErrorInsideAStepNamesFileAndLineAndKeepsWhatWasDone) {
   const Json json = Json::parse(slurp(folder_ / "here" / "report.json"));
   EXPECT_EQ(json["end"], "failed");
   EXPECT_EQ(json["steps"][0]["outcome"], "aborted");
+  EXPECT_NE(outcome.out.find("Score none"), std::string::npos) << "it has none: it was broken off";
 }
 
 TEST_F(Run, AnEndlessLoopInAStepEndsWithTheResourceCode) {

@@ -200,6 +200,47 @@ TEST(Demo, WaitsForConditions) {
         << moment.time;
 }
 
+TEST(Demo, MovesUntilAConditionHoldsOrItsLimitIsReached) {
+  const Played played = play(
+      with_demo(
+          "print(t.left:move_until(function() return false end, { along = { 0, 0, -3 }, limit = 12 * mm }))\n"
+          "local start = t:time()\n"
+          "local held, way = t.left:move_until(function() return t:time() > start + 0.99 * s end,\n"
+          "  { along = { 0, 0, -1 }, speed = 10 * mm / s, limit = 40 * mm })\n"
+          "print(held, way > 8 * mm, way < 10 * mm)\n"
+          "t:wait(0.5 * s)"),
+      50, 5);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("false\t0.012", "true\ttrue\ttrue"));
+  const Vec3 way = played.moments.back().tips[0] - played.moments.front().tips[0];
+  EXPECT_LT(way.head<2>().norm(), 1e-6);
+  EXPECT_LT(way.z(), -20e-3);
+  // It stands where it stopped: the last half second is a wait.
+  EXPECT_EQ(played.moments.back().tips[0], played.moments[played.moments.size() - 20].tips[0]);
+}
+
+TEST(Demo, RefusesASecondMotionWhileItMovesUntilAConditionHolds) {
+  const Played played =
+      play(with_demo("t:together(function() t.left:move_until(function() return false end) end,\n"
+                     "function() t.left:close() end)"),
+           50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("another function of t:together"));
+}
+
+TEST(Steps, LearnWhatAnInstrumentThatTouchesNothingFeels) {
+  ScenarioText text = with_steps(
+      "t:wait_until(function() return t.left:grip() == 'open' end)\n"
+      "t:wait_until(function() return t.left:grip() == 'empty' end)\n"
+      "print(t.left:contact(), t.left:touching('tip'), t.left:force('shaft'), t.left:pull(), "
+      "t.left:push('jaws'))\n"
+      "local f = t.left:force_vector() print(#f, f[1], f[2], f[3], t.left:holds())");
+  text.demo = "t.left:open() t.left:close()";
+  const Played played = play(text, 50, 1.5);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("nil\tfalse\t0.0\t0.0\t0.0", "3\t0.0\t0.0\t0.0\tfalse"));
+}
+
 TEST(Demo, EndsWhenItsFunctionReturnsAndAtOnceWithoutOne) {
   EXPECT_NEAR(play(with_demo("t:wait(0.5 * s)"), 50, 1).source_ended, 0.5, 0.02 + rounding);
   EXPECT_LE(play(with_demo(""), 50, 0.1).source_ended, 0.02 + rounding);
