@@ -71,6 +71,7 @@
 ---Options of a motion that ends when a condition holds.
 ---@class calot.move_until_options
 ---@field along? calot.point direction, patient's frame, of any length; left out: along the shaft, into the body
+---@field towards? string a landmark to move towards, instead of along
 ---@field speed? number largest speed of the tip; default 5 * mm / s; 0.1 to 500 mm / s
 ---@field limit? number how far the tip goes at most; default 20 * mm; 0.1 to 200 mm
 
@@ -234,7 +235,7 @@ function Session:volume(organ) end
 ---@return calot.point
 function Session:place(landmark) end
 
----The t of steps = function(t): the operation's steps, what to wait for, what to measure.
+---The t of steps = function(t, p): the operation's steps, what to wait for, what to measure.
 ---@class calot.Steps: calot.Session
 ---@field [string] calot.Instrument
 local Steps = {}
@@ -258,7 +259,7 @@ function Steps:hold(name, predicate, duration) end
 ---@param unit? string its unit, for people
 function Steps:note(name, value, unit) end
 
----The t of demo = function(t): moves the instruments.
+---The t of demo = function(t, p): moves the instruments.
 ---@class calot.Demo: calot.Session
 ---@field [string] calot.DemoInstrument
 local Demo = {}

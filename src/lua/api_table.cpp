@@ -49,8 +49,8 @@ const std::vector<ApiClass>& api_classes() {
   static const std::vector<ApiClass> classes = {
       {"Session", "", "What steps and demo have in common. Instruments are its fields: t.left, t.right, ..."},
       {"Steps", "Session",
-       "The t of steps = function(t): the operation's steps, what to wait for, what to measure."},
-      {"Demo", "Session", "The t of demo = function(t): moves the instruments."},
+       "The t of steps = function(t, p): the operation's steps, what to wait for, what to measure."},
+      {"Demo", "Session", "The t of demo = function(t, p): moves the instruments."},
       {"Instrument", "", "An instrument as steps see it: what it touches, holds and feels."},
       {"DemoInstrument", "Instrument",
        "An instrument as the demo moves it. Motions return when they have ended."}};

@@ -298,7 +298,9 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
   }
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
-  const Vec3 along = how.along.isZero() ? Vec3(path->tip() - path->trocar()) : how.along;
+  Vec3 along = how.along;
+  if (along.isZero()) along = path->tip() - path->trocar();
+  if (!how.towards.empty()) along = landmark(L, how.towards) - tip(L, instrument);
   const Vec3 furthest = path->tip() + how.limit * along.normalized();
   if (!can_reach(L, *path, furthest)) return 0;
   Task& task = *current(L);

@@ -23,6 +23,7 @@ struct Approach {
 struct MoveUntil {
   int predicate = 0;          ///< registry reference
   Vec3 along = Vec3::Zero();  ///< direction; zero: along the shaft, into the body
+  std::string towards;        ///< a landmark, instead of a direction; may be empty
   double speed = 5e-3;        ///< m/s
   double limit = 20e-3;       ///< m
 };

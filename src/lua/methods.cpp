@@ -372,6 +372,11 @@ int move_until(lua_State* L) {
     call.demo.complain(L, "along points nowhere", "give a direction such as { 0, 0, -1 }, or leave it out");
     return 0;
   }
+  if (options.has("along") && options.has("towards")) {
+    call.demo.complain(L, "along and towards are both given", "give one of them");
+    return 0;
+  }
+  if (options.has("towards") && !call.demo.is_landmark(L, how.towards)) return 0;
   return call.demo.move_until(L, call.instrument, how);
 }
 

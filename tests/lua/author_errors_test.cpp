@@ -235,6 +235,13 @@ std::vector<Mistake> mistakes() {
        "api = 1", "api = 2 is not available", "write api = 1"},
       {"HoldAfterAStepThatIsRefused", with_steps("\nt:step('a b', 'A') t:hold('c', function() end, 1 * s)"),
        "t:step", "not a name", "letters"},
+      {"MovingTwoWays",
+       with_demo("\nt.left:move_until(function() return false end, { along = { 0, 0, -1 }, towards = "
+                 "'gallbladder.neck' })"),
+       "t.left:move_until", "both given", "give one"},
+      {"MovingTowardsNowhere",
+       with_demo("\nt.left:move_until(function() return false end, { towards = 'gallbladder.nek' })"),
+       "t.left:move_until", "unknown landmark", "gallbladder.neck"},
       {"ScoreThatIsNeither", score_function("7"), "score = 7", "a table, or a function", ""},
       {"ErrorInTheScoresFunction", score_function("function(p)\nreturn nil + 1 end"), "nil + 1", "arithmetic",
        ""},

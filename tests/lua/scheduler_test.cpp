@@ -44,12 +44,11 @@ struct Played {
   std::string text;  ///< of the scenario
 };
 
-/// Plays steps and demo together for `seconds`.
-Played play(ScenarioText text, double rate, double seconds) {
+/// Plays steps and demo together for `seconds`, on the text's own scene.
+Played play_own(const ScenarioText& text, double rate, double seconds) {
   Played played;
   LogSink before = set_log_sink([&](LogLevel, const std::string& line) { played.printed.push_back(line); });
   const Folder folder;
-  text.scene = scene_at(rate);
   played.text = text.text();
   Result<std::unique_ptr<ExerciseScript>> script = load_text(folder, played.text);
   if (!script) {
@@ -87,6 +86,12 @@ Played play(ScenarioText text, double rate, double seconds) {
   }
   set_log_sink(std::move(before));
   return played;
+}
+
+/// On a ball out of reach.
+Played play(ScenarioText text, double rate, double seconds) {
+  text.scene = scene_at(rate);
+  return play_own(text, rate, seconds);
 }
 
 ScenarioText with_demo(const std::string& demo) {
@@ -217,6 +222,32 @@ TEST(Demo, MovesUntilAConditionHoldsOrItsLimitIsReached) {
   EXPECT_LT(way.z(), -20e-3);
   // It stands where it stopped: the last half second is a wait.
   EXPECT_EQ(played.moments.back().tips[0], played.moments[played.moments.size() - 20].tips[0]);
+}
+
+TEST(Demo, PressesUntilAForceIsReachedAndStepsSeeWhere) {
+  ScenarioText text = with_steps(
+      "t:wait_until(function() return t.left:push('tip') > 0.2 * N end)\n"
+      "local c, f = t.left:contact(), t.left:force_vector('tip')\n"
+      "print(c.part, c.organ, c.landmark, c.force == t.left:force('tip'), f[3] > 0.1, t.left:pull('tip'))\n"
+      "print(t.left:touching('shaft'), t.left:contact('shaft'))");
+  text.demo =
+      "t.left:approach('ball.fundus', { depth = -3 * mm })\n"
+      "print(t.left:move_until(function() return t.left:push('tip') > 0.2 * N end, { towards = 'ball.fundus' "
+      "}))";
+  text.scene =
+      "return { anatomy = { organs = { { name = 'ball', shape = { type = 'sphere', radius = 20 * mm }, nodes "
+      "= 61,\n"
+      "neck = { -80 * mm, 75 * mm, -120 * mm }, fundus = { -80 * mm, 75 * mm, -80 * mm }, liver_side = { 0, "
+      "1, 0 },\n"
+      "held = { { landmark = 'neck', radius = 20 * mm } } } } }, laparoscope = { look_at = 'ball.fundus' },\n"
+      "solver = { rate = 50 }, instruments = { left = { port = 'right_subcostal', type = 'bipolar_electrode' "
+      "} } }";
+  const Played played = play_own(text, 50, 8);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  ASSERT_EQ(played.printed.size(), 3u);
+  EXPECT_EQ(played.printed[0], "tip\tball\tball.fundus\ttrue\ttrue\t0.0");
+  EXPECT_EQ(played.printed[1], "false\tnil");
+  EXPECT_EQ(played.printed[2].substr(0, 5), "true\t") << "the demo asks when the next step begins";
 }
 
 TEST(Demo, RefusesASecondMotionWhileItMovesUntilAConditionHolds) {
