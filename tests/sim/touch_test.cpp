@@ -4,6 +4,7 @@
 
 #include "field_rig.h"
 #include "rig.h"
+#include "support/random.h"
 
 namespace calot {
 namespace {
