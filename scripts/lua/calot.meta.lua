@@ -54,7 +54,7 @@
 
 ---When pictures are compared with golden ones.
 ---@class calot.golden
----@field at number[] times in s, within the time limit
+---@field at number[] at most 100 times in s, within the time limit; a picture is of a hundredth of a second
 
 ---Options of t:step.
 ---@class calot.step_options

@@ -177,8 +177,8 @@ std::string bench_json(const Comparison& comparison, const BenchMachine& machine
       {"quick", quick},
       {"interrupted", comparison.interrupted},
       {"version", version()},
-      {"toolchain", toolchain()},
-      {"instruction_set", instruction_set()},
+      {"toolchain", this_make().toolchain},
+      {"instruction_set", this_make().instruction_set},
       {"machine",
        {{"processor", machine.processor}, {"cores", machine.cores}, {"load_average", machine.load_average}}},
       {"largest_displacement_mm", comparison.largest_mm},
@@ -220,7 +220,7 @@ std::string bench_text(const Comparison& comparison, const BenchMachine& machine
                      target.unit});
   out += table(lines, "llrll");
   out += fmt::format("\n{}, {} cores, load {}; {}, {}", machine.processor, machine.cores,
-                     machine.load_average, toolchain(), instruction_set());
+                     machine.load_average, this_make().toolchain, this_make().instruction_set);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/play.h"
 #include "app/project.h"
 #include "app/terminal.h"
@@ -76,6 +77,13 @@ nlohmann::ordered_json checked_json(const Checked& checked) {
   return json;
 }
 
+/// Only in a scenario are there lines to mend.
+std::string next_after(ExitCode code, const std::string& first_bad) {
+  const std::string again = "calot check " + shell_word(first_bad);
+  if (code == ExitCode::usage) return "calot check --help";
+  return code == ExitCode::scenario ? "mend the lines named above, then: " + again : again;
+}
+
 }  // namespace
 
 ExitCode check_command(const CheckCommand& command) {
@@ -85,14 +93,19 @@ ExitCode check_command(const CheckCommand& command) {
                   "calot new NAME", command.json);
     return ExitCode::nothing_selected;
   }
+  const std::atomic<bool>& stop = interrupt_flag();
   ExitCode code = ExitCode::ok;
   std::string first_bad;
+  std::size_t done = 0;
   nlohmann::ordered_json json = {{"schema", "calot.check/1"}, {"scenarios", nlohmann::json::array()}};
   for (const std::string& file : files) {
+    if (stop) break;
     const Checked checked = check(file);
+    ++done;
     json["scenarios"].push_back(checked_json(checked));
     if (checked.exercise) {
       if (!command.json) print(fmt::format("{}  {}: {}", green("ok"), file, checked.exercise->title));
+      std::fflush(stdout);
       continue;
     }
     std::fflush(stdout);
@@ -100,12 +113,15 @@ ExitCode check_command(const CheckCommand& command) {
     if (first_bad.empty()) first_bad = file;
     if (code == ExitCode::ok) code = exit_code(checked.failure.kind);
   }
+  json["interrupted"] = done < files.size();
   if (command.json) print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   std::fflush(stdout);
-  if (code != ExitCode::ok) {
-    std::fprintf(stderr, "Next: mend the lines named above, then: calot check %s\n",
-                 shell_word(first_bad).c_str());
+  if (done < files.size()) {
+    std::fprintf(stderr, "Interrupted: %zu of %zu scenarios were checked.\nNext: calot check %s\n", done,
+                 files.size(), shell_word(files[done]).c_str());
+    return ExitCode::interrupted;
   }
+  if (code != ExitCode::ok) std::fprintf(stderr, "Next: %s\n", next_after(code, first_bad).c_str());
   return code;
 }
 

@@ -1,6 +1,9 @@
 #include "app/cli.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -9,6 +12,7 @@
 #include "app/terminal.h"
 #include "base/suggest.h"
 #include "session/build_info.h"
+#include "session/json_fields.h"
 
 namespace calot {
 namespace {
@@ -38,15 +42,35 @@ void add_session_options(CLI::App& command, SessionCommand& options) {
       ->check(CLI::Range(0.0, 3600.0));
   command.add_option("--fail-below", options.fail_below, "exit with 1 when the score is below this")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check([](const std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        return number && value >= 0 && value <= 100 ? ""
+                                                    : text + " is no score: give 0 to 100";  // nan is neither
+      });
 }
 
 void add_run(Program& program) {
   CLI::App& command = *program.app.add_subcommand("run", "play a scenario, score it and draw its frames");
   command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
-  command.add_option("-o,--output", program.run.output, "output folder (default: out/<scenario id>)")
+  command
+      .add_option("-o,--output", program.run.output,
+                  "output folder, of which an earlier session's files are replaced (default: a new one, "
+                  "out/<scenario id>)")
       ->type_name("DIR");
-  command.add_option("--seed", program.run.seed, "seed of the scenario's random numbers")->type_name("N");
+  command.add_option("--seed", program.run.seed, "seed of the scenario's random numbers")
+      ->type_name("N")
+      ->check([](const std::string& text) {
+        // The library would turn -1 into 2^64 - 1.
+        std::uint64_t seed = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+        return error == std::errc() && end == text.data() + text.size()
+                   ? ""
+                   : text + " is no seed: give a whole number from 0 on";
+      });
+  command.add_flag(
+      "--overwrite", program.run.overwrite,
+      "replace what an earlier session left in out/<scenario id> (else: out/<scenario id>-2, ...)");
   command.add_option("--param", program.run.params, "set a parameter of the scenario; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
@@ -147,7 +171,24 @@ ExitCode explain(const Program& program, const CLI::ParseError& error, int argc,
   return print_failure(fail(FailureKind::usage, error.what(), hint), next);
 }
 
+/// The first argument that is not UTF-8, with its odd bytes escaped: it could be neither printed nor recorded.
+std::optional<Failure> check_encoding(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (is_utf8(word)) continue;
+    std::string shown;
+    for (const char c : word)
+      shown += static_cast<unsigned char>(c) < 0x80 ? std::string(1, c)
+                                                    : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    return fail(FailureKind::usage, fmt::format("argument {} is not UTF-8: {}", i, shown),
+                "rename the file, or write the value in UTF-8");
+  }
+  return std::nullopt;
+}
+
 int parse_and_run(int argc, char** argv) {
+  if (const std::optional<Failure> wrong = check_encoding(argc, argv))
+    return static_cast<int>(print_failure(*wrong, "calot --help"));
   Program program;
   program.app.set_version_flag("--version", "calot " + version());
   program.app.require_subcommand(0, 1);
@@ -160,8 +201,9 @@ int parse_and_run(int argc, char** argv) {
   add_bench(program);
   add_doctor(program);
   program.app.footer(
-      "Exit codes: 0 ok, 1 mismatch or score below --fail-below, 2 interrupted, 3 internal, 4 usage,\n"
-      "5 nothing selected, 6 scenario error, 7 resource limit, 8 the simulation could not follow.");
+      "Exit codes: 0 ok, 1 mismatch, a recording without end or score below --fail-below, 2 interrupted,\n"
+      "3 internal, 4 usage, 5 nothing selected, 6 scenario error, 7 resource limit,\n"
+      "8 the simulation could not follow.");
   try {
     program.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

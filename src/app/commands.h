@@ -1,6 +1,7 @@
 #pragma once
 // The commands behind `calot`, each with what its command line fills in. None of them parses arguments.
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct RunCommand : SessionCommand {
   std::string scenario;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> params;  ///< "key=value"
+  bool overwrite = false;           ///< see PlayRequest
 };
 ExitCode run_command(const RunCommand& command);
 
@@ -54,6 +56,8 @@ struct GoldenCommand {
   std::string output;              ///< report: the HTML file; test: the folder for what differs
   bool json = false;
 };
+/// Where a golden command's pictures are stored.
+std::filesystem::path golden_folder(const GoldenCommand& command);
 ExitCode golden_test_command(const GoldenCommand& command);
 ExitCode golden_accept_command(const GoldenCommand& command);
 ExitCode golden_report_command(const GoldenCommand& command);

@@ -19,8 +19,13 @@ struct Finding {
 
 Finding processor() {
   // The binary is already running, so what it was compiled for is there; a build for older machines says so.
-  return {true, "processor", fmt::format("runs this build ({}, {})", instruction_set(), toolchain()), ""};
+  const Make make = this_make();
+  return {true, "processor", fmt::format("runs this build ({}, {})", make.instruction_set, make.toolchain),
+          ""};
 }
+
+/// What else decides the bits of a state: where this differs, so do hashes.
+Finding mathematics() { return {true, "mathematics", this_make().mathematics, ""}; }
 
 Finding folder(const std::string& name, const std::string& use) {
   std::error_code ignored;
@@ -75,7 +80,7 @@ Finding scenarios() {
 ExitCode doctor_command() {
   bool ok = true;
   for (const Finding& finding :
-       {processor(), folder("scripts/lua", "Lua modules"), folder("assets", "assets"),
+       {processor(), mathematics(), folder("scripts/lua", "Lua modules"), folder("assets", "assets"),
         folder("golden", "goldens"), scenarios(), renderer(), output()}) {
     print(fmt::format("{}  {}: {}", finding.ok ? green("ok    ") : red("FAILED"), finding.what,
                       finding.detail));

@@ -93,30 +93,23 @@ const char* const head =
 
 }  // namespace
 
-Result<std::string> golden_html(const std::vector<GoldenResult>& results) {
+std::optional<Failure> GoldenPage::add(const GoldenResult& result) {
   std::string name = (fs::temp_directory_path() / "calot-report-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr)
     return fail(FailureKind::usage, "cannot make a temporary folder", "set TMPDIR");
-  const fs::path scratch = fs::path(name) / "picture.png";
-  std::string html = head;
-  std::size_t failed = 0;
-  std::string body;
-  std::optional<Failure> failure;
-  for (const bool passed : {false, true}) {
-    for (const GoldenResult& result : results) {
-      if (result.judgement.passed != passed || failure) continue;
-      if (!passed) ++failed;
-      Result<std::string> part = section(result, scratch);
-      if (part)
-        body += part.value();
-      else
-        failure = part.failure();
-    }
-  }
+  const Result<std::string> part = section(result, fs::path(name) / "picture.png");
   std::error_code ignored;
   fs::remove_all(name, ignored);
-  if (failure) return *failure;
-  return html + fmt::format("<h1>{} of {} frames differ</h1>\n", failed, results.size()) + body + "</html>\n";
+  if (!part) return part.failure();
+  ++all_;
+  if (!result.judgement.passed) ++failed_;
+  (result.judgement.passed ? passed_sections_ : failed_sections_) += part.value();
+  return std::nullopt;
+}
+
+std::string GoldenPage::html() const {
+  return head + fmt::format("<h1>{} of {} frames differ</h1>\n", failed_, all_) + failed_sections_ +
+         passed_sections_ + "</html>\n";
 }
 
 }  // namespace calot

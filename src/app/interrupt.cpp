@@ -22,12 +22,22 @@ extern "C" void calot_on_interrupt(int) {
 
 }  // namespace
 
-const std::atomic<bool>& interrupt_flag() {
+namespace {
+
+bool listen() {
   struct sigaction action = {};
   action.sa_handler = calot_on_interrupt;
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal has its default effect
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  return true;
+}
+
+}  // namespace
+
+const std::atomic<bool>& interrupt_flag() {
+  static const bool listening = listen();  // once: the second signal must find its default effect
+  static_cast<void>(listening);
   return interrupted;
 }
 

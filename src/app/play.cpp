@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "app/interrupt.h"
+#include "app/output_folder.h"
 #include "app/project.h"
 #include "app/terminal.h"
 #include "lua/load_exercise.h"
@@ -17,16 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Golden times and those asked for, each once: two that share a name would share a file.
-std::vector<double> frame_times(const ExerciseDefinition& exercise, const PlayRequest& request) {
-  std::vector<double> times = exercise.golden.at;
-  times.insert(times.end(), request.at.begin(), request.at.end());
-  std::sort(times.begin(), times.end());
-  const auto same_file = [](double a, double b) { return frame_name(a) == frame_name(b); };
-  times.erase(std::unique(times.begin(), times.end(), same_file), times.end());
-  return times;
-}
-
 /// Draws a frame when its golden time has come, and one at the end.
 class FrameCapture {
  public:
@@ -35,21 +26,23 @@ class FrameCapture {
       : renderer_(renderer),
         request_(request),
         output_(output),
-        times_(frame_times(exercise, request)),
+        source_hash_(exercise.source_hash),
+        times_(golden_frames(exercise, request.at)),
         half_step_(0.5 / exercise.scene.solver.rate) {}
 
   void observe(const World& world, bool last) {
     if (!builder_) builder_.emplace(world);  // at rest: the laparoscope is held still from then on
     builder_->follow(world);
-    while (next_ < times_.size() && world.report().time >= times_[next_] - half_step_) {
-      if (request_.on_frame) request_.on_frame(builder_->build(world), frame_name(times_[next_]));
-      draw(world, frame_name(times_[next_]));
-      ++next_;
+    // Many times may fall between two steps: an interruption need not wait for all of them.
+    for (; next_ < times_.size() && world.report().time >= times_[next_].time - half_step_; ++next_) {
+      if (interrupt_flag()) return;
+      if (request_.on_scene) request_.on_scene(builder_->build(world), times_[next_].name);
+      draw(world, times_[next_].name);
     }
-    if (last) draw(world, "end");
+    if (last && request_.end_frame) draw(world, "end");
   }
 
-  std::vector<Frame> frames;
+  std::vector<std::string> pictures;
   std::optional<Failure> failure;  ///< the first
   double first_frame_s = -1;       ///< since the process started
 
@@ -62,39 +55,57 @@ class FrameCapture {
       return;
     }
     if (first_frame_s < 0) first_frame_s = seconds_since_start();
-    frames.push_back({name, world.report().time, world.report().state_hash, std::move(image).value()});
-    if (output_.empty()) return;
-    const Result<std::string> written = write_png((output_ / (name + ".png")).string(), frames.back().image);
+    pictures.push_back(name);
+    const Frame frame{name,         world.report().time,     world.report().state_hash,
+                      source_hash_, renderer_.description(), std::move(image).value()};
+    if (request_.on_picture) failure = request_.on_picture(frame);
+    if (failure || output_.empty()) return;
+    const Result<std::string> written = write_png((output_ / (name + ".png")).string(), frame.image);
     if (!written) failure = written.failure();
   }
 
   OffscreenRenderer& renderer_;
   const PlayRequest& request_;
   const fs::path& output_;
-  std::vector<double> times_;
+  std::uint64_t source_hash_;
+  std::vector<GoldenFrame> times_;
   double half_step_;
   std::size_t next_ = 0;
   std::optional<SceneBuilder> builder_;
 };
 
-/// The files that grow while a session is played.
+/// The folder, and the files that grow while a session is played.
 struct Outputs {
+  std::optional<OutputFolder> folder;
   std::optional<RecordingWriter> recording;
   std::optional<StepTable> table;
 };
 
-Result<Outputs> open_outputs(const fs::path& folder, const ExerciseDefinition& exercise, const World& world) {
+/// The user's folder is theirs to reuse; without one, no session replaces another unless that was asked for.
+Result<fs::path> choose_folder(const PlayRequest& request, const ExerciseDefinition& exercise) {
+  if (!request.output.empty()) return request.output;
+  const fs::path standard = fs::path("out") / exercise.id;
+  return request.overwrite ? standard : fresh_folder(standard);
+}
+
+Result<Outputs> open_outputs(const PlayRequest& request, const ExerciseDefinition& exercise,
+                             const World& world) {
   Outputs outputs;
-  if (folder.empty()) return outputs;
-  const Result<fs::path> made = make_folder(folder);
-  if (!made) return made.failure();
+  if (!request.write) return outputs;
+  const Result<fs::path> path = choose_folder(request, exercise);
+  if (!path) return path.failure();
+  Result<OutputFolder> folder = OutputFolder::claim(path.value());
+  if (!folder) return folder.failure();
+  folder->clear();  // a session that is killed leaves no older report beside its recording
   Result<RecordingWriter> recording =
-      RecordingWriter::create((folder / "recording.jsonl").string(), recording_header(exercise, world));
+      RecordingWriter::create((path.value() / "recording.jsonl").string(),
+                              recording_header(exercise, world, portable_path(request.scenario)));
   if (!recording) return recording.failure();
   outputs.recording = std::move(recording).value();
-  Result<StepTable> table = StepTable::create((folder / "steps.csv").string(), exercise.scene);
+  Result<StepTable> table = StepTable::create((path.value() / "steps.csv").string(), exercise.scene);
   if (!table) return table.failure();
   outputs.table = std::move(table).value();
+  outputs.folder.emplace(std::move(folder).value());
   return outputs;
 }
 
@@ -142,15 +153,32 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
   ProgressLine line;
   options.observer = [&](const World& present, const Progress& progress, bool last) {
     show_progress(line, present, progress, script.definition().time_limit);
+    if (request.on_state && !last) request.on_state(present);
     if (capture != nullptr) capture->observe(present, last);
   };
   // The recording is on disk already, line by line; what is left to say is where to go from here.
-  script.set_emergency_flush([next = "Next: calot check " + shell_word(request.scenario.string()) + "\n"] {
+  script.set_emergency_flush([next = "Next: calot run " + shell_word(request.scenario.string()) + "\n"] {
     const ssize_t ignored = write(STDERR_FILENO, next.data(), next.size());
     static_cast<void>(ignored);
   });
   InputSource& source = replay ? static_cast<InputSource&>(*replay) : script.demo();
   return run_session(world, script, source, options);
+}
+
+/// What a replay owes its reader besides the session.
+void note_recording(const Recording& recording, SessionResult& session) {
+  if (const std::optional<std::string> cut = cut_note(recording)) session.notes.push_back(*cut);
+  if (!recording.header.state_hash)
+    session.notes.emplace_back("the recording has no state hashes: nothing was compared");
+}
+
+/// A session that was cut earns no points, neither then nor when it is played again.
+bool was_aborted(const SessionResult& session, const Recording* replay) {
+  const bool short_recording =
+      replay != nullptr && (replay->end.empty() || replay->end == to_text(SessionEnd::interrupted) ||
+                            replay->end == to_text(SessionEnd::failed));
+  return session.end == SessionEnd::interrupted || session.end == SessionEnd::failed ||
+         (session.end == SessionEnd::source_ended && short_recording);
 }
 
 /// Measures and scores; writes the report where there is an output folder.
@@ -174,7 +202,27 @@ Result<ExerciseDefinition> load_definition(const fs::path& scenario) {
   return script.value()->definition();
 }
 
-std::string frame_name(double golden_time) { return fmt::format("t{:06.2f}s", golden_time); }
+std::vector<GoldenFrame> golden_frames(const ExerciseDefinition& exercise, const std::vector<double>& at) {
+  std::vector<double> times = exercise.golden.at;
+  times.insert(times.end(), at.begin(), at.end());
+  std::sort(times.begin(), times.end());
+  std::vector<GoldenFrame> frames;
+  for (const double time : times) {
+    const std::string name = fmt::format("t{:06.2f}s", time);
+    if (frames.empty() || frames.back().name != name) frames.push_back({time, name});
+  }
+  return frames;
+}
+
+std::string portable_path(const fs::path& scenario) {
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(scenario, error);
+  for (const fs::path& folder : {project_folder(), fs::current_path(error)}) {
+    const fs::path below = file.lexically_relative(fs::weakly_canonical(folder, error));
+    if (!below.empty() && *below.begin() != "..") return below.generic_string();
+  }
+  return scenario.filename().string();
+}
 
 Result<Played> play(const PlayRequest& request) {
   interrupt_flag();  // from here on an interrupted session ends as one, with its files
@@ -185,27 +233,28 @@ Result<Played> play(const PlayRequest& request) {
     if (std::optional<Failure> wrong = check_replay(*request.replay, exercise)) return *wrong;
   }
   Played played;
-  played.frame_times = frame_times(exercise, request);
-  if (request.write) played.output = request.output.empty() ? fs::path("out") / exercise.id : request.output;
+  played.rendered = request.render;
   std::optional<OffscreenRenderer> renderer;
   std::optional<FrameCapture> capture;
   if (request.render) {
     Result<OffscreenRenderer> created = OffscreenRenderer::create(request.width, request.height);
     if (!created) return created.failure();
     renderer = std::move(created).value();
-    played.renderer = renderer->description();
     capture.emplace(*renderer, exercise, request, played.output);
   }
   Result<World> world = World::create(exercise.scene);
   if (!world) return world.failure();
-  Result<Outputs> outputs = open_outputs(played.output, exercise, world.value());
+  Result<Outputs> outputs = open_outputs(request, exercise, world.value());
   if (!outputs) return outputs.failure();
+  if (outputs->folder) played.output = outputs->folder->path();
 
   played.session =
       run(request, *script.value(), world.value(), outputs.value(), capture ? &*capture : nullptr);
+  if (request.replay != nullptr) note_recording(*request.replay, played.session);
   played.exercise = exercise;
+  played.report.aborted = was_aborted(played.session, request.replay);
   if (capture) {
-    played.frames = std::move(capture->frames);
+    played.pictures = std::move(capture->pictures);
     played.report.start_to_first_frame_s = capture->first_frame_s;
   }
   if (std::optional<Failure> unwritten = make_report(played)) return *unwritten;

@@ -15,44 +15,61 @@
 
 namespace calot {
 
+/// A picture as it comes; nobody keeps it.
+struct Frame {
+  std::string name;  ///< "t010.00s" at a golden time, "end" at the end
+  double time = 0;   ///< s
+  std::uint64_t state_hash = 0, source_hash = 0;
+  std::string renderer;  ///< what drew it
+  Image image;
+};
+
 struct PlayRequest {
   std::filesystem::path scenario;
   std::map<std::string, std::string> params;
   std::uint64_t seed = 1;
-  bool render = true;
-  int width = 960, height = 540;      ///< px
-  std::vector<double> at;             ///< s, of frames besides the golden ones
-  bool write = false;                 ///< write report, frames, table and recording into `output`
-  std::filesystem::path output;       ///< folder; empty: out/<scenario id>
-  const Recording* replay = nullptr;  ///< play these inputs instead of the scenario's demo
+  bool render = true, end_frame = true;
+  int width = 960, height = 540;  ///< px
+  std::vector<double> at;         ///< s, of pictures besides the golden ones
+  bool write = false;             ///< write report, frames, table and recording into `output`
+  std::filesystem::path
+      output;              ///< folder, of which an earlier session's files are replaced; empty: out/<id>
+  bool overwrite = false;  ///< without `output`: replace what out/<id> holds instead of taking out/<id>-2
+  const Recording* replay = nullptr;           ///< play these inputs instead of the scenario's demo
+  std::function<void(const World&)> on_state;  ///< called at rest and after each step
   /// Called with the scene of each golden frame, before it is drawn.
-  std::function<void(const Scene&, const std::string& frame)> on_frame;
-};
-
-struct Frame {
-  std::string name;  ///< "t010.00s" at a golden time, "end" at the end
-  double time = 0;   ///< s
-  std::uint64_t state_hash = 0;
-  Image image;
+  std::function<void(const Scene&, const std::string& frame)> on_scene;
+  /// Called with each picture when it has been drawn; after a failure none is drawn, and play fails with it.
+  std::function<std::optional<Failure>(const Frame&)> on_picture;
 };
 
 struct Played {
   ExerciseDefinition exercise;
   SessionResult session;
   SessionReport report;
-  std::string json;                 ///< the report
-  std::vector<double> frame_times;  ///< s, asked for: golden ones and the request's, ascending
-  std::vector<Frame> frames;
-  std::string renderer;          ///< what drew them; empty without rendering
+  std::string json;                   ///< the report
+  std::vector<std::string> pictures;  ///< their frames' names
+  bool rendered = false;
   std::filesystem::path output;  ///< where it was written; empty: nowhere
 };
+
+/// When a picture is drawn, and what it is called.
+struct GoldenFrame {
+  double time = 0;  ///< s
+  std::string name;
+};
+/// An exercise's golden times and those `at` (s) besides, ascending; of those that round to the same hundredth of a
+/// second, the first.
+std::vector<GoldenFrame> golden_frames(const ExerciseDefinition& exercise,
+                                       const std::vector<double>& at = {});
+
+/// A scenario's path as others can use it: below the project, else below the present folder, else its file's name.
+std::string portable_path(const std::filesystem::path& scenario);
 
 /// Reads and checks a scenario without playing it.
 Result<ExerciseDefinition> load_definition(const std::filesystem::path& scenario);
 
 /// Fails where no session could be played; a session that failed on its way is a value (see session.end).
 Result<Played> play(const PlayRequest& request);
-
-std::string frame_name(double golden_time);
 
 }  // namespace calot

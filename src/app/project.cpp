@@ -48,7 +48,13 @@ std::string scenario_name(const fs::path& file) {
 
 std::optional<Failure> check_scenario_path(const std::string& path) {
   std::error_code ignored;
-  if (fs::is_regular_file(path, ignored)) return std::nullopt;
+  if (fs::is_regular_file(path, ignored)) {
+    std::ifstream in(path, std::ios::binary);
+    in.peek();
+    if (in.is_open() && !in.bad()) return std::nullopt;
+    return fail(FailureKind::usage, fmt::format("cannot read {}", path),
+                "make it readable for you: chmod u+r");
+  }
   if (fs::is_directory(path, ignored)) {
     return fail(FailureKind::usage, fmt::format("{} is a folder, not a scenario", path),
                 "name a .lua file in it");
@@ -69,7 +75,9 @@ std::optional<Failure> check_scenario_path(const std::string& path) {
 Result<std::string> read_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(FailureKind::usage, fmt::format("cannot read {}", path.string()));
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (in.bad()) return fail(FailureKind::usage, fmt::format("cannot read {}", path.string()));
+  return text;
 }
 
 Result<std::string> write_text(const fs::path& path, const std::string& text) {

@@ -90,17 +90,15 @@ std::string summary(const Played& played) {
   if (!session.progress.notes().empty())
     text += fmt::format("\n{}\n{}", bold("Noted"), notes_text(session.progress));
   text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(played.report.metrics));
-  if (session.end == SessionEnd::failed || session.end == SessionEnd::interrupted) {
-    text += fmt::format("\n{} none: the session was broken off. Its parts so far:\n", bold("Score"));
-  } else {
-    text += fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
-                        verdict(score), played.exercise.score.pass);
-  }
+  text += played.report.aborted
+              ? fmt::format("\n{} none: the session did not come to its end\n", bold("Score"))
+              : fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
+                            verdict(score), played.exercise.score.pass);
   for (const CriticalEvent& event : score.critical) {
     text += fmt::format("  critical: {} {}; the total is capped at {:.0f}\n", to_text(event.event),
                         times_text(event.times), played.exercise.score.cap);
   }
-  text += score_text(score);
+  if (!played.report.aborted) text += score_text(score);
   text += "  Benchmarks are design values, uncalibrated.\n";
   text += fmt::format("\nState hash {}, {:.2f} x real time\n",
                       hex(session.state_hashes.empty() ? 0 : session.state_hashes.back()),

@@ -124,9 +124,12 @@ std::vector<KeyTable> exercise_tables() {
                   number("max", quantity::number, -infinity, infinity, "", "largest number"),
                   text("title", "", "one line for people")}});
   for (KeyTable& table : score_tables()) all.push_back(std::move(table));
-  all.push_back({"golden",
-                 "When pictures are compared with golden ones.",
-                 {required(list("at", "number", "times in s, within the time limit"))}});
+  all.push_back(
+      {"golden",
+       "When pictures are compared with golden ones.",
+       {required(
+           list("at", "number",
+                "at most 100 times in s, within the time limit; a picture is of a hundredth of a second"))}});
   for (KeyTable& table : option_tables()) all.push_back(std::move(table));
   return all;
 }

@@ -128,6 +128,10 @@ GoldenDefinition read_golden(FieldCheck& check, const Value* value, double time_
   const TableReader reader(check, value, "golden", api_table("golden"));
   const Value* at = reader.take("at");
   if (at == nullptr) return golden;
+  if (at->items.size() > GoldenDefinition::most_times)
+    check.problem("golden.at",
+                  fmt::format("{} times, more than {}", at->items.size(), GoldenDefinition::most_times),
+                  "keep those that show something");
   for (std::size_t i = 0; i < at->items.size(); ++i) {
     const Value& time = at->items[i];
     const std::string path = indexed("golden.at", i);

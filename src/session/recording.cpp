@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
-#include "base/hash.h"
-#include "session/build_info.h"
+#include "session/json_fields.h"
+#include "session/runner.h"
 
 namespace calot {
 namespace {
@@ -15,61 +16,181 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* schema = "calot.recording/1";
+constexpr std::size_t longest_line = 1 << 20;  // bytes
+constexpr double highest_rate = 1e6;           // Hz
+constexpr double time_slack = 1e-6;            // s
 
-Failure unreadable(const std::string& path, int line, const std::string& message) {
-  return fail(FailureKind::usage, message, "record the session anew with `calot run`", {path, line, {}});
+Make parse_make(JsonFields& fields) {
+  Make make;
+  if (fields.has("toolchain")) make.toolchain = fields.text("toolchain");
+  if (fields.has("instruction_set")) make.instruction_set = fields.text("instruction_set");
+  if (fields.has("mathematics")) make.mathematics = fields.text("mathematics");
+  return make;
 }
 
-std::uint64_t hash_of(const Json& text) {
-  const std::string digits = text.get<std::string>();
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    throw std::runtime_error("'" + digits + "' is not a state hash");
-  }
-  return value;
-}
-
-RecordingHeader parse_header(const Json& json) {
-  if (!json.is_object() || json.value("schema", "") != schema) {
-    throw std::runtime_error(fmt::format("this is not a recording of schema {}", schema));
-  }
+RecordingHeader parse_header(const Json& json, std::vector<std::string>& problems) {
+  JsonFields fields(json, problems);
   RecordingHeader header;
-  header.scenario = json.at("scenario");
-  header.file = json.at("file");
-  header.source_hash = hash_of(json.at("source_hash"));
-  header.seed = json.at("seed");
-  header.params = json.at("params").get<std::map<std::string, std::string>>();
-  header.rate = json.at("rate_Hz");
-  header.instruments = json.at("instruments").get<std::vector<std::string>>();
-  header.toolchain = json.at("toolchain");
-  header.instruction_set = json.at("instruction_set");
-  header.state_hash = hash_of(json.at("state_hash"));
+  if (fields.text("schema") != schema) {
+    problems = {fmt::format("this is not a recording of schema {}", schema)};
+    return header;
+  }
+  header.scenario = fields.text("scenario");
+  if (fields.has("file")) header.file = fields.text("file");
+  if (fields.has("source_hash")) header.source_hash = fields.hash("source_hash");
+  if (fields.has("seed")) header.seed = fields.count("seed");
+  if (fields.has("params")) header.params = fields.text_map("params");
+  header.rate = fields.number("rate_Hz", 1 / highest_rate, highest_rate);
+  header.instruments = fields.texts("instruments");
+  header.make = parse_make(fields);
+  if (fields.has("state_hash")) header.state_hash = fields.hash("state_hash");
+  fields.expect_no_others();
   return header;
 }
 
-RecordedStep parse_step(const Json& json, std::size_t instruments) {
+bool is_pose(const Json& json) {
+  return json.is_array() && json.size() == 5 &&
+         std::all_of(json.begin(), json.end(), [](const Json& number) { return number.is_number(); });
+}
+
+std::vector<InstrumentPose> parse_poses(const Json& poses, std::vector<std::string>& problems) {
+  std::vector<InstrumentPose> result;
+  if (!poses.is_array()) problems.emplace_back("poses must be a list, one for each instrument");
+  for (std::size_t i = 0; poses.is_array() && i < poses.size(); ++i) {
+    if (!is_pose(poses[i]))
+      problems.push_back(
+          fmt::format("poses[{}] needs 5 numbers: pitch, yaw, insertion, roll, jaw (rad, m)", i));
+    else
+      result.push_back({poses[i][0], poses[i][1], poses[i][2], poses[i][3], poses[i][4]});
+  }
+  return result;
+}
+
+/// `time` is that of a whole number of steps.
+RecordedStep parse_step(const Json& json, const RecordingHeader& header, double time,
+                        std::vector<std::string>& problems) {
+  JsonFields fields(json, problems);
   RecordedStep step;
-  step.time = json.at("time_s");
-  step.state_hash = hash_of(json.at("state_hash"));
-  for (const Json& numbers : json.at("poses")) {
-    const auto pose = numbers.get<std::vector<double>>();
-    if (pose.size() != 5) throw std::runtime_error("a pose needs 5 numbers");
-    step.input.instruments.push_back({pose[0], pose[1], pose[2], pose[3], pose[4]});
-  }
-  if (step.input.instruments.size() != instruments) {
-    throw std::runtime_error(fmt::format("{} poses where the header names {} instruments",
-                                         step.input.instruments.size(), instruments));
-  }
+  step.time = fields.number("time_s");
+  step.input.instruments = parse_poses(fields.any("poses"), problems);
+  if (header.state_hash) step.state_hash = fields.hash("state_hash");
+  fields.expect_no_others();
+  const std::size_t poses = step.input.instruments.size();
+  if (problems.empty() && poses != header.instruments.size())
+    problems.push_back(
+        fmt::format("{} poses where the header names {} instruments", poses, header.instruments.size()));
+  if (problems.empty() && std::abs(step.time - time) > time_slack)
+    problems.push_back(fmt::format("time_s is {}, not {:.6g}: there is one line for each step at {:g} Hz",
+                                   step.time, time, header.rate));
   return step;
 }
 
+std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
+                      std::vector<std::string>& problems) {
+  JsonFields fields(json, problems);
+  std::string end = fields.text("end");
+  const std::uint64_t declared = fields.count("steps");
+  if (problems.empty() && declared != steps)
+    problems.push_back(fmt::format("{} steps were recorded, {} are here", declared, steps));
+  if (fields.has("checksum") && fields.hash("checksum") != before.value() && problems.empty())
+    problems.push_back(
+        fmt::format("the lines before this one are not those that were recorded: their checksum is {}",
+                    hex(before.value())));
+  fields.expect_no_others();
+  const SessionEnd ends[] = {SessionEnd::steps_done, SessionEnd::time_limit, SessionEnd::source_ended,
+                             SessionEnd::interrupted, SessionEnd::failed};
+  if (std::none_of(std::begin(ends), std::end(ends), [&](SessionEnd known) { return to_text(known) == end; }))
+    problems.push_back(fmt::format("a session does not end as \"{}\"", end));
+  return end;
+}
+
+/// Reads line by line what a writer may have left unfinished.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path), in_(path, std::ios::binary) {}
+
+  Result<Recording> read() {
+    if (!in_)
+      return fail(FailureKind::usage, fmt::format("cannot read {}", path_), "give the path of a recording");
+    std::string buffer(longest_line, '\0');
+    while (problems_.empty() && next_line(buffer)) {
+      std::vector<std::string> problems;
+      parse(text_, problems);
+      if (!problems.empty() && line_ > 1 && cut_short_) break;
+      for (std::string& problem : problems) add_problem(std::move(problem));
+      text_hash_.add(text_);
+      text_hash_.add('\n');
+    }
+    if (problems_.empty() && line_ == 0) add_problem("this is not a recording: it is empty");
+    if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
+    return std::move(recording_);
+  }
+
+ private:
+  bool next_line(std::string& buffer) {
+    if (in_.eof() || in_.peek() == std::ifstream::traits_type::eof()) {
+      if (in_.bad()) add_problem("this cannot be read");
+      return false;
+    }
+    ++line_;
+    in_.getline(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    cut_short_ = in_.eof();  // no line end: the writer was killed in the middle of this line
+    const auto size = static_cast<std::size_t>(in_.gcount()) - (in_ && !cut_short_ ? 1U : 0U);
+    if (in_.fail()) add_problem(fmt::format("this line has more than {} bytes", longest_line - 1));
+    text_ = std::string_view(buffer).substr(0, size);
+    return problems_.empty();
+  }
+
+  void parse(std::string_view text, std::vector<std::string>& problems) {
+    std::string broken;
+    const Json json = parse_json(text, broken);
+    if (!broken.empty())
+      problems.push_back(std::move(broken));
+    else if (line_ == 1)
+      recording_.header = parse_header(json, problems);
+    else if (!recording_.end.empty())
+      problems.emplace_back("there is more after the recording's end");
+    else if (json.is_object() && json.contains("end"))
+      recording_.end = parse_end(json, recording_.steps.size(), text_hash_, problems);
+    else
+      add_step(parse_step(json, recording_.header, static_cast<double>(line_ - 1) / recording_.header.rate,
+                          problems),
+               problems);
+  }
+
+  void add_step(RecordedStep step, const std::vector<std::string>& problems) {
+    if (problems.empty()) recording_.steps.push_back(std::move(step));
+  }
+
+  void add_problem(std::string message) {
+    problems_.push_back({{path_, std::max(1, line_), {}},
+                         std::move(message),
+                         "restore the file, or record the session anew with `calot run`"});
+  }
+
+  const std::string& path_;
+  std::ifstream in_;
+  std::string_view text_;
+  bool cut_short_ = false;
+  int line_ = 0;
+  Hash text_hash_;
+  Recording recording_;
+  std::vector<Problem> problems_;
+};
+
 }  // namespace
 
-RecordingHeader recording_header(const ExerciseDefinition& exercise, const World& world) {
+std::optional<std::string> cut_note(const Recording& recording) {
+  if (!recording.end.empty()) return std::nullopt;
+  return fmt::format("the recording has no end: it was cut, and stops at step {} ({:.3f} s)",
+                     recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);
+}
+
+RecordingHeader recording_header(const ExerciseDefinition& exercise, const World& world,
+                                 const std::string& file) {
   RecordingHeader header;
   header.scenario = exercise.id;
-  header.file = exercise.file;
+  header.file = file;
   header.source_hash = exercise.source_hash;
   header.seed = exercise.seed;
   header.params = exercise.params;
@@ -77,8 +198,7 @@ RecordingHeader recording_header(const ExerciseDefinition& exercise, const World
   for (const InstrumentDefinition& instrument : exercise.scene.instruments) {
     header.instruments.push_back(instrument.name);
   }
-  header.toolchain = toolchain();
-  header.instruction_set = instruction_set();
+  header.make = this_make();
   header.state_hash = world.state_hash();
   return header;
 }
@@ -86,23 +206,29 @@ RecordingHeader recording_header(const ExerciseDefinition& exercise, const World
 Result<RecordingWriter> RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
   RecordingWriter writer;
   writer.out_.open(path, std::ios::trunc);
-  nlohmann::ordered_json json = {{"schema", schema},
-                                 {"scenario", header.scenario},
-                                 {"file", header.file},
-                                 {"source_hash", hex(header.source_hash)},
-                                 {"seed", header.seed},
-                                 {"params", header.params},
-                                 {"rate_Hz", header.rate},
-                                 {"instruments", header.instruments},
-                                 {"toolchain", header.toolchain},
-                                 {"instruction_set", header.instruction_set},
-                                 {"state_hash", hex(header.state_hash)}};
-  writer.out_ << json.dump() << std::endl;
-  if (!writer.out_) {
+  nlohmann::ordered_json json = {{"schema", schema}, {"scenario", header.scenario}, {"file", header.file}};
+  if (header.source_hash) json["source_hash"] = hex(*header.source_hash);
+  json["seed"] = header.seed;
+  json["params"] = header.params;
+  json["rate_Hz"] = header.rate;
+  json["instruments"] = header.instruments;
+  json["toolchain"] = header.make.toolchain;
+  json["instruction_set"] = header.make.instruction_set;
+  json["mathematics"] = header.make.mathematics;
+  if (header.state_hash) json["state_hash"] = hex(*header.state_hash);
+  // A file's name may hold any bytes: what is not UTF-8 is replaced.
+  if (!writer.add_line(json.dump(-1, ' ', false, Json::error_handler_t::replace))) {
     return fail(FailureKind::usage, fmt::format("cannot write {}", path),
                 "choose another folder with -o DIR");
   }
   return writer;
+}
+
+bool RecordingWriter::add_line(const std::string& line) {
+  written_.add(std::string_view(line));
+  written_.add('\n');
+  out_ << line << std::endl;
+  return static_cast<bool>(out_);
 }
 
 bool RecordingWriter::write(const RecordedStep& step) {
@@ -111,49 +237,17 @@ bool RecordingWriter::write(const RecordedStep& step) {
   for (const InstrumentPose& pose : step.input.instruments) {
     json["poses"].push_back({pose.pitch, pose.yaw, pose.insertion, pose.roll, pose.jaw});
   }
-  json["state_hash"] = hex(step.state_hash);
-  out_ << json.dump() << std::endl;
+  if (step.state_hash) json["state_hash"] = hex(*step.state_hash);
   ++steps_;
-  return static_cast<bool>(out_);
+  return add_line(json.dump());
 }
 
 bool RecordingWriter::finish(const std::string& end) {
-  out_ << fmt::format("{{\"end\":\"{}\",\"steps\":{}}}", end, steps_) << std::endl;
-  return static_cast<bool>(out_);
+  return add_line(
+      fmt::format(R"({{"end":"{}","steps":{},"checksum":"{}"}})", end, steps_, hex(written_.value())));
 }
 
-Result<Recording> read_recording(const std::string& path) {
-  std::ifstream in(path);
-  if (!in)
-    return fail(FailureKind::usage, fmt::format("cannot read {}", path), "give the path of a recording");
-  Recording recording;
-  std::string text;
-  for (int line = 1; std::getline(in, text); ++line) {
-    const bool cut_short = in.eof();  // no line end: the writer was killed in the middle of this line
-    try {
-      const Json json = Json::parse(text);
-      if (line == 1) {
-        recording.header = parse_header(json);
-      } else if (!recording.end.empty()) {
-        return unreadable(path, line, "there is more after the recording's end");
-      } else if (json.contains("end")) {
-        recording.end = json.at("end");
-        if (json.at("steps") != recording.steps.size()) {
-          return unreadable(path, line,
-                            fmt::format("{} steps were recorded, {} are here", json.at("steps").get<int>(),
-                                        recording.steps.size()));
-        }
-      } else {
-        recording.steps.push_back(parse_step(json, recording.header.instruments.size()));
-      }
-    } catch (const std::exception& error) {
-      if (line > 1 && cut_short) break;
-      return unreadable(path, line, error.what());
-    }
-  }
-  if (recording.header.scenario.empty()) return unreadable(path, 1, "this is not a recording: it is empty");
-  return recording;
-}
+Result<Recording> read_recording(const std::string& path) { return Reader(path).read(); }
 
 Result<std::optional<StepInput>> ReplaySource::next(const World&, double) {
   if (step_ == recording_.steps.size()) return std::optional<StepInput>();

@@ -3,40 +3,49 @@
 //
 //   line 1
 //   {"schema":"calot.recording/1","scenario":...,"file":...,"source_hash":...,"seed":...,"params":{...},
-//               "rate_Hz":50,"instruments":["left"],"toolchain":...,"instruction_set":...,"state_hash":...}
+//               "rate_Hz":50,"instruments":["left"],"toolchain":...,"instruction_set":...,"mathematics":...,
+//               "state_hash":...}
 //   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"state_hash":"..."}   (rad, m)
-//   last line  {"end":"done","steps":1234}
+//   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before)
+//
+// Poses that come from elsewhere need schema, scenario, rate_Hz, instruments and, in each step, time_s and poses; what
+// has no state hash is played and not compared.
 //
 // Numbers have the fewest digits that read back as the same bits, so a replay is bit-exact. Each line is
-// flushed: an interrupted run loses nothing, and a recording without its last line is still a recording.
+// flushed: an interrupted run loses nothing. A recording without its last line is still a recording, of a run that was
+// cut: cut_note says so.
 
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "base/status.h"
+#include "session/build_info.h"
 #include "session/exercise.h"
 
 namespace calot {
 
 struct RecordingHeader {
   std::string scenario;  ///< id
-  std::string file;      ///< the scenario's path as the session was given it
-  std::uint64_t source_hash = 0;
-  std::uint64_t seed = 0;
+  /// Where the scenario is: below its project or the folder it was played from, else its file's name. May be empty.
+  std::string file;
+  std::optional<std::uint64_t> source_hash;
+  std::uint64_t seed = 1;
   std::map<std::string, std::string> params;
   double rate = 0;  ///< steps a second
   std::vector<std::string> instruments;
-  std::string toolchain, instruction_set;
-  std::uint64_t state_hash = 0;  ///< at rest, before the first step
+  Make make;                                ///< parts may be empty
+  std::optional<std::uint64_t> state_hash;  ///< at rest, before the first step; without one no step has one
 };
 
 struct RecordedStep {
   double time = 0;  ///< s, at the end of the step
   StepInput input;
-  std::uint64_t state_hash = 0;  ///< after the step
+  std::optional<std::uint64_t> state_hash;  ///< after the step
 };
 
 struct Recording {
@@ -45,8 +54,12 @@ struct Recording {
   std::string end;  ///< how the session ended; empty where the last line is missing
 };
 
-/// The header for a session about to start.
-RecordingHeader recording_header(const ExerciseDefinition& exercise, const World& world);
+/// Where a recording without an end stops; none for a whole one.
+std::optional<std::string> cut_note(const Recording& recording);
+
+/// The header for a session about to start; `file` is the scenario's path as it is to be recorded.
+RecordingHeader recording_header(const ExerciseDefinition& exercise, const World& world,
+                                 const std::string& file);
 
 class RecordingWriter {
  public:
@@ -57,11 +70,14 @@ class RecordingWriter {
   bool finish(const std::string& end);
 
  private:
+  bool add_line(const std::string& line);
+
   std::ofstream out_;
+  Hash written_;
   int steps_ = 0;
 };
 
-/// Failures (usage) name file and line. A last line cut short is dropped, as the run was killed there.
+/// Failures (usage) name file, line and byte. A last line cut short is dropped, as the run was killed there.
 Result<Recording> read_recording(const std::string& path);
 
 /// The inputs of a recording, which must outlive it. Ends with the recording.

@@ -59,10 +59,13 @@ Json benchmark_json(const ScorePart& part) {
   return json;
 }
 
-Json score_json(const ExerciseDefinition& exercise, const Score& score) {
-  Json json = {{"total", score.total},         {"out_of", 100},
-               {"passed", score.passed},       {"pass_mark", exercise.score.pass},
-               {"completed", score.completed}, {"uncapped_total", score.uncapped}};
+Json score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted) {
+  Json json = {{"total", aborted ? Json() : Json(score.total)},
+               {"out_of", 100},
+               {"passed", score.passed && !aborted},
+               {"pass_mark", exercise.score.pass},
+               {"completed", score.completed},
+               {"uncapped_total", aborted ? Json() : Json(score.uncapped)}};
   json["critical"] = Json::array();
   for (const CriticalEvent& event : score.critical) {
     json["critical"].push_back(
@@ -121,9 +124,12 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   json["motion_processing"] = {{"version", MotionProcessing::version},
                                {"rate_Hz", MotionProcessing::rate},
                                {"cut_off_Hz", MotionProcessing::cut_off}};
-  json["score"] = score_json(exercise, report.score);
+  json["score"] = score_json(exercise, report.score, report.aborted);
   json["state_hash"] = hex(session.state_hashes.empty() ? 0 : session.state_hashes.back());
-  json["build"] = {{"toolchain", toolchain()}, {"instruction_set", instruction_set()}};
+  const Make make = this_make();
+  json["build"] = {{"toolchain", make.toolchain},
+                   {"instruction_set", make.instruction_set},
+                   {"mathematics", make.mathematics}};
   json["timing"] = timing_json(session, report.start_to_first_frame_s);
   // Text from a scenario may hold any bytes; replace what is not UTF-8 instead of throwing.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

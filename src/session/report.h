@@ -14,6 +14,7 @@ namespace calot {
 struct SessionReport {
   std::map<std::string, double> metrics;
   Score score;
+  bool aborted = false;                ///< the session was cut: its parts are kept, but it has no total
   double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn
 };
 

@@ -9,6 +9,8 @@
 namespace calot {
 namespace {
 
+constexpr double rounding = 1e-9;  // of a part's full marks
+
 std::vector<double> times_of(const Progress& progress, EventKind kind) {
   std::vector<double> times;
   for (const SessionEvent& event : progress.events()) {
@@ -41,6 +43,17 @@ std::string why_not_measured(const Progress& progress, const std::string& metric
   return fmt::format("{} was never measured in this session", metric);
 }
 
+/// With as many digits, 4 and more, as tell a value from both benchmarks: what is not full marks must not look so.
+std::string told_apart(double value, const ScorePart& part) {
+  for (int digits = 4; digits < 17; ++digits) {
+    const std::string text = fmt::format("{:.{}g}", value, digits);
+    if (text != fmt::format("{:.{}g}", part.novice, digits) &&
+        text != fmt::format("{:.{}g}", part.expert, digits))
+      return text;
+  }
+  return fmt::format("{}", value);
+}
+
 ScoredPart score_benchmark(const ScorePart& part, const std::map<std::string, double>& metrics,
                            const Progress& progress) {
   ScoredPart scored;
@@ -54,16 +67,15 @@ ScoredPart score_benchmark(const ScorePart& part, const std::map<std::string, do
   scored.measured = found->second;
   // + 0.0: a novice's very value gives minus zero, which would be printed as such.
   scored.fraction = std::clamp((part.novice - found->second) / (part.novice - part.expert), 0.0, 1.0) + 0.0;
-  const std::string value = fmt::format("{:.4g}", found->second), novice = fmt::format("{:.4g}", part.novice),
-                    expert = fmt::format("{:.4g}", part.expert);
-  // What is printed alike is called alike: 4.99996 beside 5 is as good as it.
-  if (scored.fraction == 0 || value == novice) {
-    scored.explanation = fmt::format("{} = {}, no better than novice {}", part.metric, value, novice);
-  } else if (scored.fraction == 1 || value == expert) {
-    scored.explanation = fmt::format("{} = {}, as good as expert {}", part.metric, value, expert);
-  } else {
-    scored.explanation = fmt::format("{} = {}, between novice {} (no points) and expert {} (all points)",
-                                     part.metric, value, novice, expert);
+  scored.explanation =
+      fmt::format("{} = {}, between novice {:.4g} (no points) and expert {:.4g} (all points)", part.metric,
+                  told_apart(found->second, part), part.novice, part.expert);
+  if (scored.fraction < rounding) {
+    scored.explanation =
+        fmt::format("{} = {:.4g}, no better than novice {:.4g}", part.metric, found->second, part.novice);
+  } else if (scored.fraction > 1 - rounding) {
+    scored.explanation =
+        fmt::format("{} = {:.4g}, as good as expert {:.4g}", part.metric, found->second, part.expert);
   }
   return scored;
 }
@@ -111,7 +123,8 @@ Score score(const ExerciseDefinition& exercise, const std::map<std::string, doub
   result.total = result.critical.empty() ? result.uncapped : std::min(result.uncapped, exercise.score.cap);
   result.completed = all_steps_done(exercise, progress);
   // A total that misses the pass mark by rounding alone has reached it.
-  result.passed = result.completed && result.critical.empty() && result.total >= exercise.score.pass - 1e-9;
+  result.passed =
+      result.completed && result.critical.empty() && result.total >= exercise.score.pass - 100 * rounding;
   return result;
 }
 

@@ -104,6 +104,14 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
   return places;
 }
 
+/// No tool has moved yet: the advice is about the organ.
+Failure fill_failure(const NewtonResult& result, const std::string& organ) {
+  Failure failure = solve_failure(result, organ, "while it was filled");
+  if (result.status != NewtonStatus::mechanism)
+    failure.problems[0].hint = "fill it less (bile), or give it a thicker or stiffer wall, or more nodes";
+  return failure;
+}
+
 /// Volume and pressure that the author asked for, by small steps from the unstressed shape.
 Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings& settings) {
   const BileDefinition& bile = organ.definition.bile;
@@ -120,7 +128,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
       organ.state.datum_pressure = next;
       const NewtonResult result =
           settle(organ.body, loads, settings, organ.work, organ.search, organ.state, true);
-      if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
+      if (!result.converged()) return fill_failure(result, organ.definition.name);
       settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
       aim = next;
     }
@@ -141,7 +149,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
       const NewtonResult result =
           settle(organ.body, loads, settings, organ.work, organ.search, organ.state, false);
-      if (!result.converged()) return solve_failure(result, organ.definition.name, "while it was filled");
+      if (!result.converged()) return fill_failure(result, organ.definition.name);
     }
   }
   return true;

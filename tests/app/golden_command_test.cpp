@@ -1,7 +1,9 @@
 // The golden commands on a project of one small scenario.
 
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "app/golden_store.h"
 #include "app/program.h"
 #include "render/png.h"
 #include "support/paths.h"
@@ -20,6 +22,16 @@ class GoldenProject : public ProgramTest {
     fs::create_directory_symlink(fs::path(source_dir()) / "scripts" / "lua", folder_ / "scripts" / "lua");
   }
   fs::path golden(const std::string& name) const { return folder_ / "golden" / "small" / name; }
+
+  /// Accepts the small scenario's two frames in a size that is drawn fast: that of a golden already there.
+  void accept_small() {
+    Golden blank;
+    blank.image.width = blank.sidecar.width = 64;
+    blank.image.height = blank.sidecar.height = 36;
+    blank.image.rgb.assign(3 * 64 * 36, 0);
+    ASSERT_TRUE(write_golden(golden("t000.00s"), blank));
+    ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  }
 
   /// Every file below golden/ with its content.
   std::map<std::string, std::string> goldens() const {
@@ -92,7 +104,7 @@ TEST_F(GoldenProject, ANameThatMayMeanTwoScenariosIsRefused) {
 }
 
 TEST_F(GoldenProject, ChangedPixelsOfTheSameStateAreRenderingsChange) {
-  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  accept_small();
   const std::string file = golden("t000.40s.png").string();
   Image image = read_png(file).value();
   image.rgb[3 * 1000] ^= 1;
@@ -106,8 +118,20 @@ TEST_F(GoldenProject, ChangedPixelsOfTheSameStateAreRenderingsChange) {
   EXPECT_TRUE(fs::exists(folder_ / "out" / "golden" / "small" / "t000.40s.difference.png"));
 }
 
+TEST_F(GoldenProject, AnEditOfTheScenarioIsNamedBesideTheChangedPictures) {
+  accept_small();
+  std::string text = small_scenario();
+  text.replace(text.find("port = \"umbilical\""), 18, "port = \"umbilical\", distance = 0.08");
+  spill(folder_ / "scenarios" / "small.lua", text);
+  const Json json = Json::parse(calot({"golden", "test", "small/t000.00s", "--json"}).out);
+  EXPECT_EQ(json["frames"][0]["verdict"], "rendering changed");
+  EXPECT_NE(json["frames"][0]["message"].get<std::string>().find("the scenario's text has changed too"),
+            std::string::npos)
+      << json;
+}
+
 TEST_F(GoldenProject, AnotherStateIsPhysicsChangeUnlessOnlyTheToolchainMadeIt) {
-  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  accept_small();
   edit_sidecar("t000.00s.json", [](Json& json) { json["state_hash"] = "0000000000000000"; });
   edit_sidecar("t000.40s.json", [](Json& json) {
     json["state_hash"] = "0000000000000000";
@@ -124,28 +148,129 @@ TEST_F(GoldenProject, AnotherStateIsPhysicsChangeUnlessOnlyTheToolchainMadeIt) {
 }
 
 TEST_F(GoldenProject, AFrameTheScenarioNoLongerDeclaresIsStale) {
-  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  accept_small();
   std::string text = small_scenario();
   text.replace(text.find("0.4 * s }"), 9, "0.2 * s }");
   spill(folder_ / "scenarios" / "small.lua", text);
   const Json json = Json::parse(calot({"golden", "test", "--json"}).out);
   EXPECT_EQ(json["frames"][1]["verdict"], "missing");  // t000.20s
   EXPECT_EQ(json["frames"][2]["verdict"], "stale");    // t000.40s
-  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  accept_small();
   EXPECT_FALSE(fs::exists(golden("t000.40s.png")));
   EXPECT_EQ(calot({"golden", "test"}).code, 0);
 }
 
-TEST_F(GoldenProject, ABrokenSidecarIsNamed) {
-  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+TEST_F(GoldenProject, ABrokenSidecarIsNamedAndHidesNoOtherFrame) {
+  accept_small();
   spill(golden("t000.40s.json"), "{");
   const Outcome outcome = calot({"golden", "test"});
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("t000.40s.json"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_NE(outcome.out.find("t000.40s.json: this ends in the middle"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("small/t000.00s: same"), std::string::npos) << outcome.out;
+}
+
+TEST_F(GoldenProject, EverySidecarValueIsCheckedAndNamed) {
+  Golden golden;
+  golden.image.width = 16;
+  golden.image.height = 16;
+  golden.image.rgb.assign(3 * 16 * 16, 7);
+  golden.sidecar.width = golden.sidecar.height = 16;
+  const fs::path stem = folder_ / "t000.00s";
+  ASSERT_TRUE(write_golden(stem, golden));
+  ASSERT_TRUE(read_golden(stem));
+  const Json good = Json::parse(slurp(folder_ / "t000.00s.json"));
+  const auto complaint = [&](const Json& json) {
+    spill(folder_ / "t000.00s.json", json.dump());
+    const Result<Golden> read = read_golden(stem);
+    return read ? std::string() : to_text(read.failure());
+  };
+  const Json bad[] = {-5, 1e9, "x", nullptr, Json::array(), 1.5};
+  const auto expect_named = [&](const Json& json, const std::string& key, const std::string& what) {
+    const std::string said = complaint(json);
+    EXPECT_NE(said.find("t000.00s.json: "), std::string::npos) << key << " " << what;
+    EXPECT_NE(said.find(key == "schema" ? "schema" : key), std::string::npos)
+        << key << " " << what << ": " << said;
+    EXPECT_EQ(said.find("exception"), std::string::npos) << said;
+  };
+  for (const auto& [key, value] : good.items()) {
+    Json missing = good;
+    missing.erase(key);
+    expect_named(missing, key, "missing");
+    for (const Json& other : bad) {
+      const bool fits = (value.is_string() && key != "schema" && key.find("hash") == std::string::npos &&
+                         other.is_string()) ||
+                        (key == "time_s" && other.is_number() && other >= 0);
+      if (fits) continue;
+      Json changed = good;
+      changed[key] = other;
+      expect_named(changed, key, other.dump());
+    }
+  }
+  for (const auto& [key, value] : good["tolerance"].items()) {
+    for (const Json& other : bad) {
+      Json changed = good;
+      changed["tolerance"][key] = other;
+      expect_named(changed, "tolerance." + key, other.dump());
+    }
+  }
+  Json other_size = good;
+  other_size["width_px"] = 17;
+  expect_named(other_size, "width_px", "of another picture");
+  Json unknown = good;
+  unknown["widht_px"] = 16;
+  expect_named(unknown, "widht_px", "unknown");
+}
+
+TEST_F(GoldenProject, GoldensWhoseScenarioIsGoneAndScenariosThatAreBrokenAreSaidBesideTheRest) {
+  accept_small();
+  spill(folder_ / "golden" / "gone" / "t000.00s.json", "{}");
+  spill(folder_ / "scenarios" / "broken.lua", "return {\n");
+  const Outcome outcome = calot({"golden", "test", "--json"});
+  EXPECT_EQ(outcome.code, 6) << outcome.err;
+  EXPECT_NE(outcome.err.find("broken.lua:2"), std::string::npos) << outcome.err;
+  expect_next_command(outcome);
+  const Json json = Json::parse(outcome.out);
+  ASSERT_EQ(json["frames"].size(), 3u);
+  EXPECT_EQ(json["frames"][0]["verdict"], "same");
+  EXPECT_EQ(json["frames"][1]["verdict"], "same");
+  EXPECT_EQ(json["frames"][2]["scenario"], "gone");
+  EXPECT_EQ(json["frames"][2]["verdict"], "no scenario");
+  EXPECT_EQ(json["failures"][0]["scenario"], "broken");
+  fs::remove(folder_ / "scenarios" / "broken.lua");
+  EXPECT_EQ(calot({"golden", "test"}).code, 1) << "a golden without its scenario has failed";
+}
+
+TEST_F(GoldenProject, AnInterruptedAcceptSaysWhatWasAcceptedAndKeepsTheRestAsItWas) {
+  spill(folder_ / "scenarios" / "slow.lua", endless_scenario());
+  const Outcome outcome = calot({"golden", "accept", "small", "slow"}, [&](pid_t pid) {
+    for (int i = 0; i < 3000 && !fs::exists(folder_ / "golden" / "slow" / ".new" / "t000.00s.json"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    kill(pid, SIGINT);
+  });
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("2 frames were accepted, those named above; nothing of slow"), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.out.find("small/t000.40s.png"), std::string::npos) << outcome.out;
+  expect_next_command(outcome);
+  std::set<std::string> folders;
+  for (const auto& [file, text] : goldens()) folders.insert(fs::path(file).parent_path().filename());
+  EXPECT_EQ(folders, (std::set<std::string>{"small"}));
+}
+
+TEST_F(GoldenProject, AnInterruptedTestSaysWhatWasComparedAndWhatIsLeft) {
+  spill(folder_ / "scenarios" / "slow.lua", endless_scenario());
+  const Outcome outcome = calot({"golden", "test", "small", "slow"}, [&](pid_t pid) {
+    EXPECT_TRUE(wait_for_lines(folder_ / ".stdout", 3));
+    kill(pid, SIGINT);
+  });
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("frames were compared"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("not finished: slow."), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("Next: calot golden test slow"), std::string::npos) << outcome.err;
 }
 
 TEST_F(GoldenProject, TheReportIsOnePageThatNeedsNothingElse) {
-  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  accept_small();
   ASSERT_EQ(calot({"golden", "report", "-o", "page.html"}).code, 0);
   const std::string page = slurp(folder_ / "page.html");
   std::size_t pictures = 0;

@@ -65,6 +65,15 @@ return calot.exercise {
 )";
 }
 
+/// The same, moving to and fro for longer than any test waits.
+inline std::string endless_scenario() {
+  std::string text =
+      small_scenario("t:step('wait', 'Wait'); t:wait(2999 * s)",
+                     "while true do t.left:move_by({ 0, 0, -5 * mm }); t.left:move_by({ 0, 0, 5 * mm }) end");
+  text.replace(text.find("time_limit = 30 "), 16, "time_limit = 3000 ");
+  return text;
+}
+
 class ProgramTest : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -1,8 +1,11 @@
 // Playing, recording and replaying, from the outside.
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/play.h"
 #include "app/program.h"
 
 namespace calot::test {
@@ -86,6 +89,8 @@ TEST_F(Run, AnErrorInsideAStepNamesFileAndLineAndKeepsWhatWasDone) {
   const Outcome outcome = calot({"run", "late.lua", "--no-render", "-o", "here"});
   EXPECT_EQ(outcome.code, 6) << outcome.err;
   EXPECT_NE(outcome.err.find("late.lua:15"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("Next: mend what is named above, then: calot run late.lua"), std::string::npos)
+      << "check found nothing: " << outcome.err;
   expect_next_command(outcome);
   const Json json = Json::parse(slurp(folder_ / "here" / "report.json"));
   EXPECT_EQ(json["end"], "failed");
@@ -112,37 +117,48 @@ TEST_F(Run, APatternThatNeverEndsIsStoppedFromOutsideAndItsRecordingReplays) {
   expect_next_command(outcome);
   spill(folder_ / "hang.lua", small_scenario());  // the same field, a script that ends
   const Outcome replay = calot({"replay", "here/recording.jsonl"});
-  EXPECT_EQ(replay.code, 0) << replay.err;
+  EXPECT_EQ(replay.code, 1) << replay.err;
   EXPECT_NE(replay.err.find("has changed since it was recorded"), std::string::npos) << replay.err;
+  EXPECT_NE(replay.err.find("the recording has no end"), std::string::npos) << replay.err;
 }
 
 TEST_F(Run, AnInterruptedRunKeepsItsReportAndARecordingThatReplays) {
-  spill(folder_ / "long.lua",
-        small_scenario(
-            "t:step('wait', 'Wait'); t:wait(29 * s)",
-            "while true do t.left:move_by({ 0, 0, -5 * mm }); t.left:move_by({ 0, 0, 5 * mm }) end"));
+  spill(folder_ / "long.lua", endless_scenario());
   const Outcome outcome = calot({"run", "long.lua", "--no-render", "-o", "here"}, [&](pid_t pid) {
     EXPECT_TRUE(wait_for_lines(folder_ / "here" / "recording.jsonl", 20));
     kill(pid, SIGINT);
   });
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   expect_next_command(outcome);
+  EXPECT_NE(outcome.err.find("what was done so far is in here"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("Score none"), std::string::npos) << outcome.out;
   const Json json = Json::parse(slurp(folder_ / "here" / "report.json"));
   EXPECT_EQ(json["end"], "interrupted");
   EXPECT_EQ(json["steps"][0]["outcome"], "aborted");
+  EXPECT_TRUE(json["score"]["total"].is_null());
   const Json replayed = report({"replay", "here/recording.jsonl"});
   EXPECT_EQ(replayed["state_hash"], json["state_hash"]);
+  EXPECT_TRUE(replayed["score"]["total"].is_null()) << "played again, it is still cut";
 }
 
 TEST_F(Run, AKilledRunsRecordingReplaysUpToItsLastStep) {
-  spill(folder_ / "long.lua", small_scenario("t:step('wait', 'Wait'); t:wait(29 * s)"));
+  spill(folder_ / "long.lua", endless_scenario());
   const Outcome outcome = calot({"run", "long.lua", "--no-render", "-o", "here"}, [&](pid_t pid) {
     EXPECT_TRUE(wait_for_lines(folder_ / "here" / "recording.jsonl", 20));
     kill(pid, SIGKILL);
   });
   EXPECT_EQ(outcome.code, 128 + SIGKILL);
-  const Json replayed = report({"replay", "here/recording.jsonl"});
-  EXPECT_GE(replayed["timing"]["steps"].get<int>(), 18);
+  const Outcome replay = calot({"replay", "here/recording.jsonl", "--json"});
+  EXPECT_EQ(replay.code, 1) << replay.err;
+  const Json replayed = Json::parse(replay.out);
+  const int steps = replayed["timing"]["steps"];
+  EXPECT_GE(steps, 18);
+  EXPECT_NE(replay.err.find(fmt::format("it was cut, and stops at step {} ({:.3f} s)", steps, steps / 50.0)),
+            std::string::npos)
+      << replay.err;
+  EXPECT_NE(replayed["notes"].dump().find("has no end"), std::string::npos);
+  EXPECT_EQ(replay.err.find("parts from"), std::string::npos) << "every state is that of the recording";
+  expect_next_command(replay);
 }
 
 TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToChange) {
@@ -165,7 +181,6 @@ TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToCh
   for (const char* part : {"'left'", ") mm ", " s (", "move more slowly", "Next: calot replay"})
     EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n" << outcome.err;
   EXPECT_TRUE(Json::accept(slurp(folder_ / "here" / "report.json")));
-  EXPECT_EQ(calot({"replay", "here/recording.jsonl"}).code, 8) << "a replay fails where the run did";
 }
 
 TEST_F(Run, ReplayEqualsRun) {
@@ -187,10 +202,179 @@ TEST_F(Run, AReplayOfOtherInputsNamesTheFirstStepThatDiffers) {
   const std::size_t end = text.find("]", line), jaw = text.rfind(',', end), roll = text.rfind(',', jaw - 1);
   text.replace(roll + 1, jaw - roll - 1, "0.5");
   spill(file, text);
+  const Outcome changed = calot({"replay", "here/recording.jsonl"});
+  EXPECT_EQ(changed.code, 4);
+  EXPECT_NE(changed.err.find("are not those that were recorded"), std::string::npos) << changed.err;
+  // Someone who means it takes the checksum out.
+  const std::size_t checksum = text.rfind(",\"checksum\"");
+  spill(file, text.substr(0, checksum) + "}\n");
   const Outcome outcome = calot({"replay", "here/recording.jsonl"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("at step 10 (0.200 s)"), std::string::npos) << outcome.err;
   expect_next_command(outcome);
+}
+
+TEST_F(Run, ARecordingNamesNoFolderOfTheMachineAndIsFoundBelowItsProject) {
+  const fs::path project = folder_ / "project";
+  spill(project / "scenarios" / "deep" / "mine.lua", small_scenario());
+  fs::create_directories(project / "scripts");
+  fs::create_directory_symlink(fs::path(source_dir()) / "scripts" / "lua", project / "scripts" / "lua");
+  const fs::path file = project / "scenarios" / "deep" / "mine.lua";
+  const auto recorded = [&] {
+    return Json::parse(slurp(folder_ / "here" / "recording.jsonl")
+                           .substr(0, slurp(folder_ / "here" / "recording.jsonl").find('\n')))["file"];
+  };
+  // From elsewhere: below the present folder.
+  ASSERT_EQ(calot({"run", file.string(), "--no-render", "-o", "here"}).code, 0);
+  EXPECT_EQ(recorded(), "project/scenarios/deep/mine.lua");
+  EXPECT_EQ(slurp(folder_ / "here" / "recording.jsonl").find(folder_.string()), std::string::npos);
+  folder_ = project;  // from the project
+  ASSERT_EQ(calot({"run", file.string(), "--no-render", "-o", "here"}).code, 0);
+  EXPECT_EQ(recorded(), "scenarios/deep/mine.lua");
+  fs::create_directories(project / "below");
+  fs::rename(project / "here", project / "below" / "here");
+  // The scenario has moved: it is found by its id.
+  fs::rename(file, project / "scenarios" / "moved.lua");
+  const Outcome moved = calot({"replay", "below/here/recording.jsonl"});
+  EXPECT_EQ(moved.code, 0) << moved.err;
+  EXPECT_NE(moved.err.find("moved.lua, the scenario whose id is small"), std::string::npos) << moved.err;
+  // Two others of that id: which one is not for the program to say.
+  spill(project / "scenarios" / "a.lua", small_scenario() + "-- changed\n");
+  fs::rename(project / "scenarios" / "moved.lua", project / "scenarios" / "moved");
+  EXPECT_EQ(calot({"replay", "below/here/recording.jsonl"}).code, 0);
+  spill(project / "scenarios" / "b.lua", small_scenario() + "-- changed too\n");
+  const Outcome several = calot({"replay", "below/here/recording.jsonl"});
+  EXPECT_EQ(several.code, 4);
+  EXPECT_NE(several.err.find("several scenarios"), std::string::npos) << several.err;
+  folder_ = project.parent_path();
+}
+
+TEST_F(Run, PosesFromElsewhereArePlayedAndScoredAndSaidNotToBeCompared) {
+  std::string text =
+      R"({"schema":"calot.recording/1","scenario":"small","file":"small.lua","rate_Hz":50,"instruments":["left"]})"
+      "\n";
+  for (int i = 1; i <= 40; ++i)
+    text += fmt::format(R"({{"time_s":{},"poses":[[0.6,0.25,{},0,0]]}})"
+                        "\n",
+                        i / 50.0, 0.03 + 0.0002 * i);
+  spill(folder_ / "mine.jsonl", text + R"({"end":"done","steps":40})"
+                                       "\n");
+  const Outcome outcome = calot({"replay", "mine.jsonl"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("nothing was compared"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.out.find("Every state"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("of 100"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Run, WhereTheCLibraryChoosesOtherMathematicsAReplayExpectsOtherBits) {
+  const auto mathematics = [&] {
+    const std::string out = calot({"doctor"}).out;
+    const std::size_t at = out.find("mathematics: ");
+    return out.substr(at, out.find('\n', at) - at);
+  };
+  const std::string here = mathematics();
+  report({"run", "small.lua", "--no-render", "-o", "here"});
+  setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA", 1);
+  const std::string there = mathematics();
+  const Outcome outcome = calot({"replay", "here/recording.jsonl"});
+  unsetenv("GLIBC_TUNABLES");
+  if (here == there) GTEST_SKIP() << "this C library has no other mathematics on this processor";
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("other bits are expected"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.out.find("Every state"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Run, ASecondRunLeavesTheFirstOnesFolderAloneUnlessAsked) {
+  ASSERT_EQ(calot({"run", "small.lua", "--no-render"}).code, 0);
+  const std::string first = slurp(folder_ / "out" / "small" / "report.json");
+  const Outcome second = calot({"run", "small.lua", "--no-render", "--seed", "2"});
+  EXPECT_NE(second.out.find("Written to out/small-2"), std::string::npos) << second.out;
+  ASSERT_EQ(calot({"run", "small.lua", "--no-render", "--seed", "3"}).code, 0);
+  EXPECT_EQ(slurp(folder_ / "out" / "small" / "report.json"), first);
+  EXPECT_EQ(Json::parse(slurp(folder_ / "out" / "small-3" / "report.json"))["seed"], 3);
+  ASSERT_EQ(calot({"run", "small.lua", "--no-render", "--seed", "4", "--overwrite"}).code, 0);
+  EXPECT_EQ(Json::parse(slurp(folder_ / "out" / "small" / "report.json"))["seed"], 4);
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "small-4"));
+}
+
+TEST_F(Run, AFolderIsWrittenByOneRunAtATimeAndHoldsNothingOfOlderOnes) {
+  spill(folder_ / "long.lua", endless_scenario());
+  for (const char* old :
+       {"report.json", "steps.csv", "end.png", "t003.20s.png", "t1003.20s.png", "report.json.part"})
+    spill(folder_ / "here" / old, "of an older run");
+  spill(folder_ / "here" / "notes.txt", "the user's");
+  spill(folder_ / "here" / "tall.png", "the user's");
+  const Outcome outcome = calot({"run", "long.lua", "--no-render", "-o", "here"}, [&](pid_t pid) {
+    ASSERT_TRUE(wait_for_lines(folder_ / "here" / "recording.jsonl", 5));
+    const Outcome second = calot({"run", "small.lua", "--no-render", "-o", "here"});
+    EXPECT_EQ(second.code, 4);
+    EXPECT_NE(second.err.find(fmt::format("process {} writes into here", pid)), std::string::npos)
+        << second.err;
+    expect_next_command(second);
+    kill(pid, SIGKILL);
+  });
+  EXPECT_EQ(outcome.code, 128 + SIGKILL);
+  std::set<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "here"))
+    files.insert(entry.path().filename());
+  EXPECT_EQ(files,
+            (std::set<std::string>{".running", "notes.txt", "recording.jsonl", "steps.csv", "tall.png"}));
+  EXPECT_EQ(slurp(folder_ / "here" / "steps.csv").find("older"), std::string::npos);
+  // Killed as it was, it keeps nobody out.
+  EXPECT_EQ(calot({"run", "small.lua", "--no-render", "-o", "here"}).code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "here" / ".running"));
+}
+
+TEST_F(Run, AReplayIsNotWrittenOverItsRecording) {
+  report({"run", "small.lua", "--no-render", "-o", "here"});
+  const std::string before = slurp(folder_ / "here" / "recording.jsonl");
+  const Outcome outcome = calot({"replay", "here/recording.jsonl", "-o", "./here"});
+  EXPECT_EQ(outcome.code, 4);
+  expect_next_command(outcome);
+  EXPECT_EQ(slurp(folder_ / "here" / "recording.jsonl"), before);
+}
+
+TEST_F(Run, TimesOfOnePictureAreDrawnOnceAndTooManyAreRefused) {
+  const auto with_times = [](const std::string& times) {
+    std::string text = small_scenario("t:step('a', 'A'); t:wait(0.02 * s)");
+    text.replace(text.find("{ 0, 0.4 * s }"), 14, times);
+    return text;
+  };
+  spill(folder_ / "same.lua", with_times("{ 0.01, 0, 0, 0.011, 0.014, 0.0 }"));
+  PlayRequest request;
+  request.scenario = folder_ / "same.lua";
+  request.width = 64;
+  request.height = 36;
+  const Result<Played> played = play(request);
+  ASSERT_TRUE(played) << to_text(played.failure());
+  EXPECT_EQ(played->pictures, (std::vector<std::string>{"t000.00s", "t000.01s", "end"}));
+  std::string many;
+  for (int i = 0; i < 101; ++i) many += "0, ";
+  spill(folder_ / "many.lua", with_times("{ " + many + "}"));
+  const Outcome outcome = calot({"check", "many.lua"});
+  EXPECT_EQ(outcome.code, 6);
+  EXPECT_NE(outcome.err.find("many.lua:"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("101 times, more than 100"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Run, AnInterruptionDoesNotWaitForAllThePicturesOfAMoment) {
+  std::string times;
+  for (int i = 0; i < 100; ++i) times += fmt::format("{}, ", i * 0.01);
+  // One step a second: a hundred pictures fall due at once, 20 s of drawing.
+  std::string text = small_scenario("t:step('a', 'A'); t:wait(5 * s)", "t.left:wait(1 * s)");
+  text.replace(text.find("{ 0, 0.4 * s }"), 14, "{ " + times + "}");
+  text.replace(text.find("laparoscope ="), 0, "solver = { rate = 1 }, ");
+  spill(folder_ / "many.lua", text);
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point asked;
+  const Outcome outcome = calot({"run", "many.lua", "-o", "here"}, [&](pid_t pid) {
+    for (int i = 0; i < 3000 && !fs::exists(folder_ / "here" / "t000.05s.png"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    asked = Clock::now();
+    kill(pid, SIGINT);
+  });
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - asked).count(), 5) << "a picture takes 0.2 s";
 }
 
 TEST_F(Run, ARecordingOfAnotherScenarioIsRefused) {
@@ -214,13 +398,61 @@ TEST_F(Run, ARecordingWhoseScenarioIsGoneAsksForItByOption) {
 }
 
 TEST_F(Run, TwentyFreshProcessesReachTheSameStateWithAndWithoutPictures) {
+  // The ball is touched, pressed and grasped: without contact, states are easily the same.
+  std::string text =
+      small_scenario("t:step('take', 'Take it'); t:wait_until(function() return t.left:holds('ball') end)",
+                     "t.left:approach('ball.fundus', { speed = 500 * mm / s }); t.left:close()");
+  text.replace(text.find("nodes = 61"), 10, "nodes = 30");
+  spill(folder_ / "take.lua", text);
   std::set<std::string> hashes;
   for (int i = 0; i < 20; ++i) {
-    std::vector<std::string> arguments{"run", "small.lua", "-o", "here", "--size", "160x90"};
-    if (i % 2 == 0) arguments.push_back("--no-render");
-    hashes.insert(report(arguments)["state_hash"].get<std::string>());
+    std::vector<std::string> arguments{"run", "take.lua", "-o", "here", "--size", "64x36"};
+    if (i % 10 != 0) arguments.push_back("--no-render");
+    const Json json = report(arguments);
+    hashes.insert(json["state_hash"].get<std::string>());
+    std::set<std::string> events;
+    for (const Json& event : json["events"]) events.insert(event["event"].get<std::string>());
+    ASSERT_TRUE(events.contains("contact") && events.contains("grasp")) << json["events"];
   }
   EXPECT_EQ(hashes.size(), 1u);
+}
+
+TEST_F(Run, AnInterruptedCheckSaysHowFarItCameAndExitsWithTwo) {
+  for (int i = 0; i < 500; ++i) {
+    fs::create_directories(folder_ / "set");
+    fs::create_hard_link(folder_ / "small.lua", folder_ / "set" / fmt::format("{:03}.lua", i));
+  }
+  const Outcome outcome = calot({"check", "set"}, [&](pid_t pid) {
+    EXPECT_TRUE(wait_for_lines(folder_ / ".stdout", 1));
+    kill(pid, SIGINT);
+  });
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("of 500 scenarios were checked"), std::string::npos) << outcome.err;
+  expect_next_command(outcome);
+}
+
+TEST_F(Run, APlaceOutOfReachIsNotSentToCheckWhichFindsNothing) {
+  spill(folder_ / "far.lua",
+        small_scenario("t:step('reach', 'Reach out'); t:wait(3 * s)",
+                       "t.left:move_by({ 290 * mm, 290 * mm, 0 }, { speed = 500 * mm / s })\n"
+                       "t.left:move_by({ 290 * mm, 290 * mm, 0 })"));
+  const Outcome outcome = calot({"run", "far.lua", "--no-render"});
+  EXPECT_EQ(outcome.code, 6) << outcome.err;
+  EXPECT_NE(outcome.err.find("use another port"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("Next: mend what is named above, then: calot run far.lua"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Run, AnOrganThatCannotBeFilledIsNotToldToMoveMoreSlowly) {
+  std::string text = small_scenario();
+  text.replace(text.find("nodes = 61"), 10,
+               "nodes = 61, bile = { fill_pressure = 90 * 133 }, wall = { shear_modulus = 1000 }");
+  spill(folder_ / "full.lua", text);
+  const Outcome outcome = calot({"run", "full.lua", "--no-render"});
+  EXPECT_EQ(outcome.code, 8) << outcome.err << outcome.out;
+  EXPECT_NE(outcome.err.find("while it was filled"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("fill it less"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("move more slowly"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Run, CheckTellsGoodScenariosFromBadOnesAndPlaysNeither) {

@@ -36,18 +36,14 @@ class MainScenario : public ProgramTest {
   }
 };
 
-TEST_F(MainScenario, TellsTheExpertFromOnesWhoNeverGraspPullTooHardOrLetGoEarly) {
+TEST_F(MainScenario, TellsThoseApartWhoNeverGraspPullTooHardOrLetGoEarly) {
   const std::string grasp = "t.left:approach('gallbladder.fundus')\n t.left:close()\n";
-  const Json expert = score("");
   const Json idle = score("t.left:wait(1 * s)");
   const Json hard =
       score(grasp + "t.left:move_by({ 0, 8 * mm, 30 * mm })\n t.left:wait(5 * s)\n t.left:open()");
   const Json early = score(
       grasp +
       "t.left:move_by({ 0, 4 * mm, 11 * mm }, { speed = 10 * mm / s })\n t.left:wait(5 * s)\n t.left:open()");
-
-  EXPECT_TRUE(expert["passed"].get<bool>()) << expert.dump(2);
-  EXPECT_GT(expert["total"], 95);  // the benchmarks are set by it
 
   EXPECT_FALSE(idle["passed"].get<bool>());
   EXPECT_FALSE(idle["completed"].get<bool>());
@@ -63,10 +59,10 @@ TEST_F(MainScenario, TellsTheExpertFromOnesWhoNeverGraspPullTooHardOrLetGoEarly)
   EXPECT_LT(held, 7);
   EXPECT_EQ(part(early, "overforce")["measured"], 0);
 
-  const std::set<double> totals{expert["total"], idle["total"], hard["total"], early["total"]};
-  EXPECT_EQ(totals.size(), 4u) << expert["total"] << " " << idle["total"] << " " << hard["total"] << " "
-                               << early["total"];
-  for (const Json& each : {expert, idle, hard, early}) {
+  const std::set<double> totals{idle["total"], hard["total"], early["total"]};
+  EXPECT_EQ(totals.size(), 3u) << idle["total"] << " " << hard["total"] << " " << early["total"];
+  for (const Json& each : {idle, hard, early}) {
+    EXPECT_LT(each["total"], 95) << "what the expert has, whom the shipped scenario's own test plays";
     double sum = 0;
     for (const Json& entry : each["parts"]) {
       EXPECT_FALSE(entry["explanation"].get<std::string>().empty());

@@ -54,6 +54,20 @@ TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
       {"run", "small.lua", "--param", "hieght=3"},
       {"run", "small.lua", "--param", "height=tall"},
       {"run", "small.lua", "--seed", "one"},
+      {"run", "small.lua", "--seed=-1"},
+      {"run", "small.lua", "--seed=1.5"},
+      {"run", "small.lua", "--seed=18446744073709551616"},
+      {"run", "small.lua", "--fail-below", "nan"},
+      {"run", "small.lua", "--fail-below", "-1"},
+      {"run", "bad\xff.lua"},
+      {"run", "small.lua", "--param", "height=\xc3("},
+      {"run", "small.lua", "--no-render", "-o", "bad\xff"},
+      {"check", "bad\xff.lua"},
+      {"replay", "bad\xff.jsonl"},
+      {"golden", "test", "bad\xff"},
+      {"new", "bad\xff"},
+      {"run", "/proc/self/mem"},
+      {"check", "/proc/self/mem"},
       {"run", "small.lua", "--fail-below", "120"},
       {"run", "."},
       {"run", "none.lua"},
@@ -80,6 +94,17 @@ TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
     EXPECT_EQ(outcome.out, "");
     expect_next_command(outcome);
   }
+}
+
+TEST_F(Usage, WhatIsNotUtf8IsShownEscaped) {
+  const Outcome outcome = calot({"run", "bad\xff.lua", "--json"});
+  EXPECT_NE(outcome.err.find("argument 2 is not UTF-8: bad\\xff.lua"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Usage, AMissingScenarioHasNoLinesToMend) {
+  EXPECT_EQ(calot({"check", "none.lua"}).err.find("mend"), std::string::npos);
+  spill(folder_ / "broken.lua", "return {\n");
+  EXPECT_NE(calot({"check", "broken.lua"}).err.find("mend the lines named above"), std::string::npos);
 }
 
 TEST_F(Usage, AMistypedCommandGetsTheNearestOne) {

@@ -1,10 +1,13 @@
 #include "session/recording.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <bit>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "base/rng.h"
@@ -33,8 +36,7 @@ class RecordingFile : public ::testing::Test {
     header.params = {{"anatomy", "hydrops"}};
     header.rate = 50;
     header.instruments = {"left", "right"};
-    header.toolchain = "GNU 12.2.0";
-    header.instruction_set = "x86-64-v3";
+    header.make = {"GNU 12.2.0", "x86-64-v3", "glibc 2.36"};
     header.state_hash = 0xfedcba9876543210ULL;
     return header;
   }
@@ -85,6 +87,7 @@ TEST_F(RecordingFile, ReadsBackTheSameBits) {
   EXPECT_EQ(recording->header.seed, header().seed);
   EXPECT_EQ(recording->header.source_hash, header().source_hash);
   EXPECT_EQ(recording->header.params, header().params);
+  EXPECT_EQ(recording->header.make, header().make);
   EXPECT_EQ(recording->header.instruments, header().instruments);
   ASSERT_EQ(recording->steps.size(), steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -123,6 +126,128 @@ TEST_F(RecordingFile, ALastLineCutShortIsDropped) {
   EXPECT_EQ(recording->steps.size(), 3u);
 }
 
+/// What a reader hears of a recording that is not whole; empty where it takes it for whole.
+std::string noticed(const std::string& path) {
+  const Result<Recording> recording = read_recording(path);
+  return recording ? cut_note(recording.value()).value_or("") : to_text(recording.failure());
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(RecordingFile, ACutRecordingSaysWhereItEnds) {
+  constexpr int steps = 30;
+  write(random_steps(steps), "done");
+  const std::string whole = text_of(path_);
+  EXPECT_EQ(noticed(path_), "");
+  const auto cut_at = [&](std::size_t size) {
+    std::ofstream(path_, std::ios::binary) << whole.substr(0, size);
+    return noticed(path_);
+  };
+  EXPECT_NE(cut_at(0).find("it is empty"), std::string::npos);
+  int lines = 0;
+  for (std::size_t end = whole.find('\n'); end + 1 < whole.size(); end = whole.find('\n', end + 1)) {
+    const std::string where = fmt::format("stops at step {} ({:.3f} s)", lines, lines / 50.0);
+    EXPECT_NE(cut_at(end + 1).find(where), std::string::npos) << noticed(path_);
+    // In the middle of the line after.
+    EXPECT_NE(cut_at(end + 1 + (whole.find('\n', end + 1) - end) / 2).find(where), std::string::npos);
+    ++lines;
+  }
+  EXPECT_EQ(lines, steps + 1) << "header and steps";
+  EXPECT_NE(cut_at(whole.find('\n') / 2).find(path_ + ":1: this ends in the middle"), std::string::npos);
+  EXPECT_EQ(cut_at(whole.size() - 1), "") << "of the last line end, nothing depends";
+}
+
+TEST_F(RecordingFile, ALineThatIsMissingOrTwiceThereIsNoticed) {
+  write(random_steps(30), "done");
+  const std::string whole = text_of(path_);
+  std::size_t begin = 0;
+  for (std::size_t end = whole.find('\n'); end != std::string::npos; end = whole.find('\n', begin)) {
+    std::string missing = whole, twice = whole;
+    missing.erase(begin, end + 1 - begin);
+    twice.insert(begin, whole.substr(begin, end + 1 - begin));
+    for (const std::string& text : {missing, twice}) {
+      std::ofstream(path_, std::ios::binary) << text;
+      EXPECT_NE(noticed(path_), "") << "line at byte " << begin;
+    }
+    begin = end + 1;
+  }
+}
+
+TEST_F(RecordingFile, EveryFlippedBitIsNoticed) {
+  write(random_steps(30), "done");
+  const std::string whole = text_of(path_);
+  Rng rng(11);
+  for (int i = 0; i < 500; ++i) {
+    const std::size_t at = rng.next() % whole.size();
+    const unsigned bit = rng.next() % 8;
+    std::string text = whole;
+    text[at] = static_cast<char>(static_cast<unsigned char>(text[at]) ^ (1U << bit));
+    std::ofstream(path_, std::ios::binary) << text;
+    EXPECT_NE(noticed(path_), "") << "bit " << bit << " of byte " << at << ", " << whole.substr(at, 20);
+  }
+}
+
+TEST_F(RecordingFile, PosesFromElsewhereNeedNoHashes) {
+  append(R"({"schema":"calot.recording/1","scenario":"small","rate_Hz":50,"instruments":["left"]})"
+         "\n"
+         R"({"time_s":0.02,"poses":[[0.1,0.2,0.03,0,0]]})"
+         "\n"
+         R"({"end":"done","steps":1})"
+         "\n");
+  const Result<Recording> recording = read_recording(path_);
+  ASSERT_TRUE(recording) << complaint();
+  EXPECT_FALSE(recording->header.state_hash);
+  ASSERT_EQ(recording->steps.size(), 1u);
+  EXPECT_EQ(recording->steps[0].input.instruments[0].insertion, 0.03);
+  EXPECT_EQ(noticed(path_), "");
+}
+
+TEST_F(RecordingFile, AnErrorIsNeverThatOfALibrary) {
+  const std::string head =
+      R"({"schema":"calot.recording/1","scenario":"small","rate_Hz":50,"instruments":["left"])";
+  const std::string step = R"({"time_s":0.02,"poses":[[0,0,0,0,0]]})";
+  const std::tuple<std::string, int, std::string> table[] = {
+      {"\xff\xfe", 1, "not JSON at byte 1"},
+      {"[]", 1, "not a recording of schema"},
+      {"{\"schema\":7}", 1, "not a recording of schema"},
+      {head + "}\n{\"time_s\":0.02,}\n", 2, "not JSON at byte 16"},
+      {head + "}\n{\"time_s\":1e999,\"poses\":[]}\n", 2, "beyond what a double can be"},
+      {head + "}\n{\"time_s\":0.02}\n", 2, "poses is missing"},
+      {head + "}\n7\n", 2, "time_s is missing"},
+      {head + "}\n{\"time_s\":0.02,\"poses\":{}}\n", 2, "poses must be a list"},
+      {head + "}\n{\"time_s\":\"x\",\"poses\":[[0,0,0,0,0]]}\n", 2, "time_s must be a number, not \"x\""},
+      {head + "}\n{\"time_s\":0.04,\"poses\":[[0,0,0,0,0]]}\n", 2, "time_s is 0.04, not 0.02"},
+      {head + "}\n{\"time_s\":0.02,\"poses\":[[0,0,0,0,0]],\"pose\":1}\n", 2,
+       "pose is not known here; did you mean \"poses\"?"},
+      {head + ",\"seed\":-1}\n", 1, "seed must be a whole number that is not negative"},
+      {head + ",\"params\":[1]}\n", 1, "params must be an object of texts"},
+      {head + ",\"source_hash\":\"123\"}\n", 1, "source_hash must be sixteen lower-case hexadecimal digits"},
+      {head + ",\"state_hash\":\"0000000000000000\"}\n" + step + "\n", 2, "state_hash is missing"},
+      {head + "}\n" + step + "\n{\"end\":\"done\",\"steps\":-1}\n", 3, "steps must be a whole number"},
+      {head + "}\n" + step + "\n{\"end\":\"gone\",\"steps\":1}\n", 3, "does not end as \"gone\""},
+      {head + "}\n" + std::string(1 << 20, ' '), 2, "more than 1048575 bytes"},
+      {R"({"schema":"calot.recording/1","scenario":"small","rate_Hz":0,"instruments":["left"]})", 1,
+       "rate_Hz is 0"},
+  };
+  for (const auto& [text, line, words] : table) {
+    std::ofstream(path_, std::ios::binary) << text;
+    EXPECT_NE(complaint().find(fmt::format("{}:{}: ", path_, line)), std::string::npos)
+        << words << ": " << complaint();
+    EXPECT_NE(complaint().find(words), std::string::npos) << words << ": " << complaint();
+    EXPECT_EQ(complaint().find("exception"), std::string::npos) << complaint();
+  }
+}
+
+TEST_F(RecordingFile, ANameThatIsNotUtf8IsWrittenAndReadBack) {
+  RecordingHeader odd = header();
+  odd.file = "odd \xff name.lua";
+  ASSERT_TRUE(RecordingWriter::create(path_, odd));
+  EXPECT_EQ(complaint(), "");
+}
+
 TEST_F(RecordingFile, WhatIsWrongIsNamedByFileAndLine) {
   write(random_steps(3), "");
   append("{\"time_s\":0.08,\"poses\":[[0.1,0.2,0.3,0.4]],\"state_hash\":\"00\"}\n");
@@ -132,7 +257,7 @@ TEST_F(RecordingFile, WhatIsWrongIsNamedByFileAndLine) {
 
 TEST_F(RecordingFile, OneInstrumentTooFewIsRefused) {
   write({}, "");
-  append("{\"time_s\":0.02,\"poses\":[[0,0,0,0,0]],\"state_hash\":\"00\"}\n");
+  append("{\"time_s\":0.02,\"poses\":[[0,0,0,0,0]],\"state_hash\":\"0000000000000000\"}\n");
   EXPECT_NE(complaint().find("1 poses where the header names 2"), std::string::npos) << complaint();
 }
 

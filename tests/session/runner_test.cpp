@@ -27,6 +27,12 @@ SessionResult played(test::TimedScript& script, InputSource& source, SessionOpti
   return run_session(world, script, source, options);
 }
 
+bool has_event(const SessionResult& result, const std::string& kind) {
+  const auto& events = result.progress.events();
+  return std::any_of(events.begin(), events.end(),
+                     [&](const SessionEvent& event) { return event.kind == kind; });
+}
+
 TEST(Runner, EndsWithItsScriptAndHoldsTheLastInputWhereTheSourceEndsBefore) {
   test::TimedScript script(0.4);
   test::SwayingSource source(0.2);
@@ -83,7 +89,7 @@ TEST(Runner, AReplayGoesThroughTheSameStatesAsTheRun) {
   test::TimedScript script(0.4);
   World world = small_world();
   Result<RecordingWriter> writer =
-      RecordingWriter::create(folder + "/r.jsonl", recording_header(script.definition(), world));
+      RecordingWriter::create(folder + "/r.jsonl", recording_header(script.definition(), world, "small.lua"));
   ASSERT_TRUE(writer);
   SessionOptions options;
   options.recording = &writer.value();
@@ -93,6 +99,7 @@ TEST(Runner, AReplayGoesThroughTheSameStatesAsTheRun) {
   fs::remove_all(folder);
   ASSERT_TRUE(recording) << to_text(recording.failure());
   EXPECT_EQ(recording->end, "done");
+  EXPECT_TRUE(has_event(run, "contact")) << "states that nothing touches are easily the same";
   ReplaySource source(recording.value());
   test::TimedScript again(0.4);
   SessionOptions replaying;
@@ -104,6 +111,39 @@ TEST(Runner, AReplayGoesThroughTheSameStatesAsTheRun) {
   for (std::size_t i = 0; i < recording->steps.size(); ++i) {
     EXPECT_EQ(recording->steps[i].state_hash, run.state_hashes[i + 1]);
   }
+}
+
+TEST(Runner, AReplayFailsWhereTheRunDid) {
+  class TooFar : public InputSource {
+   public:
+    Result<std::optional<StepInput>> next(const World& world, double) override {
+      StepInput input;
+      input.instruments.push_back(world.report().instruments[0].pose);
+      if (world.report().time > 0.05) input.instruments[0].insertion = 10;  // m
+      return std::optional<StepInput>(input);
+    }
+  } source;
+  std::string folder = (fs::temp_directory_path() / "calot-runner-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  test::TimedScript script(5);
+  World world = small_world();
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(folder + "/r.jsonl", recording_header(script.definition(), world, "small.lua"));
+  ASSERT_TRUE(writer);
+  SessionOptions options;
+  options.recording = &writer.value();
+  const SessionResult run = run_session(world, script, source, options);
+  EXPECT_EQ(run.end, SessionEnd::failed);
+  const Result<Recording> recording = read_recording(folder + "/r.jsonl");
+  fs::remove_all(folder);
+  ASSERT_TRUE(recording) << to_text(recording.failure());
+  EXPECT_EQ(recording->end, "failed");
+  EXPECT_EQ(recording->steps.size(), 4u) << "the step that could not be taken too";
+  ReplaySource again(recording.value());
+  const SessionResult replay = played(script, again);
+  EXPECT_EQ(replay.end, SessionEnd::failed);
+  EXPECT_EQ(to_text(replay.failure), to_text(run.failure));
+  EXPECT_EQ(replay.state_hashes, run.state_hashes);
 }
 
 TEST(Runner, AReplayOfAnInterruptedRunEndsWhereTheRunDid) {
@@ -147,20 +187,33 @@ TEST(Runner, AnInputThatCannotBeFollowedEndsTheSessionInTheStateBeforeIt) {
     Result<std::optional<StepInput>> next(const World& world, double) override {
       StepInput input;
       input.instruments.push_back(world.report().instruments[0].pose);
+      input.instruments[0].insertion += 2e-3;                                             // into the ball
       if (world.report().time > 0.05) input.instruments.push_back(input.instruments[0]);  // one too many
       return std::optional<StepInput>(input);
     }
   } source;
   test::TimedScript script(5);
-  const SessionResult result = played(script, source);
+  World world = small_world();
+  std::vector<std::vector<Vec3>> skins;
+  SessionOptions options;
+  options.observer = [&](const World& now, const Progress&, bool) { skins.push_back(now.skin_positions(0)); };
+  const SessionResult result = run_session(world, script, source, options);
   EXPECT_EQ(result.end, SessionEnd::failed);
-  EXPECT_EQ(result.state_hashes.size(), 5u)
+  ASSERT_EQ(result.state_hashes.size(), 5u)
       << "rest, three steps, and the state in which the last one failed";
-  EXPECT_EQ(result.state_hashes[4], result.state_hashes[3]);
+  EXPECT_NE(skins[3], skins[2]) << "a ball that nothing moves shows nothing";
+  EXPECT_EQ(world.skin_positions(0), skins[3]);
+  // Another world, brought there by the same inputs, knows nothing of the failed step.
+  World other = small_world();
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(other.step(*source.next(other, 0.02).value()));
+  EXPECT_EQ(result.state_hashes[4], other.state_hash());
 }
 
 TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
   SceneDefinition scene = test::small_scene();
+  // Far from the waiting tool, which is to reach the other one only.
+  scene.anatomy.organs[0].neck = OrganDefinition{}.neck;
+  scene.anatomy.organs[0].fundus = OrganDefinition{}.fundus;
   OrganDefinition other = scene.anatomy.organs[0];
   other.name = "other";
   other.nodes = 90;
@@ -185,6 +238,19 @@ TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
   EXPECT_NEAR(found->largest_pct, 100, 1e-9) << "one has not moved at all";
   EXPECT_GT(found->mean_pct, 0);
   EXPECT_LT(found->mean_pct, found->largest_pct);
+}
+
+TEST(Report, ASessionThatWasCutHasNoTotal) {
+  test::TimedScript script(0.2);
+  SessionResult result;
+  result.end = SessionEnd::interrupted;
+  SessionReport report;
+  report.score.total = 100;
+  report.aborted = true;
+  const auto json = nlohmann::json::parse(report_json(script.definition(), result, report));
+  EXPECT_TRUE(json["score"]["total"].is_null());
+  EXPECT_FALSE(json["score"]["passed"].get<bool>());
+  EXPECT_TRUE(json["score"]["parts"].is_array());
 }
 
 TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
@@ -213,8 +279,8 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
     sum += part["points"].get<double>();
   }
   EXPECT_NEAR(json["score"]["total"].get<double>(), sum, 1e-9);
-  EXPECT_EQ(json["events"][0]["event"], "step_done");
-  EXPECT_NEAR(json["events"][0]["duration_s"].get<double>(), 0.2, 1e-12);
+  EXPECT_EQ(json["events"].back()["event"], "step_done");
+  EXPECT_NEAR(json["events"].back()["duration_s"].get<double>(), 0.2, 1e-12);
 }
 
 TEST(Report, TextThatIsNotUtf8IsReplacedNotRefused) {

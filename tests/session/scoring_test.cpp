@@ -89,6 +89,17 @@ TEST(Scoring, ANovicesVeryValueEarnsZeroNotMinusZero) {
   EXPECT_FALSE(std::signbit(result.parts[0].points));
 }
 
+TEST(Scoring, AValueThatMissesABenchmarkByLittleDoesNotReadAsIfItWereThatBenchmark) {
+  // Seconds in the band that are one rounding, or 0.4 ms, short of the expert's.
+  const auto explained = [](double hold) {
+    return score(exercise(), {{"hold.band.time_in_s", hold}}, finished()).parts[0].explanation;
+  };
+  EXPECT_EQ(explained(17.9996),
+            "hold.band.time_in_s = 17.9996, between novice 6 (no points) and expert 18 (all points)");
+  EXPECT_EQ(explained(18 - 1e-12), "hold.band.time_in_s = 18, as good as expert 18");
+  EXPECT_EQ(explained(6 + 1e-12), "hold.band.time_in_s = 6, no better than novice 6");
+}
+
 TEST(Scoring, WhatWasNeverMeasuredEarnsNothingAndSaysSo) {
   const Score result = score(exercise(), {{"left.path_length_mm", 100}}, Progress());
   EXPECT_FALSE(result.parts[0].measured);

@@ -7,13 +7,15 @@
 
 namespace calot::test {
 
-/// A bile-filled sphere of 61 nodes, held at its bed, and one grasper.
+/// A bile-filled sphere of 61 nodes, held at its bed, and one grasper whose tip waits close to it.
 inline SceneDefinition small_scene() {
   SceneDefinition scene;
   OrganDefinition organ;
   organ.name = "ball";
   organ.shape = SphereShape{};
   organ.nodes = 61;
+  organ.neck = {-62.7e-3, 97e-3, -55.5e-3};
+  organ.fundus = {-92.7e-3, 67e-3, -5.5e-3};
   HeldRegion held;
   held.landmark = "bed";
   organ.held.push_back(held);
@@ -43,7 +45,7 @@ inline ExerciseDefinition small_exercise() {
   return exercise;
 }
 
-/// Moves the instruments from where they wait, smoothly, for `duration` seconds.
+/// Moves the instruments from where they wait, smoothly, into the ball, for `duration` seconds.
 class SwayingSource : public InputSource {
  public:
   explicit SwayingSource(double duration) : duration_(duration) {}
@@ -56,7 +58,7 @@ class SwayingSource : public InputSource {
     StepInput input = rest_;
     for (InstrumentPose& pose : input.instruments) {
       pose.pitch += 0.05 * std::sin(7 * time);
-      pose.insertion += 0.01 * time / 3;
+      pose.insertion += 0.03 * time;
       pose.roll += 0.3 * time;
     }
     return std::optional<StepInput>(input);

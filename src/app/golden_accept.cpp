@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/commands.h"
+#include "app/golden_compare.h"
+#include "app/golden_select.h"
+#include "app/golden_store.h"
+#include "app/interrupt.h"
+#include "app/play.h"
+#include "app/project.h"
+#include "app/terminal.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A scenario's new goldens wait in a folder of their own until the session has come to its end: none or all.
+class Staging {
+ public:
+  explicit Staging(fs::path folder) : folder_(std::move(folder)) { fs::remove_all(staged(), ignored_); }
+  ~Staging() { fs::remove_all(staged(), ignored_); }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  std::optional<Failure> add(const Frame& frame) {
+    const Result<std::string> written = write_golden(staged() / frame.name, make_golden(frame));
+    if (!written) return written.failure();
+    names_.push_back(frame.name);
+    return std::nullopt;
+  }
+  const std::vector<std::string>& names() const { return names_; }
+  std::optional<Failure> publish() const {
+    for (const std::string& name : names_) {
+      for (const char* extension : {".png", ".json"}) {
+        std::error_code error;
+        fs::rename(staged() / (name + extension), folder_ / (name + extension), error);
+        if (error)
+          return fail(
+              FailureKind::usage,
+              fmt::format("cannot write {}: {}", (folder_ / (name + extension)).string(), error.message()));
+      }
+      print(fmt::format("accepted {}", (folder_ / (name + ".png")).string()));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  fs::path staged() const { return folder_ / ".new"; }
+  fs::path folder_;
+  std::vector<std::string> names_;
+  std::error_code ignored_;
+};
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void remove_stale(const fs::path& folder, const std::vector<std::string>& declared) {
+  for (const std::string& name : stored_frames(folder)) {
+    if (contains(declared, name)) continue;
+    fs::remove(folder / (name + ".png"));
+    fs::remove(folder / (name + ".json"));
+    print(fmt::format("removed {}, which the scenario no longer declares", (folder / name).string()));
+  }
+}
+
+/// Adds to `count` the frames that were accepted: none where the session does not come to its end.
+std::optional<Failure> accept_scenario(const SelectedGolden& selected, const fs::path& goldens,
+                                       std::size_t& count) {
+  const fs::path folder = goldens / selected.name;
+  Staging staging(folder);
+  PlayRequest request;
+  request.scenario = selected.file;
+  request.end_frame = false;
+  use_stored_size(folder, request);
+  request.on_picture = [&](const Frame& frame) {
+    return selected.wants(frame.name) ? staging.add(frame) : std::nullopt;
+  };
+  const Result<Played> played = play(request);
+  if (!played) return played.failure();
+  if (played->session.end == SessionEnd::failed) return played->session.failure;
+  if (interrupt_flag()) return std::nullopt;
+  std::vector<std::string> declared;
+  for (const GoldenFrame& frame : golden_frames(played->exercise)) declared.push_back(frame.name);
+  for (const std::string& name : selected.frames.empty() ? declared : selected.frames) {
+    if (contains(staging.names(), name)) continue;
+    return fail(FailureKind::scenario, fmt::format("{} has no frame {}", selected.name, name),
+                fmt::format("frames that were drawn: {}", fmt::join(played->pictures, ", ")));
+  }
+  if (std::optional<Failure> failure = staging.publish()) return failure;
+  count += staging.names().size();
+  if (selected.frames.empty()) remove_stale(folder, declared);
+  return std::nullopt;
+}
+
+ExitCode stopped(std::size_t accepted, const std::vector<SelectedGolden>& all, std::size_t from) {
+  std::string names;
+  for (std::size_t i = from; i < all.size(); ++i) names += (i > from ? " " : "") + shell_word(all[i].name);
+  std::fflush(stdout);
+  std::fprintf(stderr, "Interrupted: %zu frames were accepted, those named above; nothing of %s.\n", accepted,
+               names.c_str());
+  std::fprintf(stderr, "Next: calot golden accept %s\n", names.c_str());
+  return ExitCode::interrupted;
+}
+
+}  // namespace
+
+ExitCode golden_accept_command(const GoldenCommand& command) {
+  if (command.names.empty()) {
+    return print_failure(fail(FailureKind::usage, "name what to accept: a scenario, or scenario/frame"),
+                         "calot golden test");
+  }
+  const Result<std::vector<SelectedGolden>> selected = select_goldens(command.names);
+  if (!selected) {
+    print_failure(selected.failure(), "calot golden test");
+    return ExitCode::nothing_selected;
+  }
+  const fs::path goldens = golden_folder(command);
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < selected->size(); ++i) {
+    const SelectedGolden& scenario = selected.value()[i];
+    if (interrupt_flag()) return stopped(accepted, selected.value(), i);
+    const std::size_t before = accepted;
+    const std::optional<Failure> failure = accept_scenario(scenario, goldens, accepted);
+    if (failure) return print_failure(*failure, "calot run " + shell_word(scenario.file.string()));
+    if (interrupt_flag() && accepted == before) return stopped(accepted, selected.value(), i);
+  }
+  return ExitCode::ok;
+}
+
+}  // namespace calot
