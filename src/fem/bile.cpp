@@ -3,47 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "fem/lanes.h"
 
 namespace calot {
 namespace {
 
-constexpr int face_points = 6;   // of a face split into four
 constexpr int most_points = 28;  // of a cell
 
 double tetra_volume(const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)) / 6.0; }
 
 }  // namespace
-
-Result<BileSurface> extrapolated(const Tessellation& surface, int faces) {
-  BileSurface out;
-  if (static_cast<int>(surface.triangles.size()) != 4 * faces)
-    return fail(FailureKind::internal, fmt::format("bile needs 4 triangles a face, not {} for {} faces",
-                                                   surface.triangles.size(), faces));
-  out.points = surface.stencils;
-  for (int f = 0; f < faces; ++f) {
-    std::vector<BileSurface::Part> cell;
-    std::map<int, int> uses;
-    for (int t = 4 * f; t < 4 * f + 4; ++t) {
-      cell.push_back({surface.triangles[t], 4.0 / 3.0});
-      for (int p : surface.triangles[t]) ++uses[p];
-    }
-    // The whole face: each of its corners belongs to one of the four only, which lists it in the face's sense.
-    BileSurface::Part whole{{}, -1.0 / 3.0};
-    int corner = 0;
-    for (int t = 4 * f; t < 4 * f + 4; ++t)
-      for (int p : surface.triangles[t])
-        if (uses[p] == 1 && corner < 3) whole.corners[corner++] = p;
-    if (uses.size() != face_points || corner != 3)
-      return fail(FailureKind::internal,
-                  fmt::format("face {} of the bile's surface is not a split triangle", f));
-    cell.push_back(whole);
-    out.cells.push_back(std::move(cell));
-  }
-  return out;
-}
 
 Result<Bile> Bile::create(const BileSurface& surface, double specific_weight, const Vec3& up,
                           const Vec3& datum) {

@@ -21,10 +21,6 @@ struct BileSurface {
   std::vector<std::vector<Part>> cells;  ///< parts that share points, at most 28 different ones a cell
 };
 
-/// The extrapolated rule on a closed tessellation with 4 consecutive triangles a face (tessellate(2)). Fails
-/// (internal) on any other.
-Result<BileSurface> extrapolated(const Tessellation& surface, int faces);
-
 class Bile {
  public:
   /// `specific_weight` in N/m^3; `up` is unit; heights count from `datum` (m, a point; near the organ keeps
