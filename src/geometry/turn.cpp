@@ -5,6 +5,7 @@
 
 namespace calot {
 
+// As Eigen::umeyama, in whose instance for three rows gcc 12 sees an array's bound passed, wrongly.
 Mat3 best_turn(const Points3& from, const Points3& to) {
   const Vec3 from_middle = from.rowwise().mean(), to_middle = to.rowwise().mean();
   Mat3 together = Mat3::Zero();

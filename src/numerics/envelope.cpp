@@ -1,17 +1,11 @@
 #include "numerics/envelope.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "numerics/dense_cholesky.h"
 
 namespace calot {
 namespace {
-
-/// Eigen cuts its products by the caches it finds; fixed sizes make the order of sums the same everywhere. Set before
-/// main, so that no product comes before it.
-[[maybe_unused]] const bool caches_are_fixed = [] {
-  Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 8 * 1024 * 1024);
-  return true;
-}();
 
 using Graph = std::vector<std::vector<int>>;
 
@@ -65,8 +59,8 @@ EnvelopeFactor::EnvelopeFactor(const Graph& neighbours) {
   const auto size = static_cast<Eigen::Index>(unknown_.size());
   l_ = Eigen::MatrixXd::Zero(size, size);
   Eigen::Index end = 0;
-  for (Eigen::Index first = 0; first < size; first += block) {
-    for (Eigen::Index column = first; column < std::min(first + block, size); ++column) {
+  for (Eigen::Index first = 0; first < size; first += cholesky_block) {
+    for (Eigen::Index column = first; column < std::min(first + cholesky_block, size); ++column) {
       end = std::max(end, column + 1);
       for (int node : neighbours[order[static_cast<std::size_t>(column / 3)]])
         end = std::max(end, Eigen::Index{3} * (place[node] + 1));
@@ -106,41 +100,12 @@ void EnvelopeFactor::load(const Eigen::MatrixXd& matrix) {
   }
 }
 
-// Block by block. As Eigen::LLT, which copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
-bool EnvelopeFactor::factorise() {
-  for (Eigen::Index k = 0; k < size(); k += block) {
-    const Eigen::Index columns = std::min(block, size() - k), rest = end_of(k) - k - columns;
-    const Eigen::LLT<Eigen::MatrixXd> corner(l_.block(k, k, columns, columns));
-    if (corner.info() != Eigen::Success) return false;
-    l_.block(k, k, columns, columns).triangularView<Eigen::Lower>() = corner.matrixLLT();
-    if (rest <= 0) continue;
-    auto below = l_.block(k + columns, k, rest, columns);
-    corner.matrixU().solveInPlace<Eigen::OnTheRight>(below);
-    l_.block(k + columns, k + columns, rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
-  }
-  return true;
-}
+bool EnvelopeFactor::factorise() { return cholesky_in_place(l_, ends_); }
 
 VecX EnvelopeFactor::solve(const VecX& right) const {
   VecX x(size());
   for (Eigen::Index i = 0; i < size(); ++i) x[i] = right[unknown_[static_cast<std::size_t>(i)]];
-  for (Eigen::Index k = 0; k < size(); k += block) {
-    const Eigen::Index columns = std::min(block, size() - k), rest = end_of(k) - k - columns;
-    l_.block(k, k, columns, columns).triangularView<Eigen::Lower>().solveInPlace(x.segment(k, columns));
-    if (rest > 0)
-      x.segment(k + columns, rest).noalias() -=
-          l_.block(k + columns, k, rest, columns) * x.segment(k, columns);
-  }
-  for (Eigen::Index k = (size() - 1) / block * block; k >= 0; k -= block) {
-    const Eigen::Index columns = std::min(block, size() - k), rest = end_of(k) - k - columns;
-    if (rest > 0)
-      x.segment(k, columns).noalias() -=
-          l_.block(k + columns, k, rest, columns).transpose() * x.segment(k + columns, rest);
-    l_.block(k, k, columns, columns)
-        .triangularView<Eigen::Lower>()
-        .transpose()
-        .solveInPlace(x.segment(k, columns));
-  }
+  x = cholesky_solve(l_, std::move(x), ends_);
   VecX out(size());
   for (Eigen::Index i = 0; i < size(); ++i) out[unknown_[static_cast<std::size_t>(i)]] = x[i];
   return out;

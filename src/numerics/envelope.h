@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "numerics/block_matrix.h"
+#include "numerics/dense_cholesky.h"
 
 namespace calot {
 
@@ -37,8 +38,9 @@ class EnvelopeFactor {
   long nonzeros() const;  ///< within the envelope
 
  private:
-  static constexpr Eigen::Index block = 48;  ///< columns at a time
-  Eigen::Index end_of(Eigen::Index column) const { return ends_[static_cast<std::size_t>(column / block)]; }
+  Eigen::Index end_of(Eigen::Index column) const {
+    return ends_[static_cast<std::size_t>(column / cholesky_block)];
+  }
 
   Eigen::MatrixXd l_;
   std::vector<int> unknown_, place_;  ///< in each place of the order; of each unknown

@@ -1,9 +1,9 @@
 #include "numerics/newton.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "base/timed.h"
+#include "numerics/modes.h"
 
 namespace calot {
 namespace {
@@ -38,12 +38,12 @@ bool has_mechanism(const BlockMatrix& matrix, const VecX& border, const VecX& x,
   const auto motions = rigid_motions(x, places);
   Eigen::Matrix<double, Eigen::Dynamic, 6> forces(x.size(), 6);
   for (int c = 0; c < 6; ++c) forces.col(c) = matrix.multiply(motions.col(c));
-  const Eigen::Matrix<double, 6, 6> stiffness = motions.transpose() * forces;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(stiffness);
+  const std::optional<Modes6> resisted = modes(Mat6(motions.transpose() * forces));
+  if (!resisted) return false;  // not finite: the solve says so
   Eigen::Index softest = 0;
-  const double least = eigen.eigenvalues().cwiseAbs().minCoeff(&softest), scale = matrix.diagonal_mean();
+  const double least = resisted->values.cwiseAbs().minCoeff(&softest), scale = matrix.diagonal_mean();
   if (least >= 1e-9 * scale) return false;
-  VecX met = forces * eigen.eigenvectors().col(softest);
+  VecX met = forces * resisted->vectors.col(softest);
   if (border.size() > 0) met -= border.dot(met) / border.squaredNorm() * border;
   return met.norm() < 1e-8 * scale;
 }

@@ -1,15 +1,16 @@
 #include "sim/vibration.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "base/rng.h"
+#include "numerics/dense_cholesky.h"
+#include "numerics/modes.h"
 
 namespace calot {
 namespace {
@@ -87,7 +88,9 @@ BodyMass::BodyMass(const ShellBody& body, const VecX& x, double wall_thickness, 
       for (int l = 0; l < harmonics; ++l) kinetic(k, l) += h[k] * scale * g[l].dot(areas[p]);
     }
   }
-  kinetic_.compute(0.5 * (kinetic + kinetic.transpose()));
+  kinetic_ = 0.5 * (kinetic + kinetic.transpose());
+  // An energy: on a skin too coarse to tell, none is found, and no frequency either.
+  if (!cholesky_in_place(kinetic_)) kinetic_.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 VecX BodyMass::multiply(const VecX& motion) const {
@@ -95,48 +98,44 @@ VecX BodyMass::multiply(const VecX& motion) const {
   const StencilTable& table = body_.quadrature();
   for (int r = 0; r < table.rows(); ++r)
     spread(table, r, row_mass_[r] * blend(table, table.value, r, motion), out);
-  out += bile_density_ * (flow_ * kinetic_.solve(flow_.transpose() * motion));
+  out += bile_density_ * (flow_ * cholesky_solve(kinetic_, flow_.transpose() * motion));
   return out;
 }
 
 namespace {
 
 /// K^-1 on the motions that keep the volume to first order, where K itself need not be positive definite: a balloon
-/// blown up beyond its greatest pressure would burst or shrink if its filling could come and go.
+/// blown up beyond its greatest pressure would burst or shrink if its filling could come and go. So changes of volume
+/// are made stiff (K + s g g', g the volume's gradient), which those motions do not feel.
 class KeptVolumeFactor {
  public:
   KeptVolumeFactor(const BlockMatrix& matrix, VecX gradient) : gradient_(std::move(gradient)) {
-    const Eigen::Map<const Eigen::SparseMatrix<double>> lower(
-        matrix.size(), matrix.size(), static_cast<Eigen::Index>(matrix.entries().size()),
-        matrix.column_starts().data(), matrix.rows().data(), matrix.entries().data());
-    factor_.compute(lower);
-    if (factor_.info() != Eigen::Success) return;
-    bordered_ = factor_.solve(gradient_);
+    // Far above what a wall takes off its filling's stiffness, and three figures of the sixteen.
+    constexpr double stiffer = 1e3;
+    factor_ =
+        (stiffer * matrix.diagonal_mean() / gradient_.squaredNorm() * gradient_) * gradient_.transpose();
+    for (int column = 0; column < matrix.size(); ++column)
+      for (int e = matrix.column_starts()[column]; e < matrix.column_starts()[column + 1]; ++e)
+        factor_(matrix.rows()[e], column) += matrix.entries()[e];
+    stable_ = cholesky_in_place(factor_);
+    if (!stable_) return;
+    bordered_ = cholesky_solve(factor_, gradient_);
     complement_ = gradient_.dot(bordered_);
-    // Without pivots the factor may have lost its figures.
-    constexpr double figures = 1e-6;
-    sound_ =
-        complement_ != 0 && (matrix.multiply(bordered_) - gradient_).norm() <= figures * gradient_.norm();
   }
 
-  /// K is positive definite on these motions: by Sylvester's law of inertia the matrix bordered by the gradient then
-  /// has one negative pivot, the border's or K's own.
-  bool stable() const {
-    if (!sound_) return false;
-    const auto negative = (factor_.vectorD().array() <= 0).count();
-    return negative + (complement_ > 0 ? 1 : 0) == 1;
-  }
+  /// K is positive definite on these motions.
+  bool stable() const { return stable_; }
 
   VecX response(const VecX& load) const {
-    const VecX dx = factor_.solve(load);
+    const VecX dx = cholesky_solve(factor_, load);
     return dx - gradient_.dot(dx) / complement_ * bordered_;
   }
 
  private:
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  Eigen::MatrixXd factor_;
   VecX gradient_, bordered_;
   double complement_ = 0;
-  bool sound_ = false;
+  bool stable_ = false;
 };
 
 using Response = std::function<VecX(const VecX&)>;
@@ -144,7 +143,7 @@ using Response = std::function<VecX(const VecX&)>;
 /// The smallest w^2 of K v = w^2 M v, in 1/s^2, by inverse iteration on a few vectors; `response` is K^-1 on the
 /// motions that keep the volume.
 Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mass, Eigen::Index size) {
-  constexpr int vectors = 6, max_rounds = 300;
+  constexpr int vectors = Mat6::RowsAtCompileTime, max_rounds = 300;
   constexpr double tolerance = 1e-8;
   Rng rng(1);
   Eigen::MatrixXd shapes(size, vectors);
@@ -160,15 +159,11 @@ Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mas
     for (int k = 0; k < vectors; ++k) masses.col(k) = mass.multiply(next.col(k));
     // With K next = loads + a pressure that does no work on motions that keep the volume.
     const Eigen::MatrixXd stiffness = next.transpose() * loads, inertia = next.transpose() * masses;
-    // In the masses' own measure, as an ordinary eigenproblem of fixed size.
-    using Small = Eigen::Matrix<double, vectors, vectors>;
-    const Eigen::LLT<Small> measure(Small(0.5 * (inertia + inertia.transpose())));
-    if (measure.info() != Eigen::Success) break;
-    const Small half = measure.matrixL().solve(Small(0.5 * (stiffness + stiffness.transpose())));
-    const Eigen::SelfAdjointEigenSolver<Small> ritz(Small(measure.matrixL().solve(Small(half.transpose()))));
-    if (ritz.info() != Eigen::Success || !(ritz.eigenvalues()[0] > 0)) break;
-    shapes = next * Eigen::MatrixXd(measure.matrixU().solve(ritz.eigenvectors()));
-    const double before = std::exchange(lowest, ritz.eigenvalues()[0]);
+    const std::optional<Modes6> ritz =
+        modes(Mat6(0.5 * (stiffness + stiffness.transpose())), Mat6(0.5 * (inertia + inertia.transpose())));
+    if (!ritz || !(ritz->values[0] > 0)) break;
+    shapes = next * ritz->vectors;
+    const double before = std::exchange(lowest, ritz->values[0]);
     if (std::abs(lowest - before) <= tolerance * lowest) return lowest;
   }
   return fail(FailureKind::simulation, "the organ's lowest natural frequency was not found",

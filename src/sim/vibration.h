@@ -2,8 +2,6 @@
 // Small vibrations of an organ about its equilibrium: the licence for statics (the paper, section 4: shaken
 // below a third of its lowest natural frequency, a structure may be treated as static).
 
-#include <Eigen/Cholesky>
-
 #include "sim/equilibrium.h"
 
 namespace calot {
@@ -32,8 +30,8 @@ class BodyMass {
   const ShellBody& body_;
   std::vector<double> row_mass_;  ///< kg, of each quadrature point
   double wall_ = 0, bile_density_ = 0;
-  Eigen::MatrixXd flow_;  ///< column k: h_k integrated with each node's normal motion, m^3 or more
-  Eigen::LDLT<Eigen::MatrixXd> kinetic_;
+  Eigen::MatrixXd flow_;     ///< column k: h_k integrated with each node's normal motion, m^3 or more
+  Eigen::MatrixXd kinetic_;  ///< its Cholesky factor, lower triangle
 };
 
 /// Lowest natural frequency, Hz, of the organ in `field` at its present state: the smallest w of K v = w^2 M v among

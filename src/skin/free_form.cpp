@@ -1,9 +1,9 @@
 #include "skin/free_form.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <cmath>
+#include <algorithm>
+
+#include "numerics/dense_cholesky.h"
 
 namespace calot {
 
@@ -97,48 +97,32 @@ Vec3 FreeForm::moved_normal(const Vec3& x, const Vec3& n, double share) const {
   return (jacobian.inverse().transpose() * n).normalized();
 }
 
-/// The damped least squares by its normal equations: a row has 64 entries at most, so the products are few.
-Eigen::MatrixX3d FreeForm::damped_nodes(const Eigen::MatrixXd& b, const Eigen::MatrixX3d& wanted,
-                                        double damping) const {
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(b.cols(), b.cols());
-  std::vector<Eigen::Index> entries;
-  for (Eigen::Index k = 0; k < b.rows(); ++k) {
-    entries.clear();
-    for (Eigen::Index i = 0; i < b.cols(); ++i)
-      if (b(k, i) != 0) entries.push_back(i);
-    for (const Eigen::Index j : entries)
-      for (const Eigen::Index i : entries)
-        if (i >= j) normal(i, j) += b(k, i) * b(k, j);
-  }
-  normal.diagonal().array() += damping * damping;
-  return normal.llt().solve(b.transpose() * wanted);
-}
-
-Result<FreeForm::Fit> FreeForm::manipulate(const std::vector<Vec3>& points, const std::vector<Vec3>& targets,
-                                           double damping) {
+// By the normal equations of the damped least squares: a point has 64 weights at most, so the products are few.
+Result<double> FreeForm::manipulate(const std::vector<Vec3>& points, const std::vector<Vec3>& targets,
+                                    double damping) {
   if (points.size() != targets.size() || !all_finite(points) || !all_finite(targets))
     return fail(FailureKind::internal, "a lattice was given points and targets that do not pair up");
-  const Eigen::Index count = static_cast<Eigen::Index>(points.size());
-  nodes_.setZero();
-  if (count == 0) return Fit{};
-  Eigen::MatrixXd b(count, nodes_.rows());
-  Eigen::MatrixX3d wanted(count, 3);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const std::size_t at = static_cast<std::size_t>(k);
-    b.row(k) = weights(points[at]);
-    wanted.row(k) = targets[at] - points[at];
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(nodes_.rows(), nodes_.rows());
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(nodes_.rows(), 3);
+  std::vector<Eigen::Index> reached;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const VecX w = weights(points[k]);
+    reached.clear();
+    for (Eigen::Index i = 0; i < w.size(); ++i)
+      if (w[i] != 0) reached.push_back(i);
+    for (const Eigen::Index j : reached) {
+      right.row(j) += w[j] * (targets[k] - points[k]).transpose();
+      for (const Eigen::Index i : reached)
+        if (i >= j) normal(i, j) += w[i] * w[j];
+    }
   }
-  Fit fit;
-  if (damping > 0) {
-    nodes_ = damped_nodes(b, wanted, damping);
-    fit.rank = static_cast<int>(count);
-  } else {
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(b);
-    nodes_ = decomposition.solve(wanted);
-    fit.rank = static_cast<int>(decomposition.rank());
-  }
-  fit.largest_miss = (b * nodes_ - wanted).rowwise().norm().maxCoeff();
-  return fit;
+  normal.diagonal().array() += damping * damping;
+  if (!cholesky_in_place(normal)) return fail(FailureKind::internal, "a lattice's damping is too small");
+  for (int c = 0; c < 3; ++c) nodes_.col(c) = cholesky_solve(normal, right.col(c));
+  double largest_miss = 0;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    largest_miss = std::max(largest_miss, (points[k] + displacement(points[k]) - targets[k]).norm());
+  return largest_miss;
 }
 
 }  // namespace calot

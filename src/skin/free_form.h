@@ -7,8 +7,8 @@
 // with as many functions in a direction as fit into it whole. So u, its first and its second derivatives vanish on
 // the box's faces and outside, and a surface that runs through a face stays smooth. With n functions across a box of
 // half extent h each reaches 4 h / (n + 3) to either side of its middle. Cost: 64 terms to move a point. To fit
-// N = n_x n_y n_z functions to K points: by pseudo-inverse about 2 K N min(K, N) operations, damped N^3 / 3, which is
-// why the lattice is kept small: 400 functions take some milliseconds.
+// N = n_x n_y n_z functions: N^3 / 3 operations, which is why the lattice is kept small: 400 functions take some
+// milliseconds.
 
 #include <array>
 #include <vector>
@@ -28,17 +28,12 @@ class FreeForm {
   /// Moves nothing until it is manipulated.
   explicit FreeForm(const Lattice& lattice);
 
-  struct Fit {
-    int rank = 0;             ///< manipulated points that are independent of each other
-    double largest_miss = 0;  ///< m, of a point from its target
-  };
-  /// Lets the lattice take `points` to `targets` (m, world, as many): exactly where it can, else with the least
-  /// squared miss; of all lattice displacements that do so, the one of least norm (pseudo-inverse). With `damping`
-  /// > 0 (dimensionless, against weights below 1) the least of |miss|^2 + damping^2 |lattice displacement|^2, which
-  /// follows its targets continuously where the rank of points that come together would jump; `rank` then counts
-  /// all points. Fails (internal) for lists of unequal length or values that are not finite.
-  Result<Fit> manipulate(const std::vector<Vec3>& points, const std::vector<Vec3>& targets,
-                         double damping = 0);
+  /// Brings `points` near `targets` (m, world, as many): the lattice displacement of least |miss|^2 + damping^2
+  /// |lattice displacement|^2, `damping` > 0 (dimensionless, against weights below 1). It follows its targets
+  /// continuously where points come together. The largest miss, m. Fails (internal) for lists of unequal length,
+  /// values that are not finite, and a damping too small for the normal equations.
+  Result<double> manipulate(const std::vector<Vec3>& points, const std::vector<Vec3>& targets,
+                            double damping);
 
   bool contains(const Vec3& x) const;
   Vec3 displacement(const Vec3& x) const;  ///< m, world
@@ -47,7 +42,7 @@ class FreeForm {
   /// the displacement: by J^-T. Needs det J > 0.
   Vec3 moved_normal(const Vec3& x, const Vec3& n, double share = 1) const;
 
-  /// w_i(x), first direction fastest: what direct manipulation inverts.
+  /// w_i(x), first direction fastest.
   VecX weights(const Vec3& x) const;
   /// d_i, m, world: a row a function.
   const Eigen::MatrixX3d& nodes() const { return nodes_; }
@@ -60,8 +55,6 @@ class FreeForm {
     std::array<double, 4> value{}, slope{};
   };
   Reach reach(int axis, double at) const;
-  Eigen::MatrixX3d damped_nodes(const Eigen::MatrixXd& weights, const Eigen::MatrixX3d& wanted,
-                                double damping) const;
 
   Lattice lattice_;
   Pose to_box_;

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <limits>
 
 #include "base/rng.h"
@@ -49,49 +48,58 @@ FreeForm random_form(Rng& rng) {
   return form;
 }
 
-TEST(FreeForm, TakesIndependentPointsExactlyToTheirTargets) {
+/// Beside the weights of a point (0.1 to 0.3 each) this is little.
+constexpr double slight = 1e-4;
+
+TEST(FreeForm, SlightlyDampedItTakesIndependentPointsToTheirTargets) {
   Rng rng(1);
   for (int trial = 0; trial < 20; ++trial) {
     FreeForm form(tilted_box());
     const Manipulation m = random_manipulation(rng, tilted_box(), 8);
-    const Result<FreeForm::Fit> fit = form.manipulate(m.points, m.targets);
-    ASSERT_TRUE(fit);
-    EXPECT_EQ(fit.value().rank, 8);
+    const Result<double> miss = form.manipulate(m.points, m.targets, slight);
+    ASSERT_TRUE(miss);
+    double largest = 0;
     for (std::size_t k = 0; k < m.points.size(); ++k)
-      // Rounding of 0.1 m, times a condition of the weights of some thousands.
-      EXPECT_LT((m.points[k] + form.displacement(m.points[k]) - m.targets[k]).norm(), 1e-13);
-    EXPECT_LT(fit.value().largest_miss, 1e-13);
+      largest = std::max(largest, (m.points[k] + form.displacement(m.points[k]) - m.targets[k]).norm());
+    // A miss is damping^2 over the least square of a singular value of the weights, here some 1e-3.
+    EXPECT_LT(largest, 1e-4 * mm);
+    EXPECT_EQ(miss.value(), largest);
   }
 }
 
-TEST(FreeForm, NoOtherLatticeDisplacementThatDoesItIsSmaller) {
+TEST(FreeForm, NoOtherLatticeDisplacementHasLessMissAndSize) {
   Rng rng(2);
-  FreeForm form(tilted_box());
-  const Manipulation m = random_manipulation(rng, tilted_box(), 10);
-  ASSERT_TRUE(form.manipulate(m.points, m.targets));
-  const Eigen::Index functions = form.nodes().rows();
-  Eigen::MatrixXd b(10, functions);
-  for (Eigen::Index k = 0; k < 10; ++k) b.row(k) = form.weights(m.points[static_cast<std::size_t>(k)]);
-  const Eigen::MatrixXd normal = b * b.transpose();
-  for (int trial = 0; trial < 20; ++trial) {
-    Eigen::MatrixX3d other(functions, 3);
-    for (Eigen::Index i = 0; i < functions; ++i) other.row(i) = 0.5 * mm * random_vector(rng);
-    other -= b.transpose() * normal.ldlt().solve(Eigen::MatrixXd(b * other));  // moves none of the points
-    ASSERT_LT((b * other).norm(), 1e-9 * mm);
-    ASSERT_GT(other.norm(), 1 * mm);
-    EXPECT_GT((form.nodes() + other).norm(), form.nodes().norm());
-    EXPECT_GT((form.nodes() - other).norm(), form.nodes().norm());
+  for (double damping : {1e-3, 0.06, 0.5}) {
+    FreeForm form(tilted_box());
+    const Manipulation m = random_manipulation(rng, tilted_box(), 10);
+    ASSERT_TRUE(form.manipulate(m.points, m.targets, damping));
+    const Eigen::MatrixX3d best = form.nodes();
+    const auto cost = [&](const Eigen::MatrixX3d& nodes) {
+      form.set_nodes(nodes);
+      double sum = damping * damping * nodes.squaredNorm();
+      for (std::size_t k = 0; k < m.points.size(); ++k)
+        sum += (m.points[k] + form.displacement(m.points[k]) - m.targets[k]).squaredNorm();
+      return sum;
+    };
+    const double least = cost(best);
+    EXPECT_GT(best.norm(), 0.1 * mm);
+    for (int trial = 0; trial < 20; ++trial) {
+      Eigen::MatrixX3d other(best.rows(), 3);
+      for (Eigen::Index i = 0; i < other.rows(); ++i) other.row(i) = 0.01 * mm * random_vector(rng);
+      EXPECT_GT(cost(best + other), least);
+      EXPECT_GT(cost(best - other), least);
+    }
   }
 }
 
 TEST(FreeForm, OfTwoTargetsForOnePointItTakesTheMiddleAndSaysByHowMuchItMisses) {
   FreeForm form(tilted_box());
   const Vec3 x = tilted_box().frame.translation();
-  const Result<FreeForm::Fit> fit = form.manipulate({x, x}, {x + Vec3(1 * mm, 0, 0), x + Vec3(0, 0, 1 * mm)});
-  ASSERT_TRUE(fit);
-  EXPECT_EQ(fit.value().rank, 1);
-  EXPECT_LT((form.displacement(x) - Vec3(0.5 * mm, 0, 0.5 * mm)).norm(), 1e-15);
-  EXPECT_NEAR(fit.value().largest_miss, std::sqrt(0.5) * mm, 1e-15);
+  const Result<double> miss =
+      form.manipulate({x, x}, {x + Vec3(1 * mm, 0, 0), x + Vec3(0, 0, 1 * mm)}, slight);
+  ASSERT_TRUE(miss);
+  EXPECT_LT((form.displacement(x) - Vec3(0.5 * mm, 0, 0.5 * mm)).norm(), 1e-6 * mm);
+  EXPECT_NEAR(miss.value(), std::sqrt(0.5) * mm, 1e-6 * mm);
 }
 
 TEST(FreeForm, VanishesWithItsSlopesOnTheBoxsFacesAndOutside) {
@@ -160,9 +168,9 @@ TEST(FreeForm, WithNothingToMoveItIsTheIdentity) {
   const FreeForm fresh(tilted_box());
   FreeForm still(tilted_box());
   Manipulation m = random_manipulation(rng, tilted_box(), 12);
-  ASSERT_TRUE(still.manipulate(m.points, m.points));
+  ASSERT_TRUE(still.manipulate(m.points, m.points, slight));
   FreeForm emptied = random_form(rng);
-  ASSERT_TRUE(emptied.manipulate({}, {}));
+  ASSERT_TRUE(emptied.manipulate({}, {}, slight));
   for (const FreeForm* form : std::initializer_list<const FreeForm*>{&fresh, &still, &emptied})
     for (int k = 0; k < 20; ++k) {
       const Vec3 x = random_place(rng, tilted_box(), 1.2), n = random_vector(rng).normalized();
@@ -175,35 +183,35 @@ TEST(FreeForm, APointOutsideItsBoxStaysAndIsReportedAsMissed) {
   FreeForm form(tilted_box());
   const Vec3 outside = tilted_box().frame * Vec3(5 * mm, 0, 0), inside = tilted_box().frame.translation();
   const Vec3 way(0, 0, 1 * mm);
-  const Result<FreeForm::Fit> fit = form.manipulate({outside, inside}, {outside + way, inside + way});
-  ASSERT_TRUE(fit);
-  EXPECT_EQ(fit.value().rank, 1);
-  EXPECT_NEAR(fit.value().largest_miss, 1 * mm, 1e-15);
+  const Result<double> miss = form.manipulate({outside, inside}, {outside + way, inside + way}, slight);
+  ASSERT_TRUE(miss);
+  EXPECT_NEAR(miss.value(), 1 * mm, 1e-15);
   EXPECT_EQ(form.displacement(outside), Vec3::Zero());
-  EXPECT_LT((form.displacement(inside) - way).norm(), 1e-15);
+  EXPECT_LT((form.displacement(inside) - way).norm(), 1e-6 * mm);
 }
 
 TEST(FreeForm, DampingTradesMissForASmallerLatticeDisplacement) {
   Rng rng(7);
   const Manipulation m = random_manipulation(rng, tilted_box(), 10);
   double miss = 0, norm = 1;
-  for (double damping : {1e-6, 1e-3, 1e-2, 1e-1}) {
+  for (double damping : {1e-4, 1e-3, 1e-2, 1e-1}) {
     FreeForm form(tilted_box());
-    const Result<FreeForm::Fit> fit = form.manipulate(m.points, m.targets, damping);
-    ASSERT_TRUE(fit);
-    EXPECT_GT(fit.value().largest_miss, miss);
+    const Result<double> missed = form.manipulate(m.points, m.targets, damping);
+    ASSERT_TRUE(missed);
+    EXPECT_GT(missed.value(), miss);
     EXPECT_LT(form.nodes().norm(), norm);
-    miss = fit.value().largest_miss;
+    miss = missed.value();
     norm = form.nodes().norm();
   }
 }
 
-TEST(FreeForm, RefusesWhatDoesNotPairUp) {
+TEST(FreeForm, RefusesWhatDoesNotPairUpAndTooLittleDamping) {
   FreeForm form(tilted_box());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(form.manipulate({Vec3::Zero()}, {}));
-  EXPECT_FALSE(form.manipulate({Vec3(0, nan, 0)}, {Vec3::Zero()}));
-  EXPECT_FALSE(form.manipulate({Vec3::Zero()}, {Vec3(nan, 0, 0)}));
+  EXPECT_FALSE(form.manipulate({Vec3::Zero()}, {}, slight));
+  EXPECT_FALSE(form.manipulate({Vec3(0, nan, 0)}, {Vec3::Zero()}, slight));
+  EXPECT_FALSE(form.manipulate({Vec3::Zero()}, {Vec3(nan, 0, 0)}, slight));
+  EXPECT_FALSE(form.manipulate({Vec3::Zero()}, {Vec3::Zero()}, 0));
 }
 
 }  // namespace

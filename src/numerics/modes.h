@@ -1,0 +1,23 @@
+#pragma once
+// Eigenvalues of small symmetric matrices. Here and nowhere else, as Eigen's templates for them take ten seconds of a
+// compiler's time in each file.
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace calot {
+
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+struct Modes6 {
+  Eigen::Matrix<double, 6, 1> values;  ///< increasing
+  Mat6 vectors;                        ///< columns
+};
+
+/// K v = value v with |v| = 1; the lower triangle of `k` is read. None where the iteration does not converge.
+std::optional<Modes6> modes(const Mat6& k);
+
+/// K v = value M v with v' M v = 1; both symmetric. None where M is not positive definite, or as above.
+std::optional<Modes6> modes(const Mat6& k, const Mat6& m);
+
+}  // namespace calot
