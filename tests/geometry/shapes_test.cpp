@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/units.h"
+#include "support/long_run.h"
 
 namespace calot::test {
 namespace {
@@ -61,6 +62,7 @@ const std::vector<Case>& cases() {
 }
 
 TEST(Revolve, GivesAClosedSphereOfTheNodesAskedFor) {
+  CALOT_SLOW_WHEN_SANITIZED("spheres of up to thousands of nodes");
   for (const auto& [name, nodes, mesh] : cases()) {
     EXPECT_EQ(mesh.points.size(), nodes) << name;
     EXPECT_EQ(mesh.triangles.size(), 2 * nodes - 4) << name << ": Euler's 2 = V - E + F with E = 3/2 F";

@@ -1,6 +1,7 @@
 // Structural extensions against uniform meshes: what the comparison promises of its errors, not of its times.
 
 #include "paper/comparison.h"
+#include "support/long_run.h"
 
 #include <gtest/gtest.h>
 
@@ -43,6 +44,7 @@ const Comparison& both() {
 }
 
 TEST(Comparison, ErrorsFallWithTheNodesAndExtensionsKeepTheTargets) {
+  CALOT_SLOW_WHEN_SANITIZED("whole comparisons");
   const Comparison& all = both();
   for (const ComparisonRow& row : all.rows) EXPECT_EQ(row.status, "converged") << row.nodes << row.solver;
   const ComparisonRow coarse = row_of(all, "shell", 61), fine = row_of(all, "shell", 238),
@@ -71,6 +73,7 @@ TEST(Comparison, ErrorsFallWithTheNodesAndExtensionsKeepTheTargets) {
 }
 
 TEST(Comparison, BothFormulationsComeToTheSameShape) {
+  CALOT_SLOW_WHEN_SANITIZED("whole comparisons");
   const Comparison& all = both();
   ASSERT_EQ(all.formulations_apart_pct.size(), 1U);
   EXPECT_GT(all.formulations_apart_pct[0], 0);
@@ -93,6 +96,7 @@ double dense_flops(int nodes) {
 }
 
 TEST(Comparison, ErrorAndGainOfThePapersStarsAreOfThePapersOrder) {
+  CALOT_SLOW_WHEN_SANITIZED("whole comparisons");
   const Comparison& all = both();
   const ComparisonRow coarse = row_of(all, "1997", 61), fine = row_of(all, "1997", 238),
                       finest = row_of(all, "1997", 946), star = row_of(all, "1997", 61 + 12),
@@ -113,6 +117,7 @@ TEST(Comparison, ErrorAndGainOfThePapersStarsAreOfThePapersOrder) {
 }
 
 TEST(Comparison, TheTwoStagesCostACubeOfEachStagesUnknowns) {
+  CALOT_SLOW_WHEN_SANITIZED("whole comparisons");
   const Comparison& all = both();
   const ComparisonRow uniform = row_by(all, "1997", 238, "dense"),
                       whole = row_by(all, "1997", 61 + 12, "dense"),
@@ -143,6 +148,7 @@ TEST(Comparison, IsTheSameEachTime) {
 }
 
 TEST(Comparison, TheShapeDoesNotDependOnTheRateNorTheSolver) {
+  CALOT_SLOW_WHEN_SANITIZED("whole comparisons");
   const ComparedSurface surface = ComparedSurface::create(20e-3, 61, 2).value();
   const ComparedLoad load = standard_loads(6e-3)[2];
   std::vector<Vec3> places;

@@ -4,6 +4,7 @@
 
 #include "field_rig.h"
 #include "rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -14,6 +15,7 @@ const Vec3 up = Vec3(0.1, -0.2, 0.9).normalized();
 constexpr double tight = 1e-9, slack = 1e-7;  // N
 
 TEST(Balance, ForceOnTheToolIsWhatBedAndWeightLeave) {
+  CALOT_SLOW_WHEN_SANITIZED("a motion in small steps");
   const SceneDefinition scene = test::grasper_scene(90);
   Field field = test::make_field(scene.anatomy.organs[0], tight, up);
   const Organ& organ = field.organs[0];

@@ -10,6 +10,7 @@
 #include "field_rig.h"
 #include "support/bodies.h"
 #include "support/derivatives.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -101,6 +102,7 @@ struct Touched {
 };
 
 TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
+  CALOT_SLOW_WHEN_SANITIZED("differences of every coordinate");
   for (std::uint64_t seed : {1, 2, 3, 4}) {
     Touched touched(seed, seed <= 2 ? 0 : static_cast<int>(seed) - 2);
     if (seed > 2) {
@@ -205,6 +207,7 @@ TEST(Equilibrium, ATrianglesNearnessBoundsTheDistanceOfItsPoints) {
 }
 
 TEST(Equilibrium, TheSearchThatRemembersFindsTheSamePairsAsOneThatDoesNot) {
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of searches");
   Touched touched(6);
   ContactSearch search;
   Rng rng(7);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "slide_rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -18,6 +19,7 @@ std::vector<Vec3> skin(const test::Slide& slide) {
 }
 
 TEST(Rubbing, SlidingSkinPullsByFrictionTimesWhatPresses) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
   for (double friction : {0.1, 0.2, 0.3}) {
     test::Slide slide(friction);
     ASSERT_EQ(slide.press(), "");
@@ -33,6 +35,7 @@ TEST(Rubbing, SlidingSkinPullsByFrictionTimesWhatPresses) {
 }
 
 TEST(Rubbing, NeverLeavesTheCone) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
   test::Slide slide(0.2);
   ASSERT_EQ(slide.press(), "");
   for (double way : {0.3, 0.6, 1.0, 2.0, 4.0, 6.0, 5.8, 5.0, 3.0, 0.0}) {
@@ -44,6 +47,7 @@ TEST(Rubbing, NeverLeavesTheCone) {
 }
 
 TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
   test::Slide slide(1.0);
   ASSERT_EQ(slide.press(), "");
   const Tool& tool = slide.field.tools[0];
@@ -85,6 +89,7 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
 }
 
 TEST(Rubbing, WhatSticksDoesNotDependOnTheMesh) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
   const auto pulled = [](int nodes, double way) {
     test::Slide slide(0.3, nodes);
     EXPECT_EQ(slide.press(), "");
@@ -100,31 +105,34 @@ TEST(Rubbing, WhatSticksDoesNotDependOnTheMesh) {
 }
 
 TEST(Rubbing, ACycleLosesEnergyWithFrictionAndGivesAllBackWithoutIt) {
-  const auto cycle = [](double friction, double& largest) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
+  const auto cycle = [](double friction, int fineness, double& largest) {
     test::Slide slide(friction);
-    EXPECT_EQ(slide.press(40), "");
-    EXPECT_EQ(slide.go(-4e-3, 6e-3, 40), "");
+    EXPECT_EQ(slide.press(4 * fineness), "");
+    EXPECT_EQ(slide.go(-4e-3, 6e-3, 4 * fineness), "");
     largest = slide.work;
-    EXPECT_EQ(slide.go(-4e-3, -2e-3, 50), "");
-    EXPECT_EQ(slide.go(-4e-3, 0, 20), "");
-    EXPECT_EQ(slide.go(1.2e-3, 0, 40), "");
+    EXPECT_EQ(slide.go(-4e-3, -2e-3, 5 * fineness), "");
+    EXPECT_EQ(slide.go(-4e-3, 0, 2 * fineness), "");
+    EXPECT_EQ(slide.go(1.2e-3, 0, 4 * fineness), "");
     EXPECT_EQ(slide.contact().normal, 0.0);
     return slide.work;
   };
   double largest = 0;
-  // The trapezoidal rule errs by the square of the step, most where points begin to touch.
-  const double none = cycle(0, largest);
+  // The trapezoidal rule errs by the square of the step, most where points begin to touch: finest where nothing is
+  // to remain.
+  const double none = cycle(0, 5, largest);
   EXPECT_LT(std::abs(none), 2e-3 * largest);
   EXPECT_GT(largest, 1e-3);
-  const double some = cycle(0.2, largest), more = cycle(0.4, largest);
+  const double some = cycle(0.2, 2, largest), more = cycle(0.4, 2, largest);
   // 16 mm of way under 1 N: all of it would be 16 mJ times friction, had nothing stuck.
   EXPECT_GT(some, 0.2 * 0.5 * 16e-3);
   EXPECT_LT(some, 0.2 * 1.05 * 16e-3);
   EXPECT_GT(more, some);
-  EXPECT_GT(cycle(1.0, largest), 0) << "where it sticks nearly all is given back";
+  EXPECT_GT(cycle(1.0, 2, largest), 0) << "where it sticks nearly all is given back";
 }
 
 TEST(Rubbing, TheRateOfTheStepsHardlyMatters) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
   test::Slide fast(0.3), slow(0.3);
   ASSERT_EQ(fast.press(1), "");
   ASSERT_EQ(slow.press(20), "");
@@ -138,6 +146,7 @@ TEST(Rubbing, TheRateOfTheStepsHardlyMatters) {
 }
 
 TEST(Rubbing, WithoutFrictionAYankEndsWhereASlowPullEnds) {
+  CALOT_SLOW_WHEN_SANITIZED("long slides");
   test::Slide yank(0), slow(0);
   ASSERT_EQ(yank.press(1), "");
   ASSERT_EQ(yank.go(-4e-3, 6e-3, 1), "");  // 300 mm/s at 50 Hz

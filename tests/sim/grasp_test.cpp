@@ -6,11 +6,13 @@
 
 #include "field_rig.h"
 #include "rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
 
 TEST(Grasp, VolumeIsKeptWhileGrasped) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::grasper_scene());
   const double volume = path.world.report().organs[0].volume;
   double worst = 0;
@@ -23,6 +25,7 @@ TEST(Grasp, VolumeIsKeptWhileGrasped) {
 }
 
 TEST(Grasp, PressureRisesAndForcePullsBackWhileLifted) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::grasper_scene());
   const double pressure = path.world.report().organs[0].pressure;
   ASSERT_TRUE(path.grasp()) << path.driver.why();
@@ -40,6 +43,7 @@ TEST(Grasp, PressureRisesAndForcePullsBackWhileLifted) {
 }
 
 TEST(Grasp, GraspedSkinStaysWithTheJaw) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusField grasped(test::grasper_scene());
   ASSERT_EQ(grasped.grasp(), "");
   auto& [field, fundus, out] = grasped;
@@ -67,6 +71,7 @@ TEST(Grasp, GraspedSkinStaysWithTheJaw) {
 }
 
 TEST(Grasp, ReleasedOrganReturnsToItsRest) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::grasper_scene());
   const OrganState rest = path.world.report().organs[0];
   const std::vector<Vec3> skin = path.world.skin_positions(0);
@@ -100,6 +105,7 @@ struct Conditions {
 };
 
 TEST(Events, AreRaisedOnceWhenTheirConditionBegins) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   SceneDefinition scene = test::grasper_scene();
   scene.instruments[0].force_limit = 1.0;
   scene.anatomy.organs[0].wall.overstretch = 1.3;

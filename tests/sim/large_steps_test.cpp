@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "rig.h"
 #include "support/bodies.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -25,6 +26,7 @@ double winding_number(const std::vector<Vec3>& skin, const std::vector<Triangle>
 }
 
 TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
+  CALOT_SLOW_WHEN_SANITIZED("fast motions in many parts");
   const auto pulled = [](int steps) {
     test::FundusPath path(test::grasper_scene());
     EXPECT_TRUE(path.grasp() && path.lift(steps)) << path.driver.why();
@@ -39,6 +41,7 @@ TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
 }
 
 TEST(LargeSteps, ATipAt500MillimetresASecondNeverGoesThroughTheWall) {
+  CALOT_SLOW_WHEN_SANITIZED("fast motions in many parts");
   SceneDefinition scene = test::grasper_scene();
   const World rest = World::create(scene).value();
   const std::vector<Vec3> skin = rest.skin_positions(0), normals = rest.skin_normals(0);

@@ -1,5 +1,5 @@
-// Grasps at fifty random places and orientations: the jaws stay out of the skin, the volume is kept, and
-// where the motion cannot be followed the failure says so. Ten a test, so that they can run side by side.
+// Grasps at random places and orientations: the jaws stay out of the skin, the volume is kept, and where the motion
+// cannot be followed the failure says so. On two meshes.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,12 +7,12 @@
 #include "base/rng.h"
 #include "rig.h"
 #include "support/bodies.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
 
 constexpr double most_depth = 0.1e-3;  // m
-constexpr int a_test = 10;
 
 struct Approach {
   Vec3 place, out;
@@ -30,15 +30,18 @@ Approach random_approach(const World& rest, int number) {
 }
 
 class RandomGrasps : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Tens, RandomGrasps, ::testing::Range(0, 50 / a_test));
+INSTANTIATE_TEST_SUITE_P(WithNodes, RandomGrasps, ::testing::Values(120, 180));
 
 TEST_P(RandomGrasps, StayOutOfTheSkinAndFailCleanlyIfAtAll) {
-  SceneDefinition scene = test::grasper_scene(GetParam() % 2 == 0 ? 180 : 120);
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
+  const int grasps = test::cases(6, 100);
+  SceneDefinition scene = test::grasper_scene(GetParam());
   const World rest = World::create(scene).value();
   const double volume = rest.report().organs[0].volume;
   double deepest = 0, swelling = 0;
   int followed = 0, grasped = 0;
-  for (int number = a_test * GetParam(); number < a_test * (GetParam() + 1); ++number) {
+  for (int k = 0; k < grasps; ++k) {
+    const int number = 1000 * GetParam() + k;  // other places on the other mesh
     const Approach way = random_approach(rest, number);
     scene.ports = {{"umbilical", Vec3::Zero()}, {"right_subcostal", way.place + 150e-3 * way.out}};
     World world = World::create(scene).value();
@@ -61,9 +64,10 @@ TEST_P(RandomGrasps, StayOutOfTheSkinAndFailCleanlyIfAtAll) {
     EXPECT_NE(driver.why().find(" s"), std::string::npos) << driver.why();
     EXPECT_FALSE(driver.failure->problems[0].hint.empty());
   }
-  fmt::print("{} of {} followed, {} grasped, deepest {:.3f} mm\n", followed, a_test, grasped, 1e3 * deepest);
-  EXPECT_GE(followed, a_test - 1);
-  EXPECT_GE(grasped, a_test - 2);
+  fmt::print("{} of {} followed, {} grasped, deepest {:.3f} mm\n", followed, grasps, grasped, 1e3 * deepest);
+  // As one of ten may not be followed, and another may close on nothing that stays between the jaws.
+  EXPECT_GE(10 * followed, 9 * grasps - 2);
+  EXPECT_GE(10 * grasped, 8 * grasps);
   EXPECT_LT(swelling, 1e-9);
 }
 

@@ -1,6 +1,5 @@
-// Two hundred random instrument paths through and around an organ: each ends in equilibrium with the jaws
-// outside the skin, or as a failure that says where, when and what to change. Fifty a test, so that they run
-// side by side; every fifth with structural extensions.
+// Random instrument paths through and around an organ: each ends in equilibrium with the jaws outside the skin, or
+// as a failure that says where, when and what to change. Every fifth with structural extensions.
 
 #include <gtest/gtest.h>
 
@@ -10,12 +9,12 @@
 #include "rig.h"
 #include "sim/tool.h"
 #include "support/bodies.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
 
 constexpr double most_depth = 0.1e-3;  // m
-constexpr int a_test = 50;
 
 SceneDefinition ball_scene() {
   SceneDefinition scene;
@@ -35,13 +34,12 @@ SceneDefinition ball_scene() {
   return scene;
 }
 
-class RandomPaths : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Fifties, RandomPaths, ::testing::Range(0, 200 / a_test));
-
-TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
+TEST(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
+  const int paths = test::cases(40, 400);
   SceneDefinition scene = ball_scene();
   int followed = 0, touched = 0, changed = 0, refused = 0;
-  for (int number = a_test * GetParam(); number < a_test * (GetParam() + 1); ++number) {
+  for (int number = 0; number < paths; ++number) {
     Rng rng(77 + static_cast<std::uint64_t>(number));
     scene.solver.extension_levels = number % 5 == 0 ? 1 : 0;
     World world = World::create(scene).value();
@@ -81,11 +79,11 @@ TEST_P(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
     EXPECT_LT(world.deepest_penetration(), most_depth) << "path " << number;
     EXPECT_LT(std::abs(world.report().organs[0].volume / volume - 1), 1e-9) << "path " << number;
   }
-  RecordProperty("followed", followed);
-  EXPECT_GT(changed, a_test / 5) << "paths with extensions that never change test nothing";
+  EXPECT_GT(changed, paths / 5) << "paths with extensions that never change test nothing";
   EXPECT_LE(20 * refused, changed) << "of " << changed << " changes of extensions";
-  EXPECT_GE(touched, a_test / 2) << "paths that touch nothing test nothing";
-  EXPECT_GE(followed, a_test / 2) << "most must be followed";
+  EXPECT_GE(touched, paths / 2) << "paths that touch nothing test nothing";
+  // Places are chosen blindly: one path in fifty may ask for what cannot be.
+  EXPECT_GE(followed, paths - paths / 50);
 }
 
 }  // namespace

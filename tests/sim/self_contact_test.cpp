@@ -9,6 +9,7 @@
 #include "rig.h"
 #include "support/bodies.h"
 #include "support/derivatives.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -165,6 +166,7 @@ TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
 
 /// What is remembered decides nothing: neither what touches nor how far a step may go.
 TEST(SelfContact, MemoryLeavesNoTrace) {
+  CALOT_SLOW_WHEN_SANITIZED("walls pressed on each other");
   Field field = ball_with_details();
   const Organ& organ = field.organs[0];
   const VecX near = dented(organ, 0.15e-3), far = dented(organ, 3e-3);
@@ -207,6 +209,7 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOther) {
 }
 
 TEST(SelfContact, NothingIsActiveInAnOrdinaryGrasp) {
+  CALOT_SLOW_WHEN_SANITIZED("walls pressed on each other");
   test::FundusField grasped(test::grasper_scene());
   Organ& organ = grasped.field.organs[0];
   for (const auto& [depth, jaw] :
@@ -243,6 +246,7 @@ struct PressedThrough {
 };
 
 TEST(SelfContact, AnInstrumentPressesWallOnWallNotThroughIt) {
+  CALOT_SLOW_WHEN_SANITIZED("walls pressed on each other");
   const PressedThrough without(false), with(true);
   ASSERT_EQ(without.why + with.why, "");
   EXPECT_GT(without.crossings(), 50u);
@@ -255,6 +259,7 @@ TEST(SelfContact, AnInstrumentPressesWallOnWallNotThroughIt) {
 }
 
 TEST(SelfContact, WallsSqueezedFlatDoNotPassThroughEachOther) {
+  CALOT_SLOW_WHEN_SANITIZED("walls pressed on each other");
   Pinched without(false), with(true);
   for (Pinched* pinched : {&without, &with}) ASSERT_TRUE(pinched->press(0, 10));
   EXPECT_GT(without.crossings(), 100u);

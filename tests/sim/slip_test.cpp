@@ -8,6 +8,7 @@
 #include "field_rig.h"
 #include "rig.h"
 #include "sim/grip_slip.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -43,6 +44,7 @@ Pull pull(const SceneDefinition& scene, int steps = 24) {
 }
 
 TEST(Slip, BeginsWhereThePullExceedsTwiceFrictionTimesPinch) {
+  CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   const Pull firm = pull(scene_with(100, 0.8));
   EXPECT_EQ(firm.slips, 0) << firm.why;
   EXPECT_GT(firm.largest, 2.0) << "24 mm of traction";
@@ -58,6 +60,7 @@ TEST(Slip, BeginsWhereThePullExceedsTwiceFrictionTimesPinch) {
 }
 
 TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
+  CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   const double limit = 2 * 0.8 * 0.5;
   for (int nodes : {120, 180}) {
     test::FundusField grasped(scene_with(0.5, 0.8, nodes));
@@ -86,6 +89,7 @@ struct WeakGrip : test::FundusField {
 };
 
 TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
+  CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   WeakGrip fast, slow;
   const std::size_t held = fast.field.organs[0].grips.size();
   // 4.2 mm at 30 mm/s: 7 steps at 50 Hz, 28 at 200 Hz.
@@ -122,6 +126,7 @@ TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
 }
 
 TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
+  CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   for (bool slips : {true, false}) {
     WeakGrip grip;
     ASSERT_EQ(grip.pull(-1.0e-3, 4), "");
@@ -156,6 +161,7 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
 }
 
 TEST(Slip, AFoldPulledOutOfTheJawsIsReleasedAndTheOrganReturnsToItsRest) {
+  CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   test::FundusPath path(scene_with(0.3, 0.8));
   const double energy = path.world.report().organs[0].energy;
   ASSERT_TRUE(path.grasp()) << path.driver.why();

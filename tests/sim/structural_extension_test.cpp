@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "field_rig.h"
 #include "rig.h"
 #include "sim/detail_fading.h"
 #include "support/derivatives.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -50,6 +49,7 @@ struct Pulled {
 };
 
 TEST(StructuralExtension, AThousandInsertedAndRemovedUnderLoadLeaveTheStateWithoutThem) {
+  CALOT_SLOW_WHEN_SANITIZED("details laid over and over");
   Pulled pulled(1);
   const std::vector<Vec3> before = pulled.skin();
   const Vec3 moved = before[pulled.organ.landmarks.at("fundus")];
@@ -165,6 +165,7 @@ TEST(StructuralExtension, ItsUnknownsCondensedGiveTheWholeSystemsSolution) {
 }
 
 TEST(StructuralExtension, APulledWallIsTwiceAsTrueWithItAsWithout) {
+  CALOT_SLOW_WHEN_SANITIZED("details laid over and over");
   // Against all details of two levels: 946 functions.
   Pulled coarse(0), extended(1), fine(2);
   test::extend(extended.organ, {extended.organ.landmarks.at("fundus")});
@@ -281,6 +282,7 @@ struct Drawn {
 };
 
 TEST(StructuralExtension, NeitherForceNorSkinJumpsAsItIsLaidMovedOrTakenAwayUnderLoad) {
+  CALOT_SLOW_WHEN_SANITIZED("details laid over and over");
   for (int levels : {1, 2}) {
     Drawn drawn(levels);
     const Vec3 top = drawn.top;
@@ -345,6 +347,7 @@ TEST(StructuralExtension, StagesRepeatedTendToTheCondensedSolution) {
 }
 
 TEST(StructuralExtension, FollowsAHeldFoldAndLeavesWithIt) {
+  CALOT_SLOW_WHEN_SANITIZED("details laid over and over");
   SceneDefinition scene = test::grasper_scene(100);
   scene.solver.extension_levels = 1;
   test::FundusPath path(scene);

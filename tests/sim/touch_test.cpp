@@ -4,6 +4,7 @@
 
 #include "field_rig.h"
 #include "rig.h"
+#include "support/long_run.h"
 #include "support/random.h"
 
 namespace calot {
@@ -74,6 +75,7 @@ class TouchedPoints : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(WithLevels, TouchedPoints, ::testing::Values(0, 1));
 
 TEST_P(TouchedPoints, LieOnTheInstrumentThatPushesThem) {
+  CALOT_SLOW_WHEN_SANITIZED("looks at every contact of three motions");
   Handled pushed(GetParam(), false);
   pushed.go(pushed.fundus + 5e-3 * pushed.out, 0, 1);
   pushed.go(pushed.fundus - 8e-3 * pushed.out, 0, 6);
@@ -82,6 +84,7 @@ TEST_P(TouchedPoints, LieOnTheInstrumentThatPushesThem) {
 }
 
 TEST_P(TouchedPoints, LieOnTheShaftThatLiesAcrossThem) {
+  CALOT_SLOW_WHEN_SANITIZED("looks at every contact of three motions");
   Handled crossed(GetParam(), true);
   const Vec3 beyond = crossed.fundus + 50e-3 * crossed.across;
   crossed.go(beyond + 20e-3 * crossed.out, 0, 2);
@@ -90,6 +93,7 @@ TEST_P(TouchedPoints, LieOnTheShaftThatLiesAcrossThem) {
 }
 
 TEST_P(TouchedPoints, LieOnTheJawsThatGraspThem) {
+  CALOT_SLOW_WHEN_SANITIZED("looks at every contact of three motions");
   Handled grasped(GetParam(), false);
   grasped.go(grasped.fundus + 15e-3 * grasped.out, test::open_jaw, 1);
   grasped.go(grasped.fundus - 4e-3 * grasped.out, test::open_jaw, 5);
