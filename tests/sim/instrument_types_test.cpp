@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
 
 TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole push");
   test::FundusPath path(test::scene_with(InstrumentType::bipolar_electrode));
   const double pressure = path.world.report().organs[0].pressure;
   ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 3)) << path.driver.why();
@@ -30,21 +32,33 @@ TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
   EXPECT_EQ(path.driver.count(EventKind::grasp), 0);
 }
 
-TEST(Electrode, RefusesAJawAngle) {
-  const World reference = World::create(test::scene_with(InstrumentType::bipolar_electrode)).value();
+TEST(Electrode, RefusesAJawAngleAndChangesNothing) {
+  CALOT_SLOW_WHEN_SANITIZED("two worlds pressed on");
+  // Beside a world that is not asked for one, where the skin is touched.
+  const SceneDefinition scene = test::scene_with(InstrumentType::bipolar_electrode);
+  test::FundusPath refused(scene), spared(scene);
+  for (test::FundusPath* path : {&refused, &spared}) {
+    ASSERT_TRUE(path->driver.go(path->fundus + 5e-3 * path->out, 0, 1)) << path->driver.why();
+    ASSERT_TRUE(path->driver.go(path->fundus - 1e-3 * path->out, 0, 1)) << path->driver.why();
+    ASSERT_TRUE(path->world.report().instruments[0].touching);
+  }
   for (double jaw : {0.1, -1e-10}) {
-    World world = World::create(test::scene_with(InstrumentType::bipolar_electrode)).value();
     StepInput input;
-    input.instruments = {world.report().instruments[0].pose};
+    input.instruments = {refused.world.report().instruments[0].pose};
+    input.instruments[0].insertion += 1e-3;
     input.instruments[0].jaw = jaw;
-    const Result<StepReport> step = world.step(input);
+    const Result<StepReport> step = refused.world.step(input);
     ASSERT_FALSE(step) << jaw;
     EXPECT_NE(to_text(step.failure()).find("no jaws"), std::string::npos) << to_text(step.failure());
-    EXPECT_EQ(world.state_hash(), reference.state_hash());
+    EXPECT_EQ(refused.world.state_hash(), spared.world.state_hash());
   }
+  for (test::FundusPath* path : {&refused, &spared})
+    ASSERT_TRUE(path->driver.go(path->fundus - 2e-3 * path->out, 0, 1)) << path->driver.why();
+  EXPECT_EQ(refused.world.state_hash(), spared.world.state_hash());
 }
 
 TEST(SemmGrasp, GripsLiftsAndLetsGo) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::scene_with(InstrumentType::semm_forceps));
   double deepest = 0;
   path.driver.watch = [&](const StepReport&) {

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "fem/membrane_material.h"
 #include "sim/organ.h"
 
 namespace calot {
@@ -60,6 +61,26 @@ Size growth_with_fibres(double angle) {
   OrganDefinition organ = pressed_pear();
   organ.wall.fibres = FibreDefinition{50e3, 1.0, angle};
   return growth(organ);
+}
+
+TEST(Wall, DefaultFibresGiveTheHumanGallbladdersModuli) {
+  const FibreDefinition fibres;
+  const WallDefinition wall;
+  EXPECT_EQ(fibres.angle, 0) << "both families run along the axis";
+  const Demiray membrane{85e3, wall.thickness,
+                         wall.stiffening};  // of the shear modulus that they are made for
+  const FibreFamily family{fibres.stiffness, fibres.stiffening, wall.thickness};
+  // A strip drawn out by its first direction, free at its sides, keeps its volume: twice the energy over the squared
+  // strain is Young's modulus, but for a share of the strain's order.
+  constexpr double strain = 1e-3, stretch = 1 + strain;
+  const SurfaceTensor metric(stretch * stretch, 0, 1 / stretch);
+  const auto modulus = [&](double fibre_angle) {
+    const SurfaceTensor direction = fibre_direction(std::cos(fibre_angle), std::sin(fibre_angle));
+    const double energy = membrane.energy({1, 0, 1}, 1, metric) + 2 * family.energy(direction, metric);
+    return 2 * energy / (strain * strain * wall.thickness);
+  };
+  EXPECT_NEAR(modulus(fibres.angle) / 641e3, 1, 5e-3) << "along the axis; 48.25 kPa is rounded to 48";
+  EXPECT_NEAR(modulus(0.5 * pi) / 255e3, 1, 5e-3) << "around it the fibres are slack";
 }
 
 TEST(Wall, CircumferentialFibresHoldAPearsGirthAndLongitudinalOnesItsLength) {

@@ -79,13 +79,28 @@ TEST(BuildScene, ThePictureFollowsTheInstrumentAndTheCameraHoldsStill) {
   EXPECT_FALSE(compare(first.value(), second.value())->within);
 }
 
+/// The tool straight down into the ball's top, `depth` (m) below where it was at rest.
+void press(World& world, double depth) {
+  const Vec3 top = sphere_scene().anatomy.organs[0].fundus;
+  StepInput input;
+  input.instruments = {pose_reaching(world.port_position("right_subcostal"), top - Vec3(0, 0, depth), 0, 0)};
+  const Result<StepReport> step = world.step(input);
+  ASSERT_TRUE(step) << to_text(step.failure());
+}
+
 TEST(BuildScene, LookingDoesNotTouchTheWorld) {
-  const World world = make_world(sphere_scene());
-  const std::uint64_t hash = world.state_hash();
-  const Scene a = build_scene(world), b = build_scene(world);
-  EXPECT_EQ(world.state_hash(), hash);
-  ASSERT_EQ(a.meshes.size(), b.meshes.size());
-  for (std::size_t i = 0; i < a.meshes.size(); ++i) EXPECT_EQ(a.meshes[i].positions, b.meshes[i].positions);
+  // Beside a world that nobody looks at, where the skin is touched and so remembers friction and contacts.
+  World seen = make_world(sphere_scene()), unseen = make_world(sphere_scene());
+  for (double depth : {-5e-3, 1e-3, 2e-3, 3e-3}) {
+    press(seen, depth);
+    press(unseen, depth);
+    const Scene a = build_scene(seen), b = build_scene(seen);
+    EXPECT_EQ(seen.state_hash(), unseen.state_hash());
+    EXPECT_EQ(seen.skin_positions(0), unseen.skin_positions(0));
+    ASSERT_EQ(a.meshes.size(), b.meshes.size());
+    for (std::size_t i = 0; i < a.meshes.size(); ++i) EXPECT_EQ(a.meshes[i].positions, b.meshes[i].positions);
+  }
+  EXPECT_TRUE(seen.report().instruments[0].touching);
 }
 
 }  // namespace
