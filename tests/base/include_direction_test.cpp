@@ -103,7 +103,7 @@ TEST(IncludeDirection, TheTableIsTheHouseOfTheDesign) {
        {"geometry", "numerics", "fem", "skin", "collision", "anatomy", "sim", "session", "render", "view"}},
       {"geometry", {"numerics", "fem", "skin", "collision", "anatomy", "sim"}},
       {"fem", {"skin", "collision", "anatomy", "sim"}},
-      {"skin", {"fem", "collision", "anatomy", "sim", "numerics"}},
+      {"skin", {"fem", "collision", "anatomy", "sim"}},
       {"collision", {"fem", "skin", "anatomy", "sim"}},
       {"anatomy", {"fem", "skin", "collision", "sim"}},
       {"sim", {"session", "render", "view", "lua", "app"}},
