@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -26,6 +27,7 @@ std::vector<std::uint64_t> fifty_steps(test::FundusPath& path) {
 }
 
 TEST(FieldState, RestoredTheSameStepsHaveTheSameBits) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(refined_scene());
   ASSERT_TRUE(path.grasp()) << path.driver.why();
   ASSERT_EQ(path.world.report().instruments[0].holds, "gallbladder");
@@ -95,6 +97,7 @@ TEST(FieldState, OfAnotherWorldIsRefused) {
 }
 
 TEST(StillSteps, AreWhatTheyWouldBeIfTheyWereComputed) {
+  CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   std::vector<std::uint64_t> hashes[2];
   int substeps[2] = {0, 0};
   for (int skip = 0; skip < 2; ++skip) {

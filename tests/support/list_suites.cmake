@@ -3,7 +3,7 @@
 
 # What takes longest, longest first, so that none is left alone at the end. Only an order: a name may be missing.
 set(longest Scenario Golden Run MainScenario RandomGrasps RandomPaths Comparison Slip Rubbing World GoldenProject
-    SlidingContact TouchedPoints JawMouldGrasp StructuralExtension Grasp LargeSteps Baseline Usage Bench SelfContact)
+    TouchedPoints FieldState JawMouldGrasp StructuralExtension StillSteps SlidingContact Grasp LargeSteps Baseline Usage Bench SelfContact)
 
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n[^ \n]+\\." suites "\n${list}")
