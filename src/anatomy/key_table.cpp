@@ -53,7 +53,7 @@ void check_limits(FieldCheck& check, const std::string& path, const KeyTable& ta
       continue;
     }
     if (!key.field) continue;
-    const Field field = key.field(looked_at);
+    const KeyTarget field = key.field(looked_at);
     std::optional<double> value;
     if (double* const* number = std::get_if<double*>(&field)) value = **number;
     if (std::optional<double>* const* number = std::get_if<std::optional<double>*>(&field)) value = **number;

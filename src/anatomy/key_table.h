@@ -38,7 +38,7 @@ struct EnumField {
 };
 
 /// The member that a key is kept in; none for keys that need more than an assignment.
-using Field = std::variant<std::monostate, double*, std::optional<double>*, int*, bool*, std::string*, Vec3*,
+using KeyTarget = std::variant<std::monostate, double*, std::optional<double>*, int*, bool*, std::string*, Vec3*,
                            EnumField>;
 
 struct Key {
@@ -56,7 +56,7 @@ struct Key {
   std::string what{};  ///< completes "70 m is not ...": "a gallbladder's length"; empty: "a sensible <name>"
   bool jaws_only = false;  ///< means nothing to an instrument without jaws
 
-  std::function<Field(void* definition)> field{};
+  std::function<KeyTarget(void* definition)> field{};
   /// Of tables that are members: the member; null for one that is absent, unless it is to be made.
   std::function<void*(void* definition, bool make)> inner{};
 
@@ -111,7 +111,7 @@ Key jaws_only(Key key);
 /// Binds a key to a member of T.
 template <class T, class M>
 Key bound(Key key, M T::*member) {
-  key.field = [member](void* definition) -> Field { return &(static_cast<T*>(definition)->*member); };
+  key.field = [member](void* definition) -> KeyTarget { return &(static_cast<T*>(definition)->*member); };
   return key;
 }
 
@@ -169,7 +169,7 @@ requires std::is_enum_v<E> Key choice(std::string name, E T::*member, std::vecto
                                       std::string doc) {
   const std::string standard = choices[static_cast<std::size_t>(T{}.*member)];
   Key key = choice(std::move(name), std::move(choices), '"' + standard + '"', std::move(doc));
-  key.field = [member](void* definition) -> Field {
+  key.field = [member](void* definition) -> KeyTarget {
     return EnumField{&(static_cast<T*>(definition)->*member),
                      [](void* at, int value) { *static_cast<E*>(at) = static_cast<E>(value); }};
   };

@@ -172,7 +172,7 @@ void TableReader::read_into(void* definition) const {
   }
 }
 
-void TableReader::assign(const Key& key, const Value& value, const Field& field) const {
+void TableReader::assign(const Key& key, const Value& value, const KeyTarget& field) const {
   if (double* const* number = std::get_if<double*>(&field)) **number = value.number;
   if (std::optional<double>* const* number = std::get_if<std::optional<double>*>(&field))
     **number = value.number;

@@ -45,7 +45,7 @@ class TableReader {
 
  private:
   void read_into(void* definition) const;
-  void assign(const Key& key, const Value& value, const Field& field) const;
+  void assign(const Key& key, const Value& value, const KeyTarget& field) const;
   void check_keys(const Value& value, bool complete);
   bool check_value(const Key& key, const Value& value);
   bool check_number(const Key& key, const Value& value);
