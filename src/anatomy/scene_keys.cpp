@@ -83,6 +83,8 @@ std::vector<KeyTable> field_tables() {
           {number("rate", &Solver::rate, quantity::rate, 1, 2000, "a step rate", "steps a second"),
            number("tolerance", &Solver::tolerance, quantity::number, 1e-12, 1e-2, "a solver tolerance",
                   "dimensionless residual of equilibrium"),
+           flag("skip_still", &Solver::skip_still,
+                "do not compute again steps that change nothing; off only to measure what they cost"),
            extensions}),
       keys_of<Solver>(
           "extensions",

@@ -27,7 +27,7 @@ SessionResult played(test::TimedScript& script, InputSource& source, SessionOpti
   return run_session(world, script, source, options);
 }
 
-bool has_event(const SessionResult& result, const std::string& kind) {
+bool has_event(const SessionResult& result, EventKind kind) {
   const auto& events = result.progress.events();
   return std::any_of(events.begin(), events.end(),
                      [&](const SessionEvent& event) { return event.kind == kind; });
@@ -99,7 +99,7 @@ TEST(Runner, AReplayGoesThroughTheSameStatesAsTheRun) {
   fs::remove_all(folder);
   ASSERT_TRUE(recording) << to_text(recording.failure());
   EXPECT_EQ(recording->end, "done");
-  EXPECT_TRUE(has_event(run, "contact")) << "states that nothing touches are easily the same";
+  EXPECT_TRUE(has_event(run, EventKind::contact)) << "states that nothing touches are easily the same";
   ReplaySource source(recording.value());
   test::TimedScript again(0.4);
   SessionOptions replaying;

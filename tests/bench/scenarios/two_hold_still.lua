@@ -7,10 +7,14 @@ return calot.exercise {
   id = "two-hold-still",
   title = "Hold two folds still",
   time_limit = 60 * s,
-  scene = function()
+  params = { skip_still = { type = "boolean", default = true } },
+  scene = function(p)
+    local solver = { rate = 50, tolerance = 1e-6, extensions = { levels = 1 } }
+    -- Only said where it is wanted: programs that know no such key are measured too.
+    if not p.skip_still then solver.skip_still = false end
     return {
       anatomy = calot.anatomy("standard"),
-      solver = { rate = 50, tolerance = 1e-6, extensions = { levels = 1 } },
+      solver = solver,
       laparoscope = { port = "umbilical", angle = 30 * deg, look_at = "gallbladder.fundus" },
       instruments = {
         left = { type = "atraumatic_grasper", port = "right_subcostal" },
