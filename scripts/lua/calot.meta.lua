@@ -127,6 +127,7 @@
 ---@class calot.solver
 ---@field rate? number steps a second; default 50; 1 to 2000 steps a second
 ---@field tolerance? number dimensionless residual of equilibrium; default 1e-06; 1e-12 to 0.01
+---@field skip_still? boolean do not compute again steps that change nothing; off only to measure what they cost; default true
 ---@field extensions? calot.extensions structural extensions at contacts
 
 ---Structural extensions: finer basis functions around each place that an instrument touches.

@@ -116,17 +116,20 @@ TEST(Comparison, ErrorAndGainOfThePapersStarsAreOfThePapersOrder) {
   EXPECT_LT(star.contact_error_pct, staged.contact_error_pct);
 }
 
-TEST(Comparison, TheTwoStagesCostACubeOfEachStagesUnknowns) {
+TEST(Comparison, EachOfTwoStagesCostsAtMostACubeOfItsOwnUnknowns) {
   CALOT_SLOW_WHEN_SANITIZED("whole comparisons");
   const Comparison& all = both();
   const ComparisonRow uniform = row_by(all, "1997", 238, "dense"),
                       whole = row_by(all, "1997", 61 + 12, "dense"),
                       staged = row_by(all, "1997 two stages", 61 + 12, "dense"),
                       finer = row_by(all, "1997 two stages", 61 + 48, "dense");
-  EXPECT_DOUBLE_EQ(uniform.flops, dense_flops(238));
-  EXPECT_DOUBLE_EQ(whole.flops, dense_flops(61 + 12));
-  EXPECT_DOUBLE_EQ(staged.flops, dense_flops(61) + dense_flops(12));
-  EXPECT_DOUBLE_EQ(finer.flops, dense_flops(61) + dense_flops(48)) << "levels are the second stage's alone";
+  // Factors keep to an envelope: a full one's operations are the most that they may take.
+  EXPECT_LT(uniform.flops, 0.8 * dense_flops(238));
+  EXPECT_LT(whole.flops, dense_flops(61 + 12));
+  EXPECT_LE(staged.flops, dense_flops(61) + dense_flops(12));
+  EXPECT_LT(staged.flops, whole.flops);
+  EXPECT_GT(finer.flops, staged.flops);
+  EXPECT_LE(finer.flops - staged.flops, dense_flops(48)) << "levels are the second stage's alone";
   EXPECT_EQ(finer.levels, 1);
   EXPECT_LT(staged.memory_bytes, 0.2 * uniform.memory_bytes);
   EXPECT_GT(staged.condition_estimate, 1);

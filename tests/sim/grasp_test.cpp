@@ -96,7 +96,8 @@ TEST(Grasp, JawsHoldNothingWhenTheyCloseOnAir) {
   ASSERT_TRUE(path.driver.go(path.fundus + 15e-3 * path.out, 0.0, 2));
   EXPECT_EQ(path.world.report().instruments[0].holds, "");
   EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);
-  EXPECT_TRUE(path.driver.events.empty());
+  ASSERT_EQ(path.driver.events.size(), 1u);
+  EXPECT_EQ(path.driver.events[0].kind, EventKind::empty_grasp);
 }
 
 /// What the conditions of events were at a step.
