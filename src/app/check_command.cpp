@@ -15,50 +15,82 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct Named {
+  std::string file;
+  bool found = false;  ///< in a folder: there it may be a module that scenarios require
+};
+
 struct Checked {
   std::string file;
   std::optional<ExerciseDefinition> exercise;
+  bool module = false;
   Failure failure;
+
+  bool ok() const { return module || exercise.has_value(); }
 };
 
-/// Files as named; of a folder, its scenarios.
-std::vector<std::string> files_of(const std::vector<std::string>& names) {
-  std::vector<std::string> files;
+/// Every .lua file below a folder, but for hidden folders.
+std::vector<Named> files_below(const std::string& folder) {
+  std::vector<Named> files;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (entry->is_directory(error) && path.filename().string().starts_with('.'))
+      entry.disable_recursion_pending();
+    else if (path.extension() == ".lua" && !entry->is_directory(error))
+      files.push_back({path.string(), true});
+  }
+  std::sort(files.begin(), files.end(), [](const Named& a, const Named& b) { return a.file < b.file; });
+  return files;
+}
+
+std::vector<Named> files_of(const std::vector<std::string>& names) {
+  std::vector<Named> files;
   std::error_code error;
   for (const std::string& name : names) {
-    if (!fs::is_directory(name, error)) {
-      files.push_back(name);
-      continue;
+    if (fs::is_directory(name, error)) {
+      for (Named& file : files_below(name)) files.push_back(std::move(file));
+    } else {
+      files.push_back({name, false});
     }
-    std::vector<std::string> inside;
-    for (const fs::directory_entry& entry : fs::directory_iterator(name, error)) {
-      if (entry.path().extension() == ".lua") inside.push_back(entry.path().string());
-    }
-    std::sort(inside.begin(), inside.end());
-    files.insert(files.end(), inside.begin(), inside.end());
   }
   return files;
 }
 
-/// Loads the scenario and brings its world to rest: an organ that cannot be filled is found here too.
-Checked check(const std::string& file) {
+/// Brings the world to rest and lets the demo try it: what cannot be filled or reached is found here.
+std::optional<Failure> build(ExerciseScript& script) {
+  const Result<World> world = World::create(script.definition().scene);
+  if (!world) return script.located(world.failure());
+  std::vector<Problem> problems = script.rehearse(world.value());
+  if (problems.empty()) return std::nullopt;
+  return Failure{FailureKind::scenario, std::move(problems)};
+}
+
+Checked check(const Named& named, bool with_world) {
   Checked checked;
-  checked.file = file;
-  Result<ExerciseDefinition> exercise = load_definition(file);
-  if (!exercise) {
-    checked.failure = exercise.failure();
+  checked.file = named.file;
+  checked.module = named.found && is_module(named.file);
+  if (checked.module) return checked;
+  PlayRequest request;
+  request.scenario = named.file;
+  const Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
+  if (!script) {
+    checked.failure = script.failure();
     return checked;
   }
-  const Result<World> world = World::create(exercise->scene);
-  if (world)
-    checked.exercise = std::move(exercise).value();
+  ExerciseDefinition exercise = script.value()->definition();
+  const std::optional<Failure> failure = with_world ? build(*script.value()) : std::nullopt;
+  if (failure)
+    checked.failure = *failure;
   else
-    checked.failure = world.failure();
+    checked.exercise = std::move(exercise);
   return checked;
 }
 
 nlohmann::ordered_json checked_json(const Checked& checked) {
-  nlohmann::ordered_json json = {{"file", checked.file}, {"ok", checked.exercise.has_value()}};
+  nlohmann::ordered_json json = {{"file", checked.file}, {"ok", checked.ok()}};
+  if (checked.module) json["module"] = true;
   if (checked.exercise) {
     const ExerciseDefinition& exercise = *checked.exercise;
     json["scenario"] = exercise.id;
@@ -77,17 +109,17 @@ nlohmann::ordered_json checked_json(const Checked& checked) {
   return json;
 }
 
-/// Only in a scenario are there lines to mend.
-std::string next_after(ExitCode code, const std::string& first_bad) {
-  const std::string again = "calot check " + shell_word(first_bad);
-  if (code == ExitCode::usage) return "calot check --help";
-  return code == ExitCode::scenario ? "mend the lines named above, then: " + again : again;
+/// What to do about the first file that is not as it should be; only in a scenario are there lines to mend.
+std::string next_step(const Checked& checked, const std::string& command) {
+  if (checked.failure.kind == FailureKind::usage) return "calot check --help";
+  const std::string again = command + shell_word(checked.file);
+  return checked.failure.kind == FailureKind::scenario ? "mend the lines named above, then: " + again : again;
 }
 
 }  // namespace
 
 ExitCode check_command(const CheckCommand& command) {
-  const std::vector<std::string> files = files_of(command.scenarios);
+  const std::vector<Named> files = files_of(command.scenarios);
   if (files.empty()) {
     print_failure(fail(FailureKind::usage, "there is no scenario in " + command.scenarios.front()),
                   "calot new NAME", command.json);
@@ -95,33 +127,38 @@ ExitCode check_command(const CheckCommand& command) {
   }
   const std::atomic<bool>& stop = interrupt_flag();
   ExitCode code = ExitCode::ok;
-  std::string first_bad;
+  const std::string again = command.build ? "calot check --build " : "calot check ";
+  std::string next;
   std::size_t done = 0;
   nlohmann::ordered_json json = {{"schema", "calot.check/1"}, {"scenarios", nlohmann::json::array()}};
-  for (const std::string& file : files) {
+  for (const Named& file : files) {
     if (stop) break;
-    const Checked checked = check(file);
+    const Checked checked = check(file, command.build);
     ++done;
     json["scenarios"].push_back(checked_json(checked));
-    if (checked.exercise) {
-      if (!command.json) print(fmt::format("{}  {}: {}", green("ok"), file, checked.exercise->title));
+    if (checked.ok()) {
+      const std::string what =
+          checked.module ? "a module, for scenarios to require" : checked.exercise->title;
+      if (!command.json) print(fmt::format("{}  {}: {}", green("ok"), file.file, what));
       std::fflush(stdout);
       continue;
     }
     std::fflush(stdout);
     std::fprintf(stderr, "%s\n", to_text(checked.failure).c_str());
-    if (first_bad.empty()) first_bad = file;
-    if (code == ExitCode::ok) code = exit_code(checked.failure.kind);
+    if (code == ExitCode::ok) {
+      next = next_step(checked, again);
+      code = exit_code(checked.failure.kind);
+    }
   }
   json["interrupted"] = done < files.size();
   if (command.json) print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   std::fflush(stdout);
   if (done < files.size()) {
-    std::fprintf(stderr, "Interrupted: %zu of %zu scenarios were checked.\nNext: calot check %s\n", done,
-                 files.size(), shell_word(files[done]).c_str());
+    std::fprintf(stderr, "Interrupted: %zu of %zu scenarios were checked.\nNext: %s%s\n", done, files.size(),
+                 again.c_str(), shell_word(files[done].file).c_str());
     return ExitCode::interrupted;
   }
-  if (code != ExitCode::ok) std::fprintf(stderr, "Next: %s\n", next_after(code, first_bad).c_str());
+  if (code != ExitCode::ok) std::fprintf(stderr, "Next: %s\n", next.c_str());
   return code;
 }
 

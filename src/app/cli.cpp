@@ -95,7 +95,11 @@ void add_replay(Program& program) {
 void add_check(Program& program) {
   CLI::App& command =
       *program.app.add_subcommand("check", "find what is wrong with scenarios without playing them");
-  command.add_option("scenarios", program.check.scenarios, "files, or folders of scenarios")->required();
+  command.add_option("scenarios", program.check.scenarios, "files, or folders with all scenarios below them")
+      ->required();
+  command.add_flag(
+      "--build", program.check.build,
+      "build the operating fields too: fill the organs, and try whether the demo's places are in reach");
   command.add_flag("--json", program.check.json, "print the findings as JSON, and nothing else, to stdout");
   command.callback([&program] { program.chosen = [&program] { return check_command(program.check); }; });
 }

@@ -34,7 +34,8 @@ struct ReplayCommand : SessionCommand {
 ExitCode replay_command(const ReplayCommand& command);
 
 struct CheckCommand {
-  std::vector<std::string> scenarios;  ///< files or folders
+  std::vector<std::string> scenarios;  ///< files, or folders with all below them
+  bool build = false;                  ///< build the worlds too
   bool json = false;
 };
 ExitCode check_command(const CheckCommand& command);

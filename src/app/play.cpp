@@ -131,16 +131,6 @@ std::optional<Failure> check_replay(const Recording& recording, const ExerciseDe
               "name the scenario it was made with: --scenario FILE");
 }
 
-Result<std::unique_ptr<ExerciseScript>> load(const PlayRequest& request) {
-  if (std::optional<Failure> wrong = check_scenario_path(request.scenario.string())) return *wrong;
-  LoadOptions options;
-  options.params = request.params;
-  options.seed = request.seed;
-  options.modules = project_part("scripts/lua");
-  options.assets = project_part("assets");
-  return load_exercise(request.scenario, options);
-}
-
 SessionResult run(const PlayRequest& request, ExerciseScript& script, World& world, Outputs& outputs,
                   FrameCapture* capture) {
   std::optional<ReplaySource> replay;
@@ -181,6 +171,13 @@ bool was_aborted(const SessionResult& session, const Recording* replay) {
          (session.end == SessionEnd::source_ended && short_recording);
 }
 
+LoadOptions project_options() {
+  LoadOptions options;
+  options.modules = project_part("scripts/lua");
+  options.assets = project_part("assets");
+  return options;
+}
+
 /// Measures and scores; writes the report where there is an output folder.
 std::optional<Failure> make_report(Played& played) {
   const SessionResult& session = played.session;
@@ -194,10 +191,20 @@ std::optional<Failure> make_report(Played& played) {
 
 }  // namespace
 
+Result<std::unique_ptr<ExerciseScript>> load_scenario(const PlayRequest& request) {
+  if (std::optional<Failure> wrong = check_scenario_path(request.scenario.string())) return *wrong;
+  LoadOptions options = project_options();
+  options.params = request.params;
+  options.seed = request.seed;
+  return load_exercise(request.scenario, options);
+}
+
+bool is_module(const fs::path& file) { return is_module(file, project_options()); }
+
 Result<ExerciseDefinition> load_definition(const fs::path& scenario) {
   PlayRequest request;
   request.scenario = scenario;
-  Result<std::unique_ptr<ExerciseScript>> script = load(request);
+  Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
   if (!script) return script.failure();
   return script.value()->definition();
 }
@@ -226,7 +233,7 @@ std::string portable_path(const fs::path& scenario) {
 
 Result<Played> play(const PlayRequest& request) {
   interrupt_flag();  // from here on an interrupted session ends as one, with its files
-  Result<std::unique_ptr<ExerciseScript>> script = load(request);
+  Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
   if (!script) return script.failure();
   const ExerciseDefinition& exercise = script.value()->definition();
   if (request.replay != nullptr) {
@@ -243,7 +250,7 @@ Result<Played> play(const PlayRequest& request) {
     capture.emplace(*renderer, exercise, request, played.output);
   }
   Result<World> world = World::create(exercise.scene);
-  if (!world) return world.failure();
+  if (!world) return script.value()->located(world.failure());
   Result<Outputs> outputs = open_outputs(request, exercise, world.value());
   if (!outputs) return outputs.failure();
   if (outputs->folder) played.output = outputs->folder->path();

@@ -9,6 +9,7 @@
 
 #include "render/image.h"
 #include "render/scene.h"
+#include "session/exercise.h"
 #include "session/recording.h"
 #include "session/report.h"
 #include "session/runner.h"
@@ -65,6 +66,11 @@ std::vector<GoldenFrame> golden_frames(const ExerciseDefinition& exercise,
 
 /// A scenario's path as others can use it: below the project, else below the present folder, else its file's name.
 std::string portable_path(const std::filesystem::path& scenario);
+
+/// Reads and checks a scenario, with the project's modules and assets.
+Result<std::unique_ptr<ExerciseScript>> load_scenario(const PlayRequest& request);
+/// Whether a file runs and returns something that is no exercise.
+bool is_module(const std::filesystem::path& file);
 
 /// Reads and checks a scenario without playing it.
 Result<ExerciseDefinition> load_definition(const std::filesystem::path& scenario);

@@ -50,15 +50,16 @@ void note_missing_frames(const Played& played, const std::vector<double>& at) {
 
 /// What is printed of a session and what comes next where it did not end well.
 struct Conclusion {
-  std::string again;        ///< the command that plays it again
-  std::string after_error;  ///< the command to run where the simulation could not follow
+  std::string again;          ///< the command that plays it again
+  std::string after_mending;  ///< the command that looks for the script's other mistakes
+  std::string after_error;    ///< the command to run where the simulation could not follow
 };
 
 ExitCode conclude_failed(const Failure& failure, const Conclusion& conclusion) {
-  // What a script does at play time is not all found by `check`, so that is not what to run next.
-  const bool author = failure.kind == FailureKind::scenario || failure.kind == FailureKind::resource;
-  return print_failure(
-      failure, author ? "mend what is named above, then: " + conclusion.again : conclusion.after_error);
+  std::string next = conclusion.after_error;
+  if (failure.kind == FailureKind::scenario) next = "mend what is named above, then: " + conclusion.after_mending;
+  if (failure.kind == FailureKind::resource) next = "mend what is named above, then: " + conclusion.again;
+  return print_failure(failure, next);
 }
 
 ExitCode conclude_interrupted(const Played& played, const Conclusion& conclusion) {
@@ -108,11 +109,12 @@ ExitCode run_command(const RunCommand& command) {
   const std::string file = shell_word(command.scenario);
   if (!played) {
     const bool usage = played.failure().kind == FailureKind::usage;
-    return print_failure(played.failure(), usage ? "calot run --help" : "calot check " + file, command.json);
+    return print_failure(played.failure(), usage ? "calot run --help" : "calot check --build " + file,
+                         command.json);
   }
   return conclude(
       played.value(), command,
-      {"calot run " + file, "calot replay " + shell_word((played->output / "recording.jsonl").string())});
+      {"calot run " + file, "calot check --build " + file, "calot replay " + shell_word((played->output / "recording.jsonl").string())});
 }
 
 ExitCode replay_command(const ReplayCommand& command) {
@@ -135,9 +137,10 @@ ExitCode replay_command(const ReplayCommand& command) {
   const Result<Played> played = play(request);
   if (!played) return print_failure(played.failure(), "calot replay --help", command.json);
   warn_of_differences(recording.value(), played->exercise, !command.scenario.empty());
+  const std::string file = shell_word(request.scenario.string());
   const std::string again = "calot replay " + shell_word(command.recording);
   const ExitCode code =
-      conclude(played.value(), command, {again, "calot run " + shell_word(request.scenario.string())});
+      conclude(played.value(), command, {again, "calot check --build " + file, "calot run " + file});
   if (code == ExitCode::interrupted) return code;
   const StateComparison compared = compare_states(recording.value(), played->session);
   if (!compared.message.empty()) std::fprintf(stderr, "%s\n", compared.message.c_str());
@@ -146,7 +149,7 @@ ExitCode replay_command(const ReplayCommand& command) {
       print("Every state is that of the recording.");
     return code;
   }
-  std::fprintf(stderr, "Next: calot run %s\n", shell_word(request.scenario.string()).c_str());
+  std::fprintf(stderr, "Next: calot run %s\n", file.c_str());
   return code == ExitCode::ok ? ExitCode::mismatch : code;
 }
 

@@ -4,12 +4,17 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 namespace calot {
 
 namespace {
+
+constexpr std::uintmax_t longest_file = 8 << 20;  // bytes: a control mesh of 4,000 points has a tenth of that
+constexpr std::size_t most_problems = 20;
 
 /// The whole word as a number, or nothing.
 template <class T>
@@ -40,14 +45,22 @@ class ObjReader {
     if (in.bad()) complain("the file could not be read to its end");
     if (problems_.empty() && mesh_.triangles.empty())
       complain("the file has no faces", "export the mesh with its faces (f records)");
+    if (unsaid_ > 0)
+      problems_.push_back({{path_, line_, {}}, fmt::format("{} more lines are wrong", unsaid_), {}});
     if (!problems_.empty()) return Failure{FailureKind::scenario, std::move(problems_)};
     return std::move(mesh_);
   }
 
  private:
   void complain(std::string message, std::string hint = {}) {
-    problems_.push_back({{path_, line_, {}}, std::move(message), std::move(hint)});
+    if (problems_.size() < most_problems)
+      problems_.push_back({{path_, line_, {}}, std::move(message), std::move(hint)});
+    else
+      ++unsaid_;
   }
+
+  /// A word as it can stand in a message.
+  static std::string quoted(const std::string& word) { return word.substr(0, 40); }
 
   void read_record(const std::string& text) {
     std::istringstream words(text.substr(0, text.find('#')));
@@ -63,7 +76,7 @@ class ObjReader {
     for (int k = 0; k < 3; ++k) {
       if (!(words >> word)) return complain("a point needs three coordinates", "v x y z");
       if (!parse(word, p[k]) || !std::isfinite(p[k]))
-        return complain(fmt::format("'{}' is not a finite number", word), "v x y z");
+        return complain(fmt::format("'{}' is not a finite number", quoted(word)), "v x y z");
     }
     mesh_.points.push_back(scale_ * p);
   }
@@ -74,7 +87,7 @@ class ObjReader {
     while (words >> word) {
       int index = 0;
       if (!parse(std::string_view(word).substr(0, word.find('/')), index)) {
-        return complain(fmt::format("'{}' is not a point of a face", word),
+        return complain(fmt::format("'{}' is not a point of a face", quoted(word)),
                         "f 1 2 3, or f 1/1/1 2/2/2 3/3/3");
       }
       const int count = static_cast<int>(mesh_.points.size());
@@ -93,6 +106,7 @@ class ObjReader {
   std::string path_;
   double scale_;
   int line_ = 0, joined_ = 0;
+  int unsaid_ = 0;  ///< problems beyond those that are told
   TriMesh mesh_;
   std::vector<Problem> problems_;
 };
@@ -103,6 +117,12 @@ Result<TriMesh> read_obj(const std::string& path, double scale) {
   if (!(scale > 0) || !std::isfinite(scale)) {
     return fail(FailureKind::scenario, fmt::format("a mesh cannot be scaled by {}", scale),
                 "give metres per unit of the file: 0.001 for millimetres", {path, 0, {}});
+  }
+  std::error_code unknown;
+  if (const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+      !unknown && size > longest_file) {
+    return fail(FailureKind::scenario, fmt::format("the mesh file has {} bytes", size),
+                fmt::format("simplify the mesh: at most {} are read", longest_file), {path, 0, {}});
   }
   std::ifstream in(path);
   if (!in)

@@ -33,6 +33,7 @@ class Checker {
     if (mesh_.triangles.empty()) report("the mesh has no triangles", "", "give it at least four");
     check_points();
     check_triangles();
+    if (indices_good_ && !check_crowds()) return std::move(problems_);
     if (!indices_good_ || mesh_.triangles.empty()) return std::move(problems_);
     collect_edges();
     check_edges();
@@ -67,9 +68,29 @@ class Checker {
 
   std::string triangle(int t) const {
     const Triangle& c = mesh_.triangles[t];
-    return fmt::format("triangle {} (points {} {} {})", t, c[0], c[1], c[2]);
+    return fmt::format("triangle {} (points {} {} {})", counted(t), counted(c[0]), counted(c[1]),
+                       counted(c[2]));
   }
-  static std::string edge(const Edge& e) { return fmt::format("edge {}-{}", e.first, e.second); }
+  std::string point(std::size_t i) const { return fmt::format("point {}", counted(static_cast<int>(i))); }
+  std::string edge(const Edge& e) const {
+    return fmt::format("edge {}-{}", counted(e.first), counted(e.second));
+  }
+  /// An index as its author counts.
+  int counted(int index) const { return index + requirements_.counted_from; }
+
+  /// Before anything whose cost grows with the edges at a point.
+  bool check_crowds() {
+    std::vector<int> edges(mesh_.points.size(), 0);
+    for (const Triangle& t : mesh_.triangles)
+      for (int node : t) ++edges[node];
+    const int most = requirements_.most_edges_at_a_point;
+    std::vector<std::string> crowded;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      if (edges[i] > most) crowded.push_back(fmt::format("{} with {} triangles", point(i), edges[i]));
+    report_if_any(crowded, fmt::format("more than {} triangles at a point", most),
+                  "mesh anew around it, with triangles of even size");
+    return crowded.empty();
+  }
 
   void check_points() {
     std::vector<std::string> wrong, unused;
@@ -79,8 +100,8 @@ class Checker {
         if (node >= 0 && node < static_cast<int>(used.size())) used[node] = true;
     }
     for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
-      if (!mesh_.points[i].allFinite()) wrong.push_back(fmt::format("point {}", i));
-      if (!used[i]) unused.push_back(fmt::format("point {}", i));
+      if (!mesh_.points[i].allFinite()) wrong.push_back(point(i));
+      if (!used[i]) unused.push_back(point(i));
     }
     shapes_good_ = wrong.empty();
     report_if_any(wrong, "coordinates are not finite", "every coordinate must be a number");
@@ -99,12 +120,12 @@ class Checker {
         flat.push_back(triangle(t));
       }
       const auto [first, is_new] = seen.emplace(c, t);
-      if (!is_new) twice.push_back(fmt::format("{} repeats {}", triangle(t), first->second));
+      if (!is_new) twice.push_back(fmt::format("{} repeats {}", triangle(t), counted(first->second)));
     }
     indices_good_ = range.empty();
     shapes_good_ = shapes_good_ && flat.empty();
     report_if_any(range, fmt::format("index out of range (there are {} points)", mesh_.points.size()),
-                  "indices start at 0");
+                  fmt::format("indices start at {}", requirements_.counted_from));
     report_if_any(flat, "degenerate", "a triangle needs three corners that are not on one line");
     report_if_any(twice, "duplicate", "remove one of the two");
   }
@@ -140,10 +161,12 @@ class Checker {
     std::vector<std::string> crowded, winding, open;
     for (const auto& [e, use] : edges_) {
       const auto& t = use.triangles;
-      if (t.size() > 2) crowded.push_back(fmt::format("{} in triangles {}", edge(e), fmt::join(t, " ")));
+      std::vector<int> named;
+      for (int triangle : t) named.push_back(counted(triangle));
+      if (t.size() > 2) crowded.push_back(fmt::format("{} in triangles {}", edge(e), fmt::join(named, " ")));
       if (t.size() == 2 && use.forward != 1)
-        winding.push_back(fmt::format("triangles {} and {} at {}", t[0], t[1], edge(e)));
-      if (t.size() == 1) open.push_back(fmt::format("{} of triangle {}", edge(e), t[0]));
+        winding.push_back(fmt::format("triangles {} and {} at {}", named[0], named[1], edge(e)));
+      if (t.size() == 1) open.push_back(fmt::format("{} of triangle {}", edge(e), named[0]));
     }
     closed_ = crowded.empty() && winding.empty() && open.empty();
     report_if_any(crowded, "non-manifold edge", "at most two triangles may meet at an edge");
@@ -161,8 +184,7 @@ class Checker {
     }
     std::vector<std::string> pinched;
     for (std::size_t node = 0; node < at.size(); ++node) {
-      if (count_groups(at[node], static_cast<int>(node)) > 1)
-        pinched.push_back(fmt::format("point {}", node));
+      if (count_groups(at[node], static_cast<int>(node)) > 1) pinched.push_back(point(node));
     }
     report_if_any(pinched, "non-manifold point",
                   "separate surfaces that meet in one point need a point each");
@@ -216,7 +238,7 @@ class Checker {
     }
     std::vector<std::string> touching;
     for (const auto& [a, b] : touching_pairs(mesh_, kTouch * (high - low).norm()))
-      touching.push_back(fmt::format("triangles {} and {}", a, b));
+      touching.push_back(fmt::format("triangles {} and {}", counted(a), counted(b)));
     report_if_any(touching, "self-touching", "surfaces must stay apart except where triangles share an edge");
   }
 

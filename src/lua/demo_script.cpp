@@ -39,26 +39,33 @@ std::optional<Failure> DemoScript::start() {
   return std::nullopt;
 }
 
-std::optional<Failure> DemoScript::run_dry() {
+std::optional<Failure> DemoScript::run_dry(const World* world) {
   if (function_ == 0) return std::nullopt;
+  set_world(world);
+  if (world != nullptr) make_paths(*world);
   std::optional<Failure> failure = start();
-  for (std::size_t i = 0; !failure && i < tasks_.size(); ++i) failure = resume(i);
+  if (!failure) failure = resume(0);
   end("it belonged to a dry run");
   return failure;
 }
 
+void DemoScript::make_paths(const World& world) {
+  for (std::size_t i = 0; i < scene().instruments.size(); ++i) {
+    paths_.emplace_back(world.port_position(scene().instruments[i].port), world.report().instruments[i].pose,
+                        geometry(static_cast<int>(i)));
+  }
+}
+
 Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt) {
   if (function_ == 0 || (!tasks_.empty() && tasks_.front().state == Task::finished)) return {std::nullopt};
+  sandbox().set_time(world.report().time);
   const Sandbox::Call call(sandbox());
   set_world(&world);
   step_start_ = world.report().time;
   const double end = step_start_ + dt;
   std::optional<Failure> failure;
   if (tasks_.empty()) {
-    for (std::size_t i = 0; i < scene().instruments.size(); ++i) {
-      paths_.emplace_back(world.port_position(scene().instruments[i].port),
-                          world.report().instruments[i].pose, geometry(static_cast<int>(i)));
-    }
+    make_paths(world);
     failure = start();
   }
   if (!failure) failure = ask_conditions(step_start_);
@@ -105,7 +112,7 @@ bool DemoScript::end_condition(Task& task, bool answer, double now) {
 
 /// Runs what is due before `end`, earliest first.
 std::optional<Failure> DemoScript::run_until(double end) {
-  while (true) {
+  for (int waits = 0;; ++waits) {
     std::size_t first = tasks_.size();
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       const bool due = tasks_[i].state == Task::ready || tasks_[i].state == Task::until;
@@ -113,6 +120,9 @@ std::optional<Failure> DemoScript::run_until(double end) {
       if (first == tasks_.size() || tasks_[i].clock < tasks_[first].clock) first = i;
     }
     if (first == tasks_.size()) return std::nullopt;
+    if (waits > most_waits_per_step)
+      return fail(FailureKind::scenario, waits_message(), waits_hint(),
+                  sandbox().place_of(tasks_[first].thread, 0));
     if (std::optional<Failure> failure = resume(first)) return failure;
     // A condition that begins at this step's very start is asked at once, like any met there.
     if (std::optional<Failure> failure = ask_conditions(step_start_)) return failure;
@@ -129,7 +139,7 @@ std::optional<Failure> DemoScript::resume(std::size_t index) {
     finish(index);
   } else if (tasks_[index].state == Task::ready && !checking()) {
     return fail(FailureKind::scenario, "the demo called coroutine.yield", "wait with t:wait or t:wait_until",
-                {exercise().file, 0, {}});
+                sandbox().place_of(tasks_[index].thread, 0));
   }
   return std::nullopt;
 }
@@ -162,8 +172,9 @@ DemoScript::Task* DemoScript::current(lua_State* L) {
   return nullptr;
 }
 
-int DemoScript::dry_wait(lua_State* L, double duration) {
-  if (end_dry_run(duration)) return lua_yield(L, 0);
+int DemoScript::dry_wait(lua_State* L, std::optional<double> duration) {
+  if (current(L) == nullptr) return 0;
+  if (end_dry_run(L, duration)) return lua_yield(L, 0);
   lua_pushboolean(L, 1);
   return 1;
 }
@@ -172,6 +183,7 @@ int DemoScript::sleep_until(lua_State* L, double time) {
   Task* task = current(L);
   if (task == nullptr) return 0;
   task->clock = time;
+  if (checking()) return dry_wait(L, dry_motion_duration);
   task->state = Task::until;
   return lua_yield(L, 0);
 }
@@ -185,7 +197,10 @@ int DemoScript::wait(lua_State* L, double duration) {
 int DemoScript::wait_until(lua_State* L, int predicate) {
   Task* task = current(L);
   if (task == nullptr) return 0;
-  if (checking()) return dry_wait(L, 0);
+  if (checking()) {
+    ask_dry(L, predicate);
+    return dry_wait(L, std::nullopt);
+  }
   task->predicate = predicate;
   task->state = Task::condition;
   return lua_yield(L, 0);
@@ -206,8 +221,27 @@ int DemoScript::together(lua_State* L) {
   }
   tasks_[parent].open_children = count;
   tasks_[parent].state = Task::children;
-  if (checking()) return dry_wait(L, 0);
+  if (checking()) return run_children_dry(L, tasks_.size() - static_cast<std::size_t>(count));
   return lua_yield(L, 0);
+}
+
+/// One after the other, whatever becomes of each.
+int DemoScript::run_children_dry(lua_State* L, std::size_t first) {
+  const int parent = running_;
+  for (std::size_t i = first; i < tasks_.size() && tasks_[i].parent == parent; ++i) {
+    const std::optional<Failure> failure = resume(i);
+    running_ = parent;
+    if (!failure || fails_for_stand_ins()) continue;
+    sandbox().charge(L, 0);  // raises what no script survives
+    for (const Problem& problem : failure->problems) problems()->push_back(problem);
+  }
+  tasks_[static_cast<std::size_t>(parent)].state = Task::ready;
+  return dry_wait(L, std::nullopt);
+}
+
+std::optional<Vec3> DemoScript::known_tip(int instrument) const {
+  if (paths_.empty()) return std::nullopt;
+  return paths_[static_cast<std::size_t>(instrument)].tip();
 }
 
 InstrumentPath* DemoScript::free_path(lua_State* L, int instrument) {
@@ -229,6 +263,7 @@ bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3&
   const double distance = (tip - path.trocar()).norm();
   const double most = path.geometry().max_insertion;
   if (distance >= least_insertion && distance <= most) return true;
+  if (checking() && stood_in()) return true;  // it may never go there
   complain(
       L,
       fmt::format("the tip cannot go to ({:.1f}, {:.1f}, {:.1f}) mm: that is {:.0f} mm from its port",
@@ -239,7 +274,7 @@ bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3&
 
 int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
   if (how.jaw && !can_use_jaws(L, instrument, "approach's jaw")) return 0;
-  if (checking()) return dry_wait(L, dry_motion_duration);
+  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   const Vec3 normal = world(L).landmark_normal(how.landmark);
@@ -262,7 +297,7 @@ int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
 int DemoScript::set_jaw(lua_State* L, int instrument, const std::string& method,
                         std::optional<double> angle) {
   if (!can_use_jaws(L, instrument, method)) return 0;
-  if (checking()) return dry_wait(L, dry_motion_duration);
+  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   path->set_jaw(current(L)->clock, angle.value_or(path->geometry().jaw_opening), jaw_duration);
@@ -270,7 +305,7 @@ int DemoScript::set_jaw(lua_State* L, int instrument, const std::string& method,
 }
 
 int DemoScript::move_to(lua_State* L, int instrument, const Vec3& tip, double speed) {
-  if (checking()) return dry_wait(L, dry_motion_duration);
+  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   const Vec3 closed = closed_tip(path->trocar(), tip, path->jaw(), path->geometry());
@@ -280,7 +315,7 @@ int DemoScript::move_to(lua_State* L, int instrument, const Vec3& tip, double sp
 }
 
 int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double speed) {
-  if (checking()) return dry_wait(L, dry_motion_duration);
+  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   const Vec3 tip = path->tip() + vector;
@@ -289,13 +324,17 @@ int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double
   return sleep_until(L, path->busy_until());
 }
 
+int DemoScript::dry_move_until(lua_State* L, const MoveUntil& how) {
+  if (current(L) == nullptr) return 0;
+  ask_dry(L, how.predicate);
+  if (end_dry_run(L, dry_motion_duration)) return lua_yield(L, 0);
+  lua_pushboolean(L, next_guess());
+  lua_pushnumber(L, how.limit);
+  return 2;
+}
+
 int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
-  if (checking()) {
-    if (end_dry_run(dry_motion_duration)) return lua_yield(L, 0);
-    lua_pushboolean(L, next_guess());
-    lua_pushnumber(L, how.limit);
-    return 2;
-  }
+  if (checking() && !has_world()) return dry_move_until(L, how);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   Vec3 along = how.along;
@@ -304,9 +343,13 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
   const Vec3 furthest = path->tip() + how.limit * along.normalized();
   if (!can_reach(L, *path, furthest)) return 0;
   Task& task = *current(L);
-  task.moving = instrument;
   task.moved_from = path->tip();
   path->move(task.clock, furthest, how.speed);
+  if (checking()) {
+    task.clock = path->busy_until();
+    return dry_move_until(L, how);
+  }
+  task.moving = instrument;
   task.arrives = path->busy_until();
   task.predicate = how.predicate;
   task.state = Task::condition;
@@ -314,7 +357,7 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
 }
 
 int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {
-  if (checking()) return dry_wait(L, dry_motion_duration);
+  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
   path->rotate(current(L)->clock, path->roll() + angle, speed);

@@ -36,8 +36,9 @@ class DemoScript final : public ScriptSession, public InputSource {
 
   Result<std::optional<StepInput>> next(const World& world, double dt) override;
 
-  /// Runs the function with motions that return at once.
-  std::optional<Failure> run_dry();
+  /// Runs the function with motions that return at once; with a world, from its state at rest, motions out of
+  /// reach are found too.
+  std::optional<Failure> run_dry(const World* world = nullptr);
 
   double time() const override;
   int wait(lua_State* L, double duration) override;
@@ -51,6 +52,9 @@ class DemoScript final : public ScriptSession, public InputSource {
   /// Returns to Lua whether the predicate came to hold, and how far the tip was moved, m.
   int move_until(lua_State* L, int instrument, const MoveUntil& how);
   int rotate(lua_State* L, int instrument, double angle, double speed);
+
+ protected:
+  std::optional<Vec3> known_tip(int instrument) const override;
 
  private:
   /// A coroutine: the demo itself, or a function given to t:together.
@@ -71,8 +75,11 @@ class DemoScript final : public ScriptSession, public InputSource {
   int task_of(lua_State* L) const;
   /// The running task, if it may move or wait; complains otherwise.
   Task* current(lua_State* L);
-  int dry_wait(lua_State* L, double duration);
+  int dry_wait(lua_State* L, std::optional<double> duration);
+  int dry_move_until(lua_State* L, const MoveUntil& how);
   int sleep_until(lua_State* L, double time);
+  int run_children_dry(lua_State* L, std::size_t first);
+  void make_paths(const World& world);
   InstrumentPath* free_path(lua_State* L, int instrument);
   bool can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip);
   std::optional<Failure> start();

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "base/suggest.h"
 #include "lua/calot_module.h"
@@ -15,6 +13,7 @@
 #include "lua/read_scene.h"
 #include "lua/source_map.h"
 #include "lua/steps_script.h"
+#include "sim/organ.h"
 
 namespace calot {
 namespace {
@@ -35,9 +34,15 @@ class Loader {
   /// Twice the same: once to check it, running steps and demo dry; and once, in a fresh state that no dry run
   /// has touched, to play it.
   Result<std::unique_ptr<ExerciseScript>> load();
+  /// Whether the file runs and returns something that is no exercise.
+  bool is_module();
 
  private:
+  Result<Value> run_chunk(Sandbox& sandbox);
+  Result<std::unique_ptr<Sandbox>> make_sandbox() const;
   Result<Script> open(bool quiet, FieldCheck& check);
+  /// Runs and checks; what it declares, or nothing where problems were found.
+  Result<std::optional<ExerciseDefinition>> check_all();
   std::optional<Failure> call_scene(Script& script);
   /// A score that is a function of the parameters; a plain table has been read with the exercise.
   std::optional<Failure> call_score(Script& script, FieldCheck& check);
@@ -51,14 +56,28 @@ class Loader {
 
   fs::path path_;
   LoadOptions options_;
+  std::string text_;
   SourceMap map_;
   std::vector<Problem> problems_;
 };
 
+/// Gives a problem with one of the exercise's fields the line that the field is written on.
+void locate(Problem& problem, const SourceMap& map, const std::string& file) {
+  if (!problem.place.file.empty()) return;
+  problem.place.file = file;
+  problem.place.line = std::max(1, map.line_of(problem.place.path));
+}
+
+bool is_exercise(const Value& root) {
+  const Value* kind = root.field("kind");
+  return kind != nullptr && kind->text == "exercise";
+}
+
 class LuaExercise final : public ExerciseScript {
  public:
-  LuaExercise(Script script, ExerciseDefinition definition)
-      : script_(std::move(script)),
+  LuaExercise(Script script, ExerciseDefinition definition, SourceMap map)
+      : map_(std::move(map)),
+        script_(std::move(script)),
         definition_(std::move(definition)),
         steps_(*script_.sandbox, definition_, script_.table.steps, script_.table.parameters),
         demo_(*script_.sandbox, definition_, script_.table.demo, script_.table.parameters) {}
@@ -71,18 +90,28 @@ class LuaExercise final : public ExerciseScript {
   void set_emergency_flush(const std::function<void()>& flush) override {
     script_.sandbox->watchdog().set_flush(flush);
   }
+  Failure located(Failure failure) const override {
+    for (Problem& problem : failure.problems) locate(problem, map_, definition_.file);
+    return failure;
+  }
+  std::vector<Problem> rehearse(const World& world) override {
+    rehearsal_.emplace(*script_.sandbox, definition_, script_.table.demo, script_.table.parameters, &rehearsal_problems_);
+    const std::optional<Failure> failure = rehearsal_->run_dry(&world);
+    if (failure && !rehearsal_->fails_for_stand_ins())
+      rehearsal_problems_.insert(rehearsal_problems_.end(), failure->problems.begin(),
+                                 failure->problems.end());
+    return rehearsal_problems_;
+  }
 
  private:
+  SourceMap map_;
   Script script_;
   ExerciseDefinition definition_;
   StepsScript steps_;
   DemoScript demo_;
+  std::vector<Problem> rehearsal_problems_;
+  std::optional<DemoScript> rehearsal_;
 };
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 /// Whether one field contains the other, or is it.
 bool related(const std::string& a, const std::string& b) {
@@ -92,53 +121,69 @@ bool related(const std::string& a, const std::string& b) {
          (longer.size() == shorter.size() || longer[shorter.size()] == '.' || longer[shorter.size()] == '[');
 }
 
-Result<Script> Loader::open(bool quiet, FieldCheck& check) {
+Result<std::unique_ptr<Sandbox>> Loader::make_sandbox() const {
   SandboxOptions options;
   options.script = path_;
   options.modules = options_.modules;
   options.seed = options_.seed;
   options.limits = options_.limits;
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  if (!sandbox) return sandbox.failure();
-  Script script;
-  script.sandbox = std::move(sandbox).value();
-  script.sandbox->set_quiet(quiet);
-  Value root;
-  std::optional<Failure> failure = script.sandbox->protect([&](lua_State* L) {
+  return Sandbox::create(options);
+}
+
+/// What the file returns. Lines are sought only in a text that Lua has found sound.
+Result<Value> Loader::run_chunk(Sandbox& sandbox) {
+  Result<Value> root = Value{};
+  std::optional<Failure> failure = sandbox.protect([&](lua_State* L) {
     open_calot_module(L);
     open_handles(L);
-    script.sandbox->push_chunk(L, path_);
+    sandbox.push_chunk(L, path_, text_);
+    map_ = SourceMap(text_);
     lua_call(L, 0, 1);
     root = read_value(L, -1);
   });
   if (failure) return *failure;
-  const Value* kind = root.field("kind");
-  if (kind == nullptr || kind->text != "exercise")
+  return root;
+}
+
+Result<Script> Loader::open(bool quiet, FieldCheck& check) {
+  Result<std::unique_ptr<Sandbox>> sandbox = make_sandbox();
+  if (!sandbox) return sandbox.failure();
+  Script script;
+  script.sandbox = std::move(sandbox).value();
+  script.sandbox->set_quiet(quiet);
+  const Result<Value> root = run_chunk(*script.sandbox);
+  if (!root) return root.failure();
+  if (!is_exercise(root.value()))
     return fail(FailureKind::scenario, "the scenario returns no exercise",
-                "end it with: return calot.exercise { ... }", {path_.string(), 0, {}});
-  script.table = read_exercise(check, root, options_.params);
+                "end it with: return calot.exercise { ... }");
+  script.table = read_exercise(check, root.value(), options_.params);
   if (!script.table.usage.empty()) return Failure{FailureKind::usage, script.table.usage};
   return script;
 }
 
-/// What one of the exercise's functions gives for the parameters.
-std::optional<Failure> call(Script& script, int function, Value& result) {
-  return script.sandbox->protect([&](lua_State* L) {
+/// What one of the exercise's functions gives for the parameters; `name` is its field.
+std::optional<Failure> call(Script& script, int function, const std::string& name, Value& value) {
+  Result<Value> result = Value{};
+  std::optional<Failure> failure = script.sandbox->protect([&](lua_State* L) {
     lua_rawgeti(L, LUA_REGISTRYINDEX, function);
     push_parameters(L, script.table.parameters);
     lua_call(L, 1, 1);
-    result = read_value(L, -1);
+    result = read_value(L, -1, name);
   });
+  if (failure) return failure;
+  if (!result) return result.failure();
+  value = std::move(result).value();
+  return std::nullopt;
 }
 
 std::optional<Failure> Loader::call_scene(Script& script) {
-  return call(script, script.table.scene, script.scene);
+  return call(script, script.table.scene, "scene", script.scene);
 }
 
 std::optional<Failure> Loader::call_score(Script& script, FieldCheck& check) {
   if (script.table.score == 0) return std::nullopt;
   Value score;
-  std::optional<Failure> failure = call(script, script.table.score, score);
+  std::optional<Failure> failure = call(script, script.table.score, "score", score);
   if (!failure) script.table.definition.score = read_score(check, score);
   return failure;
 }
@@ -157,7 +202,9 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
   DemoScript demo(*script.sandbox, definition, script.table.demo, script.table.parameters, &problems_);
   if (script.table.steps != 0) {
     Result<StepsScript::Declared> declared = steps.run_dry();
-    if (declared) {
+    if (!declared && steps.fails_for_stand_ins()) {
+      // The author's own check of a value that only a world could give.
+    } else if (declared) {
       definition.step_names = declared->steps;
       definition.hold_names = declared->holds;
       definition.note_names = declared->notes;
@@ -171,14 +218,13 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
   }
   std::optional<Failure> failure = demo.run_dry();
   if (failure && failure->kind == FailureKind::resource) return failure;
-  if (failure) collect(*failure);
+  if (failure && !demo.fails_for_stand_ins()) collect(*failure);
   return std::nullopt;
 }
 
 void Loader::collect(const std::vector<Problem>& problems) {
   for (Problem problem : problems) {
-    problem.place.file = path_.string();
-    problem.place.line = map_.line_of(problem.place.path);
+    locate(problem, map_, path_.string());
     problems_.push_back(std::move(problem));
   }
 }
@@ -195,29 +241,34 @@ void Loader::collect_validation(const std::vector<Problem>& problems) {
   collect(fresh);
 }
 
-void Loader::collect(const Failure& failure) {
-  for (const Problem& problem : failure.problems) problems_.push_back(problem);
-}
+void Loader::collect(const Failure& failure) { collect(failure.problems); }
 
 Failure Loader::all_problems() {
+  constexpr std::size_t most = 100;
   std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
     const auto key = [](const Problem& p) { return p.place.line > 0 ? p.place.line : 1 << 30; };
     return key(a) < key(b);
   });
+  if (problems_.size() > most) {
+    const Problem last{problems_[most - 1].place,
+                       fmt::format("and {} more problems from here on", problems_.size() - most + 1), ""};
+    problems_.resize(most - 1);
+    problems_.push_back(last);
+  }
   return {FailureKind::scenario, std::move(problems_)};
 }
 
-Result<std::unique_ptr<ExerciseScript>> Loader::load() {
-  map_ = SourceMap(text_of(path_));
+/// In a state of its own, which is gone before the exercise is opened to be played.
+Result<std::optional<ExerciseDefinition>> Loader::check_all() {
   FieldCheck check;
   Result<Script> checked = open(false, check);
   if (!checked) return checked.failure();
   collect(check.take());
-  if (checked->table.scene == 0) return all_problems();
+  if (checked->table.scene == 0) return {std::nullopt};
   if (std::optional<Failure> failure = call_scene(checked.value())) {
     if (failure->kind != FailureKind::scenario) return *failure;
     collect(*failure);
-    return all_problems();
+    return {std::nullopt};
   }
   if (std::optional<Failure> failure = call_score(checked.value(), check)) {
     if (failure->kind != FailureKind::scenario) return *failure;
@@ -226,10 +277,23 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   ExerciseDefinition definition = define(checked.value(), check);
   collect(check.take());
   collect_validation(validate(definition.scene));
+  collect_validation(mesh_problems(definition.scene));
   checked->sandbox->set_quiet(true);  // steps and demo print when they are played
   if (std::optional<Failure> failure = run_dry(checked.value(), definition, check)) return *failure;
   collect(check.take());
-  if (!problems_.empty()) return all_problems();
+  if (!problems_.empty()) return {std::nullopt};
+  return {std::move(definition)};
+}
+
+Result<std::unique_ptr<ExerciseScript>> Loader::load() {
+  Result<std::string> text = Sandbox::read_text(path_);
+  if (!text) return text.failure();
+  text_ = std::move(text).value();
+  Result<std::optional<ExerciseDefinition>> checked = check_all();
+  if (!checked && checked.failure().kind != FailureKind::scenario) return checked.failure();
+  if (!checked) collect(checked.failure());
+  if (!problems_.empty() || !checked->has_value()) return all_problems();
+  ExerciseDefinition definition = *std::move(checked).value();
 
   FieldCheck again;
   Result<Script> script = open(true, again);
@@ -243,7 +307,17 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
     part.place.line = map_.line_of(part.place.path);
   }
   return std::unique_ptr<ExerciseScript>(
-      std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition)));
+      std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition), std::move(map_)));
+}
+
+bool Loader::is_module() {
+  Result<std::string> text = Sandbox::read_text(path_);
+  Result<std::unique_ptr<Sandbox>> sandbox = make_sandbox();
+  if (!text || !sandbox) return false;
+  text_ = std::move(text).value();
+  sandbox.value()->set_quiet(true);
+  const Result<Value> root = run_chunk(*sandbox.value());
+  return root && !is_exercise(root.value());
 }
 
 /// The scenarios beside a path that does not exist, for a suggestion.
@@ -266,5 +340,7 @@ Result<std::unique_ptr<ExerciseScript>> load_exercise(const fs::path& path, cons
                 suggestion(path.string(), neighbours(path)));
   return Loader(path, options).load();
 }
+
+bool is_module(const fs::path& path, const LoadOptions& options) { return Loader(path, options).is_module(); }
 
 }  // namespace calot

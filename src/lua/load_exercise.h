@@ -27,4 +27,7 @@ struct LoadOptions {
 Result<std::unique_ptr<ExerciseScript>> load_exercise(const std::filesystem::path& path,
                                                       const LoadOptions& options = {});
 
+/// Whether a file runs and returns something that is no exercise: others may `require` it.
+bool is_module(const std::filesystem::path& path, const LoadOptions& options = {});
+
 }  // namespace calot

@@ -54,12 +54,13 @@ int time(lua_State* L) {
   return 1;
 }
 
-/// The organ's state, or that of one at rest in a dry run or after a complaint.
+/// The organ's state, or a stand-in in a dry run, or nothing after a complaint.
 OrganState organ_state(lua_State* L, const char* method) {
   ScriptSession& session = session_target(L, method);
   const Arguments arguments(L, session, "Session", method);
   const int organ = arguments.good() ? session.organ(L, arguments.text("organ")) : -1;
-  if (organ < 0 || session.checking()) return {};
+  if (organ < 0) return {};
+  if (session.checking()) return session.stand_in_organ(organ);
   return session.world(L).report().organs[static_cast<std::size_t>(organ)];
 }
 
@@ -87,6 +88,7 @@ int push_vector(lua_State* L, const Vec3& vector) {
 std::optional<Vec3> landmark_argument(lua_State* L, ScriptSession& session, const Arguments& arguments) {
   const std::string name = arguments.text("landmark");
   if (!arguments.good() || !session.is_landmark(L, name)) return std::nullopt;
+  if (session.checking()) session.stand_in();  // what it belongs to will have moved
   return session.landmark(L, name);
 }
 
@@ -98,14 +100,13 @@ int place(lua_State* L) {
 
 // ---- instruments
 
-const InstrumentState& instrument_state(lua_State* L, const HandleTarget& target) {
-  static const InstrumentState at_rest;
-  if (target.session->checking()) return at_rest;
+InstrumentState instrument_state(lua_State* L, const HandleTarget& target) {
+  if (target.session->checking()) return target.session->stand_in_instrument(target.instrument);
   return target.session->world(L).report().instruments[static_cast<std::size_t>(target.instrument)];
 }
 
 /// The same for a method without parameters.
-const InstrumentState& instrument_state(lua_State* L, const char* method) {
+InstrumentState instrument_state(lua_State* L, const char* method) {
   const HandleTarget target = instrument_target(L, method);
   take_nothing(L, *target.session, method);
   return instrument_state(L, target);
@@ -123,7 +124,7 @@ int holds(lua_State* L) {
   const Arguments arguments(L, *target.session, "Instrument", "holds");
   const std::string organ = arguments.text("organ");
   const bool known = organ.empty() || target.session->organ(L, organ) >= 0;
-  const std::string& held = instrument_state(L, target).holds;
+  const std::string held = instrument_state(L, target).holds;
   bool answer = known && (organ.empty() ? !held.empty() : held == organ);
   if (target.session->checking()) answer = target.session->next_guess();
   lua_pushboolean(L, answer);
@@ -132,31 +133,34 @@ int holds(lua_State* L) {
 
 /// The load on the part that the call names, or on the whole instrument without a name.
 struct Load {
-  Vec3 force = Vec3::Zero(), axis = -Vec3::UnitZ();
+  Vec3 force = Vec3::Zero();
   bool touching = false;
 };
 Load load_of(lua_State* L, const HandleTarget& target, const Arguments& arguments) {
-  Load load;
-  if (target.session->checking()) return load;
-  const InstrumentState& state = instrument_state(L, target);
-  load = {state.tip_force, target.session->shaft_axis(L, target.instrument), state.touching};
-  if (const std::optional<ToolPart> part = part_called(arguments.text("part"))) {
-    const PartLoad& of_part = state.parts[static_cast<std::size_t>(*part)];
-    load.force = of_part.force;
-    load.touching = of_part.touches > 0;
-  }
-  return load;
+  const InstrumentState state = instrument_state(L, target);
+  const std::optional<ToolPart> part = part_called(arguments.text("part"));
+  if (!part || target.session->checking()) return {state.tip_force, state.touching};
+  const PartLoad& of_part = state.parts[static_cast<std::size_t>(*part)];
+  return {of_part.force, of_part.touches > 0};
 }
 Load load_of(lua_State* L, const char* method) {
   const HandleTarget target = instrument_target(L, method);
   return load_of(L, target, Arguments(L, *target.session, "Instrument", method));
 }
 
+/// N along the shaft, positive into the body; a dry run answers either way.
+double along_shaft(lua_State* L, const char* method) {
+  const Vec3 force = load_of(L, method).force;
+  const HandleTarget target = instrument_target(L, method);
+  if (target.session->checking()) return target.session->next_guess() ? force.norm() : -force.norm();
+  return force.dot(target.session->shaft_axis(L, target.instrument));
+}
+
 int touching(lua_State* L) {
   const HandleTarget target = instrument_target(L, "touching");
-  const Load load = load_of(L, target, Arguments(L, *target.session, "Instrument", "touching"));
   const bool guess = target.session->checking() && target.session->next_guess();
-  lua_pushboolean(L, guess || load.touching);
+  const Load load = load_of(L, target, Arguments(L, *target.session, "Instrument", "touching"));
+  lua_pushboolean(L, target.session->checking() ? guess : load.touching);
   return 1;
 }
 
@@ -168,14 +172,12 @@ int force(lua_State* L) {
 int force_vector(lua_State* L) { return push_vector(L, load_of(L, "force_vector").force); }
 
 int pull(lua_State* L) {
-  const Load load = load_of(L, "pull");
-  lua_pushnumber(L, std::max(0.0, load.force.dot(load.axis)));
+  lua_pushnumber(L, std::max(0.0, along_shaft(L, "pull")));
   return 1;
 }
 
 int push(lua_State* L) {
-  const Load load = load_of(L, "push");
-  lua_pushnumber(L, std::max(0.0, -load.force.dot(load.axis)));
+  lua_pushnumber(L, std::max(0.0, -along_shaft(L, "push")));
   return 1;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lua/lua_headers.h"
+#include "lua/metatables.h"
 #include "lua/sandbox.h"
 
 namespace calot {
@@ -80,22 +81,32 @@ int next_pair(lua_State* L) {
   return 1;  // the nil found past the last key
 }
 
+std::size_t count_entries(lua_State* L) {
+  std::size_t count = 0;
+  for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) ++count;
+  return count;
+}
+
 }  // namespace
 
 int ordered_pairs(lua_State* L) {
   luaL_checkany(L, 1);
-  if (luaL_getmetafield(L, 1, "__pairs") != LUA_TNIL) {
+  if (get_metafield(L, 1, "__pairs") != LUA_TNIL) {
     lua_pushvalue(L, 1);
     lua_call(L, 1, 3);
     return 3;
   }
   luaL_checktype(L, 1, LUA_TTABLE);
+  Sandbox& sandbox = Sandbox::of(L);
+  const std::size_t count = count_entries(L);
+  sandbox.charge(L, static_cast<std::int64_t>(count));
+  sandbox.need_memory(L, count * sizeof(Key));
   std::vector<Key> keys;
+  keys.reserve(count);
   for (lua_pushnil(L); lua_next(L, 1) != 0;) {
     lua_pop(L, 1);
     keys.push_back(key_at_top(L));
   }
-  Sandbox::of(L).charge(L, static_cast<std::int64_t>(keys.size()));
   std::sort(keys.begin(), keys.end(), before);
   lua_createtable(L, static_cast<int>(keys.size()), 0);
   lua_Integer index = 0;

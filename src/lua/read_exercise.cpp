@@ -83,6 +83,8 @@ class ScoreReader {
       return false;
     }
     reader.read(part);
+    if (reader.has("name") && part.name.empty())
+      check_.problem(path + ".name", "the part's name is empty", "give it one, or leave it out");
     return true;
   }
 
@@ -91,6 +93,8 @@ class ScoreReader {
     part.kind = ScorePartKind::benchmark;
     reader.read(part);
     part.name = part.metric;
+    if (reader.has("metric") && part.metric.empty())
+      check_.problem(path + ".metric", "the metric has no name", "such as metric = \"left.path_length_mm\"");
     if (reader.has("novice") && reader.has("expert") && part.novice == part.expert) {
       check_.problem(path + ".expert", fmt::format("novice and expert are both {:g}", part.novice),
                      "the score runs from one to the other: they must differ");

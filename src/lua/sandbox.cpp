@@ -2,30 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "base/log.h"
+#include "base/suggest.h"
 #include "lua/lua_headers.h"
 #include "lua/sandbox_library.h"
 
 namespace calot {
 namespace {
 
-constexpr int hook_interval = 1000;            // instructions between two looks at the budget
-constexpr int error_cost = 1000;               // instructions that raising and catching an error counts for
-constexpr int longest_trace = 8;               // frames
-constexpr int most_printed_lines = 1000;       // of a run
-constexpr std::size_t longest_text = 1 << 20;  // bytes of one file
+constexpr int hook_interval = 1000;       // instructions between two looks at the budget
+constexpr int error_cost = 1000;          // instructions that raising and catching an error counts for
+constexpr int longest_trace = 8;          // frames
+constexpr int most_printed_lines = 1000;  // of a run
+constexpr std::size_t most_printed_bytes = 1 << 18;  // of a run
+constexpr std::size_t longest_text = 1 << 20;        // bytes of one file
+constexpr std::size_t longest_message = 2000;        // bytes of an error's text
 
 std::string text_at_top(lua_State* L) {
   const int type = lua_type(L, -1);
-  if (type == LUA_TSTRING || type == LUA_TNUMBER) {
+  if (type == LUA_TNUMBER) return fmt::format("{:g}", lua_tonumber(L, -1));
+  if (type == LUA_TSTRING) {
     std::size_t length = 0;
-    const char* text = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : nullptr;
-    return text != nullptr ? std::string(text, length) : fmt::format("{:g}", lua_tonumber(L, -1));
+    const char* text = lua_tolstring(L, -1, &length);
+    return shortened({text, length}, longest_message);
   }
   return fmt::format("an error that is no text was raised (a {} value)", lua_typename(L, type));
 }
@@ -85,9 +89,11 @@ Sandbox::Call::~Call() {
 
 void Sandbox::spend(std::int64_t instructions) {
   used_in_call_ += instructions;
+  used_in_second_ += instructions;
   used_in_run_ += instructions;
   if (trip_ != Trip::none) return;
   if (used_in_call_ > options_.limits.instructions_per_call) trip_ = Trip::call;
+  if (used_in_second_ > options_.limits.instructions_per_second) trip_ = Trip::second;
   if (used_in_run_ > options_.limits.instructions_per_run) trip_ = Trip::run;
 }
 
@@ -99,6 +105,9 @@ std::string Sandbox::trip_text() const {
       return fmt::format(
           "the script ran for more than {} instructions without waiting: a loop that does not end?",
           options_.limits.instructions_per_call);
+    case Trip::second:
+      return fmt::format("the script ran for more than {} instructions in one simulated second",
+                         options_.limits.instructions_per_second);
     case Trip::run:
       return fmt::format("the script ran for more than {} instructions in all",
                          options_.limits.instructions_per_run);
@@ -121,6 +130,7 @@ void Sandbox::raise_trip(lua_State* L) {
 
 void Sandbox::on_count(lua_State* L, lua_Debug*) {
   Sandbox& self = of(L);
+  self.note_place(L);
   self.spend(lua_gethookcount(L));
   if (self.trip_ != Trip::none) self.raise_trip(L);
 }
@@ -130,8 +140,23 @@ void Sandbox::charge(lua_State* L, std::int64_t instructions) {
   if (trip_ != Trip::none) raise_trip(L);
 }
 
+void Sandbox::need_memory(lua_State* L, std::size_t bytes) {
+  const std::size_t limit = options_.limits.memory;
+  if (bytes <= limit && memory_ <= limit - bytes) return;
+  if (trip_ == Trip::none) trip_ = Trip::memory;
+  raise_trip(L);
+}
+
+void Sandbox::set_time(double time) {
+  if (std::floor(time) == second_) return;
+  second_ = std::floor(time);
+  used_in_second_ = 0;
+  watchdog_.refill();
+}
+
 void Sandbox::survive_error(lua_State* L, int status) {
   if (status == LUA_ERRMEM) trip_ = Trip::memory;
+  raised_ = false;
   if (trip_ == Trip::none) return charge(L, error_cost);
   lua_sethook(L, on_count, LUA_MASKCOUNT, 1);
   lua_error(L);
@@ -164,6 +189,7 @@ int Sandbox::collect_trace(lua_State* L) {
 std::optional<Failure> Sandbox::protect(const std::function<void(lua_State*)>& body) {
   const Call call(*this);
   trace_.clear();
+  raised_ = false;
   const int top = lua_gettop(L_);
   lua_pushcfunction(L_, collect_trace);
   lua_pushcfunction(L_, call_body);
@@ -198,6 +224,7 @@ lua_State* Sandbox::adopt_thread(lua_State* L) {
 Result<bool> Sandbox::resume(lua_State* thread, int arguments) {
   const Call call(*this);
   trace_.clear();
+  raised_ = false;
   int results = 0;
   const int status = lua_resume(thread, L_, arguments, &results);
   if (status == LUA_OK || status == LUA_YIELD) {
@@ -214,18 +241,32 @@ bool Sandbox::owns(lua_State* thread) const {
 
 // ---- text
 
-void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path) {
+Result<std::string> Sandbox::read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text(longest_text + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || (!file.eof() && file.fail())) throw std::runtime_error("cannot read " + path.string());
+  const Place place{path.string(), 0, {}};
+  if (file.bad() || (!file.eof() && file.fail()))
+    return fail(FailureKind::usage, "the file cannot be read", "check who may read it", place);
   text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > longest_text)
-    throw std::runtime_error(path.string() + " is larger than 1 MiB, too large for a script");
-  if (!text.empty() && text.front() == LUA_SIGNATURE[0]) {
-    throw std::runtime_error(path.string() +
-                             " is compiled Lua (bytecode); scripts are text: give the source");
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte order mark: some editors write one
+  if (text.size() > longest_text) {
+    return fail(FailureKind::scenario, "the file is larger than 1 MiB, too large for a script",
+                "move what is large into modules", place);
   }
+  if (!text.empty() && text.front() == LUA_SIGNATURE[0])
+    return fail(FailureKind::scenario, "this is compiled Lua (bytecode); scripts are text", "give the source",
+                place);
+  return text;
+}
+
+void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path) {
+  const Result<std::string> text = read_text(path);
+  if (!text) throw std::runtime_error(to_text(text.failure()));
+  push_chunk(L, path, text.value());
+}
+
+void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path, const std::string& text) {
   source_hash_.add(std::uint64_t{text.size()});
   source_hash_.add(std::string_view(text));
   const std::string name = fmt::format("@{}", path.string());
@@ -239,24 +280,31 @@ void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path) {
 }
 
 void Sandbox::print(const std::string& line) {
-  if (quiet_ || printed_ > most_printed_lines) return;
+  if (quiet_ || printed_ < 0) return;
   ++printed_;
-  log_info(printed_ > most_printed_lines
-               ? fmt::format("the script has printed {} lines; the rest is dropped", most_printed_lines)
-               : line);
+  printed_bytes_ += line.size();
+  if (printed_ <= most_printed_lines && printed_bytes_ <= most_printed_bytes) return log_info(line);
+  printed_ = -1;
+  log_info(fmt::format("the script has printed {} lines or {} KiB; the rest is dropped", most_printed_lines,
+                       most_printed_bytes >> 10));
 }
 
 // ---- errors
+
+const std::string* Sandbox::file_of(const lua_Debug& info) const {
+  const auto file = files_.find(info.short_src);
+  return file != files_.end() ? &file->second : nullptr;  // none of C++ and the library's own Lua
+}
 
 std::vector<Place> Sandbox::trace_of(lua_State* L) const {
   std::vector<Place> trace;
   lua_Debug info;
   for (int level = 0; lua_getstack(L, level, &info) != 0; ++level) {
     lua_getinfo(L, "Sl", &info);
-    const auto file = files_.find(info.short_src);
-    if (file == files_.end()) continue;  // C++ and the library's own Lua
+    const std::string* file = file_of(info);
+    if (file == nullptr) continue;
     if (static_cast<int>(trace.size()) == longest_trace) break;
-    trace.push_back({file->second, info.currentline, {}});
+    trace.push_back({*file, info.currentline, {}});
   }
   return trace;
 }
@@ -265,10 +313,17 @@ Place Sandbox::place_of(lua_State* L, int level) const {
   lua_Debug info;
   for (; lua_getstack(L, level, &info) != 0; ++level) {
     lua_getinfo(L, "Sl", &info);
-    const auto file = files_.find(info.short_src);
-    if (file != files_.end()) return {file->second, info.currentline, {}};
+    if (const std::string* file = file_of(info)) return {*file, info.currentline, {}};
   }
   return {options_.script.string(), 0, {}};
+}
+
+void Sandbox::note_place(lua_State* L) {
+  lua_Debug info;
+  for (int level = 0; lua_getstack(L, level, &info) != 0; ++level) {
+    lua_getinfo(L, "Sl", &info);
+    if (const std::string* file = file_of(info)) return watchdog_.note_place(*file, info.currentline);
+  }
 }
 
 /// Cuts "file:line: " off the message, once or more often (nested errors), and keeps the innermost.

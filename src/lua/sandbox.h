@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/hash.h"
@@ -66,18 +67,32 @@ class Sandbox {
   Result<bool> resume(lua_State* thread, int arguments);
   bool owns(lua_State* thread) const;
 
+  /// The text of a script, without a byte order mark. Failures: usage (it cannot be read), scenario (it is too
+  /// long, or no text).
+  static Result<std::string> read_text(const std::filesystem::path& path);
   /// Pushes the compiled text of `path`, a text chunk. Raises a Lua error for what is wrong; call it
   /// protected.
   void push_chunk(lua_State* L, const std::filesystem::path& path);
+  void push_chunk(lua_State* L, const std::filesystem::path& path, const std::string& text);
   /// Hash of all the text loaded so far, in the order of loading.
   std::uint64_t source_hash() const { return source_hash_.value(); }
 
   /// Takes instructions off the budget for work done in C++; raises the budget's error when it is used up.
   void charge(lua_State* L, std::int64_t instructions);
+  /// Raises the memory limit's error unless so much more would fit below it: before C++ copies a script's values.
+  void need_memory(lua_State* L, std::size_t bytes);
+  /// The simulated time (s) that the coming calls belong to: each second has a budget of its own.
+  void set_time(double time);
   /// For pcall and resume, of the error on top of the stack: raises it again when no script may survive it,
   /// else charges for it, because raising costs far more than an instruction.
   void survive_error(lua_State* L, int status);
-  /// One line for `print`, up to a number of lines per run.
+  /// Notes that a script raises an error of its own making (error, assert), and tells, once, whether the last
+  /// failure was one.
+  void note_raise() { raised_ = true; }
+  bool take_raised() { return std::exchange(raised_, false); }
+  /// Where the script is now, should the watchdog have to say so.
+  void note_place(lua_State* L);
+  /// One line for `print`, up to a number of lines and bytes per run.
   void print(const std::string& line);
   /// While quiet, print says nothing.
   void set_quiet(bool quiet) { quiet_ = quiet; }
@@ -87,7 +102,7 @@ class Sandbox {
   Place place_of(lua_State* L, int level = 1) const;
 
  private:
-  enum class Trip { none, call, run, memory };
+  enum class Trip { none, call, second, run, memory };
   explicit Sandbox(const SandboxOptions& options);
   static void* allocate(void* sandbox, void* block, std::size_t old_size, std::size_t new_size);
   static void on_count(lua_State* L, lua_Debug*);
@@ -98,6 +113,7 @@ class Sandbox {
   [[noreturn]] void raise_trip(lua_State* L);
   std::string trip_text() const;
   std::vector<Place> trace_of(lua_State* L) const;
+  const std::string* file_of(const lua_Debug& info) const;
   /// From the error on top of L's stack and trace_.
   Failure failure_of(lua_State* L, int status) const;
   bool split_place(std::string& message, Place& place) const;
@@ -105,9 +121,12 @@ class Sandbox {
   SandboxOptions options_;
   lua_State* L_ = nullptr;
   std::size_t memory_ = 0;
-  std::int64_t used_in_call_ = 0, used_in_run_ = 0;
-  int calls_ = 0;  ///< depth of nested Calls
+  std::int64_t used_in_call_ = 0, used_in_second_ = 0, used_in_run_ = 0;
+  double second_ = 0;  ///< s, whole: the simulated second that is running
+  int calls_ = 0;      ///< depth of nested Calls
   int printed_ = 0;
+  std::size_t printed_bytes_ = 0;
+  bool raised_ = false;
   bool quiet_ = false;
   Trip trip_ = Trip::none;
   std::vector<Place> trace_;                  ///< of the last error, innermost first

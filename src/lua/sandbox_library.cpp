@@ -8,12 +8,17 @@
 #include "base/suggest.h"
 #include "lua/binding.h"
 #include "lua/coroutines.h"
+#include "lua/metatables.h"
 #include "lua/module_loader.h"
 #include "lua/ordered_pairs.h"
 #include "lua/sandbox.h"
 
 namespace calot {
 namespace {
+
+constexpr lua_Unsigned bytes_per_instruction = 16;  // of texts that library functions run through
+constexpr std::size_t longest_printed_line = 4000;  // bytes
+constexpr std::size_t longest_name = 100;           // bytes, in messages
 
 // What is easier to say in Lua: a stable sort (Lua's own looks at the clock), and xpcall built on pcall,
 // because a handler that loops inside Lua's own xpcall escapes the budget.
@@ -61,43 +66,54 @@ end
 return xpcall, sort
 )lua";
 
-/// Text of any value, without addresses; may call __tostring.
-std::string describe(lua_State* L, int index) {
-  const int type = luaL_getmetafield(L, index, "__tostring");
-  if (type != LUA_TNIL) {
+/// Pushes a text for any value, without addresses; may call __tostring. A text is pushed as it is, not copied.
+void push_text(lua_State* L, int index) {
+  index = lua_absindex(L, index);
+  luaL_checkstack(L, 4, "too many values");
+  if (get_metafield(L, index, "__tostring") != LUA_TNIL) {
     lua_pushvalue(L, index);
     lua_call(L, 1, 1);
     if (lua_type(L, -1) != LUA_TSTRING) luaL_error(L, "'__tostring' must return a string");
-  } else {
-    const int of = lua_type(L, index);
-    if (of == LUA_TNIL || of == LUA_TBOOLEAN || of == LUA_TNUMBER || of == LUA_TSTRING) {
-      luaL_tolstring(L, index, nullptr);
-    } else {
-      lua_pushstring(L, lua_typename(L, of));
-    }
+    return;
   }
-  std::size_t length = 0;
-  const char* text = lua_tolstring(L, -1, &length);
-  std::string result(text, length);
-  lua_pop(L, 1);
-  return result;
+  const int of = lua_type(L, index);
+  if (of == LUA_TNIL || of == LUA_TBOOLEAN || of == LUA_TNUMBER || of == LUA_TSTRING) {
+    luaL_tolstring(L, index, nullptr);
+  } else {
+    lua_pushstring(L, lua_typename(L, of));
+  }
 }
 
-void push(lua_State* L, const std::string& text) { lua_pushlstring(L, text.data(), text.size()); }
+/// A name as an author wrote it, no longer than a message can carry.
+std::string name_at(lua_State* L, int index) {
+  push_text(L, index);
+  std::size_t length = 0;
+  const char* text = lua_tolstring(L, -1, &length);
+  std::string name = shortened({text, length}, longest_name);
+  lua_pop(L, 1);
+  return name;
+}
 
 int to_string(lua_State* L) {
   luaL_checkany(L, 1);
-  push(L, describe(L, 1));
+  push_text(L, 1);
   return 1;
 }
 
+/// What is beyond the longest line is dropped before it is copied.
 int print(lua_State* L) {
   std::string line;
-  for (int i = 1; i <= lua_gettop(L); ++i) {
+  const int count = lua_gettop(L);
+  for (int i = 1; i <= count; ++i) {
     if (i > 1) line += '\t';
-    line += describe(L, i);
+    push_text(L, i);
+    std::size_t length = 0;
+    const char* text = lua_tolstring(L, -1, &length);
+    const std::size_t room = longest_printed_line + 1 - std::min(longest_printed_line + 1, line.size());
+    line.append(text, std::min(length, room));
+    lua_pop(L, 1);
   }
-  Sandbox::of(L).print(line);
+  Sandbox::of(L).print(shortened(line, longest_printed_line));
   return 0;
 }
 
@@ -115,7 +131,7 @@ int format(lua_State* L) {
     if (pattern[i] == 'p')
       return luaL_error(L, "string.format: %%p is not available (addresses differ per run)");
     if (pattern[i] != 's' || argument > lua_gettop(L)) continue;
-    push(L, describe(L, argument));
+    push_text(L, argument);
     lua_replace(L, argument);
   }
   lua_pushvalue(L, lua_upvalueindex(1));
@@ -124,22 +140,56 @@ int format(lua_State* L) {
   return 1;
 }
 
-/// Finalisers and closers run where no budget reaches them; weak tables would show when memory is collected.
-int set_metatable(lua_State* L) {
-  luaL_checktype(L, 1, LUA_TTABLE);
-  luaL_argexpected(L, lua_istable(L, 2) || lua_isnil(L, 2), 2, "nil or table");
-  if (lua_istable(L, 2)) {
-    for (const char* refused : {"__gc", "__close", "__mode"}) {
-      lua_pushstring(L, refused);
-      if (lua_rawget(L, 2) != LUA_TNIL) return luaL_error(L, "%s is not available in scenarios", refused);
-      lua_pop(L, 1);
-    }
+/// error, noted as the script's own: a dry run must not take an author's checks of its stand-in values for
+/// mistakes.
+int raise(lua_State* L) {
+  const int level = static_cast<int>(luaL_optinteger(L, 2, 1));
+  lua_settop(L, 1);
+  if (lua_type(L, 1) == LUA_TSTRING && level > 0) {
+    luaL_where(L, level);
+    lua_insert(L, 1);
+    lua_concat(L, 2);
   }
-  if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
-    return luaL_error(L, "cannot change a protected metatable");
-  lua_settop(L, 2);
-  lua_setmetatable(L, 1);
-  return 1;
+  Sandbox::of(L).note_raise();
+  return lua_error(L);
+}
+
+int assert_true(lua_State* L) {
+  if (lua_toboolean(L, 1) != 0) return lua_gettop(L);
+  luaL_checkany(L, 1);
+  lua_remove(L, 1);
+  lua_pushliteral(L, "assertion failed!");
+  lua_settop(L, 1);
+  Sandbox::of(L).note_raise();
+  return lua_error(L);
+}
+
+/// A function of Lua's library (upvalue 1) whose time grows with the texts it is given and gives.
+int charged(lua_State* L) {
+  Sandbox& sandbox = Sandbox::of(L);
+  const auto texts = [L](int first) {
+    lua_Unsigned bytes = 0;
+    for (int i = first; i <= lua_gettop(L); ++i)
+      if (lua_type(L, i) == LUA_TSTRING) bytes += lua_rawlen(L, i);
+    return static_cast<std::int64_t>(bytes / bytes_per_instruction);
+  };
+  sandbox.note_place(L);
+  sandbox.charge(L, texts(1));
+  const int results = lua_tocfunction(L, lua_upvalueindex(1))(L);
+  sandbox.charge(L, texts(lua_gettop(L) - results + 1));
+  return results;
+}
+
+/// Replaces the functions of the library table on top by charged ones.
+void charge_all(lua_State* L) {
+  std::vector<std::string> names;
+  for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1))
+    if (lua_iscfunction(L, -1) != 0) names.emplace_back(lua_tostring(L, -2));
+  for (const std::string& name : names) {
+    lua_getfield(L, -1, name.c_str());
+    lua_pushcclosure(L, charged, 1);
+    lua_setfield(L, -2, name.c_str());
+  }
 }
 
 int finish_pcall(lua_State* L, int status, lua_KContext) {
@@ -176,7 +226,7 @@ std::vector<std::string> top_level_names() {
 }
 
 int unknown_global(lua_State* L) {
-  const std::string name = describe(L, 2);
+  const std::string name = name_at(L, 2);
   for (const char* absent : {"os", "io", "debug", "package", "load", "loadstring", "loadfile", "dofile",
                              "collectgarbage", "next", "_G"}) {
     if (name == absent) {
@@ -196,7 +246,7 @@ int unknown_global(lua_State* L) {
 }
 
 int new_global(lua_State* L) {
-  const std::string name = describe(L, 2);
+  const std::string name = name_at(L, 2);
   return luaL_error(L, "'%s' would be a global variable (write: local %s = ...)", name.c_str(), name.c_str());
 }
 
@@ -225,9 +275,11 @@ void open(lua_State* L, lua_CFunction opener) {
 
 void open_base(lua_State* L) {
   open(L, luaopen_base);
-  keep(L, {"assert", "error", "getmetatable", "ipairs", "rawequal", "rawget", "rawlen", "rawset", "select",
-           "tonumber", "type", "_VERSION"});
+  keep(L, {"ipairs", "rawequal", "rawget", "rawlen", "rawset", "select", "tonumber", "type", "_VERSION"});
   lua_pop(L, 1);
+  set(L, "assert", assert_true);
+  set(L, "error", raise);
+  set(L, "getmetatable", get_metatable);
   set(L, "pairs", guarded<ordered_pairs>);
   set(L, "pcall", protected_call);
   set(L, "print", guarded<print>);
@@ -239,6 +291,7 @@ void open_base(lua_State* L) {
 void open_string(lua_State* L) {
   open(L, luaopen_string);  // this very table is the index of all strings: change it in place
   remove(L, "dump");
+  charge_all(L);
   lua_getfield(L, -1, "format");
   lua_pushcclosure(L, guarded<format>, 1);
   lua_setfield(L, -2, "format");
@@ -298,8 +351,10 @@ void open_library(lua_State* L, std::uint64_t seed) {
   open_string(L);
   open_math(L, seed);
   open(L, luaopen_table);
+  charge_all(L);
   lua_setfield(L, -2, "table");
   open(L, luaopen_utf8);
+  charge_all(L);
   lua_setfield(L, -2, "utf8");
   push_coroutine_library(L);
   lua_setfield(L, -2, "coroutine");

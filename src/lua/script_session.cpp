@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/suggest.h"
+#include "base/units.h"
 #include "lua/handles.h"
 #include "lua/lua_headers.h"
 
@@ -13,6 +14,16 @@ namespace calot {
 namespace {
 
 constexpr int most_dry_waits = 10'000;
+constexpr int most_dry_asks = 1000;
+constexpr std::size_t most_problems = 100;
+constexpr std::size_t longest_message = 500;  // bytes
+
+// What stands in for what only a world could answer: nothing, something usual, much.
+constexpr int levels = 3;
+constexpr double force_at[levels] = {0, 2, 10};  // N
+constexpr double share_of_filling[levels] = {0.5, 1, 2};
+constexpr double usual_pressure = 12 * units::mmHg;
+constexpr double usual_volume = 40 * units::mL;
 
 std::string with_hint(const std::string& message, const std::string& hint) {
   return hint.empty() ? message : fmt::format("{} ({})", message, hint);
@@ -48,15 +59,20 @@ const World& ScriptSession::world(lua_State* L) const {
 void ScriptSession::complain(lua_State* L, const std::string& message, const std::string& hint) {
   if (problems_ == nullptr) {
     luaL_where(L, 1);
-    lua_pushstring(L, with_hint(message, hint).c_str());
+    lua_pushstring(L, with_hint(shortened(message, longest_message), hint).c_str());
     lua_concat(L, 2);
     lua_error(L);
     std::abort();  // lua_error does not return
   }
   const Place place = sandbox_.place_of(L);
+  if (problems_->size() >= most_problems) {
+    luaL_error(L, "and more mistakes, which are not looked for until these are mended");
+    std::abort();  // luaL_error does not return
+  }
   for (const Problem& problem : *problems_)
-    if (problem.place.line == place.line && problem.message == message) return;  // in a loop
-  problems_->push_back({place, message, hint});
+    if (problem.place.line == place.line && problem.message == shortened(message, longest_message))
+      return;  // in a loop
+  problems_->push_back({place, shortened(message, longest_message), hint});
 }
 
 int ScriptSession::organ(lua_State* L, const std::string& name) {
@@ -87,31 +103,26 @@ bool ScriptSession::can_use_jaws(lua_State* L, int instrument, const std::string
 }
 
 Vec3 ScriptSession::landmark(lua_State* L, const std::string& name) const {
-  if (!checking()) return world(L).landmark(name);
+  if (!checking() || has_world()) return world(L).landmark(name);
   for (const OrganDefinition& organ : scene().anatomy.organs)
     for (const Landmark& row : landmark_rows())
       if (name == organ.name + "." + row.name) return organ.neck + row.along * (organ.fundus - organ.neck);
   return Vec3::Zero();  // complained about already
 }
 
-Vec3 ScriptSession::tip(lua_State* L, int instrument) const {
-  const std::size_t index = static_cast<std::size_t>(instrument);
-  if (!checking()) return world(L).report().instruments[index].tip;
-  constexpr double waiting_depth = 30e-3;  // m
-  const std::vector<PortDefinition> ports = scene().ports.empty() ? default_ports() : scene().ports;
-  for (const PortDefinition& port : ports)
-    if (port.name == scene().instruments[index].port) return port.position - waiting_depth * Vec3::UnitZ();
-  return Vec3::Zero();  // the port has been complained about
+Vec3 ScriptSession::tip(lua_State* L, int instrument) {
+  if (!checking()) return world(L).report().instruments[static_cast<std::size_t>(instrument)].tip;
+  const std::optional<Vec3> known = known_tip(instrument);
+  return known ? *known : stand_in_instrument(instrument).tip;
 }
 
-Vec3 ScriptSession::shaft_axis(lua_State* L, int instrument) const {
-  if (checking()) return -Vec3::UnitZ();
+Vec3 ScriptSession::shaft_axis(lua_State* L, int instrument) {
   const std::string& port = scene().instruments[static_cast<std::size_t>(instrument)].port;
   return (tip(L, instrument) - world(L).port_position(port)).normalized();
 }
 
 ContactPlace ScriptSession::contact(lua_State* L, int instrument,
-                                    const std::function<ToolPart(const InstrumentState&)>& choose) const {
+                                    const std::function<ToolPart(const InstrumentState&)>& choose) {
   const std::vector<std::string> landmarks = landmark_names(scene().anatomy.organs);
   ContactPlace place;
   if (checking()) {
@@ -119,6 +130,7 @@ ContactPlace ScriptSession::contact(lua_State* L, int instrument,
     place.organ = scene().anatomy.organs.front().name;
     place.landmark = landmarks.front();
     place.at = landmark(L, place.landmark);
+    place.force = stand_in_instrument(instrument).tip_force.norm();
     return place;
   }
   const InstrumentState& state = world(L).report().instruments[static_cast<std::size_t>(instrument)];
@@ -138,20 +150,109 @@ ContactPlace ScriptSession::contact(lua_State* L, int instrument,
   return place;
 }
 
-bool ScriptSession::end_dry_run(double duration) {
-  dry_time_ += duration;
+// ---- dry runs
+
+bool ScriptSession::next_guess() {
+  stood_in_ = true;
+  if (!asking_) guess_ = !guess_;
+  return guess_;
+}
+
+int ScriptSession::next_level() {
+  stood_in_ = true;
+  if (!asking_) level_ = (level_ + 1) % levels;
+  return level_;
+}
+
+InstrumentState ScriptSession::stand_in_instrument(int instrument) {
+  const int level = next_level();
+  const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
+  InstrumentState state;
+  for (const PortDefinition& port : scene().ports.empty() ? default_ports() : scene().ports)
+    if (port.name == definition.port) state.tip = port.position;
+  if (!scene().anatomy.organs.empty()) {  // from the port to the organ
+    const double way = 0.5 + 0.25 * level;
+    state.tip += way * (scene().anatomy.organs.front().fundus - state.tip);
+  }
+  state.tip = known_tip(instrument).value_or(state.tip);
+  state.tip_force = Vec3(0, 0, force_at[level]);
+  state.handle_force = state.tip_force;
+  state.touching = level > 0;
+  const std::size_t grip = static_cast<std::size_t>(2 * level + (guess_ ? 1 : 0));
+  state.grip = static_cast<GripState>(grip % grip_state_names().size());
+  return state;
+}
+
+OrganState ScriptSession::stand_in_organ(int organ) {
+  const double share = share_of_filling[next_level()];
+  const BileDefinition& bile = scene().anatomy.organs[static_cast<std::size_t>(organ)].bile;
+  OrganState state;
+  state.pressure = share * bile.fill_pressure.value_or(usual_pressure);
+  state.volume = share * bile.fill_volume.value_or(usual_volume);
+  return state;
+}
+
+void ScriptSession::ask_dry(lua_State* L, int predicate) {
+  if (++asked_ > most_dry_asks) return;
+  const bool guess = guess_, stood_in = stood_in_;
+  const int level = level_;
+  asking_ = true;
+  for (int i = 0; i < 2 * levels; ++i) {
+    guess_ = i % 2 == 0;
+    level_ = (i / 2 + 1) % levels;  // the usual first
+    const std::optional<Failure> failure = sandbox_.protect([&](lua_State* main) {
+      lua_rawgeti(main, LUA_REGISTRYINDEX, predicate);
+      lua_call(main, 0, 1);
+    });
+    if (!failure || fails_for_stand_ins()) continue;
+    sandbox_.charge(L, 0);  // raises what no script survives
+    for (const Problem& problem : failure->problems) problems_->push_back(problem);
+    break;
+  }
+  asking_ = false;
+  guess_ = guess;
+  stood_in_ = stood_in;
+  level_ = level;
+}
+
+bool ScriptSession::end_dry_run(lua_State* L, std::optional<double> duration) {
+  dry_time_ += duration.value_or(0);
+  if (!duration || dry_time_ >= stalled_since_ + 1 / scene().solver.rate) {
+    stalled_since_ = dry_time_;
+    stalled_waits_ = 0;
+  } else if (++stalled_waits_ > most_waits_per_step) {
+    complain(L, waits_message(), waits_hint());
+    return true;
+  }
   return ++dry_waits_ > most_dry_waits || dry_time_ > exercise_.time_limit;
+}
+
+std::string ScriptSession::waits_message() {
+  return fmt::format("more than {} waits within one simulated step: a loop in which no time passes?",
+                     most_waits_per_step);
+}
+
+std::string ScriptSession::waits_hint() {
+  return "wait for some time, such as t:wait(0.1 * s), in each round";
 }
 
 // ---- arguments
 
-Value Arguments::values_of(lua_State* L, const ApiFunction& function) {
+Value Arguments::values_of(lua_State* L, const ApiFunction& function, FieldCheck& check) {
   Value values;
   values.kind = Value::Kind::table;
   for (std::size_t i = 0; i < function.parameters.size(); ++i) {
     const int index = static_cast<int>(i) + 2;  // 1 is the handle
-    if (!lua_isnoneornil(L, index))
-      values.fields.push_back({function.parameters[i].name, read_value(L, index)});
+    if (lua_isnoneornil(L, index)) continue;
+    const std::string& name = function.parameters[i].name;
+    Result<Value> value = read_value(L, index, name);
+    if (value) {
+      values.fields.push_back({name, std::move(value).value()});
+      continue;
+    }
+    for (const Problem& problem : value.failure().problems)
+      check.problem(problem.place.path, problem.message, problem.hint);
+    values.fields.push_back({name, Value{}});
   }
   return values;
 }
@@ -165,7 +266,7 @@ Arguments::Arguments(lua_State* L, ScriptSession& session, const std::string& ow
     : L_(L),
       session_(session),
       function_(api_function(owner, method)),
-      values_(values_of(L, function_)),
+      values_(values_of(L, function_, check_)),
       api_(table_of(function_)),
       reader_(check_, &values_, "", api_) {
   const int expected = static_cast<int>(function_.parameters.size());

@@ -3,6 +3,7 @@
 // checked.
 
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -59,29 +60,49 @@ class ScriptSession {
   bool is_landmark(lua_State* L, const std::string& name);
   /// Complains about what needs jaws, of an instrument that has none.
   bool can_use_jaws(lua_State* L, int instrument, const std::string& command);
-  /// Where a landmark of this scene is now, m; in a dry run about where it will be.
+  /// Where a landmark of this scene is now, m; in a dry run without a world about where it will be.
   Vec3 landmark(lua_State* L, const std::string& name) const;
-  /// Where an instrument's tip is now, m; in a dry run where it waits in its trocar.
-  Vec3 tip(lua_State* L, int instrument) const;
-  /// From its port to its tip, unit; straight down in a dry run.
-  Vec3 shaft_axis(lua_State* L, int instrument) const;
+  /// Where an instrument's tip is now, m; a stand-in where a dry run does not know it.
+  Vec3 tip(lua_State* L, int instrument);
+  /// From its port to its tip, unit.
+  Vec3 shaft_axis(lua_State* L, int instrument);
   /// Where the part that `choose` picks is pressed hardest; a stand-in in a dry run.
   ContactPlace contact(lua_State* L, int instrument,
-                       const std::function<ToolPart(const InstrumentState&)>& choose) const;
-  /// In a dry run: what a yes-or-no question is answered, in turns, so that loops for either end.
-  bool next_guess() { return guess_ = !guess_; }
+                       const std::function<ToolPart(const InstrumentState&)>& choose);
+
+  // A dry run has no world (but see set_world): what a script asks is answered by stand-ins, in turns, so that
+  // loops for either end.
+  bool next_guess();
+  /// What was answered may differ from what the world will answer.
+  void stand_in() { stood_in_ = true; }
+  InstrumentState stand_in_instrument(int instrument);
+  OrganState stand_in_organ(int organ);
+  /// Calls the function once with each set of stand-ins; what fails is reported.
+  void ask_dry(lua_State* L, int predicate);
+  /// Of the last failure: the script's own check (error, assert) was not content with stand-ins.
+  bool fails_for_stand_ins() { return sandbox_.take_raised() && stood_in_; }
 
  protected:
   void set_world(const World* world) { world_ = world; }
   void end(const std::string& why) { ended_ = why; }
+  bool has_world() const { return world_ != nullptr; }
+  /// Whether the script has gone by stand-ins: what it does from then on need not be what it would do.
+  bool stood_in() const { return stood_in_; }
+  /// In a dry run: an instrument's tip where that is known.
+  virtual std::optional<Vec3> known_tip(int /*instrument*/) const { return std::nullopt; }
   /// In a dry run: counts a wait, and ends the run (by a yield) when it would last too long. True: it does.
-  bool end_dry_run(double duration);
+  /// No duration: the wait lasts as long as the world makes it.
+  bool end_dry_run(lua_State* L, std::optional<double> duration);
+  static std::string waits_message();
+  static std::string waits_hint();
   double dry_time() const { return dry_time_; }
   std::vector<Problem>* problems() const { return problems_; }
   /// Starts the coroutine of steps or demo, to be resumed with two arguments: t and p.
   Result<lua_State*> start_main(int function);
 
  private:
+  int next_level();
+
   Sandbox& sandbox_;
   const ExerciseDefinition& exercise_;
   std::string class_name_, instrument_class_;
@@ -91,8 +112,17 @@ class ScriptSession {
   std::string ended_;
   double dry_time_ = 0;
   int dry_waits_ = 0;
+  double stalled_since_ = 0;  ///< s, of the dry clock
+  int stalled_waits_ = 0;
+  bool stood_in_ = false;
   bool guess_ = false;
+  int level_ = 0;
+  bool asking_ = false;  ///< with guess_ and level_ as they are
+  int asked_ = 0;
 };
+
+/// A script may wait so often within one simulated step.
+inline constexpr int most_waits_per_step = 1000;
 
 /// The arguments of one method call, checked against the API's declaration. In a dry run unfit ones are
 /// reported and read as absent.
@@ -114,15 +144,15 @@ class Arguments {
   bool finish();
 
  private:
-  static Value values_of(lua_State* L, const ApiFunction& function);
+  static Value values_of(lua_State* L, const ApiFunction& function, FieldCheck& check);
   static KeyTable table_of(const ApiFunction& function);
 
   lua_State* L_;
   ScriptSession& session_;
   const ApiFunction& function_;
+  FieldCheck check_;
   Value values_;
   KeyTable api_;
-  FieldCheck check_;
   TableReader reader_;
   bool good_ = true;
 };

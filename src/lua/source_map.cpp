@@ -14,8 +14,14 @@ std::string joined(const std::string& path, const std::string& key) {
   return path.empty() ? key : fmt::format("{}.{}", path, key);
 }
 
+/// Longer paths than definitions have are not followed: their sum would grow with the square of the text.
+constexpr std::size_t longest_path = 300;  // bytes
+constexpr std::size_t most_lines = 100'000;
+
 /// The path of what is no value of the exercise.
 const std::string nowhere(1, '?');
+/// The same, of an entry that has begun.
+const std::string hidden = "??";
 
 std::string variable(const std::string& name) { return fmt::format("${}", name); }
 
@@ -60,7 +66,7 @@ class SourceMap::Builder {
   }
 
   void record(const std::string& path, int line) {
-    if (!path.starts_with(nowhere)) map_.lines_.emplace(path, line);
+    if (!path.starts_with(nowhere) && map_.lines_.size() < most_lines) map_.lines_.emplace(path, line);
   }
 
   /// At the start of an entry of a table: its key, or its place in the list.
@@ -75,6 +81,7 @@ class SourceMap::Builder {
     } else {
       scope.value = fmt::format("{}[{}]", scope.own, ++scope.items);
     }
+    if (scope.value.size() > longest_path) scope.value = hidden;
     record(scope.value, line);
     note_alias(scope.value);
   }
@@ -84,7 +91,9 @@ class SourceMap::Builder {
     if (token().kind != Token::Kind::name) return;
     bool alone = at_ + 1 >= tokens_.size();
     for (const char* after : {",", ";", "}", "(", "end"}) alone = alone || is(after, 1);
-    if (alone) map_.aliases_.emplace(path, variable(token().text));
+    if (alone && !path.starts_with(nowhere) && token().text.size() <= longest_path &&
+        map_.aliases_.size() < most_lines)
+      map_.aliases_.emplace(path, variable(token().text));
   }
 
   bool ends_value(const Token& t) const {
@@ -98,6 +107,7 @@ class SourceMap::Builder {
   void begin_statement(Scope& scope) {
     if (is("return")) {
       scope.value = scope.own;
+      record(scope.own, token().line);  // what is nowhere else is looked for there
       ++at_;
       return note_alias(scope.own);
     }
@@ -105,7 +115,7 @@ class SourceMap::Builder {
     if (is("local")) ++at_;
     const bool fresh = at_ == 0 || ends_value(tokens_[at_ - 1]) || token(0).kind == Token::Kind::keyword;
     if (token().kind == Token::Kind::name && is("=", 1)) {
-      scope.value = variable(token().text);
+      scope.value = token().text.size() <= longest_path ? variable(token().text) : nowhere;
       at_ += 2;
     } else if (fresh && token().kind == Token::Kind::name) {
       scope.value = nowhere;
@@ -122,7 +132,7 @@ class SourceMap::Builder {
     ++at_;
     std::string path = scopes_.back().value;
     if (token().kind == Token::Kind::name) {  // function name(...)
-      path = variable(token().text);
+      path = token().text.size() <= longest_path ? variable(token().text) : nowhere;
       record(path, line);
       while (at_ < tokens_.size() && !is("(")) ++at_;
     }

@@ -14,7 +14,7 @@ class SourceMap {
   explicit SourceMap(std::string_view source);
 
   /// The line of the key; of the nearest enclosing one when it is not written in plain sight (built by a
-  /// loop, a module, or left out); 0 when not even that is known.
+  /// loop, a module, or left out), at last of the chunk's `return`; 0 when not even that is known.
   int line_of(const std::string& path) const;
 
  private:

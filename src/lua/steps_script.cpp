@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "lua/lua_headers.h"
 
@@ -10,6 +11,7 @@ namespace calot {
 namespace {
 
 constexpr double slack = 1e-9;  // s: what a sum of steps may be off
+constexpr std::size_t most_steps = 1000;
 
 constexpr std::size_t most_notes = 1000, longest_note = 200, longest_unit = 20;  // what a report has room for
 
@@ -42,6 +44,7 @@ Result<StepsScript::Declared> StepsScript::run_dry() {
 
 Result<bool> StepsScript::advance(const World& world, Progress& progress, double dt) {
   if (finished_) return true;
+  sandbox().set_time(world.report().time);
   const Sandbox::Call call(sandbox());
   set_world(&world);
   progress_ = &progress;
@@ -60,12 +63,14 @@ Result<bool> StepsScript::advance(const World& world, Progress& progress, double
 
 /// Lets the coroutine run on as long as nothing makes it wait.
 Result<bool> StepsScript::run() {
-  while (!finished_) {
+  for (int waits = 0; !finished_; ++waits) {
     // What is reached exactly at the limit is reached.
     Result<bool> over = is_over();
     if (!over) return over.failure();
     const bool answer = over.value();
     if (!answer && !pass_limit()) return false;
+    if (waits >= most_waits_per_step)
+      return fail(FailureKind::scenario, waits_message(), waits_hint(), sandbox().place_of(thread_, 0));
     if (std::optional<Failure> failure = wake(answer)) return *failure;
   }
   progress_->end_step(now_, "done");
@@ -97,7 +102,7 @@ Result<bool> StepsScript::is_over() {
   switch (wait_.kind) {
     case Wait::Kind::none:
       return fail(FailureKind::scenario, "steps called coroutine.yield",
-                  "wait with t:wait, t:wait_until or t:hold", {exercise().file, 0, {}});
+                  "wait with t:wait, t:wait_until or t:hold", sandbox().place_of(thread_, 0));
     case Wait::Kind::time:
       return now_ >= wait_.until - slack;
     case Wait::Kind::condition:
@@ -148,8 +153,8 @@ int StepsScript::suspend(lua_State* L, Wait wait) {
   return lua_yield(L, 0);
 }
 
-int StepsScript::dry_wait(lua_State* L, double duration) {
-  if (end_dry_run(duration)) return lua_yield(L, 0);
+int StepsScript::dry_wait(lua_State* L, std::optional<double> duration) {
+  if (end_dry_run(L, duration)) return lua_yield(L, 0);
   lua_pushboolean(L, 1);
   return 1;
 }
@@ -165,7 +170,10 @@ int StepsScript::wait(lua_State* L, double duration) {
 
 int StepsScript::wait_until(lua_State* L, int predicate) {
   if (!may_wait(L, "wait_until")) return 0;
-  if (checking()) return dry_wait(L, 0);
+  if (checking()) {
+    ask_dry(L, predicate);
+    return dry_wait(L, std::nullopt);
+  }
   if (timed_out_) {
     lua_pushboolean(L, 0);
     return 1;
@@ -178,6 +186,10 @@ int StepsScript::wait_until(lua_State* L, int predicate) {
 
 void StepsScript::step(lua_State* L, const std::string& name, const std::string& title, double limit) {
   if (!may_wait(L, "step") || !is_name(L, "step", name)) return;
+  if (declared_.steps.size() >= most_steps) {
+    luaL_error(L, "more than %d steps", static_cast<int>(most_steps));
+    std::abort();  // luaL_error does not return
+  }
   std::vector<std::string> taken = {"total", "note"};
   for (const InstrumentDefinition& instrument : scene().instruments) taken.push_back(instrument.name);
   for (const OrganDefinition& organ : scene().anatomy.organs) taken.push_back(organ.name);
@@ -226,14 +238,16 @@ void StepsScript::note(lua_State* L, const std::string& name, const Value& value
 
 int StepsScript::hold(lua_State* L, const std::string& name, int predicate, double duration) {
   if (!may_wait(L, "hold") || !is_name(L, "hold", name)) return 0;
-  if (current_.empty()) {
-    if (!step_tried_)
-      complain(L, "t:hold before the first t:step", "start a step: its name is part of the metric's");
+  if (!step_tried_) {
+    complain(L, "t:hold before the first t:step", "start a step: its name is part of the metric's");
     return 0;
   }
   const std::string full = current_ + "." + name;
-  if (!contains(declared_.holds, full)) declared_.holds.push_back(full);
-  if (checking()) return dry_wait(L, duration);
+  if (!current_.empty() && !contains(declared_.holds, full)) declared_.holds.push_back(full);
+  if (checking()) {
+    ask_dry(L, predicate);
+    return dry_wait(L, std::nullopt);
+  }
   if (timed_out_) {
     lua_pushboolean(L, 0);
     return 1;

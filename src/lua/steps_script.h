@@ -45,7 +45,7 @@ class StepsScript final : public ScriptSession {
   bool may_wait(lua_State* L, const char* method);
   bool is_name(lua_State* L, const std::string& what, const std::string& name);
   int suspend(lua_State* L, Wait wait);
-  int dry_wait(lua_State* L, double duration);
+  int dry_wait(lua_State* L, std::optional<double> duration);
   std::optional<Failure> start();
   Result<bool> ask(int predicate);
   /// Whether the wait is over. A hold's metric is brought up to date.

@@ -139,8 +139,13 @@ bool TableReader::check_value(const Key& key, const Value& value) {
 
 bool TableReader::check_number(const Key& key, const Value& value) {
   if (api_.checked_by_validate) return true;
-  if (std::isfinite(value.number) && value.number >= key.low && value.number <= key.high) return true;
-  if (key.low == key.high && std::isfinite(value.number)) {
+  if (!std::isfinite(value.number)) {
+    check_.problem(path_of(key.name), fmt::format("{} = {:g} is no finite number", key.name, value.number),
+                   example(key));
+    return false;
+  }
+  if (value.number >= key.low && value.number <= key.high) return true;
+  if (key.low == key.high) {
     check_.problem(path_of(key.name), fmt::format("{} = {:g} is not available", key.name, value.number),
                    fmt::format("write {} = {:g}", key.name, key.low));
     return false;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/status.h"
+
 struct lua_State;
 
 namespace calot {
@@ -33,8 +35,9 @@ struct ValueField {
 /// "a number", "a table", ...: for messages.
 std::string name_of(Value::Kind kind);
 
-/// Copies the value at `index`; raises a Lua error for tables nested deeper than 32 or larger than 100,000
-/// entries.
-Value read_value(lua_State* L, int index);
+/// Copies the value at `index`, which the author knows as `path`. Fails, at the path of what is too much, for
+/// tables nested deeper than 32, texts longer than 4,000 bytes, and more than 16 MiB in all: nothing is copied
+/// before it is measured.
+Result<Value> read_value(lua_State* L, int index, const std::string& path = {});
 
 }  // namespace calot

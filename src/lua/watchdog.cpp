@@ -16,6 +16,8 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(since).count();
 }
 
+std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
 /// Past every lock that the hanging thread might hold.
 void write_to_stderr(const std::string& text) {
   std::size_t written = 0;
@@ -32,9 +34,22 @@ Watchdog::Watchdog(std::string script, double seconds, int exit_code)
     : script_(std::move(script)),
       seconds_(seconds),
       exit_code_(exit_code),
+      left_(nanoseconds(seconds)),
       thread_([this](const std::stop_token& stop) { watch(stop); }) {}
 
-void Watchdog::arm() { deadline_ = now() + static_cast<std::int64_t>(seconds_ * 1e9); }
+void Watchdog::arm() { deadline_ = now() + left_; }
+
+void Watchdog::disarm() { left_ = deadline_.exchange(0) - now(); }
+
+void Watchdog::refill() {
+  left_ = nanoseconds(seconds_);
+  if (deadline_ != 0) arm();
+}
+
+void Watchdog::note_place(const std::string& file, int line) {
+  file_ = &file;
+  line_ = line;
+}
 
 void Watchdog::set_flush(std::function<void()> flush) {
   const std::lock_guard lock(mutex_);
@@ -51,11 +66,13 @@ void Watchdog::watch(const std::stop_token& stop) {
 }
 
 void Watchdog::end_process() {
-  write_to_stderr(
-      fmt::format("error: {}: one call into the script has lasted for {:g} s and cannot be stopped (look for "
-                  "string.find, match or gsub with nested repetitions, or library calls over huge texts or "
-                  "ranges); the process ends here\n",
-                  script_, seconds_));
+  const std::string* file = file_;
+  const std::string place = file != nullptr ? fmt::format("{}:{}", *file, line_.load()) : script_;
+  write_to_stderr(fmt::format(
+      "error: {}: the script has been running for {:g} s without simulated time going on and cannot "
+      "be stopped (look for string.find, match or gsub with nested repetitions, or library calls "
+      "over huge texts or ranges); the process ends here\n",
+      place, seconds_));
   if (flush_) flush_();
   std::_Exit(exit_code_);
 }

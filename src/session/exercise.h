@@ -89,6 +89,11 @@ class ExerciseScript {
   /// Called from another thread just before the process ends with the resource-limit exit code because a
   /// single call into the script hangs: write out what was recorded. The simulating thread is in the script.
   virtual void set_emergency_flush(const std::function<void()>& /*flush*/) {}
+  /// The failure, its problems with fields of the definition (place.path) at the author's file and line.
+  virtual Failure located(Failure failure) const { return failure; }
+  /// What the demo, run dry from a world at rest, asks for and cannot have, such as places out of reach. The
+  /// script cannot be played after that.
+  virtual std::vector<Problem> rehearse(const World& /*world*/) { return {}; }
 };
 
 }  // namespace calot

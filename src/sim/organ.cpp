@@ -37,11 +37,12 @@ Result<TriMesh> unstressed_mesh(const OrganDefinition& definition) {
   return revolve(pear_profile(pear.length, pear.width), definition.nodes, spacing);
 }
 
-constexpr double largest_organ = 0.4;  // m
+constexpr double largest_organ = 0.4, smallest_organ = 5e-3;  // m
 constexpr std::size_t most_nodes = 4000;
+constexpr std::size_t most_triangles = 10'000;
 
-/// What a mesh file may bring: neither a file in millimetres read as metres, nor a scan of a million
-/// triangles.
+/// What a mesh file may bring: neither a file in millimetres read as metres, nor one in metres scaled down, nor a
+/// scan of a million triangles.
 std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : mesh.points) box.extend(p);
@@ -49,6 +50,13 @@ std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ)
   if (size > largest_organ)
     return fail(FailureKind::scenario, fmt::format("the mesh of organ '{}' is {:.3g} m across", organ, size),
                 "give its scale: 0.001 for a file in millimetres");
+  if (!(size >= smallest_organ))
+    return fail(FailureKind::scenario, fmt::format("the mesh of organ '{}' is {:.3g} m across", organ, size),
+                fmt::format("its coordinates times its scale are metres: at least {} m", smallest_organ));
+  if (mesh.triangles.size() > most_triangles)
+    return fail(FailureKind::scenario,
+                fmt::format("the mesh of organ '{}' has {} triangles", organ, mesh.triangles.size()),
+                fmt::format("simplify it to at most {}", most_triangles));
   if (mesh.points.size() > most_nodes)
     return fail(
         FailureKind::scenario,
@@ -57,19 +65,41 @@ std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ)
   return std::nullopt;
 }
 
+/// Problems of the mesh itself know no organ: what is wrong in a file stays there, the rest is the shape's.
+Failure of_organ(Failure failure, const OrganDefinition& definition) {
+  const auto* file = std::get_if<MeshFile>(&definition.shape);
+  for (Problem& problem : failure.problems) {
+    const std::string mesh = file != nullptr && problem.place.line == 0 ? " (" + file->path + ")" : "";
+    problem.message = fmt::format("organ '{}'{}: {}", definition.name, mesh, problem.message);
+    if (problem.place.line == 0) problem.place = {"", 0, ".shape"};
+  }
+  return failure;
+}
+
+/// The unstressed mesh where it can be a control mesh.
+Result<TriMesh> sound_mesh(const OrganDefinition& definition) {
+  Result<TriMesh> mesh = unstressed_mesh(definition);
+  if (!mesh) return of_organ(mesh.failure(), definition);
+  if (std::optional<Failure> failure = check_size(mesh.value(), definition.name)) {
+    failure->problems.front().place.path = ".shape";
+    return *failure;
+  }
+  const bool file = std::holds_alternative<MeshFile>(definition.shape);
+  std::vector<Problem> problems = check(mesh.value(), {.counted_from = file ? 1 : 0});
+  if (!problems.empty()) return of_organ({FailureKind::scenario, std::move(problems)}, definition);
+  return mesh;
+}
+
 /// Control mesh in the world whose limit surface passes through the unstressed vertices; a mesh file is a
 /// control mesh already.
 Result<TriMesh> control_mesh(const OrganDefinition& definition) {
-  Result<TriMesh> mesh = unstressed_mesh(definition);
+  Result<TriMesh> mesh = sound_mesh(definition);
   if (!mesh) return mesh;
-  if (std::optional<Failure> failure = check_size(mesh.value(), definition.name)) return *failure;
-  std::vector<Problem> problems = check(mesh.value());
-  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   if (!std::holds_alternative<MeshFile>(definition.shape)) {
     Result<LoopSurface> surface = LoopSurface::create(mesh.value());
-    if (!surface) return surface.failure();
+    if (!surface) return of_organ(surface.failure(), definition);
     Result<std::vector<Vec3>> fitted = fit_to_limit(surface.value(), mesh->points);
-    if (!fitted) return fitted.failure();
+    if (!fitted) return of_organ(fitted.failure(), definition);
     mesh->points = fitted.value();
   }
   const Pose frame = organ_frame(definition);
@@ -107,8 +137,10 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
 /// No tool has moved yet: the advice is about the organ.
 Failure fill_failure(const NewtonResult& result, const std::string& organ) {
   Failure failure = solve_failure(result, organ, "while it was filled");
+  Problem& problem = failure.problems.front();
   if (result.status != NewtonStatus::mechanism)
-    failure.problems[0].hint = "fill it less (bile), or give it a thicker or stiffer wall, or more nodes";
+    problem.hint = "fill it less (bile), or give it a thicker or stiffer wall, or more nodes";
+  problem.place.path = ".bile";
   return failure;
 }
 
@@ -135,7 +167,8 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
     if (!settled)
       return fail(FailureKind::simulation,
                   fmt::format("the pressure at the top of organ '{}' does not settle", organ.definition.name),
-                  "give fill_volume instead of fill_pressure, or a thicker or stiffer wall");
+                  "give fill_volume instead of fill_pressure, or a thicker or stiffer wall",
+                  {"", 0, ".bile.fill_pressure"});
     organ.state.volume = liquid.volume(organ.state.x);
   } else {
     const double target = bile.fill_volume.value_or(unstressed);
@@ -143,7 +176,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
       return fail(FailureKind::scenario,
                   fmt::format("organ '{}' holds {:.3g} mL unstressed and cannot take {:.3g} mL",
                               organ.definition.name, 1e6 * unstressed, 1e6 * target),
-                  "give a fill_volume nearer to the shape's own");
+                  "give a fill_volume nearer to the shape's own", {"", 0, ".bile.fill_volume"});
     const int steps = 1 + static_cast<int>(std::ceil(std::abs(target - unstressed) / (0.05 * unstressed)));
     for (int k = 1; k <= steps; ++k) {
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
@@ -175,7 +208,7 @@ std::optional<Failure> check_skin_spacing(const ShellBody& body) {
       fmt::format(
           "the skin of organ '{}' has points {:.1f} mm apart, more than half a jaw is wide ({:.1f} mm)",
           body.name(), 1e3 * widest, 1e3 * limit),
-      "give the organ more nodes");
+      "give the organ more nodes", {"", 0, ".nodes"});
 }
 
 }  // namespace
@@ -193,6 +226,26 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.extensions = snapshot.extensions;
   organ.refused_details = snapshot.refused_details;
   organ.friction = snapshot.friction;
+}
+
+Failure at_organ(Failure failure, std::size_t index) {
+  for (Problem& problem : failure.problems) {
+    std::string& path = problem.place.path;
+    if (problem.place.file.empty() && (path.empty() || path.front() == '.'))
+      path = fmt::format("scene.anatomy.organs[{}]{}", index + 1, path);
+  }
+  return failure;
+}
+
+std::vector<Problem> mesh_problems(const SceneDefinition& scene) {
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i) {
+    if (!std::holds_alternative<MeshFile>(scene.anatomy.organs[i].shape)) continue;
+    const Result<TriMesh> mesh = sound_mesh(scene.anatomy.organs[i]);
+    if (mesh) continue;
+    for (Problem& problem : at_organ(mesh.failure(), i).problems) problems.push_back(std::move(problem));
+  }
+  return problems;
 }
 
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {
@@ -218,7 +271,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
   setup.up = up;
   setup.levels = levels;
   Result<LoopSurface> surface = LoopSurface::create(control.value());
-  if (!surface) return surface.failure();
+  if (!surface) return of_organ(surface.failure(), definition);
   const Tessellation corners = surface->tessellate(1);
   const std::vector<Vec3> skin =
       blend_all(corners.stencils, corners.stencils.value, to_coordinates(control->points));
@@ -230,7 +283,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
     return stiffness;
   };
   Result<ShellBody> body = ShellBody::create(setup);
-  if (!body) return body.failure();
+  if (!body) return of_organ(body.failure(), definition);
   for (const HeldRegion& region : definition.held) {
     const std::vector<Vec3>& wall = body->foundation().target;
     if (std::none_of(wall.begin(), wall.end(),
@@ -238,7 +291,8 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
       return fail(FailureKind::scenario,
                   fmt::format("held region '{}' of organ '{}' is too small to catch any of its wall",
                               region.name, definition.name),
-                  "give it a larger radius, or the organ more nodes");
+                  "give it a larger radius, or the organ more nodes",
+                  {"", 0, fmt::format(".held[{}].radius", &region - definition.held.data() + 1)});
   }
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());

@@ -70,9 +70,16 @@ void restore(Organ& organ, const OrganSnapshot& snapshot);
 
 /// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its
 /// bile (and on `field`). Failures: scenario (a mesh that
-/// cannot be used) or simulation (no rest state found).
+/// cannot be used) or simulation (no rest state found); see at_organ.
 Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
                          double tolerance, int levels = 0);
+
+/// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
+std::vector<Problem> mesh_problems(const SceneDefinition& scene);
+
+/// A failure of make_organ, whose problems' paths start at the organ (".bile"), as one of the scene's
+/// organ of that index.
+Failure at_organ(Failure failure, std::size_t index);
 
 /// A failed solve in words: what happened, and what to change.
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);

@@ -1,5 +1,7 @@
 #include "sim/tool_loads.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace calot {
@@ -72,12 +74,17 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
 }
 
 Result<bool> check_clear(const Field& field) {
-  bool touches = deepest_penetration(field) > 0;
-  for (const ToolLoad& load : tool_loads(field)) touches |= load.touches > 0;
-  if (touches)
-    return fail(FailureKind::scenario, "an instrument that waits in its trocar, 30 mm deep, touches an organ",
-                "choose another port, or move the organ");
-  return true;
+  const std::vector<ToolLoad> loads = tool_loads(field);
+  const auto touches =
+      std::find_if(loads.begin(), loads.end(), [](const ToolLoad& l) { return l.touches > 0; });
+  if (touches == loads.end() && deepest_penetration(field) <= 0) return true;
+  const std::string name =
+      touches == loads.end() ? std::string() : field.tools[touches - loads.begin()].definition.name;
+  return fail(FailureKind::scenario,
+              fmt::format("{} that waits in its trocar, 30 mm deep, touches an organ",
+                          name.empty() ? "an instrument" : fmt::format("instrument '{}'", name)),
+              "choose another port, or move the organ",
+              {"", 0, name.empty() ? "scene.instruments" : fmt::format("scene.instruments.{}.port", name)});
 }
 
 double deepest_penetration(const Field& field) {

@@ -274,7 +274,7 @@ Result<World> World::create(const SceneDefinition& scene) {
   for (const OrganDefinition& definition : scene.anatomy.organs) {
     Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance,
                                      definition.extensions ? scene.solver.extension_levels : 0);
-    if (!organ) return organ.failure();
+    if (!organ) return at_organ(organ.failure(), impl->field.organs.size());
     impl->field.organs.push_back(std::move(organ).value());
   }
   World world(std::move(impl));

@@ -48,6 +48,22 @@ TEST(Suggest, NothingIsSuggestedForAWordUnlikeAny) {
   EXPECT_EQ(closest_name("neck", {}), "");
 }
 
+TEST(Suggest, LongNamesAndListsAreToldInShort) {
+  const std::string giant(1'000'000, 'x');
+  EXPECT_EQ(closest_name(giant, {giant, "x"}), "");
+  EXPECT_EQ(closest_name("x", {giant}), "");
+  EXPECT_LT(suggestion("liver", {giant, "neck"}).size(), 200u);
+  const std::vector<std::string> many(100'000, "neck");
+  EXPECT_LT(suggestion("liver", many).size(), 500u);
+  EXPECT_NE(suggestion("liver", many).find("and 99940 more"), std::string::npos);
+}
+
+TEST(Suggest, ShortenedTextsKeepWholeCharacters) {
+  EXPECT_EQ(shortened("abc", 3), "abc");
+  EXPECT_EQ(shortened("abcd", 3), "abc... (4 bytes)");
+  EXPECT_EQ(shortened("a\xC3\xA4z", 2), "a... (4 bytes)");
+}
+
 TEST(Suggest, TheHintNamesTheNearestOrAllThatAreKnown) {
   EXPECT_EQ(suggestion("nek", {"neck", "bed"}), "did you mean \"neck\"?");
   EXPECT_EQ(suggestion("liver", {"neck", "bed"}), "known: neck, bed");

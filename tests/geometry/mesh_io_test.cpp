@@ -82,6 +82,23 @@ TEST_F(ObjFile, EveryBadLineIsReported) {
   EXPECT_EQ(mesh.failure().problems.size(), 3u);
 }
 
+TEST_F(ObjFile, ThousandsOfBadLinesAreCountedNotListed) {
+  std::string text = kPoints;
+  for (int i = 0; i < 20'000; ++i) text += "f 1 2 x\n";
+  const auto mesh = read_obj(write(text), 1);
+  ASSERT_FALSE(mesh);
+  EXPECT_EQ(mesh.failure().problems.size(), 21u);
+  EXPECT_EQ(mesh.failure().problems.back().message, "19980 more lines are wrong");
+}
+
+TEST_F(ObjFile, AHugeFileIsRefusedUnread) {
+  const std::string path = write(kPoints);
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);  // a hole: takes no space
+  const auto mesh = read_obj(path, 1);
+  ASSERT_FALSE(mesh);
+  EXPECT_THAT(mesh.failure().problems.front().message, HasSubstr("1099511627776 bytes"));
+}
+
 TEST_F(ObjFile, RefusesAScaleThatIsNotPositive) {
   const std::string path = write(kPoints + "f 1 2 3\n");
   for (double scale : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)})

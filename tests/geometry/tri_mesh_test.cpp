@@ -193,6 +193,26 @@ TEST(MeshCheck, NamesAtMostEightOffendersOfAKind) {
   EXPECT_THAT(messages(mesh), ElementsAre(::testing::EndsWith("point 11 and 92 more")));
 }
 
+TEST(MeshCheck, RefusesACrowdedPointBeforeAnythingElse) {
+  // Two pyramids on one base of so many corners, its first face missing.
+  const int corners = 41;
+  TriMesh mesh;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners;
+    mesh.points.emplace_back(std::cos(angle), std::sin(angle), 0);
+  }
+  mesh.points.emplace_back(0, 0, -1);
+  mesh.points.emplace_back(0, 0, 1);
+  for (int i = 0; i < corners; ++i) {
+    const int next = (i + 1) % corners;
+    mesh.triangles.push_back({next, i, corners});
+    if (i > 0) mesh.triangles.push_back({i, next, corners + 1});
+  }
+  EXPECT_THAT(messages(mesh), ElementsAre(::testing::EndsWith("at a point: point 41 with 41 triangles")));
+  EXPECT_THAT(check(mesh, {.counted_from = 1}).front().message, HasSubstr("point 42"));
+  EXPECT_THAT(check(mesh, {.most_edges_at_a_point = 41}).front().message, HasSubstr("open boundary"));
+}
+
 TEST(EnclosedVolume, IsThatOfATetrahedronWhereverItLies) {
   EXPECT_NEAR(enclosed_volume(tetrahedron()), 1.0 / 6, 1e-15);
   EXPECT_NEAR(enclosed_volume(tetrahedron({1e6, -1e6, 1e6})), 1.0 / 6, 1e-9);  // coordinates keep 1e-10

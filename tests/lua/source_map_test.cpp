@@ -91,7 +91,10 @@ INSTANTIATE_TEST_SUITE_P(
         Known{"scene.anatomy.organs[2].bile.density", "          {\n            shape"},
         Known{"scene.laparoscope.port", "scene = function"}));
 
-TEST(SourceMap, KnowsNoLineOfWhatIsNowhere) { EXPECT_EQ(SourceMap(scenario).line_of("golden.at"), 0); }
+TEST(SourceMap, LeadsToTheReturnWhatIsNowhere) {
+  EXPECT_EQ(SourceMap(scenario).line_of("golden.at"), line_of(scenario, "return calot.exercise"));
+  EXPECT_EQ(SourceMap("local a = 1").line_of("golden.at"), 0);
+}
 
 TEST(SourceMap, FollowsAnExerciseInAVariable) {
   const std::string text =
