@@ -140,7 +140,7 @@
 ---@class calot.organ
 ---@field name? string its name, unique; landmarks are written "gallbladder.fundus"; default "gallbladder"
 ---@field shape? calot.shape its shape at rest: type "pear", "sphere" or "obj" with their keys
----@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 4000
+---@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 1000
 ---@field neck? calot.point where the shape's lower pole lies; default { -50 * mm, 130 * mm, -110 * mm }
 ---@field fundus? calot.point where its upper pole points to; default { -80 * mm, 100 * mm, -60 * mm }
 ---@field liver_side? calot.point direction from the organ's axis to its bed on the liver; default { 0, 0.8, 0.6 }

@@ -94,6 +94,11 @@ struct SupportDefinition {
   double friction = 0;          ///< Coulomb's, of the skin on it (d); the rest state is found without
 };
 
+/// Control nodes of all organs together: more take over half a minute to come to rest.
+inline constexpr int most_nodes = 1000;
+inline constexpr std::size_t most_organs = 8;
+inline constexpr std::size_t most_instruments = 16;
+
 struct AnatomyDefinition {
   std::vector<OrganDefinition> organs;
   std::optional<SupportDefinition> support;

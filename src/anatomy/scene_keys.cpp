@@ -111,7 +111,7 @@ std::vector<KeyTable> organ_tables() {
           "organ", "A hollow organ. In calot.anatomy's overrides, only what differs.",
           {text("name", &Organ::name, "its name, unique; landmarks are written \"gallbladder.fundus\""),
            table("shape", "shape", "its shape at rest: type \"pear\", \"sphere\" or \"obj\" with their keys"),
-           count("nodes", &Organ::nodes, 12, 4000, "a number of control nodes",
+           count("nodes", &Organ::nodes, 12, most_nodes, "a number of control nodes",
                  "control nodes; more resolve finer folds and cost more"),
            place("neck", &Organ::neck, abdomen_reach, "a place in the abdomen",
                  "where the shape's lower pole lies"),

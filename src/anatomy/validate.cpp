@@ -134,12 +134,24 @@ void check_compared(FieldCheck& check, const std::string& path, const OrganDefin
   }
 }
 
+void check_size(FieldCheck& check, const std::string& path, const std::vector<OrganDefinition>& organs) {
+  if (organs.size() > most_organs)
+    check.problem(path, fmt::format("{} organs", organs.size()), fmt::format("give at most {}", most_organs));
+  double nodes = 0;
+  for (const OrganDefinition& organ : organs)
+    if (!std::holds_alternative<MeshFile>(organ.shape) && organ.nodes <= most_nodes) nodes += organ.nodes;
+  if (nodes > most_nodes)
+    check.problem(path, fmt::format("the organs have {:g} control nodes together", nodes),
+                  fmt::format("give them at most {}", most_nodes));
+}
+
 void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
   const std::string path = "scene.anatomy";
   check_limits(check, path, "anatomy", anatomy);
   if (anatomy.organs.empty())
     check.problem(path + ".organs", "the anatomy has no organ",
                   "give one, or use calot.anatomy(\"standard\")");
+  check_size(check, path + ".organs", anatomy.organs);
   UniqueNames names(check, "organ");
   for (std::size_t i = 0; i < anatomy.organs.size(); ++i) {
     const std::string at = fmt::format("{}.organs[{}]", path, i + 1);
@@ -190,6 +202,9 @@ class PortsInUse {
 
 void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition>& instruments,
                        PortsInUse& ports) {
+  if (instruments.size() > most_instruments)
+    check.problem("scene.instruments", fmt::format("{} instruments", instruments.size()),
+                  fmt::format("give at most {}", most_instruments));
   UniqueNames names(check, "instrument");
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const InstrumentDefinition& instrument = instruments[i];

@@ -68,6 +68,20 @@ void locate(Problem& problem, const SourceMap& map, const std::string& file) {
   problem.place.line = std::max(1, map.line_of(problem.place.path));
 }
 
+/// Where brackets are nested deepest: Lua does not say where it gave up.
+int deepest_line(const std::string& text) {
+  int line = 1, depth = 0, deepest = 0, found = 1;
+  for (const char c : text) {
+    line += c == '\n' ? 1 : 0;
+    if (std::string_view("({[").find(c) != std::string_view::npos) ++depth;
+    if (std::string_view(")}]").find(c) != std::string_view::npos) --depth;
+    if (depth <= deepest) continue;
+    deepest = depth;
+    found = line;
+  }
+  return found;
+}
+
 bool is_exercise(const Value& root) {
   const Value* kind = root.field("kind");
   return kind != nullptr && kind->text == "exercise";
@@ -97,7 +111,7 @@ class LuaExercise final : public ExerciseScript {
   std::vector<Problem> rehearse(const World& world) override {
     rehearsal_.emplace(*script_.sandbox, definition_, script_.table.demo, script_.table.parameters, &rehearsal_problems_);
     const std::optional<Failure> failure = rehearsal_->run_dry(&world);
-    if (failure && !rehearsal_->fails_for_stand_ins())
+    if (failure && !rehearsal_->is_no_mistake(*failure))
       rehearsal_problems_.insert(rehearsal_problems_.end(), failure->problems.begin(),
                                  failure->problems.end());
     return rehearsal_problems_;
@@ -192,7 +206,8 @@ ExerciseDefinition Loader::define(Script& script, FieldCheck& check) {
   ExerciseDefinition definition = script.table.definition;
   definition.file = path_.string();
   definition.seed = options_.seed;
-  definition.scene = read_scene(check, script.scene, {path_.parent_path(), options_.assets});
+  definition.scene = read_scene(
+      check, script.scene, {path_.has_parent_path() ? path_.parent_path() : fs::path("."), options_.assets});
   return definition;
 }
 
@@ -202,8 +217,8 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
   DemoScript demo(*script.sandbox, definition, script.table.demo, script.table.parameters, &problems_);
   if (script.table.steps != 0) {
     Result<StepsScript::Declared> declared = steps.run_dry();
-    if (!declared && steps.fails_for_stand_ins()) {
-      // The author's own check of a value that only a world could give.
+    if (!declared && steps.is_no_mistake(declared.failure())) {
+      // Nothing to say; what the steps declare is not known.
     } else if (declared) {
       definition.step_names = declared->steps;
       definition.hold_names = declared->holds;
@@ -218,7 +233,7 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
   }
   std::optional<Failure> failure = demo.run_dry();
   if (failure && failure->kind == FailureKind::resource) return failure;
-  if (failure && !demo.fails_for_stand_ins()) collect(*failure);
+  if (failure && !demo.is_no_mistake(*failure)) collect(*failure);
   return std::nullopt;
 }
 
@@ -290,7 +305,12 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   if (!text) return text.failure();
   text_ = std::move(text).value();
   Result<std::optional<ExerciseDefinition>> checked = check_all();
-  if (!checked && checked.failure().kind != FailureKind::scenario) return checked.failure();
+  if (!checked && checked.failure().kind != FailureKind::scenario) {
+    Failure failure = checked.failure();
+    for (Problem& problem : failure.problems)
+      if (problem.place.line == 0 && problem.place.file == path_) problem.place.line = deepest_line(text_);
+    return failure;
+  }
   if (!checked) collect(checked.failure());
   if (!problems_.empty() || !checked->has_value()) return all_problems();
   ExerciseDefinition definition = *std::move(checked).value();

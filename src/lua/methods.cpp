@@ -158,9 +158,8 @@ double along_shaft(lua_State* L, const char* method) {
 
 int touching(lua_State* L) {
   const HandleTarget target = instrument_target(L, "touching");
-  const bool guess = target.session->checking() && target.session->next_guess();
   const Load load = load_of(L, target, Arguments(L, *target.session, "Instrument", "touching"));
-  lua_pushboolean(L, target.session->checking() ? guess : load.touching);
+  lua_pushboolean(L, target.session->checking() ? target.session->next_guess() : load.touching);
   return 1;
 }
 

@@ -64,9 +64,12 @@ void ScriptSession::complain(lua_State* L, const std::string& message, const std
     lua_error(L);
     std::abort();  // lua_error does not return
   }
+  complained_ = true;
   const Place place = sandbox_.place_of(L);
-  if (problems_->size() >= most_problems) {
-    luaL_error(L, "and more mistakes, which are not looked for until these are mended");
+  if (problems_->size() + 1 >= most_problems) {
+    if (problems_->size() < most_problems)
+      problems_->push_back({place, "more mistakes are not looked for until these are mended", {}});
+    luaL_error(L, "too many mistakes");
     std::abort();  // luaL_error does not return
   }
   for (const Problem& problem : *problems_)
@@ -204,7 +207,7 @@ void ScriptSession::ask_dry(lua_State* L, int predicate) {
       lua_rawgeti(main, LUA_REGISTRYINDEX, predicate);
       lua_call(main, 0, 1);
     });
-    if (!failure || fails_for_stand_ins()) continue;
+    if (!failure || is_no_mistake(*failure)) continue;
     sandbox_.charge(L, 0);  // raises what no script survives
     for (const Problem& problem : failure->problems) problems_->push_back(problem);
     break;

@@ -79,8 +79,11 @@ class ScriptSession {
   OrganState stand_in_organ(int organ);
   /// Calls the function once with each set of stand-ins; what fails is reported.
   void ask_dry(lua_State* L, int predicate);
-  /// Of the last failure: the script's own check (error, assert) was not content with stand-ins.
-  bool fails_for_stand_ins() { return sandbox_.take_raised() && stood_in_; }
+  /// In a dry run: whether the last failure need not be the author's mistake. It follows from one that is reported,
+  /// or is the script's own check (error, assert) of a stand-in.
+  bool is_no_mistake(const Failure& failure) {
+    return failure.kind == FailureKind::scenario && (complained_ || (sandbox_.take_raised() && stood_in_));
+  }
 
  protected:
   void set_world(const World* world) { world_ = world; }
@@ -114,7 +117,7 @@ class ScriptSession {
   int dry_waits_ = 0;
   double stalled_since_ = 0;  ///< s, of the dry clock
   int stalled_waits_ = 0;
-  bool stood_in_ = false;
+  bool stood_in_ = false, complained_ = false;
   bool guess_ = false;
   int level_ = 0;
   bool asking_ = false;  ///< with guess_ and level_ as they are

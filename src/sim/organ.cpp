@@ -38,8 +38,7 @@ Result<TriMesh> unstressed_mesh(const OrganDefinition& definition) {
 }
 
 constexpr double largest_organ = 0.4, smallest_organ = 5e-3;  // m
-constexpr std::size_t most_nodes = 4000;
-constexpr std::size_t most_triangles = 10'000;
+constexpr std::size_t most_triangles = 4 * most_nodes;        // a closed surface has about two a node
 
 /// What a mesh file may bring: neither a file in millimetres read as metres, nor one in metres scaled down, nor a
 /// scan of a million triangles.
@@ -57,7 +56,7 @@ std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ)
     return fail(FailureKind::scenario,
                 fmt::format("the mesh of organ '{}' has {} triangles", organ, mesh.triangles.size()),
                 fmt::format("simplify it to at most {}", most_triangles));
-  if (mesh.points.size() > most_nodes)
+  if (mesh.points.size() > static_cast<std::size_t>(most_nodes))
     return fail(
         FailureKind::scenario,
         fmt::format("the mesh of organ '{}' has {} vertices", organ, mesh.points.size()),
@@ -239,9 +238,19 @@ Failure at_organ(Failure failure, std::size_t index) {
 
 std::vector<Problem> mesh_problems(const SceneDefinition& scene) {
   std::vector<Problem> problems;
-  for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i) {
-    if (!std::holds_alternative<MeshFile>(scene.anatomy.organs[i].shape)) continue;
-    const Result<TriMesh> mesh = sound_mesh(scene.anatomy.organs[i]);
+  std::size_t nodes = 0;
+  for (std::size_t i = 0; i < scene.anatomy.organs.size() && i < most_organs; ++i) {
+    const OrganDefinition& organ = scene.anatomy.organs[i];
+    const bool file = std::holds_alternative<MeshFile>(organ.shape);
+    if (!file) nodes += static_cast<std::size_t>(std::clamp(organ.nodes, 0, most_nodes));
+    if (!file) continue;
+    const Result<TriMesh> mesh = sound_mesh(organ);
+    if (mesh) nodes += mesh->points.size();
+    if (mesh && nodes > static_cast<std::size_t>(most_nodes))
+      problems.push_back(
+          {{"", 0, fmt::format("scene.anatomy.organs[{}].shape", i + 1)},
+           fmt::format("with organ '{}' the organs have {} control nodes together", organ.name, nodes),
+           fmt::format("simplify the meshes to at most {}", most_nodes)});
     if (mesh) continue;
     for (Problem& problem : at_organ(mesh.failure(), i).problems) problems.push_back(std::move(problem));
   }

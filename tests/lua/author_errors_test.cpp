@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "base/log.h"
 #include "lua/scenario_files.h"
 
@@ -72,6 +74,11 @@ ScenarioText noted_score(const std::string& metric) {
 ScenarioText score_function(const std::string& score) {
   ScenarioText text;
   text.score = score;
+  return text;
+}
+ScenarioText with_params(const std::string& params) {
+  ScenarioText text;
+  text.params = params;
   return text;
 }
 
@@ -203,6 +210,46 @@ std::vector<Mistake> mistakes() {
        "metrics of that name", "rename"},
       {"HoldBeforeAStep", with_steps("\nt:hold('a', function() end, 1 * s)"), "t:hold", "before the first",
        "start a step"},
+      {"MetricWithoutAName",
+       with_score("{ calot.score.benchmark {\n metric = '', novice = 2, expert = 1 }, weight = 1 }"),
+       "metric = ''", "has no name", "left.path_length_mm"},
+      {"InfiniteNovice",
+       with_score("{ calot.score.benchmark { metric = 'total.time_s',\n novice = math.huge, expert = 1 }, "
+                  "weight = 1 }"),
+       "novice = math.huge", "novice = inf is no finite number", ""},
+      {"ExpertThatIsNoNumber",
+       with_score("{ calot.score.benchmark { metric = 'total.time_s', novice = 1,\n expert = 0 / 0 }, "
+                  "weight = 1 }"),
+       "expert = 0 / 0", "nan is no finite number", ""},
+      {"WeightThatIsNoNumber", with_score("{ calot.score.penalty { event = 'grasp' },\n weight = 0 / 0 }"),
+       "weight = 0 / 0", "no finite number", ""},
+      {"InfiniteLimitOfAParameter",
+       with_params("{ a = { type = 'number', default = 1,\n max = math.huge } }"), "max = math.huge",
+       "no finite number", ""},
+      {"LongText", with_more("golden = { at = {\n string.rep('x', 10000000) } }"), "string.rep",
+       "a text of 10000000 bytes", "at most 4000"},
+      {"WaitsOfNoTime", with_steps("t:step('a', 'A')\nwhile true do t:wait(0) end"), "while true",
+       "no time passes", "t:wait(0.1 * s)"},
+      {"WaitsOfHardlyAnyTimeInTheDemo", with_demo("\nwhile true do t.left:wait(1e-9) end"), "while true",
+       "no time passes", "t:wait(0.1 * s)"},
+      {"HoldAfterAMistakenStep", with_steps("\nt:step('a')\nt:hold('b', function() return true end, 1 * s)"),
+       "t:step('a')", "title", "title"},
+      {"WaitInAPredicate",
+       with_steps("t:step('a', 'A')\nt:wait_until(function()\n t:wait(1) return true end)"), " t:wait(1)",
+       "inside a predicate", "in steps itself"},
+      {"MotionInAPredicate", with_demo("t:wait_until(function()\n t.left:close() return true end)"),
+       "t.left:close", "in its own coroutine", "predicate"},
+      {"ErrorBesideAnotherInTogether",
+       with_demo("t:together(function() t.left:close() end,\n function() local x = nil + 1 end)"), "nil + 1",
+       "arithmetic", ""},
+      {"TooManyOrgans",
+       with_scene(
+           "local o = {} for i = 1, 9 do o[i] = { name = 'o' .. i, nodes = 61, shape = { type = 'sphere' } } "
+           "end\nreturn {\n laparoscope = { look_at = 'o1.fundus' }, anatomy = { organs = o } }"),
+       "organs = o", "9 organs", "at most 8"},
+      {"TooManyNodesTogether",
+       with_anatomy("{\n organs = { { nodes = 900 }, { name = 'other', nodes = 900 } } }"), "nodes = 900",
+       "1800 control nodes", "at most 1000"},
       {"ErrorInSteps", with_steps("t:wait(1 * s)\nerror('broken')"), "error('broken')", "broken", ""},
       {"ErrorInDemo", with_demo("t:wait(1 * s)\nlocal x = nil + 1"), "nil + 1", "arithmetic", ""},
       {"NoteOfATable", with_steps("\nt:note('way', { 1, 2 })"), "t:note", "cannot be noted as a table",
@@ -277,6 +324,201 @@ TEST_P(Mistakes, AreReportedOnceWithTheirLineAndWhatToDo) {
 
 INSTANTIATE_TEST_SUITE_P(AuthorErrors, Mistakes, ::testing::ValuesIn(mistakes()),
                          [](const auto& mistake) { return mistake.param.name; });
+
+/// A misspelt method where only the first call of a function meets it; `at` is what is misspelt.
+struct Misspelt {
+  const char* name;
+  const char* steps;
+  const char* demo;
+  const char* at;
+  const char* meant;
+};
+
+class MisspeltMethods : public ::testing::TestWithParam<Misspelt> {};
+
+TEST_P(MisspeltMethods, AreFoundWithoutPlaying) {
+  ScenarioText text;
+  text.steps = "t:step('a', 'A')\n" + std::string(GetParam().steps);
+  text.demo = GetParam().demo;
+  const Failure failure = failure_of(text.text());
+  ASSERT_EQ(failure.problems.size(), 1u) << to_text(failure);
+  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), GetParam().at)) << to_text(failure);
+  EXPECT_THAT(to_text(failure), ::testing::HasSubstr(fmt::format("has no \"{}\"", GetParam().at)));
+  EXPECT_THAT(to_text(failure), ::testing::HasSubstr(fmt::format("\"{}\"?", GetParam().meant)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AuthorErrors, MisspeltMethods,
+    ::testing::Values(
+        Misspelt{"InWaitUntil", "t:wait_until(function()\n return t.left:hold_s() end)", "", "hold_s",
+                 "holds"},
+        Misspelt{"InHold", "t:hold('b', function()\n return t.left:forse() > 1 end, 1 * s)", "", "forse",
+                 "force"},
+        Misspelt{"OfT", "t:wait_until(function()\n return t:tme() > 1 end)", "", "tme", "time"},
+        Misspelt{"OfPressure", "t:wait_until(function()\n return t:presure('gallbladder') > 1 end)", "",
+                 "presure", "pressure"},
+        Misspelt{"OfAnInstrument", "t:wait_until(function()\n return t.lefft:holds() end)", "", "lefft",
+                 "left"},
+        Misspelt{"BehindAnd", "t:wait_until(function()\n return t.left:holds() and t.left:tuching() end)", "",
+                 "tuching", "touching"},
+        Misspelt{"BehindOr", "t:wait_until(function()\n return t.left:holds() or t.left:tuching() end)", "",
+                 "tuching", "touching"},
+        Misspelt{"BehindNot",
+                 "t:wait_until(function()\n return not t.left:holds() and t.left:tipp()[1] > 0 end)", "",
+                 "tipp", "tip"},
+        Misspelt{"BehindTwo",
+                 "t:wait_until(function()\n return t.left:holds() and t.left:touching() and "
+                 "t.left:handle_forc() > 1 "
+                 "end)",
+                 "", "handle_forc", "handle_force"},
+        Misspelt{"InABand",
+                 "t:hold('b', function() local f = t.left:force()\n return f > 1.5 and f < 3 and "
+                 "t.left:hols() end, "
+                 "1 * s)",
+                 "", "hols", "holds"},
+        Misspelt{"BeyondALimit", "t:wait_until(function()\n return t.left:force() > 8 and t.left:hols() end)",
+                 "", "hols", "holds"},
+        Misspelt{"BelowALimit",
+                 "t:wait_until(function()\n return t.left:force() < 0.1 and t.left:hols() end)", "", "hols",
+                 "holds"},
+        Misspelt{"InTheDemosPredicate", "t:wait(1 * s)",
+                 "t:wait_until(function()\n return t.left:hols() end)", "hols", "holds"},
+        Misspelt{"InTogether", "t:wait(1 * s)",
+                 "t:together(function() t.left:open() end,\n function() t.left:clos() end)", "clos",
+                 "close"}),
+    [](const auto& misspelt) { return std::string(misspelt.param.name); });
+
+TEST(AuthorErrors, ChecksOfValuesThatOnlyAWorldKnowsAreNone) {
+  const Folder folder;
+  for (const char* body :
+       {"if t.left:force() > 5 * N then error('too strong') end",
+        "assert(t.left:force() > 1 * N, 'too weak')",
+        "assert(t:pressure('gallbladder') > 100) assert(t:volume('gallbladder') > 10e-6)",
+        "local p = t.left:tip() assert(math.abs(p[1]) < 0.3 and p[3] < 0.3)",
+        "t:wait_until(function() if not t.left:holds() then error('lost it') end return true end)",
+        "local n = 0 while t.left:force() < 5 * N do n = n + 1 t:wait(0.1 * s) end assert(n < 2)"}) {
+    for (const bool demo : {false, true}) {
+      ScenarioText text;
+      (demo ? text.demo : text.steps) += "\n" + std::string(body);
+      const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, text.text());
+      EXPECT_TRUE(loaded) << body << "\n" << to_text(loaded.failure());
+    }
+  }
+}
+
+TEST(AuthorErrors, OfAnotherVersionOfTheInterfaceAreClear) {
+  ScenarioText text;
+  std::string other = text.text();
+  other.replace(other.find("api = 1"), 7, "api = 2");
+  EXPECT_THAT(to_text(failure_of(other)),
+              ::testing::HasSubstr("api: api = 2 is not available (write api = 1)"));
+}
+
+TEST(AuthorErrors, OfTextsThatAreTooDeepOrTooLargeNameALine) {
+  std::string deep = "\n\nreturn ";
+  for (int i = 0; i < 40'000; ++i) deep += "{a=";
+  const Failure nested = failure_of(deep);
+  EXPECT_EQ(nested.problems[0].place.line, 3) << to_text(nested);
+  const Failure large = failure_of(std::string(2 << 20, ' '));
+  EXPECT_THAT(to_text(large), ::testing::HasSubstr("test.lua: the file is larger than 1 MiB"));
+  // Keys whose paths together are as long as the square of the text.
+  std::string wide = "local t = {";
+  for (int i = 0; i < 30; ++i) wide += std::string(4000, 'a') + "={";
+  for (int i = 0; i < 50'000; ++i) wide += "b=1,";
+  wide += std::string(31, '}') + "\nreturn t";
+  EXPECT_EQ(failure_of(wide).problems[0].place.line, 2);
+}
+
+TEST(AuthorErrors, AByteOrderMarkIsNone) {
+  const Folder folder;
+  EXPECT_TRUE(load_text(folder, "\xEF\xBB\xBF" + ScenarioText().text()));
+}
+
+TEST(AuthorErrors, AFileThatCannotBeReadIsAUsageFailure) {
+  const Folder folder;
+  std::filesystem::create_symlink("/proc/self/mem", folder.path() / "test.lua");
+  const Result<std::unique_ptr<ExerciseScript>> loaded = load_exercise(folder.path() / "test.lua");
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.failure().kind, FailureKind::usage) << to_text(loaded.failure());
+}
+
+// ---- what only a world shows
+
+/// A bipyramid of so many sides, 40 mm wide; `bad` is added to it.
+std::string bipyramid(int sides, const std::string& bad = "") {
+  std::string text;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * 3.141592653589793 * i / sides;
+    text += fmt::format("v {} {} 0.02\n", 0.02 * std::cos(angle), 0.02 * std::sin(angle));
+  }
+  text += "v 0 0 0\nv 0 0 0.04\n";
+  for (int i = 1; i <= sides; ++i) {
+    const int next = i % sides + 1;
+    text += fmt::format("f {} {} {}\nf {} {} {}\n", next, i, sides + 1, i, next, sides + 2);
+  }
+  return text + bad;
+}
+
+TEST(AuthorErrors, OfMeshesNameOrganFileAndLine) {
+  struct Case {
+    std::string mesh, scale, message;
+  };
+  std::string open = bipyramid(12);
+  open.erase(open.rfind("f "));
+  for (const Case& wrong :
+       {Case{open, "1", "open boundary"}, Case{bipyramid(200), "1", "more than 40 triangles"},
+        Case{bipyramid(12), "1e-6", "6.93e-08 m across"}, Case{bipyramid(12), "1e3", "m across"},
+        Case{bipyramid(12, "v 1 1 1\n"), "0.01", "no triangle uses: point 15"}}) {
+    const Folder folder;
+    folder.write("shape.obj", wrong.mesh);
+    const std::string text =
+        with_anatomy("{ organs = { { name = 'sac',\n shape = { type = 'obj', path = 'shape.obj', scale = " +
+                     wrong.scale + " } } } }, laparoscope = { look_at = 'sac.fundus' }")
+            .text();
+    const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, text);
+    ASSERT_FALSE(loaded) << wrong.message;
+    ASSERT_EQ(loaded.failure().problems.size(), 1u) << to_text(loaded.failure());
+    EXPECT_EQ(loaded.failure().problems[0].place.line, line_of(text, "shape = {"));
+    EXPECT_THAT(to_text(loaded.failure()), ::testing::HasSubstr(wrong.message));
+    EXPECT_THAT(to_text(loaded.failure()), ::testing::HasSubstr("organ 'sac'"));
+  }
+}
+
+TEST(AuthorErrors, ThatShowWhileTheWorldIsBuiltNameOrganFileAndLine) {
+  struct Case {
+    std::string scene, at, message;
+  };
+  const std::string ball =
+      "anatomy = { organs = { { name = 'ball', nodes = 61,\n shape = { type = 'sphere' }, ";
+  const std::string rest = "laparoscope = { look_at = 'ball.fundus' } }";
+  for (const Case& wrong :
+       {Case{"return { " + ball +
+                 "\n bile = { fill_volume = 900 * 1e-6 }, held = { { landmark = 'bed' } } } } }, " + rest,
+             "bile =", "organ 'ball' holds"},
+        Case{"return { " + ball +
+                 "\n bile = { fill_pressure = 40e3 }, wall = { shear_modulus = 1000, thickness = "
+                 "0.1 * mm },\n held = { { landmark = 'bed' } } } } }, " +
+                 rest,
+             "bile =", "organ 'ball' found no equilibrium while it was filled"},
+        Case{"return { " + ball +
+                 "neck = { 0, 0, 0 }, fundus = { 0, 0, 40 * mm } } },\n support = { point = { 0, 0, "
+                 "20 * mm }, normal = { 0, 0, 1 } } }, " +
+                 rest,
+             "support =", "organ 'ball' starts"},
+        Case{"return { " + ball + "\n held = { { landmark = 'bed', radius = 0.5 * mm } } } } }, " + rest,
+             "held =", "of organ 'ball'"}}) {
+    const Folder folder;
+    const std::string text = with_scene(wrong.scene).text();
+    const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, text);
+    ASSERT_TRUE(loaded) << to_text(loaded.failure());
+    const Result<World> world = World::create(loaded.value()->definition().scene);
+    ASSERT_FALSE(world) << wrong.message;
+    const Failure failure = loaded.value()->located(world.failure());
+    EXPECT_EQ(std::filesystem::path(failure.problems[0].place.file).filename(), "test.lua");
+    EXPECT_EQ(failure.problems[0].place.line, line_of(text, wrong.at)) << to_text(failure);
+    EXPECT_THAT(to_text(failure), ::testing::HasSubstr(wrong.message));
+  }
+}
 
 TEST(AuthorErrors, AreReportedAllAtOnceInTheOrderOfLines) {
   ScenarioText text;

@@ -250,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(
                "local t = {} for i = 1, 1e9 do t[i] = coroutine.create(function() end) "
                "coroutine.resume(t[i]) end"},
         Attack{"Recursion", "local function f() return 1 + f() end f()"},
-        Attack{"WidePairs", "local t = {} for i = 1, 400000 do t[i] = true end pairs(t)"},
+        Attack{"WidePairs", "local t = {} for i = 1, 1000000 do t[i] = true end pairs(t)"},
         Attack{
             "RecursionThroughMetamethods",
             "local t = setmetatable({}, {}) getmetatable(t).__index = function(s, k) return s[k .. 'x'] end\n"

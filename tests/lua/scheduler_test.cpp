@@ -453,6 +453,48 @@ TEST(Steps, BudgetsEndThemWhileTheyRunToo) {
   EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "while t:time()"));
 }
 
+TEST(Steps, LoopsOfWaitsInWhichNoTimePassesAreRefusedAtTheirLine) {
+  ScenarioText text =
+      with_steps("t:step('a', 'A')\nwhile true do t:wait_until(function() return true end) end");
+  Played played = play(text, 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "while true"))
+      << to_text(*played.failure);
+  EXPECT_THAT(to_text(*played.failure), ::testing::HasSubstr("no time passes"));
+  text = with_demo(
+      "local late = false\nwhile true do late = late or t:time() > 0.5 t:wait(late and 0 or 0.1) end");
+  played = play(text, 50, 1);
+  ASSERT_TRUE(played.failure);
+  EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "while true"))
+      << to_text(*played.failure);
+}
+
+TEST(Demo, RehearsedInAWorldFindsPlacesOutOfReach) {
+  struct Case {
+    const char *demo, *at;
+  };
+  for (const Case& demo :
+       {Case{"\nt.left:move_to({ 300 * mm, 0, -300 * mm })", "move_to"},
+        Case{"t:together(function() t.left:move_by({ 0, 0, -100 * mm }) end,\n"
+             "function() t.right:close() end)\n"
+             "t.left:move_by({ 0, 0, -299 * mm })",
+             "-299"},
+        Case{"", nullptr}, Case{"t.left:move_by({ 0, 0, -100 * mm })", nullptr},
+        Case{"while t.left:force() < 99 * N do t.left:move_by({ 0, 0, -30 * mm }) end", nullptr}}) {
+    ScenarioText text = with_demo(demo.demo);
+    text.scene = scene_at(50);
+    const Folder folder;
+    const Result<std::unique_ptr<ExerciseScript>> script = load_text(folder, text.text());
+    ASSERT_TRUE(script) << to_text(script.failure());
+    const World world = World::create(script.value()->definition().scene).value();
+    const std::vector<Problem> problems = script.value()->rehearse(world);
+    ASSERT_EQ(problems.size(), demo.at != nullptr ? 1u : 0u) << demo.demo;
+    if (demo.at == nullptr) continue;
+    EXPECT_EQ(problems[0].place.line, line_of(text.text(), demo.at));
+    EXPECT_THAT(problems[0].message, ::testing::HasSubstr("from its port"));
+  }
+}
+
 TEST(Steps, RefuseToWaitInsidePredicates) {
   const Played played =
       play(with_steps("t:step('a', 'A') t:wait_until(function()\n t:wait(1 * s) return true end)"), 50, 1);
