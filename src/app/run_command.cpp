@@ -57,7 +57,8 @@ struct Conclusion {
 
 ExitCode conclude_failed(const Failure& failure, const Conclusion& conclusion) {
   std::string next = conclusion.after_error;
-  if (failure.kind == FailureKind::scenario) next = "mend what is named above, then: " + conclusion.after_mending;
+  if (failure.kind == FailureKind::scenario)
+    next = "mend what is named above, then: " + conclusion.after_mending;
   if (failure.kind == FailureKind::resource) next = "mend what is named above, then: " + conclusion.again;
   return print_failure(failure, next);
 }
@@ -80,7 +81,8 @@ ExitCode conclude(const Played& played, const SessionCommand& command, const Con
   }
   std::fflush(stdout);
   for (const std::string& note : played.session.notes) log_warning(note);
-  if (played.session.end == SessionEnd::steps_done && played.rendered) note_missing_frames(played, command.at);
+  if (played.session.end == SessionEnd::steps_done && played.rendered)
+    note_missing_frames(played, command.at);
   if (played.session.end == SessionEnd::failed) return conclude_failed(played.session.failure, conclusion);
   if (played.session.end == SessionEnd::interrupted) return conclude_interrupted(played, conclusion);
   if (command.fail_below && !played.report.aborted && played.report.score.total < *command.fail_below) {
@@ -112,9 +114,9 @@ ExitCode run_command(const RunCommand& command) {
     return print_failure(played.failure(), usage ? "calot run --help" : "calot check --build " + file,
                          command.json);
   }
-  return conclude(
-      played.value(), command,
-      {"calot run " + file, "calot check --build " + file, "calot replay " + shell_word((played->output / "recording.jsonl").string())});
+  return conclude(played.value(), command,
+                  {"calot run " + file, "calot check --build " + file,
+                   "calot replay " + shell_word((played->output / "recording.jsonl").string())});
 }
 
 ExitCode replay_command(const ReplayCommand& command) {

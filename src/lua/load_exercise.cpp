@@ -109,7 +109,8 @@ class LuaExercise final : public ExerciseScript {
     return failure;
   }
   std::vector<Problem> rehearse(const World& world) override {
-    rehearsal_.emplace(*script_.sandbox, definition_, script_.table.demo, script_.table.parameters, &rehearsal_problems_);
+    rehearsal_.emplace(*script_.sandbox, definition_, script_.table.demo, script_.table.parameters,
+                       &rehearsal_problems_);
     const std::optional<Failure> failure = rehearsal_->run_dry(&world);
     if (failure && !rehearsal_->is_no_mistake(*failure))
       rehearsal_problems_.insert(rehearsal_problems_.end(), failure->problems.begin(),

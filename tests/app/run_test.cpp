@@ -89,8 +89,9 @@ TEST_F(Run, AnErrorInsideAStepNamesFileAndLineAndKeepsWhatWasDone) {
   const Outcome outcome = calot({"run", "late.lua", "--no-render", "-o", "here"});
   EXPECT_EQ(outcome.code, 6) << outcome.err;
   EXPECT_NE(outcome.err.find("late.lua:15"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("Next: mend what is named above, then: calot run late.lua"), std::string::npos)
-      << "check found nothing: " << outcome.err;
+  EXPECT_NE(outcome.err.find("Next: mend what is named above, then: calot check --build late.lua"),
+            std::string::npos)
+      << outcome.err;
   expect_next_command(outcome);
   const Json json = Json::parse(slurp(folder_ / "here" / "report.json"));
   EXPECT_EQ(json["end"], "failed");
@@ -431,7 +432,7 @@ TEST_F(Run, AnInterruptedCheckSaysHowFarItCameAndExitsWithTwo) {
   expect_next_command(outcome);
 }
 
-TEST_F(Run, APlaceOutOfReachIsNotSentToCheckWhichFindsNothing) {
+TEST_F(Run, APlaceOutOfReachIsSentToTheCheckThatFindsIt) {
   spill(folder_ / "far.lua",
         small_scenario("t:step('reach', 'Reach out'); t:wait(3 * s)",
                        "t.left:move_by({ 290 * mm, 290 * mm, 0 }, { speed = 500 * mm / s })\n"
@@ -439,8 +440,12 @@ TEST_F(Run, APlaceOutOfReachIsNotSentToCheckWhichFindsNothing) {
   const Outcome outcome = calot({"run", "far.lua", "--no-render"});
   EXPECT_EQ(outcome.code, 6) << outcome.err;
   EXPECT_NE(outcome.err.find("use another port"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("Next: mend what is named above, then: calot run far.lua"), std::string::npos)
+  EXPECT_NE(outcome.err.find("Next: mend what is named above, then: calot check --build far.lua\n"),
+            std::string::npos)
       << outcome.err;
+  const Outcome checked = calot({"check", "--build", "far.lua"});
+  EXPECT_EQ(checked.code, 6);
+  EXPECT_NE(checked.err.find("use another port"), std::string::npos) << checked.err;
 }
 
 TEST_F(Run, AnOrganThatCannotBeFilledIsNotToldToMoveMoreSlowly) {
