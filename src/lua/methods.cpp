@@ -211,7 +211,7 @@ int contact(lua_State* L) {
   const HandleTarget target = instrument_target(L, "contact");
   const Arguments arguments(L, *target.session, "Instrument", "contact");
   const std::optional<ToolPart> asked = part_called(arguments.text("part"));
-  const ContactPlace place = target.session->contact(
+  const TouchedPlace place = target.session->contact(
       L, target.instrument, [&](const InstrumentState& state) { return hardest_part(state, asked); });
   if (place.organ.empty()) {
     lua_pushnil(L);

@@ -124,10 +124,10 @@ Vec3 ScriptSession::shaft_axis(lua_State* L, int instrument) {
   return (tip(L, instrument) - world(L).port_position(port)).normalized();
 }
 
-ContactPlace ScriptSession::contact(lua_State* L, int instrument,
+TouchedPlace ScriptSession::contact(lua_State* L, int instrument,
                                     const std::function<ToolPart(const InstrumentState&)>& choose) {
   const std::vector<std::string> landmarks = landmark_names(scene().anatomy.organs);
-  ContactPlace place;
+  TouchedPlace place;
   if (checking()) {
     if (landmarks.empty()) return place;
     place.organ = scene().anatomy.organs.front().name;

@@ -16,7 +16,7 @@
 namespace calot {
 
 /// Where an instrument touches an organ.
-struct ContactPlace {
+struct TouchedPlace {
   ToolPart part = ToolPart::tip;
   Vec3 at = Vec3::Zero();  ///< m
   std::string organ;       ///< empty: nowhere
@@ -67,7 +67,7 @@ class ScriptSession {
   /// From its port to its tip, unit.
   Vec3 shaft_axis(lua_State* L, int instrument);
   /// Where the part that `choose` picks is pressed hardest; a stand-in in a dry run.
-  ContactPlace contact(lua_State* L, int instrument,
+  TouchedPlace contact(lua_State* L, int instrument,
                        const std::function<ToolPart(const InstrumentState&)>& choose);
 
   // A dry run has no world (but see set_world): what a script asks is answered by stand-ins, in turns, so that
