@@ -37,6 +37,7 @@ class Session {
     }
     close_steps();
     note_differences();
+    note_refusals();
     observe(true);
     if (options_.recording != nullptr) options_.recording->finish(to_text(result_.end));
     result_.timing.wall_s = seconds_since(start);
@@ -103,6 +104,7 @@ class Session {
     SessionTiming& timing = result_.timing;
     timing.substeps += report.statistics.substeps;
     timing.newton_iterations += report.statistics.newton_iterations;
+    refused_ += report.statistics.extensions_refused;
     timing.assembly_s += report.statistics.assembly_s;
     timing.factorisation_s += report.statistics.factorisation_s;
     timing.solve_s += report.statistics.solve_s;
@@ -127,6 +129,15 @@ class Session {
       else
         result_.notes.push_back(name + " is left out: " + to_text(found.failure()));
     }
+  }
+
+  void note_refusals() {
+    if (refused_ > 0)
+      result_.notes.push_back(
+          fmt::format("an organ found no rest with finer elements where it was touched, {} times: it kept "
+                      "those that it had, and "
+                      "is less accurate there",
+                      refused_));
   }
 
   void note_differences() {
@@ -160,6 +171,7 @@ class Session {
   SkinDifferences differences_;
   double dt_;
   StepInput input_;  ///< held where the source has ended
+  int refused_ = 0;  ///< changes of structural extensions
   bool ended_ = false;
   SessionResult result_;
 };

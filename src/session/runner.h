@@ -47,7 +47,7 @@ struct SessionResult {
   /// State hash after each step; the rest state's first.
   std::vector<std::uint64_t> state_hashes;
   SessionTiming timing;
-  std::vector<std::string> notes;  ///< what could not be measured, and why
+  std::vector<std::string> notes;  ///< what could not be measured or is less accurate, and why
 };
 
 SessionResult run_session(World& world, ExerciseScript& script, InputSource& source,
