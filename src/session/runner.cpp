@@ -1,5 +1,7 @@
 #include "session/runner.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "session/skin_difference.h"
