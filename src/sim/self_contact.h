@@ -5,8 +5,10 @@
 // distance itself: inner and outer faces meet alike, as no side is asked for. Points of both walls are kept off the
 // other, each for half, so wall presses on wall as an instrument does.
 // A force and what answers it lie on one line and share out by the weights of the nearest point: what the wall does
-// to itself sums to no force and no torque. That edges cross with no point near is left to the barrier, whose
-// range is wide against what the skin bulges between its points.
+// to itself sums to no force and no torque.
+//
+// Not covered: two edges that cross with no point near either's triangle. Where the skin's points stand wider apart than
+// the barrier's range (0.4 mm; they may by up to half a jaw's width) a sharp fold can pass another so.
 
 #include <optional>
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/hash.h"
 #include "sim/advance.h"
@@ -22,6 +23,11 @@ Vec3 up_direction(const AnatomyDefinition& anatomy) {
   const Eigen::AngleAxisd head_up(-anatomy.table_head_up, Vec3::UnitX());
   const Eigen::AngleAxisd left_down(-anatomy.table_left_down, Vec3::UnitY());
   return (head_up * left_down * Vec3::UnitZ()).normalized();
+}
+
+/// Names are checked where they come in: one that is unknown here is a defect of the program.
+[[noreturn]] void unknown_name(const std::string& what, const std::string& name) {
+  throw std::logic_error("no " + what + " is called '" + name + "'");
 }
 
 /// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
@@ -234,7 +240,7 @@ std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) 
   const InstrumentGeometry& g = tool.geometry;
   const bool finite = std::isfinite(pose.pitch + pose.yaw + pose.insertion + pose.roll + pose.jaw);
   const double slack = g.has_jaws() ? 1e-9 : 0;
-  if (finite && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
+  if (finite && pose.insertion >= 0 && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
       pose.jaw <= g.jaw_opening + slack &&
       std::max({std::abs(pose.pitch), std::abs(pose.yaw), std::abs(pose.roll)}) < 100)
     return std::nullopt;
@@ -244,7 +250,7 @@ std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) 
           "instrument '{}' cannot take the pose pitch {:.3g}, yaw {:.3g}, roll {:.3g}, jaw {:.3g} rad, "
           "insertion {:.3g} m",
           tool.definition.name, pose.pitch, pose.yaw, pose.roll, pose.jaw, pose.insertion),
-      fmt::format("its insertion is at most {:.2f} m, {}", g.max_insertion,
+      fmt::format("its insertion is 0 to {:.2f} m, {}", g.max_insertion,
                   g.has_jaws() ? fmt::format("its jaws open from 0 to {:.2f} rad", g.jaw_opening)
                                : "it has no jaws: its jaw angle is 0"));
 }
@@ -375,19 +381,19 @@ const Field& World::field() const { return impl_->field; }
 Vec3 World::port_position(const std::string& port) const {
   for (const PortDefinition& p : impl_->scene.ports)
     if (p.name == port) return p.position;
-  return Vec3::Zero();  // validated: every named port exists
+  unknown_name("port", port);
 }
 
 Vec3 World::landmark(const std::string& name) const {
   const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
-  if (skin_point < 0) return Vec3::Zero();
+  if (skin_point < 0) unknown_name("landmark", name);
   const Organ& at = impl_->field.organs[organ];
   return at.body.skin_point(skin_point, at.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
   const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
-  if (skin_point < 0) return Vec3::UnitZ();
+  if (skin_point < 0) unknown_name("landmark", name);
   return skin_normals(organ)[skin_point];
 }
 

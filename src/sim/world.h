@@ -43,6 +43,7 @@ class World {
 
   /// Upward direction (unit): minus gravity, turned by the table's tilt.
   Vec3 up() const;
+  /// m. This and the next two throw std::logic_error for a name that the scene does not have.
   Vec3 port_position(const std::string& port) const;
   /// Present place of "organ.landmark" on the skin, m.
   Vec3 landmark(const std::string& organ_and_landmark) const;

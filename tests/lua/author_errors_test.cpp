@@ -444,7 +444,7 @@ TEST(AuthorErrors, OfTextsThatAreTooDeepOrTooLargeNameALine) {
   EXPECT_THAT(to_text(large), ::testing::HasSubstr("test.lua: the file is larger than 1 MiB"));
   // Keys whose paths together are as long as the square of the text.
   std::string wide = "local t = {";
-  for (int i = 0; i < 30; ++i) wide += std::string(4000, 'a') + "={";
+  for (int i = 0; i < 30; ++i) wide.append(4000, 'a').append("={");
   for (int i = 0; i < 50'000; ++i) wide += "b=1,";
   wide += std::string(31, '}') + "\nreturn t";
   EXPECT_EQ(failure_of(wide).problems[0].place.line, 2);

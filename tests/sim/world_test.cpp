@@ -141,6 +141,27 @@ TEST(World, StepWithTooFewPosesIsRefusedAndChangesNothing) {
   EXPECT_EQ(refused.world.state_hash(), spared.world.state_hash());
 }
 
+TEST(World, APoseBehindTheTrocarIsRefusedAndChangesNothing) {
+  World world = World::create(test::grasper_scene(80)).value();
+  const std::uint64_t hash = world.state_hash();
+  StepInput input;
+  input.instruments = {world.report().instruments[0].pose};
+  input.instruments[0].insertion = -1e-3;
+  const Result<StepReport> step = world.step(input);
+  ASSERT_FALSE(step);
+  EXPECT_EQ(step.failure().kind, FailureKind::scenario);
+  EXPECT_NE(step.failure().problems[0].hint.find("insertion is 0 to"), std::string::npos);
+  EXPECT_EQ(world.state_hash(), hash);
+}
+
+TEST(World, NamesThatTheSceneDoesNotHaveAreNoPlaces) {
+  const World world = World::create(test::grasper_scene(80)).value();
+  EXPECT_GT(world.landmark("gallbladder.fundus").norm(), 0);
+  EXPECT_THROW(world.landmark("gallbladder.nose"), std::logic_error);
+  EXPECT_THROW(world.landmark_normal("liver.fundus"), std::logic_error);
+  EXPECT_THROW(world.port_position("transvaginal"), std::logic_error);
+}
+
 TEST(World, ToolThatStartsInsideAnOrganIsRefused) {
   SceneDefinition scene = test::grasper_scene(80);
   const World world = World::create(scene).value();
