@@ -446,7 +446,7 @@ TEST(AuthorErrors, OfTextsThatAreTooDeepOrTooLargeNameALine) {
   std::string wide = "local t = {";
   for (int i = 0; i < 30; ++i) wide.append(4000, 'a').append("={");
   for (int i = 0; i < 50'000; ++i) wide += "b=1,";
-  wide += std::string(31, '}') + "\nreturn t";
+  wide.append(31, '}').append("\nreturn t");
   EXPECT_EQ(failure_of(wide).problems[0].place.line, 2);
 }
 
