@@ -33,9 +33,12 @@ struct ContactPlace {
   std::vector<GripPoint> grips;
   std::vector<Extension> extensions;
   std::vector<DetailShare> shares;
+  std::vector<int> details;
+  std::optional<std::vector<int>> refused_details;
   bool operator==(const ContactPlace& other) const {
     return x.size() == other.x.size() && x == other.x && poses == other.poses && grips == other.grips &&
-           extensions == other.extensions && shares == other.shares;
+           extensions == other.extensions && shares == other.shares && details == other.details &&
+           refused_details == other.refused_details;
   }
 };
 

@@ -162,7 +162,9 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   if (organ.body.levels().levels() == 0) return;
   const std::vector<InstrumentPose> poses = present_poses(field);
   const auto place = [&] {
-    return ContactPlace{organ.state.x, poses, organ.grips, organ.extensions, organ.state.shares};
+    return ContactPlace{
+        organ.state.x,        poses, organ.grips, organ.extensions, organ.state.shares, organ.body.details(),
+        organ.refused_details};
   };
   if (organ.looked_at == place()) return;
   const ContactLoads now = contact_loads(field, organ, poses);
@@ -208,9 +210,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     organ.refused_details.reset();
     return;
   }
-  std::optional<std::vector<int>> refused = std::move(organ.refused_details);
   restore(organ, before);
-  organ.refused_details = std::move(refused);
   --statistics.extensions_changed;
   ++statistics.extensions_refused;
 }

@@ -60,7 +60,7 @@ struct World::Impl {
   OrganState organ_state(const Organ& organ) const;
   std::uint64_t hash_field() const;
   bool same_factors(const FieldState& state) const;
-  std::uint64_t hash() const;
+  std::uint64_t hash(std::uint64_t of_field) const;
 };
 
 namespace {
@@ -146,9 +146,9 @@ bool World::Impl::same_factors(const FieldState& state) const {
   return true;
 }
 
-std::uint64_t World::Impl::hash() const {
+std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
   Hash hash;
-  hash.add(field_hash);
+  hash.add(of_field);
   hash.add(steps);
   return hash.value();
 }
@@ -228,7 +228,7 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
   for (WorldEvent& event : events) event.time = report.time;
   report.events = std::move(events);
   field_hash = hash_field();
-  report.state_hash = hash();
+  report.state_hash = hash(field_hash);
 }
 
 namespace {
@@ -321,7 +321,7 @@ Result<StepReport> World::step(const StepInput& input) {
     ++self.steps;
     self.report.time = static_cast<double>(self.steps) / self.scene.solver.rate;
     self.report.events.clear();
-    self.report.state_hash = self.hash();
+    self.report.state_hash = self.hash(self.field_hash);
     return self.report;
   }
   const FieldState before = state();
@@ -346,12 +346,7 @@ Result<StepReport> World::step(const StepInput& input) {
 
 const SceneDefinition& World::scene() const { return impl_->scene; }
 const StepReport& World::report() const { return impl_->report; }
-std::uint64_t World::state_hash() const {
-  Hash hash;
-  hash.add(impl_->hash_field());
-  hash.add(impl_->steps);
-  return hash.value();
-}
+std::uint64_t World::state_hash() const { return impl_->hash(impl_->hash_field()); }
 
 FieldState World::state() const {
   FieldState state = field_state(impl_->field);
