@@ -209,6 +209,40 @@ bool serves(const NewtonWorkspace& work, const ConstrainedEnergy& problem) {
   return work.factored && !work.shifted && problem.constrained() == (work.constraint_gradient.size() > 0);
 }
 
+/// What whole steps since the last factorisation say of how the tangent has changed: Broyden's good method, by his
+/// steps alone (Kelley, Iterative Methods for Linear and Nonlinear Equations, 1995, section 7.3).
+class SecantSteps {
+ public:
+  void clear() { steps_.clear(); }
+  void add(VecX step, double dmultiplier) {
+    const double squared = step.squaredNorm();
+    steps_.push_back({std::move(step), dmultiplier, squared});
+  }
+  /// Turns the old factor's answer to a residual into that of the tangent the steps have seen.
+  void correct(VecX& step, double& dmultiplier) const {
+    constexpr double least = 0.25;  // a step is not believed to be longer than four of the old factor's
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const double along = steps_[k].x.dot(step) / steps_[k].squared;
+      if (k + 1 < steps_.size()) {
+        step += along * steps_[k + 1].x;
+        dmultiplier += along * steps_[k + 1].multiplier;
+      } else {
+        const double stretch = 1.0 / std::max(1.0 - along, least);
+        step *= stretch;
+        dmultiplier *= stretch;
+      }
+    }
+  }
+
+ private:
+  struct Step {
+    VecX x;
+    double multiplier;
+    double squared;  ///< length squared, m^2
+  };
+  std::vector<Step> steps_;
+};
+
 /// One solve's moving parts, so that its steps can be functions.
 struct Iteration {
   const ConstrainedEnergy& problem;
@@ -218,6 +252,7 @@ struct Iteration {
   double& multiplier;
   NewtonResult result;
   State state;
+  SecantSteps seen;
 
   /// Bordered step with the factor at hand, for the residual and constraint at x.
   VecX bordered_step(double& dmultiplier) {
@@ -243,6 +278,7 @@ struct Iteration {
     x = next;
     multiplier += dmultiplier;
     state = std::move(then);
+    seen.add(step, dmultiplier);
     result.increment = step.lpNorm<Eigen::Infinity>() / problem.length_scale();
     return true;
   }
@@ -251,7 +287,8 @@ struct Iteration {
   bool chord() {
     if (!serves(work, problem)) return false;
     double dmultiplier = 0;
-    const VecX step = bordered_step(dmultiplier);
+    VecX step = bordered_step(dmultiplier);
+    seen.correct(step, dmultiplier);
     if (!step.allFinite() || safe_share(problem, x, step, result) < 1.0 || !leap(step, dmultiplier))
       return false;
     ++result.chords;
@@ -260,6 +297,7 @@ struct Iteration {
 
   /// A full Newton step with a line search; false when it failed (result.status says why).
   bool newton() {
+    seen.clear();
     assemble(problem, x, multiplier, work, result);
     work.constraint_gradient = state.constraint_gradient;  // empty when there is no constraint
     result.status = factorise(work, x, problem.places(), result);
@@ -297,7 +335,7 @@ struct Iteration {
 
 NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSettings& settings,
                                NewtonWorkspace& work, VecX& x, double& multiplier) {
-  Iteration it{problem, settings, work, x, multiplier, {}, {}};
+  Iteration it{problem, settings, work, x, multiplier, {}, {}, {}};
   NewtonResult& result = it.result;
   evaluate(problem, x, multiplier, it.state, result);
   while (true) {

@@ -31,11 +31,13 @@ Poses between(const Poses& a, const Poses& b, double share) {
   return out;
 }
 
-/// One part of a motion for one organ: where the tools are, where they go, and what the organ answers.
+/// What an organ answers to a part of a motion.
 struct Prediction {
-  VecX dx;
-  double dmultiplier = 0;
-  double share = 1;
+  VecX first_order, dx;                            ///< m, 3 a node; dx with what the last answer missed
+  double first_order_pressure = 0, dpressure = 0;  ///< Pa
+  double travel = 0;                               ///< of the tool that travels most, m
+  double share = 1;                                ///< that can be believed, and is safe
+  bool loaded = false;                             ///< whether the tools' motion loads the organ
 };
 
 /// Motion of `part` of a tool from one pose to another, at x.
@@ -146,34 +148,58 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
   return share;
 }
 
-/// First-order answer of an organ to tools that move from `from` to `to`, and the share of it that is safe.
-/// With `fresh` the tangent is factorised anew, else the last factor serves if there is one.
-Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh,
+/// Adds what the last answer missed, where it was to a motion like this one: by the square of the way.
+void add_missed(const MissedMotion& missed, Prediction& out) {
+  constexpr double alike = 3.0;  // times as far
+  if (missed.dx.size() != out.dx.size() || out.travel > alike * missed.travel) return;
+  const double ratio_squared = std::pow(out.travel / missed.travel, 2);
+  // No second order is believed that is not small beside the first.
+  if (!(ratio_squared * missed.dx.norm() < out.first_order.norm())) return;
+  out.dx += ratio_squared * missed.dx;
+  out.dpressure += ratio_squared * missed.dpressure;
+}
+
+/// What the answer to a part of a motion missed, once the organ is in equilibrium.
+MissedMotion missed_by(const Prediction& answer, double share, const BodyState& before,
+                       const BodyState& after, int iterations) {
+  if (!answer.loaded || share < 1.0) return {};
+  return {after.x - before.x - answer.first_order,
+          after.datum_pressure - before.datum_pressure - answer.first_order_pressure, answer.travel,
+          iterations};
+}
+
+/// Answer of an organ to tools that move from `from` to `to`, and the share of it that is safe.
+Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to,
                            SolveStatistics& statistics) {
   Prediction out;
-  out.dx = VecX::Zero(organ.state.x.size());
+  out.dx = out.first_order = VecX::Zero(organ.state.x.size());
   if (from == to) return out;
   const ContactLoads now = contact_loads(field, organ, from);
-  double travel = 0;
   for (std::size_t i = 0; i < from.size(); ++i)
-    travel = std::max(travel, travel_bound(field.tools[i], from[i], to[i]));
+    out.travel = std::max(out.travel, travel_bound(field.tools[i], from[i], to[i]));
   std::vector<ContactPair> pairs;
   {
     const Timed timed(statistics.contact_s);
-    pairs = organ.search.pairs(organ.body, organ.state.x, now, travel);
+    pairs = organ.search.pairs(organ.body, organ.state.x, now, out.travel);
     organ.search.own.prepare(organ.body, organ.state.x, organ.work);
   }
-  bool loaded = false;
-  const VecX load = motion_load(field, organ, now, pairs, from, to, loaded);
-  if (loaded) {
+  const VecX load = motion_load(field, organ, now, pairs, from, to, out.loaded);
+  if (out.loaded) {
     const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search);
+    // The contacts' stiffness changes with every motion: a factor serves again only where its last answer was right.
+    const bool fresh = organ.missed.dx.size() == 0 || organ.missed.iterations > 0;
     FirstOrderAnswer answer =
         first_order_answer(problem, organ.work, organ.state.x, organ.state.datum_pressure, load,
                            organ.body.edge_lengths(), fresh);
     count(answer.result, statistics);
     if (!answer.result.converged())
       return solve_failure(answer.result, organ.definition.name, "under its instruments");
-    out = {std::move(answer.dx), answer.dmultiplier, answer.share};
+    out.first_order = std::move(answer.dx);
+    out.first_order_pressure = answer.dmultiplier;
+    out.share = answer.share;
+    out.dx = out.first_order;
+    out.dpressure = out.first_order_pressure;
+    add_missed(organ.missed, out);
   }
   const Timed timed(statistics.contact_s);
   out.share = organ.search.own.safe_share(organ.body, organ.state.x, out.dx, contact_keep, out.share);
@@ -232,15 +258,12 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
   int iterations_before = statistics.newton_iterations;
   double done = 0;
   NewtonResult last;  // of the solve that failed last, if any did in this part
-  bool fresh =
-      false;  // a stale factor predicts well unless contacts changed: then the part is tried once more
   for (int part = 0; done < 1.0; ++part) {
     const Poses from = present_poses(field);
     double share = 1.0;
     std::vector<Prediction> predictions;
     for (Organ& organ : field.organs) {
-      Result<Prediction> p = predict(field, organ, from, to, fresh, statistics);
-      if (p && p->share < 1.0 && !fresh) p = predict(field, organ, from, to, true, statistics);
+      Result<Prediction> p = predict(field, organ, from, to, statistics);
       if (!p) return p.failure();
       share = std::min(share, p->share);
       predictions.push_back(std::move(p).value());
@@ -261,20 +284,22 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
       const double next = share >= 1.0 ? 1.0 : done + share * left;
       const Poses poses = next >= 1.0 ? to : between(from, to, share);
       accepted = true;
+      std::vector<MissedMotion> missed;
       std::vector<OrganSnapshot> before;
       for (std::size_t k = 0; k < field.organs.size() && accepted; ++k) {
         Organ& organ = field.organs[k];
         before.push_back(snapshot(organ));
         organ.state.x += share * predictions[k].dx;
-        organ.state.datum_pressure += share * predictions[k].dmultiplier;
+        organ.state.datum_pressure += share * predictions[k].dpressure;
         last = settle_organ(field, organ, poses, before.back().state.x, part_iterations, statistics);
         accepted = last.converged();
+        missed.push_back(missed_by(predictions[k], share, before.back().state, organ.state, last.iterations));
       }
       if (accepted) {
+        for (std::size_t k = 0; k < field.organs.size(); ++k) field.organs[k].missed = std::move(missed[k]);
         for (std::size_t i = 0; i < field.tools.size(); ++i) field.tools[i].pose = poses[i];
         for (Organ& organ : field.organs) follow_contacts(field, organ, statistics);
         done = next;
-        fresh = false;
         last = {};
         ++statistics.substeps;
         const int iterations_moving = statistics.newton_iterations;
@@ -283,10 +308,6 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
         iterations_before += statistics.newton_iterations - iterations_moving;
       } else {
         for (std::size_t k = 0; k < before.size(); ++k) restore(field.organs[k], before[k]);
-        if (!fresh) {
-          fresh = true;
-          break;
-        }
         share *= 0.5;
       }
     }

@@ -1,14 +1,14 @@
 #include "sim/contact_search.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace calot {
 namespace {
 
-/// Pairs nearer than `reach`.
-std::vector<ContactPair> pairs_within(const ShellBody& body, const VecX& x, const ContactLoads& loads,
-                                      double reach) {
-  std::vector<Eigen::AlignedBox3d> faces;
+/// Of each face of the control mesh, which holds its skin.
+std::vector<Eigen::AlignedBox3d> face_boxes(const ShellBody& body, const VecX& x) {
+  std::vector<Eigen::AlignedBox3d> boxes;
   for (const std::vector<int>& nodes : body.face_nodes()) {
     Eigen::AlignedBox3d box;
     double details = 0;
@@ -20,25 +20,26 @@ std::vector<ContactPair> pairs_within(const ShellBody& body, const VecX& x, cons
         details += 0.5 * at.norm();
     }
     const Vec3 wider = Vec3::Constant(details);
-    faces.emplace_back(box.min() - wider, box.max() + wider);
+    boxes.emplace_back(box.min() - wider, box.max() + wider);
   }
+  return boxes;
+}
+
+/// Adds the pairs with a shape that are nearer than `reach`.
+void pairs_within(int index, const Shape& shape, const ShellBody& body,
+                  const std::vector<Eigen::AlignedBox3d>& faces, double reach, ContactPlaces& places,
+                  std::vector<ContactPair>& out) {
   const int each = body.triangles_each();
-  std::vector<ContactPair> pairs;
-  ContactPlaces places(body.skin(), x);
-  for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape) {
-    const Bounds b = bounds(loads.shapes[shape]);
-    const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
-    for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
-      const double far = reach + 0.5 * faces[f].diagonal().norm();
-      if (!near.intersects(faces[f]) || signed_distance(loads.shapes[shape], faces[f].center()) > far)
-        continue;
-      for (int triangle = f * each; triangle < (f + 1) * each; ++triangle) {
-        const double distance = places.nearness(triangle, loads.shapes[shape]).of_all();
-        if (distance < reach) pairs.push_back({triangle, shape, distance});
-      }
+  const Bounds b = bounds(shape);
+  const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
+    const double far = reach + 0.5 * faces[f].diagonal().norm();
+    if (!near.intersects(faces[f]) || signed_distance(shape, faces[f].center()) > far) continue;
+    for (int triangle = f * each; triangle < (f + 1) * each; ++triangle) {
+      const double distance = places.nearness(triangle, shape).of_all();
+      if (distance < reach) out.push_back({triangle, index, distance});
     }
   }
-  return pairs;
 }
 
 double reach_of(const ContactLoads& loads, double extra) {
@@ -49,58 +50,55 @@ double reach_of(const ContactLoads& loads, double extra) {
 
 std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                       double extra) {
-  return pairs_within(body, x, loads, reach_of(loads, extra));
+  const std::vector<Eigen::AlignedBox3d> faces = face_boxes(body, x);
+  ContactPlaces places(body.skin(), x);
+  std::vector<ContactPair> pairs;
+  for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape)
+    pairs_within(shape, loads.shapes[shape], body, faces, reach_of(loads, extra), places, pairs);
+  return pairs;
 }
 
-void ContactSearch::look_again(const ShellBody& body, const VecX& x, const ContactLoads& loads,
-                               double approach) {
+void ContactSearch::pairs_with(int index, const ShellBody& body, const VecX& x, const ContactLoads& loads,
+                               double reach, std::vector<ContactPair>& out) {
+  constexpr double ahead = 4e-3;    // m remembered beyond what is asked for
+  constexpr double stale = 0.5e-3;  // m of motion after which remembered distances are measured again
+  if (memory_.size() < loads.shapes.size()) memory_.resize(loads.shapes.size());
+  Memory& memory = memory_[index];
+  const Shape& shape = loads.shapes[index];
   ContactPlaces places(body.skin(), x);
-  for (ContactPair& pair : near_)
-    pair.distance = places.nearness(pair.triangle, loads.shapes[pair.shape]).of_all();
-  reach_ -= approach;
-  shapes_ = loads.shapes;
-  x_ = x;
+  double approach = std::numeric_limits<double>::infinity();  // how much nearer a pair may have come
+  if (memory.reach > 0 && memory.x.size() == x.size() && memory.details == body.details())
+    approach = body.largest_motion(x - memory.x) + distance_change(shape, *memory.shape);
+  const auto looked = [&] {
+    memory.shape = shape;
+    memory.x = x;
+    approach = 0;
+  };
+  if (!(reach + approach <= memory.reach)) {  // a NaN is looked at anew, too
+    // Distances from a place that is not finite say nothing about the next one.
+    memory.reach = x.allFinite() ? reach + ahead : -1;
+    memory.near.clear();
+    pairs_within(index, shape, body, face_boxes(body, x), reach + ahead, places, memory.near);
+    memory.details = body.details();
+    looked();
+  } else if (approach > stale) {
+    for (ContactPair& pair : memory.near) pair.distance = places.nearness(pair.triangle, shape).of_all();
+    memory.reach -= approach;
+    looked();
+  }
+  for (ContactPair pair : memory.near) {
+    pair.distance -= approach;
+    if (pair.distance >= reach) continue;
+    if (pair.distance < exact) pair.distance = places.nearness(pair.triangle, shape).of_all();
+    if (pair.distance < reach) out.push_back(pair);
+  }
 }
 
 std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                               double extra) {
-  constexpr double ahead = 4e-3;    // m remembered beyond what is asked for
-  constexpr double stale = 0.5e-3;  // m of motion after which remembered distances are measured again
-  const double reach = reach_of(loads, extra);
-  bool usable = reach_ > 0 && x_.size() == x.size() && details_ == body.details() &&
-                shapes_.size() == loads.shapes.size();
-  std::vector<double> approach(loads.shapes.size());  // how much nearer a pair of the shape may have come
-  double most = 0;
-  if (usable) {
-    const double moved = body.largest_motion(x - x_);
-    for (std::size_t k = 0; k < approach.size(); ++k) {
-      approach[k] = moved + distance_change(loads.shapes[k], shapes_[k]);
-      usable &= reach + approach[k] <= reach_;  // false for a NaN
-      most = std::max(most, approach[k]);
-    }
-  }
-  if (!usable) {
-    // Distances from a place that is not finite say nothing about the next one.
-    reach_ = x.allFinite() ? reach + ahead : -1;
-    near_ = pairs_within(body, x, loads, reach + ahead);
-    details_ = body.details();
-    shapes_ = loads.shapes;
-    x_ = x;
-    approach.assign(approach.size(), 0.0);
-  } else if (most > stale) {
-    look_again(body, x, loads, most);
-    approach.assign(approach.size(), 0.0);
-  }
   std::vector<ContactPair> out;
-  ContactPlaces places(body.skin(), x);
-  for (const ContactPair& pair : near_) {
-    ContactPair now = pair;
-    now.distance -= approach[pair.shape];
-    if (now.distance >= reach) continue;
-    if (now.distance < exact)
-      now.distance = places.nearness(pair.triangle, loads.shapes[pair.shape]).of_all();
-    if (now.distance < reach) out.push_back(now);
-  }
+  for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape)
+    pairs_with(shape, body, x, loads, reach_of(loads, extra), out);
   return out;
 }
 

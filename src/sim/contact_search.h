@@ -108,13 +108,16 @@ std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, cons
                                       double extra);
 
 /// The same pairs with less work: triangles a little further away are remembered, and only these are looked at
-/// until the skin and the shapes have moved so far that others could have come near. Distances beyond `exact` are
+/// until the skin and a shape have moved so far that others could have come near. Distances beyond `exact` are
 /// bounds of bounds, so some pairs beyond the reach are among them. For one organ.
 class ContactSearch {
  public:
   static constexpr double exact = 0.5e-3;  ///< m
   std::vector<ContactPair> pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
                                  double extra);
+  /// Only those with one of the shapes, within `reach` of it, m, ordered by triangle; added to `out`.
+  void pairs_with(int shape, const ShellBody& body, const VecX& x, const ContactLoads& loads, double reach,
+                  std::vector<ContactPair>& out);
 
   /// What touches at x, looked for only where that is not known yet. Valid until the next call or solve.
   const std::vector<Touch>& touching(const ShellBody& body, const VecX& x, const ContactLoads& loads);
@@ -123,14 +126,15 @@ class ContactSearch {
   TouchMemory touches;
 
  private:
-  /// Measures what is remembered again where it is now, nothing having come nearer than by `approach`, m.
-  void look_again(const ShellBody& body, const VecX& x, const ContactLoads& loads, double approach);
-
-  std::vector<ContactPair> near_;  ///< distances as they were then
-  std::vector<Shape> shapes_;
-  std::vector<int> details_;
-  VecX x_;
-  double reach_ = -1;  ///< m
+  /// What was near one shape when it was looked at last.
+  struct Memory {
+    std::vector<ContactPair> near;  ///< distances as they were then
+    std::optional<Shape> shape;
+    std::vector<int> details;
+    VecX x;
+    double reach = -1;  ///< m
+  };
+  std::vector<Memory> memory_;  ///< of each shape
 };
 
 }  // namespace calot

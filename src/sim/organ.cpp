@@ -214,7 +214,7 @@ std::optional<Failure> check_skin_spacing(const ShellBody& body) {
 
 OrganSnapshot snapshot(const Organ& organ) {
   return {organ.body,       organ.state,           organ.work.keep(), organ.grips,
-          organ.extensions, organ.refused_details, organ.friction};
+          organ.extensions, organ.refused_details, organ.friction,    organ.missed};
 }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {
@@ -225,6 +225,7 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.extensions = snapshot.extensions;
   organ.refused_details = snapshot.refused_details;
   organ.friction = snapshot.friction;
+  organ.missed = snapshot.missed;
 }
 
 Failure at_organ(Failure failure, std::size_t index) {
@@ -305,7 +306,7 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
   }
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
-  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}, {}, {}};
+  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}, {}, {}, {}};
   organ.state.x = organ.body.rest();
   organ.state.volume = organ.body.bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))

@@ -42,6 +42,15 @@ struct ContactPlace {
   }
 };
 
+/// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
+/// the second order in the way.
+struct MissedMotion {
+  VecX dx;               ///< m, 3 a node; empty: none known
+  double dpressure = 0;  ///< Pa
+  double travel = 0;     ///< of the tool that travelled furthest, m
+  int iterations = 0;    ///< that it took to make good
+};
+
 struct Organ {
   OrganDefinition definition;
   ShellBody body;
@@ -54,6 +63,7 @@ struct Organ {
   /// Details that found no rest when they were tried last: not tried again until others are wanted.
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
+  MissedMotion missed;
   /// Where the details were found to be those that are wanted: remembered, no part of any result.
   std::optional<ContactPlace> looked_at;
 };
@@ -67,6 +77,7 @@ struct OrganSnapshot {
   std::vector<Extension> extensions;
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;
+  MissedMotion missed;
 };
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);

@@ -18,20 +18,41 @@ struct NearPoint {
   double distance = 0;
 };
 
-std::vector<NearPoint> points_near(int shape, const Organ& organ, const std::vector<NearPoint>& near) {
-  const bool served = std::any_of(organ.extensions.begin(), organ.extensions.end(),
-                                  [&](const Extension& e) { return e.shape == shape; });
+/// Points this much further from a shape than the nearest one say where its extension goes, m.
+constexpr double middle_depth = 1e-3;
+
+/// Skin points that say where a shape's extension goes: those it holds, else those near enough to it, ordered by point.
+/// None where it needs none.
+std::vector<NearPoint> points_near(int shape, const Field& field, const Organ& organ,
+                                   const ContactLoads& loads) {
   std::vector<NearPoint> out;
   for (const GripPoint& grip : organ.grips)
     if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.skin_point, shape, 0});
   if (!out.empty()) return out;  // what is held does not slide: it alone says where
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const NearPoint& point : near) {
-    if (point.shape != shape) continue;
-    out.push_back(point);
-    nearest = std::min(nearest, point.distance);
+  const bool served = std::any_of(organ.extensions.begin(), organ.extensions.end(),
+                                  [&](const Extension& e) { return e.shape == shape; });
+  const double reach = served ? extension_behind : extension_ahead;
+  std::vector<ContactPair> pairs;
+  organ.search.pairs_with(shape, organ.body, organ.state.x, loads, reach, pairs);
+  std::sort(pairs.begin(), pairs.end(),
+            [](const ContactPair& a, const ContactPair& b) { return a.distance < b.distance; });
+  // The nearest first, as their bounds say, until no other can count.
+  double counts = reach;
+  std::vector<char> seen(organ.body.skin_rest().size(), 0);
+  for (const ContactPair& pair : pairs) {
+    if (pair.distance > counts) break;
+    for (int row : organ.body.skin().triangles[pair.triangle]) {
+      if (std::exchange(seen[row], 1)) continue;
+      const double distance = signed_distance(loads.shapes[shape], organ.body.skin_point(row, organ.state.x));
+      if (distance > counts) continue;
+      out.push_back({row, shape, distance});
+      counts = std::min(counts, std::max(distance + middle_depth, field.barrier.range));
+    }
   }
-  if (nearest > (served ? extension_behind : extension_ahead)) out.clear();
+  std::erase_if(out, [&](const NearPoint& point) { return point.distance > counts; });
+  // What was remembered must not decide their order, as sums follow it.
+  std::sort(out.begin(), out.end(),
+            [](const NearPoint& a, const NearPoint& b) { return a.skin_point < b.skin_point; });
   return out;
 }
 
@@ -46,19 +67,18 @@ double coarse_edge(const ShellBody& body, int row) {
 /// Middle, at rest, of the points about the nearest one: weighed by how near they are, so that it moves evenly as
 /// the nearest point jumps from one to the next.
 int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, double radius) {
-  constexpr double depth = 1e-3;  // m beyond the nearest
   const auto lead =
       std::min_element(points.begin(), points.end(),
                        [](const NearPoint& a, const NearPoint& b) { return a.distance < b.distance; });
   Vec3 sum = Vec3::Zero();
   double total = 0;
   const auto counts = [&](const NearPoint& p) {
-    return p.distance < lead->distance + depth &&
+    return p.distance < lead->distance + middle_depth &&
            (body.skin_rest()[p.skin_point] - body.skin_rest()[lead->skin_point]).norm() < radius;
   };
   for (const NearPoint& p : points) {
     if (!counts(p)) continue;
-    const double share = 1 - (p.distance - lead->distance) / depth,
+    const double share = 1 - (p.distance - lead->distance) / middle_depth,
                  weight = share * share * body.skin_areas()[p.skin_point];
     sum += weight * body.skin_rest()[p.skin_point];
     total += weight;
@@ -72,26 +92,12 @@ int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, doubl
   return best;
 }
 
-bool clear_of_tools(const Organ& organ, const ContactLoads& loads, const std::vector<ContactPair>& near) {
+bool clear_of_tools(const Organ& organ, const ContactLoads& loads) {
+  const std::vector<ContactPair> near = gather_pairs(organ.body, organ.state.x, loads, 0.0);
   bool clear = true;
   for_touching(organ.body, organ.state.x, loads, near, std::numeric_limits<double>::infinity(),
                [&](int, int, const Vec3&, const DistanceSlope& d) { clear &= d.distance > -contact_guard; });
   return clear;
-}
-
-/// Skin points of the pairs that are no further from their shapes than an extension is kept.
-std::vector<NearPoint> corners_near(const Organ& organ, const ContactLoads& loads,
-                                    const std::vector<ContactPair>& pairs) {
-  std::vector<int> seen(organ.body.skin_rest().size(), -1);  // the last shape that each was measured from
-  std::vector<NearPoint> out;
-  for (const ContactPair& pair : pairs)
-    for (int row : organ.body.skin().triangles[pair.triangle]) {
-      if (std::exchange(seen[row], pair.shape) == pair.shape) continue;
-      const double distance =
-          signed_distance(loads.shapes[pair.shape], organ.body.skin_point(row, organ.state.x));
-      if (distance <= extension_behind) out.push_back({row, pair.shape, distance});
-    }
-  return out;
 }
 
 /// Whether no wall passes through another as the details that are left out go. Those that are new move nothing yet.
@@ -106,17 +112,16 @@ std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
   return out;
 }
 
-/// The extensions that the organ needs with the tools where they stand: one for each part of a tool that is `near`
+/// The extensions that the organ needs with the tools where they stand: one for each part of a tool that is near
 /// or holds on, two for a part that lies along the organ. Those that still serve stay as they are.
-std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
-                                         const std::vector<NearPoint>& near) {
+std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ, const ContactLoads& loads) {
   constexpr int most_along_a_part = 2;
   const ShellBody& body = organ.body;
   std::vector<Extension> out;
   if (field.viewed && &field.organs[field.viewed->organ] == &organ)
     out.push_back({-1, field.viewed->skin_point});
   for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
-    std::vector<NearPoint> points = points_near(shape, organ, near);
+    std::vector<NearPoint> points = points_near(shape, field, organ, loads);
     for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {
       const double edge = coarse_edge(body, points.front().skin_point);
       Extension next{shape, middle_of(body, points, 0.5 * edge)};
@@ -168,12 +173,10 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   };
   if (organ.looked_at == place()) return;
   const ContactLoads now = contact_loads(field, organ, poses);
-  std::vector<ContactPair> near;
   std::vector<int> wanted, details;
   {
     const Timed timed(statistics.contact_s);
-    near = organ.search.pairs(organ.body, organ.state.x, now, extension_behind - contact_margin);
-    organ.extensions = wanted_extensions(field, organ, corners_near(organ, now, near));
+    organ.extensions = wanted_extensions(field, organ, now);
     wanted = details_around(organ.body, organ.extensions);
     details = united(wanted, lasting_details(organ.body, organ.state, wanted));
   }
@@ -205,7 +208,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   organ.work = std::move(work);
   const VecX start = organ.state.x;
   ++statistics.extensions_changed;
-  if (clear_of_tools(organ, now, near) && clear_of_itself(organ, before.body, before.state.x) &&
+  if (clear_of_tools(organ, now) && clear_of_itself(organ, before.body, before.state.x) &&
       settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged()) {
     organ.refused_details.reset();
     return;

@@ -90,6 +90,10 @@ void add_body_state(Hash& hash, const Organ& organ) {
   hash.add(organ.refused_details.has_value());
   if (organ.refused_details)
     for (int detail : *organ.refused_details) hash.add(detail);
+  add_vector(hash, organ.missed.dx);
+  hash.add(organ.missed.dpressure);
+  hash.add(organ.missed.travel);
+  hash.add(organ.missed.iterations);
 }
 
 void add_holds(Hash& hash, const Organ& organ) {

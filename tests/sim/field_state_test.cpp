@@ -52,6 +52,7 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   ASSERT_FALSE(state.organs[0].extensions.empty());
   ASSERT_FALSE(state.organs[0].state.shares.empty());
   ASSERT_TRUE(state.organs[0].factor.factored);
+  ASSERT_GT(state.organs[0].missed.dx.size(), 0);
   const std::uint64_t hash = path.world.state_hash();
   const auto differs = [&](const char* what, const std::function<void(FieldState&)>& change) {
     FieldState other = state;
@@ -73,6 +74,10 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("grip's stiffness", [](FieldState& s) { s.organs[0].grips[0].stiffness *= 0.2; });
   differs("extension", [](FieldState& s) { ++s.organs[0].extensions[0].centre; });
   differs("refused details", [](FieldState& s) { s.organs[0].refused_details = {{1, 2, 3}}; });
+  differs("missed motion", [](FieldState& s) { s.organs[0].missed.dx[0] += 1e-15; });
+  differs("missed pressure", [](FieldState& s) { s.organs[0].missed.dpressure += 1e-9; });
+  differs("missed motion's way", [](FieldState& s) { s.organs[0].missed.travel *= 1.0000001; });
+  differs("missed motion's iterations", [](FieldState& s) { ++s.organs[0].missed.iterations; });
   differs("friction", [](FieldState& s) {
     s.organs[0].friction.points.push_back({0, 0, StickSlip{.limit = 1e-3, .stiffness = 1}});
   });
