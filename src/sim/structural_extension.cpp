@@ -32,12 +32,12 @@ std::vector<NearPoint> points_near(int shape, const Field& field, const Organ& o
   const bool served = std::any_of(organ.extensions.begin(), organ.extensions.end(),
                                   [&](const Extension& e) { return e.shape == shape; });
   const double reach = served ? extension_behind : extension_ahead;
+  double counts = reach + middle_depth, nearest = counts;
   std::vector<ContactPair> pairs;
-  organ.search.pairs_with(shape, organ.body, organ.state.x, loads, reach, pairs);
+  organ.search.pairs_with(shape, organ.body, organ.state.x, loads, counts, pairs);
   std::sort(pairs.begin(), pairs.end(),
             [](const ContactPair& a, const ContactPair& b) { return a.distance < b.distance; });
   // The nearest first, as their bounds say, until no other can count.
-  double counts = reach;
   std::vector<char> seen(organ.body.skin_rest().size(), 0);
   for (const ContactPair& pair : pairs) {
     if (pair.distance > counts) break;
@@ -46,9 +46,11 @@ std::vector<NearPoint> points_near(int shape, const Field& field, const Organ& o
       const double distance = signed_distance(loads.shapes[shape], organ.body.skin_point(row, organ.state.x));
       if (distance > counts) continue;
       out.push_back({row, shape, distance});
+      nearest = std::min(nearest, distance);
       counts = std::min(counts, std::max(distance + middle_depth, field.barrier.range));
     }
   }
+  if (nearest > reach) return {};
   std::erase_if(out, [&](const NearPoint& point) { return point.distance > counts; });
   // What was remembered must not decide their order, as sums follow it.
   std::sort(out.begin(), out.end(),
@@ -64,27 +66,25 @@ double coarse_edge(const ShellBody& body, int row) {
   return edge;
 }
 
-/// Middle, at rest, of the points about the nearest one: weighed by how near they are, so that it moves evenly as
-/// the nearest point jumps from one to the next.
-int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, double radius) {
-  const auto lead =
-      std::min_element(points.begin(), points.end(),
-                       [](const NearPoint& a, const NearPoint& b) { return a.distance < b.distance; });
+/// Middle, at rest, of the points within `radius` of the nearest one, `lead`: weighed by how near they are, so that it
+/// moves evenly as the nearest point jumps from one to the next.
+int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, const NearPoint& lead,
+              double radius) {
   Vec3 sum = Vec3::Zero();
   double total = 0;
   const auto counts = [&](const NearPoint& p) {
-    return p.distance < lead->distance + middle_depth &&
-           (body.skin_rest()[p.skin_point] - body.skin_rest()[lead->skin_point]).norm() < radius;
+    return p.distance < lead.distance + middle_depth &&
+           (body.skin_rest()[p.skin_point] - body.skin_rest()[lead.skin_point]).norm() < radius;
   };
   for (const NearPoint& p : points) {
     if (!counts(p)) continue;
-    const double share = 1 - (p.distance - lead->distance) / middle_depth,
+    const double share = 1 - (p.distance - lead.distance) / middle_depth,
                  weight = share * share * body.skin_areas()[p.skin_point];
     sum += weight * body.skin_rest()[p.skin_point];
     total += weight;
   }
   const Vec3 middle = sum / total;
-  int best = lead->skin_point;
+  int best = lead.skin_point;
   for (const NearPoint& p : points)
     if (counts(p) && (body.skin_rest()[p.skin_point] - middle).squaredNorm() <
                          (body.skin_rest()[best] - middle).squaredNorm())
@@ -123,8 +123,11 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
   for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
     std::vector<NearPoint> points = points_near(shape, field, organ, loads);
     for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {
-      const double edge = coarse_edge(body, points.front().skin_point);
-      Extension next{shape, middle_of(body, points, 0.5 * edge)};
+      const NearPoint lead =
+          *std::min_element(points.begin(), points.end(),
+                            [](const NearPoint& a, const NearPoint& b) { return a.distance < b.distance; });
+      const double edge = coarse_edge(body, lead.skin_point);
+      Extension next{shape, middle_of(body, points, lead, 0.5 * edge)};
       const double drift = 0.25 * std::ldexp(edge, -body.levels().levels());
       for (const Extension& present : organ.extensions)
         if (present.shape == shape &&
@@ -192,6 +195,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     organ.looked_at = place();
     return;
   }
+
   organ.refused_details = details;
   const Timed timed(statistics.extension_s);
   Result<ShellBody> next = organ.body.with_details(std::move(details));
