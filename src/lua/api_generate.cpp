@@ -5,7 +5,7 @@
 #include "anatomy/definitions.h"
 #include "base/units.h"
 #include "lua/api_text.h"
-#include "lua/sandbox_library.h"
+#include "script/sandbox_library.h"
 #include "session/metrics.h"
 
 namespace calot {

@@ -4,8 +4,8 @@
 
 #include "base/suggest.h"
 #include "lua/api_table.h"
-#include "lua/binding.h"
-#include "lua/module_loader.h"
+#include "script/binding.h"
+#include "script/module_loader.h"
 
 namespace calot {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/units.h"
-#include "lua/lua_headers.h"
+#include "script/lua_headers.h"
 
 namespace calot {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
-#include "lua/binding.h"
 #include "lua/methods.h"
+#include "script/binding.h"
 
 namespace calot {
 namespace {

@@ -8,11 +8,11 @@
 #include "lua/calot_module.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"
-#include "lua/lua_headers.h"
 #include "lua/read_exercise.h"
 #include "lua/read_scene.h"
-#include "lua/source_map.h"
 #include "lua/steps_script.h"
+#include "script/lua_headers.h"
+#include "script/source_map.h"
 #include "sim/organ.h"
 
 namespace calot {

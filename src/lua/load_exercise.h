@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/status.h"
-#include "lua/limits.h"
+#include "script/limits.h"
 #include "session/exercise.h"
 
 namespace calot {

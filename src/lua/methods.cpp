@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "lua/binding.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"
 #include "lua/steps_script.h"
+#include "script/binding.h"
 
 namespace calot {
 namespace {

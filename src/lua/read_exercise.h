@@ -7,7 +7,7 @@
 
 #include "anatomy/field_check.h"
 #include "lua/read_parameters.h"
-#include "lua/value.h"
+#include "script/value.h"
 #include "session/exercise.h"
 
 namespace calot {

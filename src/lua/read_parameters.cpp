@@ -5,8 +5,8 @@
 #include <charconv>
 
 #include "base/suggest.h"
-#include "lua/lua_headers.h"
 #include "lua/table_reader.h"
+#include "script/lua_headers.h"
 
 namespace calot {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anatomy/field_check.h"
-#include "lua/value.h"
+#include "script/value.h"
 #include "session/exercise.h"
 
 namespace calot {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
-#include "lua/safe_path.h"
 #include "lua/table_reader.h"
+#include "script/safe_path.h"
 
 namespace calot {
 namespace {

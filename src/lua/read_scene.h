@@ -5,7 +5,7 @@
 
 #include "anatomy/definitions.h"
 #include "anatomy/field_check.h"
-#include "lua/value.h"
+#include "script/value.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 #include "base/suggest.h"
 #include "base/units.h"
 #include "lua/handles.h"
-#include "lua/lua_headers.h"
+#include "script/lua_headers.h"
 
 namespace calot {
 namespace {

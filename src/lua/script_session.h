@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "lua/read_parameters.h"
-#include "lua/sandbox.h"
 #include "lua/table_reader.h"
+#include "script/sandbox.h"
 #include "session/exercise.h"
 
 namespace calot {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "lua/lua_headers.h"
+#include "script/lua_headers.h"
 
 namespace calot {
 namespace {

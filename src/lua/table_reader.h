@@ -9,7 +9,7 @@
 #include "anatomy/field_check.h"
 #include "geometry/types.h"
 #include "lua/api_table.h"
-#include "lua/value.h"
+#include "script/value.h"
 
 namespace calot {
 

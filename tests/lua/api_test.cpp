@@ -11,8 +11,8 @@
 #include "lua/api_table.h"
 #include "lua/methods.h"
 #include "lua/read_scene.h"
-#include "lua/sandbox_library.h"
 #include "lua/scenario_files.h"
+#include "script/sandbox_library.h"
 #include "support/paths.h"
 
 namespace calot {

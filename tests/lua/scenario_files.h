@@ -1,40 +1,14 @@
 #pragma once
-// Scenarios written for one test, in a folder of their own.
-
-#include <unistd.h>
+// Scenarios written for one test.
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "lua/load_exercise.h"
 #include "support/paths.h"
+#include "support/text_files.h"
 
 namespace calot::test {
-
-/// A folder that is removed with everything in it.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("calot_lua_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A sound exercise, its parts replaceable. `head` is Lua before it.
 struct ScenarioText {
@@ -79,15 +53,6 @@ inline Result<std::unique_ptr<ExerciseScript>> load_text(const Folder& folder, c
                                                          LoadOptions options = {}) {
   if (options.modules.empty()) options.modules = std::filesystem::path(source_dir()) / "scripts/lua";
   return load_exercise(folder.write("test.lua", text), options);
-}
-
-/// The line (from 1) of the text on which `part` first appears.
-inline int line_of(const std::string& text, const std::string& part) {
-  const std::size_t at = text.find(part);
-  if (at == std::string::npos) return -1;
-  int line = 1;
-  for (std::size_t i = 0; i < at; ++i) line += text[i] == '\n' ? 1 : 0;
-  return line;
 }
 
 }  // namespace calot::test

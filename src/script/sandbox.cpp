@@ -1,4 +1,4 @@
-#include "lua/sandbox.h"
+#include "script/sandbox.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 
 #include "base/log.h"
 #include "base/suggest.h"
-#include "lua/lua_headers.h"
-#include "lua/sandbox_library.h"
+#include "script/lua_headers.h"
+#include "script/sandbox_library.h"
 
 namespace calot {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "base/hash.h"
 #include "base/status.h"
-#include "lua/limits.h"
-#include "lua/watchdog.h"
+#include "script/limits.h"
+#include "script/watchdog.h"
 
 struct lua_State;
 struct lua_Debug;

@@ -1,11 +1,11 @@
-#include "lua/source_map.h"
+#include "script/source_map.h"
 
 #include <fmt/format.h>
 
 #include <optional>
 #include <vector>
 
-#include "lua/lexer.h"
+#include "script/lexer.h"
 
 namespace calot {
 namespace {

@@ -1,4 +1,4 @@
-#include "lua/lexer.h"
+#include "script/lexer.h"
 
 #include <algorithm>
 #include <array>

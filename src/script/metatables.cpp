@@ -1,9 +1,9 @@
-#include "lua/metatables.h"
+#include "script/metatables.h"
 
 #include <iterator>
 #include <utility>
 
-#include "lua/binding.h"
+#include "script/binding.h"
 
 namespace calot {
 namespace {

@@ -1,6 +1,6 @@
 // Hostile scripts end with a clear error of the right kind, wherever they hide their loop.
 
-#include "lua/sandbox.h"
+#include "script/sandbox.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cstdio>
 
 #include "base/log.h"
-#include "lua/lua_headers.h"
-#include "lua/sandbox_library.h"
-#include "lua/scenario_files.h"
+#include "script/lua_headers.h"
+#include "script/sandbox_library.h"
+#include "support/text_files.h"
 
 namespace calot {
 namespace {

@@ -1,11 +1,11 @@
 // A field's path leads to the line on which its author wrote it.
 
-#include "lua/source_map.h"
+#include "script/source_map.h"
 
 #include <gtest/gtest.h>
 
-#include "lua/lexer.h"
-#include "lua/scenario_files.h"
+#include "script/lexer.h"
+#include "support/text_files.h"
 
 namespace calot {
 namespace {

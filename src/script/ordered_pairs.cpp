@@ -1,12 +1,12 @@
-#include "lua/ordered_pairs.h"
+#include "script/ordered_pairs.h"
 
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
-#include "lua/lua_headers.h"
-#include "lua/metatables.h"
-#include "lua/sandbox.h"
+#include "script/lua_headers.h"
+#include "script/metatables.h"
+#include "script/sandbox.h"
 
 namespace calot {
 namespace {

@@ -1,11 +1,11 @@
-#include "lua/value.h"
+#include "script/value.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "lua/lua_headers.h"
+#include "script/lua_headers.h"
 
 namespace calot {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <exception>
 
-#include "lua/lua_headers.h"
+#include "script/lua_headers.h"
 
 namespace calot {
 

@@ -1,4 +1,4 @@
-#include "lua/safe_path.h"
+#include "script/safe_path.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // clang-format off
-#include "lua/sandbox_library.h"
+#include "script/sandbox_library.h"
 
 namespace calot {
 

@@ -1,7 +1,7 @@
-#include "lua/coroutines.h"
+#include "script/coroutines.h"
 
-#include "lua/lua_headers.h"
-#include "lua/sandbox.h"
+#include "script/lua_headers.h"
+#include "script/sandbox.h"
 
 namespace calot {
 namespace {

@@ -1,4 +1,4 @@
-#include "lua/watchdog.h"
+#include "script/watchdog.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "lua/module_loader.h"
+#include "script/module_loader.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <string>
 
 #include "base/status.h"
-#include "lua/lua_headers.h"
-#include "lua/safe_path.h"
-#include "lua/sandbox.h"
+#include "script/lua_headers.h"
+#include "script/safe_path.h"
+#include "script/sandbox.h"
 
 namespace calot {
 namespace {

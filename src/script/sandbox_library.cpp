@@ -1,4 +1,4 @@
-#include "lua/sandbox_library.h"
+#include "script/sandbox_library.h"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,12 @@
 #include <string_view>
 
 #include "base/suggest.h"
-#include "lua/binding.h"
-#include "lua/coroutines.h"
-#include "lua/metatables.h"
-#include "lua/module_loader.h"
-#include "lua/ordered_pairs.h"
-#include "lua/sandbox.h"
+#include "script/binding.h"
+#include "script/coroutines.h"
+#include "script/metatables.h"
+#include "script/module_loader.h"
+#include "script/ordered_pairs.h"
+#include "script/sandbox.h"
 
 namespace calot {
 namespace {
