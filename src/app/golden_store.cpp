@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* schema = "calot.golden/1";
+constexpr std::size_t longest_sidecar = 1 << 16;  // bytes: a hundred times what is written
 
 fs::path with_extension(const fs::path& stem, const char* extension) {
   return stem.parent_path() / (stem.filename().string() + extension);  // frame names hold dots
@@ -103,6 +104,7 @@ Failure unfit(const fs::path& path, const std::vector<std::string>& problems) {
   Failure failure{FailureKind::usage, {}};
   for (const std::string& problem : problems)
     failure.problems.push_back({{path.string(), 0, {}}, problem, "restore it, or accept the frame anew"});
+  keep_first(failure.problems);
   return failure;
 }
 
@@ -134,7 +136,7 @@ std::string to_text(Verdict verdict) {
 
 Result<Golden> read_golden(const fs::path& stem) {
   const fs::path path = with_extension(stem, ".json");
-  const Result<std::string> text = read_text(path);
+  const Result<std::string> text = read_text(path, longest_sidecar);
   if (!text) return text.failure();
   std::vector<std::string> wrong;
   Golden golden;

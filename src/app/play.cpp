@@ -7,6 +7,7 @@
 #include "app/output_folder.h"
 #include "app/project.h"
 #include "app/terminal.h"
+#include "base/suggest.h"
 #include "lua/load_exercise.h"
 #include "render/offscreen.h"
 #include "render/png.h"
@@ -124,11 +125,12 @@ std::optional<Failure> check_replay(const Recording& recording, const ExerciseDe
       header.rate == exercise.scene.solver.rate) {
     return std::nullopt;
   }
-  return fail(FailureKind::usage,
-              fmt::format("the recording is of {} ({} at {} Hz), the scenario is {} ({} at {} Hz)",
-                          header.scenario, fmt::join(header.instruments, ", "), header.rate, exercise.id,
-                          fmt::join(names, ", "), exercise.scene.solver.rate),
-              "name the scenario it was made with: --scenario FILE");
+  return fail(
+      FailureKind::usage,
+      fmt::format("the recording is of {} ({} at {} Hz), the scenario is {} ({} at {} Hz)", header.scenario,
+                  shortened(fmt::format("{}", fmt::join(header.instruments, ", ")), 200), header.rate,
+                  exercise.id, fmt::join(names, ", "), exercise.scene.solver.rate),
+      "name the scenario it was made with: --scenario FILE");
 }
 
 SessionResult run(const PlayRequest& request, ExerciseScript& script, World& world, Outputs& outputs,

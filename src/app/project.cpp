@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
@@ -72,12 +73,17 @@ std::optional<Failure> check_scenario_path(const std::string& path) {
   return fail(FailureKind::usage, fmt::format("there is no file {}", path), known.empty() ? "" : hint);
 }
 
-Result<std::string> read_text(const fs::path& path) {
+Result<std::string> read_text(const fs::path& path, std::size_t most) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(FailureKind::usage, fmt::format("cannot read {}", path.string()));
-  std::string text(std::istreambuf_iterator<char>(in), {});
+  std::string text;
+  for (std::array<char, 1 << 16> part; text.size() <= most;
+       text.append(part.data(), static_cast<std::size_t>(in.gcount())))
+    if (in.read(part.data(), part.size()).gcount() == 0) break;
   if (in.bad()) return fail(FailureKind::usage, fmt::format("cannot read {}", path.string()));
-  return text;
+  if (text.size() <= most) return text;
+  return fail(FailureKind::usage, fmt::format("the file has more than {} bytes", most),
+              "restore it: this is none that was written here", {path.string(), 0, {}});
 }
 
 Result<std::string> write_text(const fs::path& path, const std::string& text) {

@@ -27,8 +27,8 @@ std::string scenario_name(const std::filesystem::path& file);
 /// What is wrong with a path that should be a scenario's file, with the nearest one that exists.
 std::optional<Failure> check_scenario_path(const std::string& path);
 
-/// The whole text of a file. Fails (usage) where it cannot be read.
-Result<std::string> read_text(const std::filesystem::path& path);
+/// The whole text of a file. Fails (usage) where it cannot be read or has more than `most` bytes.
+Result<std::string> read_text(const std::filesystem::path& path, std::size_t most = std::size_t{64} << 20);
 /// Fails (usage) where it cannot be written; a file that was there is then left as it was. The value is the path.
 Result<std::string> write_text(const std::filesystem::path& path, const std::string& text);
 /// Makes a folder and its parents. Fails (usage) where it cannot be made or written to.

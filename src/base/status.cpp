@@ -4,6 +4,15 @@
 
 namespace calot {
 
+void keep_first(std::vector<Problem>& problems) {
+  constexpr std::size_t most = 100;
+  if (problems.size() <= most) return;
+  problems[most - 1] = {problems[most - 1].place,
+                        fmt::format("and {} more problems from here on", problems.size() - most + 1),
+                        {}};
+  problems.resize(most);
+}
+
 std::string to_text(const Problem& problem) {
   const Place& place = problem.place;
   std::string at = place.file;

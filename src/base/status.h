@@ -30,6 +30,9 @@ struct Failure {
   std::vector<Problem> problems;
 };
 
+/// Keeps the first hundred, of which the last then says how many there were more: nobody reads a million lines.
+void keep_first(std::vector<Problem>& problems);
+
 /// "file:line: message (hint)" a problem, one a line.
 std::string to_text(const Problem& problem);
 std::string to_text(const Failure& failure);

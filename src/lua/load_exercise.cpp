@@ -172,6 +172,7 @@ Result<Script> Loader::open(bool quiet, FieldCheck& check) {
     return fail(FailureKind::scenario, "the scenario returns no exercise",
                 "end it with: return calot.exercise { ... }");
   script.table = read_exercise(check, root.value(), options_.params);
+  keep_first(script.table.usage);
   if (!script.table.usage.empty()) return Failure{FailureKind::usage, script.table.usage};
   return script;
 }
@@ -260,17 +261,11 @@ void Loader::collect_validation(const std::vector<Problem>& problems) {
 void Loader::collect(const Failure& failure) { collect(failure.problems); }
 
 Failure Loader::all_problems() {
-  constexpr std::size_t most = 100;
   std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
     const auto key = [](const Problem& p) { return p.place.line > 0 ? p.place.line : 1 << 30; };
     return key(a) < key(b);
   });
-  if (problems_.size() > most) {
-    const Problem last{problems_[most - 1].place,
-                       fmt::format("and {} more problems from here on", problems_.size() - most + 1), ""};
-    problems_.resize(most - 1);
-    problems_.push_back(last);
-  }
+  keep_first(problems_);
   return {FailureKind::scenario, std::move(problems_)};
 }
 

@@ -11,6 +11,8 @@
 namespace calot {
 namespace {
 
+constexpr std::size_t longest_shown = 60;  // bytes of a user's text
+
 using Parameter = ParameterDefinition;
 
 std::string to_text(const ParameterValue& value) {
@@ -100,9 +102,10 @@ ReadParameters read_parameters(FieldCheck& check, const Value* params,
         if (const std::optional<ParameterValue> parsed = parse(parameter, given->second)) {
           now = parsed;
         } else {
-          result.usage.push_back({{},
-                                  fmt::format("parameter {} cannot be \"{}\"", name, given->second),
-                                  "give " + wanted(parameter)});
+          result.usage.push_back(
+              {{},
+               fmt::format("parameter {} cannot be \"{}\"", name, shortened(given->second, longest_shown)),
+               "give " + wanted(parameter)});
         }
       }
       parameter.value = to_text(*now);
@@ -113,7 +116,9 @@ ReadParameters read_parameters(FieldCheck& check, const Value* params,
   for (const auto& [name, text] : chosen) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       result.usage.push_back(
-          {{}, fmt::format("the scenario has no parameter \"{}\"", name), suggestion(name, names)});
+          {{},
+           fmt::format("the scenario has no parameter \"{}\"", shortened(name, longest_shown)),
+           suggestion(name, names)});
     }
   }
   return result;

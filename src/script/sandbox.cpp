@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -249,14 +250,15 @@ Result<std::string> Sandbox::read_text(const std::filesystem::path& path) {
   if (file.bad() || (!file.eof() && file.fail()))
     return fail(FailureKind::usage, "the file cannot be read", "check who may read it", place);
   text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte order mark: some editors write one
   if (text.size() > longest_text) {
-    return fail(FailureKind::scenario, "the file is larger than 1 MiB, too large for a script",
-                "move what is large into modules", place);
+    const auto lines = std::count(text.begin(), text.end() - 1, '\n');
+    return fail(FailureKind::scenario, "a script has at most 1 MiB, and this one has more from this line on",
+                "move what is large into modules", {path.string(), static_cast<int>(lines) + 1, {}});
   }
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte order mark: some editors write one
   if (!text.empty() && text.front() == LUA_SIGNATURE[0])
     return fail(FailureKind::scenario, "this is compiled Lua (bytecode); scripts are text", "give the source",
-                place);
+                {path.string(), 1, {}});
   return text;
 }
 
@@ -275,7 +277,8 @@ void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path, const 
   if (luaL_loadbufferx(L, "", 0, name.c_str(), "t") != LUA_OK) lua_error(L);
   lua_Debug info;
   lua_getinfo(L, ">S", &info);
-  files_.emplace(info.short_src, path.string());
+  const std::string& file = files_.emplace(info.short_src, path.string()).first->second;
+  watchdog_.note_place(file, 1);  // of a chunk that compiles for ever Lua tells no line
   if (luaL_loadbufferx(L, text.data(), text.size(), name.c_str(), "t") != LUA_OK) lua_error(L);
 }
 

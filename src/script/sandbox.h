@@ -67,8 +67,8 @@ class Sandbox {
   Result<bool> resume(lua_State* thread, int arguments);
   bool owns(lua_State* thread) const;
 
-  /// The text of a script, without a byte order mark. Failures: usage (it cannot be read), scenario (it is too
-  /// long, or no text).
+  /// The text of a script, without a byte order mark. Failures: usage (it cannot be read), scenario (it is
+  /// longer than 1 MiB, which names the line where it gets so, or no text).
   static Result<std::string> read_text(const std::filesystem::path& path);
   /// Pushes the compiled text of `path`, a text chunk. Raises a Lua error for what is wrong; call it
   /// protected.

@@ -70,8 +70,9 @@ void Watchdog::end_process() {
   const std::string place = file != nullptr ? fmt::format("{}:{}", *file, line_.load()) : script_;
   write_to_stderr(fmt::format(
       "error: {}: the script has been running for {:g} s without simulated time going on and cannot "
-      "be stopped (look for string.find, match or gsub with nested repetitions, or library calls "
-      "over huge texts or ranges); the process ends here\n",
+      "be stopped (look for string.find, match or gsub with nested repetitions, library calls over huge "
+      "texts "
+      "or ranges, or tens of thousands of elseif); the process ends here\n",
       place, seconds_));
   if (flush_) flush_();
   std::_Exit(exit_code_);

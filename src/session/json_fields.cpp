@@ -15,10 +15,15 @@ using Json = nlohmann::json;
 
 const Json nothing;
 
-/// A value as it is written, its beginning where it is long.
+constexpr std::size_t longest_shown = 60;   // bytes
+constexpr std::size_t longest_text = 4096;  // bytes: a path's
+
+/// A value as it is written, its beginning where it is long. What holds others is named only: it may be nested deeper
+/// than a stack reaches.
 std::string shown(const Json& value) {
-  const std::string text = value.dump();
-  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "an object";
+  return shortened(value.dump(), longest_shown);
 }
 
 bool all_texts(const Json& list) {
@@ -52,14 +57,18 @@ const Json* JsonFields::take(const std::string& key) {
 }
 
 void JsonFields::wrong(const std::string& key, const std::string& why) {
-  problems_.push_back(fmt::format("{}{} {}", prefix_, key, why));
+  problems_.push_back(fmt::format("{}{} {}", prefix_, shortened(key, longest_shown), why));
 }
 
 std::string JsonFields::text(const std::string& key) {
   const Json* value = take(key);
   if (value == nullptr) return {};
-  if (value->is_string()) return value->get<std::string>();
-  wrong(key, fmt::format("must be a text, not {}", shown(*value)));
+  if (!value->is_string())
+    wrong(key, fmt::format("must be a text, not {}", shown(*value)));
+  else if (const auto& text = value->get_ref<const std::string&>(); text.size() <= longest_text)
+    return text;
+  else
+    wrong(key, fmt::format("has {} bytes, more than {}", text.size(), longest_text));
   return {};
 }
 

@@ -26,7 +26,7 @@ class JsonFields {
 
   bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
   // Each takes one member; where that is missing or unfit it says so and gives an empty value.
-  std::string text(const std::string& key);
+  std::string text(const std::string& key);  ///< of up to 4096 bytes
   double number(const std::string& key, double least = std::numeric_limits<double>::lowest(),
                 double most = std::numeric_limits<double>::max());
   int integer(const std::string& key, int least, int most);

@@ -16,9 +16,10 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* schema = "calot.recording/1";
-constexpr std::size_t longest_line = 1 << 20;  // bytes
-constexpr double highest_rate = 1e6;           // Hz
-constexpr double time_slack = 1e-6;            // s
+constexpr std::size_t longest_line = 1 << 20;                 // bytes
+constexpr std::size_t longest_file = std::size_t{128} << 20;  // bytes: an hour of two instruments at 200 Hz
+constexpr double highest_rate = 1e6;                          // Hz
+constexpr double time_slack = 1e-6;                           // s
 
 Make parse_make(JsonFields& fields) {
   Make make;
@@ -122,6 +123,7 @@ class Reader {
       text_hash_.add('\n');
     }
     if (problems_.empty() && line_ == 0) add_problem("this is not a recording: it is empty");
+    keep_first(problems_);
     if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
     return std::move(recording_);
   }
@@ -137,6 +139,9 @@ class Reader {
     cut_short_ = in_.eof();  // no line end: the writer was killed in the middle of this line
     const auto size = static_cast<std::size_t>(in_.gcount()) - (in_ && !cut_short_ ? 1U : 0U);
     if (in_.fail()) add_problem(fmt::format("this line has more than {} bytes", longest_line - 1));
+    bytes_ += size;
+    if (bytes_ > longest_file)
+      add_problem(fmt::format("the recording has more than {} MiB up to here", longest_file >> 20));
     text_ = std::string_view(buffer).substr(0, size);
     return problems_.empty();
   }
@@ -173,6 +178,7 @@ class Reader {
   std::string_view text_;
   bool cut_short_ = false;
   int line_ = 0;
+  std::size_t bytes_ = 0;
   Hash text_hash_;
   Recording recording_;
   std::vector<Problem> problems_;

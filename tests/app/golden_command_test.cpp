@@ -1,5 +1,8 @@
 // The golden commands on a project of one small scenario.
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -66,6 +69,33 @@ TEST_F(GoldenProject, OnlyAcceptWithNamesWritesGoldens) {
   EXPECT_EQ(calot({"golden", "accept"}).code, 4);
   EXPECT_EQ(calot({"golden", "report"}).code, 0);
   EXPECT_EQ(goldens(), accepted);
+}
+
+TEST_F(GoldenProject, ASidecarOfAnySizeAndDepthIsRefusedInAFewLines) {
+  Golden blank;
+  blank.image.width = blank.image.height = blank.sidecar.width = blank.sidecar.height = 16;
+  blank.image.rgb.assign(3 * 16 * 16, 0);
+  ASSERT_TRUE(write_golden(golden("t000.00s"), blank));
+  const Json sound = Json::parse(slurp(golden("t000.00s.json")));
+  const auto complaint = [&](const std::string& text) {
+    spill(golden("t000.00s.json"), text);
+    const Result<Golden> read = read_golden(golden("t000.00s"));
+    EXPECT_TRUE(read || read.failure().problems.size() <= 100);
+    return read ? "" : to_text(read.failure());
+  };
+  const auto with = [&](const std::string& key, const std::string& value) {
+    Json json = sound;
+    json.erase(key);
+    return json.dump().insert(1, "\"" + key + "\":" + value + ",");
+  };
+  EXPECT_EQ(complaint(sound.dump() + std::string(10'000, ' ')), "");
+  EXPECT_THAT(complaint(sound.dump() + std::string(1 << 20, ' ')),
+              ::testing::HasSubstr("t000.00s.json: the file has more than 65536 bytes"));
+  EXPECT_THAT(complaint(with("width_px", std::string(30'000, '[') + std::string(30'000, ']'))),
+              ::testing::HasSubstr("width_px must be a whole number from 16 to 4096, not a list"));
+  std::string many = "1";
+  for (int i = 0; i < 1000; ++i) many += fmt::format(",\"k{}\":1", i);
+  EXPECT_THAT(complaint(with("k", many)), ::testing::HasSubstr("and 902 more problems"));
 }
 
 TEST_F(GoldenProject, AScenarioInAFolderIsNamedByItsPathAndTheFolderMayBeLeftOut) {

@@ -440,8 +440,10 @@ TEST(AuthorErrors, OfTextsThatAreTooDeepOrTooLargeNameALine) {
   for (int i = 0; i < 40'000; ++i) deep += "{a=";
   const Failure nested = failure_of(deep);
   EXPECT_EQ(nested.problems[0].place.line, 3) << to_text(nested);
-  const Failure large = failure_of(std::string(2 << 20, ' '));
-  EXPECT_THAT(to_text(large), ::testing::HasSubstr("test.lua: the file is larger than 1 MiB"));
+  std::string lines;  // of a kibibyte each
+  for (int i = 0; i < 2000; ++i) lines += std::string(1023, ' ') + "\n";
+  EXPECT_THAT(to_text(failure_of(lines)),
+              ::testing::HasSubstr("test.lua:1025: a script has at most 1 MiB, and this one has more"));
   // Keys whose paths together are as long as the square of the text.
   std::string wide = "local t = {";
   for (int i = 0; i < 30; ++i) wide.append(4000, 'a').append("={");

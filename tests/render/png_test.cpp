@@ -92,6 +92,15 @@ TEST(Png, FailuresNameFileAndReason) {
   EXPECT_THAT(to_text(text.failure()), ::testing::HasSubstr("not a readable PNG"));
 }
 
+TEST(Png, APictureWiderThanAnyOfOursIsRefusedBeforeItGetsMemory) {
+  const std::string path = folder() + "/a.png";
+  ASSERT_TRUE(write_png(path, random_image(4097, 1)));
+  const Result<Image> back = read_png(path);
+  ASSERT_FALSE(back);
+  EXPECT_THAT(to_text(back.failure()),
+              ::testing::HasSubstr("a.png: picture of 4097 x 1 is larger than 4096 a side"));
+}
+
 TEST(Png, ATruncatedFileIsRefused) {
   const std::string path = folder() + "/a.png";
   ASSERT_TRUE(write_png(path, random_image(64, 64)));

@@ -438,6 +438,13 @@ TEST(SandboxDeathTest, WatchdogEndsACatastrophicPatternAfterFlushing) {
               ::testing::ExitedWithCode(7), "hang.lua:1: the script has been running[^\n]*\nflushed");
 }
 
+TEST(SandboxDeathTest, WatchdogEndsATextThatCompilesForEver) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  std::string chain = "if x then\n";
+  for (int i = 0; i < 70'000; ++i) chain += "elseif x then\n";  // Lua's compiler takes the square of that
+  EXPECT_EXIT(hang(chain + "end"), ::testing::ExitedWithCode(7), "hang.lua:1: .* elseif");
+}
+
 TEST(SandboxDeathTest, WatchdogEndsCallsThatAreTooLongTogether) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(

@@ -206,6 +206,7 @@ TEST_F(RecordingFile, PosesFromElsewhereNeedNoHashes) {
 }
 
 TEST_F(RecordingFile, AnErrorIsNeverThatOfALibrary) {
+  constexpr int deep = 400'000;  // levels: more than a stack of 8 MiB has room for
   const std::string head =
       R"({"schema":"calot.recording/1","scenario":"small","rate_Hz":50,"instruments":["left"])";
   const std::string step = R"({"time_s":0.02,"poses":[[0,0,0,0,0]]})";
@@ -229,6 +230,13 @@ TEST_F(RecordingFile, AnErrorIsNeverThatOfALibrary) {
       {head + "}\n" + step + "\n{\"end\":\"done\",\"steps\":-1}\n", 3, "steps must be a whole number"},
       {head + "}\n" + step + "\n{\"end\":\"gone\",\"steps\":1}\n", 3, "does not end as \"gone\""},
       {head + "}\n" + std::string(1 << 20, ' '), 2, "more than 1048575 bytes"},
+      {"{\"schema\":" + std::string(deep, '[') + std::string(deep, ']') + "}\n", 1,
+       "not a recording of schema"},
+      {head + "}\n{\"time_s\":" + std::string(deep, '[') + std::string(deep, ']') +
+           ",\"poses\":[[0,0,0,0,0]]}\n",
+       2, "time_s must be a number, not a list"},
+      {head + ",\"file\":\"" + std::string(5000, 'f') + "\"}\n", 1, "file has 5000 bytes, more than 4096"},
+      {head + ",\"" + std::string(5000, 'k') + "\":1}\n", 1, "k... (5000 bytes) is not known here"},
       {R"({"schema":"calot.recording/1","scenario":"small","rate_Hz":0,"instruments":["left"]})", 1,
        "rate_Hz is 0"},
   };
@@ -239,6 +247,31 @@ TEST_F(RecordingFile, AnErrorIsNeverThatOfALibrary) {
     EXPECT_NE(complaint().find(words), std::string::npos) << words << ": " << complaint();
     EXPECT_EQ(complaint().find("exception"), std::string::npos) << complaint();
   }
+}
+
+TEST_F(RecordingFile, OfManyProblemsAHundredAreTold) {
+  write({}, "");
+  std::string poses = "[]";
+  for (int i = 1; i < 1000; ++i) poses += ",[]";
+  append("{\"time_s\":0.02,\"poses\":[" + poses + "],\"state_hash\":\"0000000000000000\"}\n");
+  const Result<Recording> recording = read_recording(path_);
+  ASSERT_FALSE(recording);
+  EXPECT_EQ(recording.failure().problems.size(), 100u);
+  EXPECT_NE(complaint().find("poses[98] needs 5 numbers"), std::string::npos);
+  EXPECT_NE(complaint().find(":2: and 901 more problems"), std::string::npos);
+}
+
+TEST_F(RecordingFile, MoreThan128MebibytesAreRefusedAtTheLineThatIsTooMuch) {
+  write({}, "");
+  std::ofstream out(path_, std::ios::app);
+  for (int line = 1; line <= 130; ++line) {  // of a mebibyte with its end; with the header 128 are too much
+    const std::string step = fmt::format(
+        R"({{"time_s":{},"poses":[[0,0,0,0,0],[0,0,0,0,0]],"state_hash":"0000000000000000"}})", line / 50.0);
+    out << step << std::string((1 << 20) - 2 - step.size(), ' ') << "\n";
+  }
+  out.close();
+  EXPECT_NE(complaint().find(path_ + ":129: the recording has more than 128 MiB"), std::string::npos)
+      << complaint();
 }
 
 TEST_F(RecordingFile, ANameThatIsNotUtf8IsWrittenAndReadBack) {
