@@ -153,6 +153,8 @@ struct LaparoscopeDefinition {
 /// after them, as the paper does (section 5).
 enum class ExtensionScheme { condensed, staged };
 
+/// Nodes of the finest level of extensions of all organs together: each takes some 5 kB.
+inline constexpr std::size_t most_finest_nodes = 64'000;
 inline constexpr int most_extension_levels = 4;  ///< a 61-node ball's nodes then stand 0.6 mm apart
 
 struct SolverDefinition {

@@ -60,7 +60,7 @@ std::vector<Named> files_of(const std::vector<std::string>& names) {
 
 /// Brings the world to rest and lets the demo try it: what cannot be filled or reached is found here.
 std::optional<Failure> build(ExerciseScript& script) {
-  const Result<World> world = World::create(script.definition().scene);
+  const Result<World> world = World::create(script.definition().scene, &interrupt_flag());
   if (!world) return script.located(world.failure());
   std::vector<Problem> problems = script.rehearse(world.value());
   if (problems.empty()) return std::nullopt;
@@ -134,6 +134,7 @@ ExitCode check_command(const CheckCommand& command) {
   for (const Named& file : files) {
     if (stop) break;
     const Checked checked = check(file, command.build);
+    if (checked.failure.kind == FailureKind::interrupted) break;
     ++done;
     json["scenarios"].push_back(checked_json(checked));
     if (checked.ok()) {

@@ -27,6 +27,8 @@ inline ExitCode exit_code(FailureKind kind) {
       return ExitCode::simulation;
     case FailureKind::resource:
       return ExitCode::resource;
+    case FailureKind::interrupted:
+      return ExitCode::interrupted;
     case FailureKind::internal:
       return ExitCode::internal;
   }

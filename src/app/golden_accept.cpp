@@ -79,6 +79,7 @@ std::optional<Failure> accept_scenario(const SelectedGolden& selected, const fs:
     return selected.wants(frame.name) ? staging.add(frame) : std::nullopt;
   };
   const Result<Played> played = play(request);
+  if (!played && played.failure().kind == FailureKind::interrupted) return std::nullopt;
   if (!played) return played.failure();
   if (played->session.end == SessionEnd::failed) return played->session.failure;
   if (interrupt_flag()) return std::nullopt;

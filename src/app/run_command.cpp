@@ -110,9 +110,11 @@ ExitCode run_command(const RunCommand& command) {
   const Result<Played> played = play(request);
   const std::string file = shell_word(command.scenario);
   if (!played) {
-    const bool usage = played.failure().kind == FailureKind::usage;
-    return print_failure(played.failure(), usage ? "calot run --help" : "calot check --build " + file,
-                         command.json);
+    const FailureKind kind = played.failure().kind;
+    const std::string next = kind == FailureKind::usage         ? "calot run --help"
+                             : kind == FailureKind::interrupted ? "calot run " + file
+                                                                : "calot check --build " + file;
+    return print_failure(played.failure(), next, command.json);
   }
   return conclude(played.value(), command,
                   {"calot run " + file, "calot check --build " + file,

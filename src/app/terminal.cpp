@@ -32,6 +32,8 @@ const char* to_text(FailureKind kind) {
       return "simulation";
     case FailureKind::resource:
       return "resource";
+    case FailureKind::interrupted:
+      return "interrupted";
     case FailureKind::internal:
       return "internal";
   }

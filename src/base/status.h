@@ -23,7 +23,7 @@ struct Problem {
 };
 
 /// The kind of a failure; the program's exit codes follow from it (see app/exit_code.h).
-enum class FailureKind { usage, scenario, simulation, resource, internal };
+enum class FailureKind { usage, scenario, simulation, resource, interrupted, internal };
 
 struct Failure {
   FailureKind kind = FailureKind::internal;

@@ -189,6 +189,8 @@ std::string to_text(NewtonStatus status) {
       return "the iteration limit was reached";
     case NewtonStatus::out_of_memory:
       return "out of memory";
+    case NewtonStatus::stopped:
+      return "stopped";
   }
   return "unknown";
 }
@@ -345,6 +347,10 @@ NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSet
     if (result.status != NewtonStatus::converged || it.balanced()) return result;
     if (result.iterations == settings.max_iterations) {
       result.status = NewtonStatus::iteration_limit;
+      return result;
+    }
+    if (settings.stop && settings.stop()) {
+      result.status = NewtonStatus::stopped;
       return result;
     }
     ++result.iterations;

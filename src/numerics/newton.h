@@ -3,6 +3,7 @@
 // a line search on the augmented Lagrangian (Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 17 and
 // 18).
 
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -53,9 +54,18 @@ struct NewtonSettings {
   double tolerance = 1e-6;              ///< residual and increment, dimensionless
   double constraint_tolerance = 1e-10;  ///< relative
   int max_iterations = 80;
+  std::function<bool()> stop{};  ///< asked before each iteration: true ends the solve there; may be empty
 };
 
-enum class NewtonStatus { converged, not_finite, mechanism, stalled, iteration_limit, out_of_memory };
+enum class NewtonStatus {
+  converged,
+  not_finite,
+  mechanism,
+  stalled,
+  iteration_limit,
+  out_of_memory,
+  stopped
+};
 
 struct NewtonResult {
   NewtonStatus status = NewtonStatus::converged;

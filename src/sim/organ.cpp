@@ -134,7 +134,15 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
 }
 
 /// No tool has moved yet: the advice is about the organ.
-Failure fill_failure(const NewtonResult& result, const std::string& organ) {
+Failure fill_failure(const NewtonResult& result, const std::string& organ, const FillingLimits* limits) {
+  if (result.status == NewtonStatus::stopped && limits->node_iterations > 0)
+    return fail(FailureKind::interrupted, fmt::format("interrupted while organ '{}' was filled", organ));
+  if (result.status == NewtonStatus::stopped)
+    return fail(
+        FailureKind::resource,
+        fmt::format("organ '{}' takes too long to fill: more Newton iterations than fit half a minute",
+                    organ),
+        "give it fewer nodes, or a volume or pressure nearer to what it holds unstressed", {"", 0, ".bile"});
   Failure failure = solve_failure(result, organ, "while it was filled");
   Problem& problem = failure.problems.front();
   if (result.status != NewtonStatus::mechanism)
@@ -144,7 +152,8 @@ Failure fill_failure(const NewtonResult& result, const std::string& organ) {
 }
 
 /// Volume and pressure that the author asked for, by small steps from the unstressed shape.
-Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings& settings) {
+Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings& settings,
+                  const FillingLimits* limits) {
   const BileDefinition& bile = organ.definition.bile;
   const Bile& liquid = *organ.body.bile();
   const double unstressed = liquid.volume(organ.state.x);
@@ -159,7 +168,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
       organ.state.datum_pressure = next;
       const NewtonResult result =
           settle(organ.body, loads, settings, organ.work, organ.search, organ.state, true);
-      if (!result.converged()) return fill_failure(result, organ.definition.name);
+      if (!result.converged()) return fill_failure(result, organ.definition.name, limits);
       settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
       aim = next;
     }
@@ -181,7 +190,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
       const NewtonResult result =
           settle(organ.body, loads, settings, organ.work, organ.search, organ.state, false);
-      if (!result.converged()) return fill_failure(result, organ.definition.name);
+      if (!result.converged()) return fill_failure(result, organ.definition.name, limits);
     }
   }
   return true;
@@ -239,14 +248,18 @@ Failure at_organ(Failure failure, std::size_t index) {
 
 std::vector<Problem> mesh_problems(const SceneDefinition& scene) {
   std::vector<Problem> problems;
-  std::size_t nodes = 0;
+  std::size_t nodes = 0, extended = 0;
   for (std::size_t i = 0; i < scene.anatomy.organs.size() && i < most_organs; ++i) {
     const OrganDefinition& organ = scene.anatomy.organs[i];
     const bool file = std::holds_alternative<MeshFile>(organ.shape);
-    if (!file) nodes += static_cast<std::size_t>(std::clamp(organ.nodes, 0, most_nodes));
+    const auto count = [&](std::size_t more) {
+      nodes += more;
+      if (organ.extensions) extended += more;
+    };
+    if (!file) count(static_cast<std::size_t>(std::clamp(organ.nodes, 0, most_nodes)));
     if (!file) continue;
     const Result<TriMesh> mesh = sound_mesh(organ);
-    if (mesh) nodes += mesh->points.size();
+    if (mesh) count(mesh->points.size());
     if (mesh && nodes > static_cast<std::size_t>(most_nodes))
       problems.push_back(
           {{"", 0, fmt::format("scene.anatomy.organs[{}].shape", i + 1)},
@@ -255,6 +268,12 @@ std::vector<Problem> mesh_problems(const SceneDefinition& scene) {
     if (mesh) continue;
     for (Problem& problem : at_organ(mesh.failure(), i).problems) problems.push_back(std::move(problem));
   }
+  const int levels = std::clamp(scene.solver.extension_levels, 0, most_extension_levels);
+  if (extended << (2 * levels) > most_finest_nodes)
+    problems.push_back({{"", 0, "scene.solver.extensions.levels"},
+                        fmt::format("{} levels of the organs' {} nodes are {} nodes, more than {}", levels,
+                                    extended, extended << (2 * levels), most_finest_nodes),
+                        "give fewer levels, or the organs fewer nodes"});
   return problems;
 }
 
@@ -270,7 +289,7 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
 }
 
 Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
-                         double tolerance, int levels) {
+                         double tolerance, int levels, FillingLimits* limits) {
   Result<TriMesh> control = control_mesh(definition);
   if (!control) return control.failure();
   ShellBody::Setup setup;
@@ -320,8 +339,14 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
                     "move the organ up or the plane down", {"", 0, "scene.anatomy.support.point"});
   NewtonSettings settings;
   settings.tolerance = tolerance;
+  if (limits != nullptr)
+    settings.stop = [limits, nodes = static_cast<std::int64_t>(control->points.size())] {
+      if (limits->stop != nullptr && *limits->stop) return true;
+      limits->node_iterations -= nodes;
+      return limits->node_iterations <= 0;
+    };
   organ.search.own.active = !swells(organ);
-  Result<bool> filled = fill(organ, loads, settings);
+  Result<bool> filled = fill(organ, loads, settings, limits);
   organ.search.own.active = true;
   if (!filled) return filled.failure();
   organ.body.keep_in_equilibrium(organ.state);

@@ -266,7 +266,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-Result<World> World::create(const SceneDefinition& scene) {
+Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop) {
   std::vector<Problem> problems = validate(scene);
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   auto impl = std::make_unique<Impl>();
@@ -281,9 +281,10 @@ Result<World> World::create(const SceneDefinition& scene) {
   }
   ContactLoads still;
   if (impl->field.support) still.shapes.push_back(contact_shape(*impl->field.support));
+  FillingLimits limits{stop};
   for (const OrganDefinition& definition : scene.anatomy.organs) {
     Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance,
-                                     definition.extensions ? scene.solver.extension_levels : 0);
+                                     definition.extensions ? scene.solver.extension_levels : 0, &limits);
     if (!organ) return at_organ(organ.failure(), impl->field.organs.size());
     impl->field.organs.push_back(std::move(organ).value());
   }

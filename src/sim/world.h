@@ -1,6 +1,7 @@
 #pragma once
 // The simulated operating field: const definition in, mutable state inside, one step at a time.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,8 +20,9 @@ struct FieldState;
 class World {
  public:
   /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
-  /// (validation) or simulation (the rest state could not be found).
-  static Result<World> create(const SceneDefinition& scene);
+  /// (validation), simulation (the rest state could not be found), resource (it would take too long) or interrupted
+  /// (`stop` became true).
+  static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();

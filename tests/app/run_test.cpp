@@ -432,6 +432,31 @@ TEST_F(Run, AnInterruptedCheckSaysHowFarItCameAndExitsWithTwo) {
   expect_next_command(outcome);
 }
 
+TEST_F(Run, AnInterruptionWhileTheOrgansAreFilledEndsItWithTwo) {
+  std::string text = small_scenario();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("nodes = 61", "nodes = 1000, bile = { fill_volume = 200 * calot.units.mL }");  // takes ten seconds
+  replace("scene = function()", "scene = function() print('here')");
+  spill(folder_ / "slow.lua", text);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"run", "slow.lua", "--no-render"}, {"check", "--build", "slow.lua"}}) {
+    fs::remove(folder_ / ".stderr");  // of the command before
+    const Outcome outcome = calot(command, [&](pid_t pid) {
+      EXPECT_TRUE(wait_for_lines(folder_ / ".stderr", 1));
+      kill(pid, SIGINT);
+    });
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(command[0] == "run" ? "interrupted while organ 'ball' was filled"
+                                                   : "0 of 1 scenarios were checked"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    expect_next_command(outcome);
+  }
+}
+
 TEST_F(Run, APlaceOutOfReachIsSentToTheCheckThatFindsIt) {
   spill(folder_ / "far.lua",
         small_scenario("t:step('reach', 'Reach out'); t:wait(3 * s)",

@@ -270,6 +270,20 @@ TEST(Newton, ValueThatIsNotFiniteIsReported) {
   EXPECT_EQ(solve_equilibrium(net, {}, work, x, multiplier).status, NewtonStatus::not_finite);
 }
 
+TEST(Newton, ASolveThatIsToldToStopDoesSoBeforeTheNextIteration) {
+  Net net(false);
+  net.load *= 40;
+  NewtonSettings settings;
+  int asked = 0;
+  settings.stop = [&] { return ++asked == 3; };
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  const NewtonResult result = solve_equilibrium(net, settings, work, x, multiplier);
+  EXPECT_EQ(result.status, NewtonStatus::stopped);
+  EXPECT_EQ(result.iterations, 2);
+}
+
 TEST(Newton, IterationLimitIsReportedWithTheLastIterate) {
   Net net(false);
   net.load *= 40;
@@ -356,7 +370,7 @@ TEST(Newton, EveryStatusHasItsWords) {
   std::vector<std::string> words;
   for (NewtonStatus status :
        {NewtonStatus::converged, NewtonStatus::not_finite, NewtonStatus::mechanism, NewtonStatus::stalled,
-        NewtonStatus::iteration_limit, NewtonStatus::out_of_memory})
+        NewtonStatus::iteration_limit, NewtonStatus::out_of_memory, NewtonStatus::stopped})
     words.push_back(to_text(status));
   for (std::size_t i = 0; i < words.size(); ++i) {
     EXPECT_FALSE(words[i].empty());
