@@ -125,7 +125,11 @@ void add_factor(Hash& hash, const NewtonWorkspace& work) {
 }
 
 void add_tool(Hash& hash, const Tool& tool) {
-  for (bool flag : {tool.jaw_stopped, tool.slipping, tool.touched, tool.over_limit}) hash.add(flag);
+  const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0);
+  hash.add(tool.jaw_stopped);
+  hash.add(static_cast<unsigned char>(grip));
+  hash.add(tool.touched);
+  hash.add(tool.over_limit);
   for (double v : {tool.pose.pitch, tool.pose.yaw, tool.pose.insertion, tool.pose.roll, tool.pose.jaw})
     hash.add(v);
 }

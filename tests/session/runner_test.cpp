@@ -10,6 +10,7 @@
 #include "session/report.h"
 #include "session/session_for_tests.h"
 #include "session/skin_difference.h"
+#include "support/text_files.h"
 
 namespace calot {
 namespace {
@@ -25,6 +26,27 @@ World small_world() {
 SessionResult played(test::TimedScript& script, InputSource& source, SessionOptions options = {}) {
   World world = small_world();
   return run_session(world, script, source, options);
+}
+
+struct Recorded {
+  SessionResult run;
+  Recording recording;  ///< of it, read back
+};
+
+Recorded recorded(test::TimedScript& script, InputSource& source) {
+  const test::Folder folder;
+  const std::string path = (folder.path() / "r.jsonl").string();
+  World world = small_world();
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(path, recording_header(script.definition(), world, "small.lua"));
+  EXPECT_TRUE(writer);
+  SessionOptions options;
+  options.recording = &writer.value();
+  Recorded out{run_session(world, script, source, options), {}};
+  Result<Recording> recording = read_recording(path);
+  EXPECT_TRUE(recording) << to_text(recording.failure());
+  if (recording) out.recording = std::move(recording).value();
+  return out;
 }
 
 bool has_event(const SessionResult& result, EventKind kind) {
@@ -84,33 +106,20 @@ TEST(Runner, ShowsEveryStateOnceAndTheLastOneAsLast) {
 }
 
 TEST(Runner, AReplayGoesThroughTheSameStatesAsTheRun) {
-  std::string folder = (fs::temp_directory_path() / "calot-runner-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
   test::TimedScript script(0.4);
-  World world = small_world();
-  Result<RecordingWriter> writer =
-      RecordingWriter::create(folder + "/r.jsonl", recording_header(script.definition(), world, "small.lua"));
-  ASSERT_TRUE(writer);
-  SessionOptions options;
-  options.recording = &writer.value();
-  const SessionResult run = run_session(world, script, script.demo(), options);
-
-  const Result<Recording> recording = read_recording(folder + "/r.jsonl");
-  fs::remove_all(folder);
-  ASSERT_TRUE(recording) << to_text(recording.failure());
-  EXPECT_EQ(recording->end, "done");
+  const auto [run, recording] = recorded(script, script.demo());
+  EXPECT_EQ(recording.end, "done");
   EXPECT_TRUE(has_event(run, EventKind::contact)) << "states that nothing touches are easily the same";
-  ReplaySource source(recording.value());
+  ReplaySource source(recording);
   test::TimedScript again(0.4);
   SessionOptions replaying;
   replaying.end_with_source = true;
   const SessionResult replay = played(again, source, replaying);
   EXPECT_EQ(replay.state_hashes, run.state_hashes);
-  ASSERT_EQ(recording->steps.size() + 1, run.state_hashes.size());
-  EXPECT_EQ(recording->header.state_hash, run.state_hashes[0]);
-  for (std::size_t i = 0; i < recording->steps.size(); ++i) {
-    EXPECT_EQ(recording->steps[i].state_hash, run.state_hashes[i + 1]);
-  }
+  ASSERT_EQ(recording.steps.size() + 1, run.state_hashes.size());
+  EXPECT_EQ(recording.header.state_hash, run.state_hashes[0]);
+  for (std::size_t i = 0; i < recording.steps.size(); ++i)
+    EXPECT_EQ(recording.steps[i].state_hash, run.state_hashes[i + 1]);
 }
 
 TEST(Runner, AReplayFailsWhereTheRunDid) {
@@ -123,23 +132,12 @@ TEST(Runner, AReplayFailsWhereTheRunDid) {
       return std::optional<StepInput>(input);
     }
   } source;
-  std::string folder = (fs::temp_directory_path() / "calot-runner-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
   test::TimedScript script(5);
-  World world = small_world();
-  Result<RecordingWriter> writer =
-      RecordingWriter::create(folder + "/r.jsonl", recording_header(script.definition(), world, "small.lua"));
-  ASSERT_TRUE(writer);
-  SessionOptions options;
-  options.recording = &writer.value();
-  const SessionResult run = run_session(world, script, source, options);
+  const auto [run, recording] = recorded(script, source);
   EXPECT_EQ(run.end, SessionEnd::failed);
-  const Result<Recording> recording = read_recording(folder + "/r.jsonl");
-  fs::remove_all(folder);
-  ASSERT_TRUE(recording) << to_text(recording.failure());
-  EXPECT_EQ(recording->end, "failed");
-  EXPECT_EQ(recording->steps.size(), 4u) << "the step that could not be taken too";
-  ReplaySource again(recording.value());
+  EXPECT_EQ(recording.end, "failed");
+  EXPECT_EQ(recording.steps.size(), 4u) << "the step that could not be taken too";
+  ReplaySource again(recording);
   const SessionResult replay = played(script, again);
   EXPECT_EQ(replay.end, SessionEnd::failed);
   EXPECT_EQ(to_text(replay.failure), to_text(run.failure));
