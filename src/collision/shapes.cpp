@@ -131,11 +131,6 @@ Mat3 distance_hessian(const Shape& shape, const Vec3& x, const DistanceSlope& sl
   return std::visit([&](const auto& one) { return curvature(one, x, slope); }, shape);
 }
 
-DistanceSample sample_distance(const Shape& shape, const Vec3& x) {
-  const DistanceSlope at = distance_slope(shape, x);
-  return {at.distance, at.gradient, distance_hessian(shape, x, at)};
-}
-
 double distance_change(const Shape& a, const Shape& b) {
   return std::visit(
       [](const auto& one, const auto& other) {

@@ -33,23 +33,17 @@ struct RoundedBox {
 
 using Shape = std::variant<Plane, Capsule, RoundedBox>;
 
-struct DistanceSample {
+double signed_distance(const Shape& shape, const Vec3& x);
+
+struct DistanceSlope {
   double distance = 0;           ///< m, negative inside
   Vec3 gradient = Vec3::Zero();  ///< by the point, unit length
-  Mat3 hessian = Mat3::Zero();   ///< by the point, 1/m
 };
-
-double signed_distance(const Shape& shape, const Vec3& x);
+/// Distance and gradient, and the Hessian by the point (1/m) where those are known already.
 /// Exact inside and out. The Hessian is zero (to rounding) on flat faces and jumps where a flat, an edge and
 /// a corner meet. Where the direction outward is not unique (a capsule's axis, a box's inner box at equal
 /// depths) one of the candidates is returned, with a zero Hessian: values stay finite. All three shapes are
 /// convex, and so is their signed distance.
-DistanceSample sample_distance(const Shape& shape, const Vec3& x);
-/// The same in two: distance and gradient, and the Hessian (1/m) where those are known already.
-struct DistanceSlope {
-  double distance = 0;  ///< m
-  Vec3 gradient = Vec3::Zero();
-};
 DistanceSlope distance_slope(const Shape& shape, const Vec3& x);
 Mat3 distance_hessian(const Shape& shape, const Vec3& x, const DistanceSlope& slope);
 

@@ -73,16 +73,11 @@ inline void spread(const StencilTable& table, const std::vector<Vec3>& values, V
   for (int r = 0; r < table.rows(); ++r) spread(table, r, values[r], nodes);
 }
 
-/// Points as the coordinates that blend() takes, and back.
+/// Points as the coordinates that blend() takes.
 inline VecX to_coordinates(const std::vector<Vec3>& points) {
   VecX x(3 * static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) x.segment<3>(3 * static_cast<Eigen::Index>(i)) = points[i];
   return x;
-}
-inline std::vector<Vec3> to_points(const VecX& x) {
-  std::vector<Vec3> points(x.size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = x.segment<3>(3 * static_cast<Eigen::Index>(i));
-  return points;
 }
 
 /// A point of a control face: u + v <= 1, corners (0,0), (1,0), (0,1) are the face's vertices 0, 1, 2.

@@ -26,10 +26,6 @@ Mat3 camera_axes(const SceneCamera& camera);
 /// Clip space from places relative to the camera (m), for the undistorted picture.
 Eigen::Matrix4d inner_projection(const SceneCamera& camera, const Lens& lens, int width, int height);
 
-/// Where a point of the world is seen, px from the top left of a width x height picture, distortion included.
-/// The point must lie in front of the camera.
-Vec2 seen_at(const SceneCamera& camera, const Lens& lens, int width, int height, const Vec3& point);
-
 /// Clip space of the light's shadow map from places relative to the camera.
 Eigen::Matrix4d shadow_projection(const SceneCamera& camera);
 

@@ -6,6 +6,16 @@
 
 namespace calot::test {
 
+struct DistanceSample {
+  double distance = 0;
+  Vec3 gradient = Vec3::Zero();
+  Mat3 hessian = Mat3::Zero();
+};
+inline DistanceSample sample_distance(const Shape& shape, const Vec3& x) {
+  const DistanceSlope at = distance_slope(shape, x);
+  return {at.distance, at.gradient, distance_hessian(shape, x, at)};
+}
+
 inline Vec3 random_direction(Rng& rng) {
   Vec3 v = random_vector(rng, 1.0);
   while (v.norm() < 0.1 || v.norm() > 1.0) v = random_vector(rng, 1.0);

@@ -80,7 +80,7 @@ TEST(SafeShare, SlidingAlongAPlaneOrLeavingAShapeIsFree) {
     EXPECT_EQ(safe_share({0, 0, 1e-9}, slide, plane, keep), 1.0);
     for (const Shape& shape : random_shapes(rng)) {
       const Vec3 x = random_vector(rng, 15e-3);
-      const DistanceSample at = sample_distance(shape, x);
+      const test::DistanceSample at = test::sample_distance(shape, x);
       if (at.distance <= 0) continue;
       EXPECT_EQ(safe_share(x, 50e-3 * at.gradient, shape, keep), 1.0);
     }

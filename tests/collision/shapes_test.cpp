@@ -10,11 +10,13 @@
 namespace calot {
 namespace {
 
+using test::DistanceSample;
 using test::random_box;
 using test::random_capsule;
 using test::random_pose;
 using test::random_shapes;
 using test::random_vector;
+using test::sample_distance;
 
 constexpr double step = 1e-7;  // m, of finite differences; the shapes measure millimetres
 

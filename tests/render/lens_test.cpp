@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
+#include "render/seen_at.h"
 
 namespace calot {
 namespace {
@@ -38,7 +39,7 @@ TEST(Lens, TheFieldsEdgeIsSeenAtHalfTheFieldOfView) {
     const double turn = rng.uniform(0, 6.28), half = 0.5 * camera.field_of_view;
     const Vec3 local(std::sin(half) * std::cos(turn), std::sin(half) * std::sin(turn), std::cos(half));
     const Vec3 point = camera.position + 0.07 * (camera_axes(camera).transpose() * local);
-    const Vec2 seen = seen_at(camera, lens, 960, 540, point) - Vec2(480, 270);
+    const Vec2 seen = test::seen_at(camera, lens, 960, 540, point) - Vec2(480, 270);
     EXPECT_NEAR(seen.norm(), lens.field_radius(540), 1e-6);  // Newton's remainder
     EXPECT_NEAR(std::remainder(std::atan2(-seen.y(), seen.x()) - turn, 2 * 3.14159265358979), 0, 1e-9);
   }
@@ -52,7 +53,7 @@ TEST(Lens, TheMiddleIsMagnifiedAndOrderKept) {
   for (int i = 1; i <= 10; ++i) {
     const double tangent = std::tan(0.5 * camera.field_of_view) * i / 10;
     const Vec3 point = camera.direction + camera_axes(camera).transpose() * Vec3(tangent, 0, 0);
-    const double x = seen_at(camera, lens, 960, 540, point).x();
+    const double x = test::seen_at(camera, lens, 960, 540, point).x();
     EXPECT_GT(x, last);
     EXPECT_LT(x - last, last_step);
     last_step = x - last;

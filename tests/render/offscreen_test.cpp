@@ -9,6 +9,7 @@
 #include "render/image_compare.h"
 #include "render/osmesa_context.h"
 #include "render/png.h"
+#include "render/seen_at.h"
 #include "support/mock_organ.h"
 
 namespace calot {
@@ -192,7 +193,8 @@ TEST(Offscreen, ThingsAreDrawnWhereTheLensSaysTheyAreSeen) {
     SceneMesh mark = plate(Material::fat, 90e-3, 2.5e-3);
     for (Vec3& p : mark.positions) p += Vec3(place.x(), 0, place.y());
     scene.meshes.push_back(mark);
-    const Vec2 expected = seen_at(scene.camera, renderer.lens(), 400, 300, Vec3(place.x(), 90e-3, place.y()));
+    const Vec2 expected =
+        test::seen_at(scene.camera, renderer.lens(), 400, 300, Vec3(place.x(), 90e-3, place.y()));
     // The mark is some 11 px wide and unevenly lit: its bright part centres within a pixel or so.
     EXPECT_LT((bright_centre(draw(renderer, scene), 60) - expected).norm(), 1.2) << place.transpose();
   }
@@ -233,7 +235,7 @@ TEST(Offscreen, AShadowFallsOnTheSideAwayFromTheLight) {
   const Image image = draw(renderer, scene);
   // Edge of the plate seen at +-5/60; its shadow on the wall reaches from -15 mm to 0, seen to -15/90.
   const auto wall_at = [&](double x) {
-    return seen_at(scene.camera, renderer.lens(), 300, 300, Vec3(x, 90e-3, 0));
+    return test::seen_at(scene.camera, renderer.lens(), 300, 300, Vec3(x, 90e-3, 0));
   };
   const double shaded = brightness_around(image, wall_at(-11.5e-3), 3);
   EXPECT_LT(shaded, 0.7 * brightness_around(image, wall_at(11.5e-3), 3));

@@ -147,7 +147,7 @@ TEST(Instrument, AJawFillsExactlyItsThicknessWidthAndLength) {
       for (const Vec3& face : {Vec3(0, 0, l / 2), Vec3(t, 0, l / 2), Vec3(t / 2, w / 2, l / 2),
                                Vec3(t / 2, -w / 2, l / 2), Vec3(t / 2, 0, 0), Vec3(t / 2, 0, l)})
         EXPECT_NEAR(signed_distance(part(pose, 1 + jaw), frame * face), 0.0, rounding);
-      const DistanceSample pad = sample_distance(part(pose, 1 + jaw), frame * Vec3(-1 * mm, 0, l / 2));
+      const DistanceSlope pad = distance_slope(part(pose, 1 + jaw), frame * Vec3(-1 * mm, 0, l / 2));
       EXPECT_NEAR(pad.distance, 1 * mm, rounding);
       EXPECT_LT((pad.gradient + frame.linear().col(0)).norm(), 1e-12);  // out of the pad is the frame's -x
     }
