@@ -302,12 +302,6 @@ void Shell::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   if (current >= 0) element.scatter(faces_[current], matrix);
 }
 
-double Shell::rest_area() const {
-  double sum = 0;
-  for (double area : point_areas()) sum += area;
-  return sum;
-}
-
 std::vector<double> Shell::point_areas() const {
   std::vector<double> out;
   for (const Points& points : points_)

@@ -71,7 +71,6 @@ class Shell {
   /// Adds the exact Hessian (N/m).
   void add_hessian(const VecX& x, BlockMatrix& matrix) const;
 
-  double rest_area() const;                 ///< m^2
   std::vector<double> point_areas() const;  ///< rest area of each row of the table, m^2
   /// Largest principal stretch over the quadrature points.
   double max_stretch(const VecX& x) const;

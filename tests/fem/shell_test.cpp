@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/areas.h"
 #include "support/bodies.h"
 #include "support/derivatives.h"
 
@@ -123,7 +124,7 @@ TEST(Shell, ForcesOfAFreeBodyBalance) {
 
 TEST(Shell, RestHoldsNoEnergyAndNoForce) {
   for (const Body& body : bodies()) {
-    const double scale = 100e3 * 2e-3 * body.shell.rest_area();  // J at a strain of order 1
+    const double scale = 100e3 * 2e-3 * test::rest_area(body.shell);  // J at a strain of order 1
     EXPECT_NEAR(body.shell.value(body.rest), 0, 1e-13 * scale);
     EXPECT_LT(gradient_of(body.shell, body.rest).norm(), 1e-11 * scale / 20e-3);
     EXPECT_NEAR(body.shell.max_stretch(body.rest), 1.0, 1e-6);  // a root of rounding
@@ -179,7 +180,7 @@ TEST(Shell, ConstantStrainPatchIsExactOnARegularSheet) {
     for (const auto& rule : {three_point_rule(), six_point_rule()}) {
       const Body body = make_body(sheet, bends, rule);
       const VecX x = mapped(body.rest, f);
-      EXPECT_NEAR(body.shell.rest_area(), 80e-3 * 60e-3, 1e-12 * 80e-3 * 60e-3);
+      EXPECT_NEAR(test::rest_area(body.shell), 80e-3 * 60e-3, 1e-12 * 80e-3 * 60e-3);
       EXPECT_NEAR(body.shell.value(x), energy_density(f) * 80e-3 * 60e-3,
                   1e-12 * energy_density(f) * 80e-3 * 60e-3);
       const auto [inner, outer] = inner_and_outer_force(body, x, 40e-3, 30e-3, 15e-3);
@@ -210,8 +211,8 @@ TEST(Shell, ConstantStrainPatchOnAnIrregularSheetIsExactInEnergyAndBalancedToQua
     const Body body = make_body(sheet, true, k == 0 ? three_point_rule() : six_point_rule());
     const VecX x = mapped(body.rest, f);
     // An affine map of control points maps the limit surface alike: the strain is constant to rounding.
-    EXPECT_NEAR(body.shell.value(x), energy_density(f) * body.shell.rest_area(),
-                1e-12 * energy_density(f) * body.shell.rest_area());
+    EXPECT_NEAR(body.shell.value(x), energy_density(f) * test::rest_area(body.shell),
+                1e-12 * energy_density(f) * test::rest_area(body.shell));
     // Interior forces vanish as far as the rule integrates products of the basis' derivatives. (Where all
     // valences are six they vanish to rounding under any symmetric rule.)
     const auto [inner, outer] = inner_and_outer_force(body, x, 40e-3, 30e-3, 15e-3);
@@ -252,7 +253,7 @@ TEST(Shell, FibresOfAFlatSheetRunAtTheirAngleFromTheProjectedAxis) {
     for (double side : {angle, -angle})
       density +=
           fibre_density((f * Eigen::Vector2d(std::cos(turn + side), std::sin(turn + side))).squaredNorm());
-    const double expected = projected * projected * density * body.shell.rest_area();
+    const double expected = projected * projected * density * test::rest_area(body.shell);
     EXPECT_GT(expected, 0);
     // The isotropic energy, which the difference cancels, is rounded at 1e-14 of itself.
     EXPECT_NEAR(body.shell.value(x) - bare.shell.value(x), expected, 1e-12 * bare.shell.value(x));
@@ -292,7 +293,7 @@ TEST(Shell, FibresOfAGrowingSphereHoldTwoThirdsOfTheEnergyTheyHadWithoutFading) 
     const Body body = make_body(test::sphere(nodes), fibrous(false), three_point_rule());
     const Body bare = make_body(test::sphere(nodes), plain, three_point_rule());
     const VecX x = stretch * body.rest;
-    const double exact = 2.0 / 3.0 * 2 * fibre_density(stretch * stretch) * body.shell.rest_area();
+    const double exact = 2.0 / 3.0 * 2 * fibre_density(stretch * stretch) * test::rest_area(body.shell);
     errors.push_back(std::abs((body.shell.value(x) - bare.shell.value(x)) / exact - 1));
   }
   // Measured 4.0e-4 and 2.3e-5: the quadrature's order, 4 in the mesh size, which is halved.

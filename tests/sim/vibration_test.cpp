@@ -10,6 +10,7 @@
 #include "numerics/dense_cholesky.h"
 #include "rig.h"
 #include "skin/subdivision.h"
+#include "support/areas.h"
 
 namespace calot {
 namespace {
@@ -83,7 +84,7 @@ TEST(Vibration, AStiffBallOnSpringsSwaysAtTheRootOfSpringOverMass) {
     const Result<double> found = lowest_frequency(organ.body, {}, organ.state, mass);
     ASSERT_TRUE(found) << to_text(found.failure());
     // Ideal bile does not turn with its wall, so the ball rolls at a higher frequency than it sways: wall alone.
-    const double springs = stiffness * organ.body.shell().rest_area();
+    const double springs = stiffness * test::rest_area(organ.body.shell());
     const double all = mass.wall() + bile_density * organ.state.volume;
     const double swaying = std::sqrt(springs / all) / (2 * std::numbers::pi);
     EXPECT_NEAR(found.value() / swaying, 1, 0.01) << "the wall gives a little";
