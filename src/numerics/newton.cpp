@@ -353,7 +353,7 @@ NewtonResult solve_equilibrium(const ConstrainedEnergy& problem, const NewtonSet
       result.status = NewtonStatus::stopped;
       return result;
     }
-    ++result.iterations;
+    if (result.iterations++ == 0) problem.prepare(work);
     if (!it.chord() && !it.newton()) return result;
   }
 }
@@ -370,6 +370,7 @@ void NewtonWorkspace::restore(const Kept& kept) {
 NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
                                double multiplier, bool fresh) {
   NewtonResult result;
+  problem.prepare(work);
   if (!fresh && serves(work, problem)) return result;
   work.constraint_gradient.resize(0);
   if (problem.constrained()) problem.constraint(x, work.constraint_gradient);

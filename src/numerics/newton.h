@@ -46,6 +46,9 @@ class ConstrainedEnergy {
   virtual int places() const { return std::numeric_limits<int>::max(); }
   /// Size of the body, m: the scale of an increment.
   virtual double length_scale() const = 0;
+  /// Called before a tangent is asked for, and before the first step of a solve that does not begin in balance: makes
+  /// room in the matrix for what the solve may couple.
+  virtual void prepare(struct NewtonWorkspace&) const {}
   /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
   virtual double safe_share(const VecX& x, const VecX& step) const = 0;
 };

@@ -168,8 +168,12 @@ MissedMotion missed_by(const Prediction& answer, double share, const BodyState& 
           iterations};
 }
 
-/// Answer of an organ to tools that move from `from` to `to`, and the share of it that is safe.
-Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to,
+/// Whether the last factor answered the last motion well: a new one takes as long as three iterations.
+bool factor_serves(const Organ& organ) { return organ.missed.dx.size() > 0 && organ.missed.iterations <= 3; }
+
+/// Answer of an organ to tools that move from `from` to `to`, and the share of it that is safe. With `fresh` the tangent
+/// is factorised anew, else the last factor serves if there is one.
+Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh,
                            SolveStatistics& statistics) {
   Prediction out;
   out.dx = out.first_order = VecX::Zero(organ.state.x.size());
@@ -181,13 +185,10 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
   {
     const Timed timed(statistics.contact_s);
     pairs = organ.search.pairs(organ.body, organ.state.x, now, out.travel);
-    organ.search.own.prepare(organ.body, organ.state.x, organ.work);
   }
   const VecX load = motion_load(field, organ, now, pairs, from, to, out.loaded);
   if (out.loaded) {
-    const BodyProblem problem(organ.body, now, pairs, organ.state, false, &organ.search);
-    // The contacts' stiffness changes with every motion: a factor serves again only where its last answer was right.
-    const bool fresh = organ.missed.dx.size() == 0 || organ.missed.iterations > 0;
+    const BodyProblem problem(organ.body, now, organ.search, organ.state);
     FirstOrderAnswer answer =
         first_order_answer(problem, organ.work, organ.state.x, organ.state.datum_pressure, load,
                            organ.body.edge_lengths(), fresh);
@@ -263,7 +264,9 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
     double share = 1.0;
     std::vector<Prediction> predictions;
     for (Organ& organ : field.organs) {
-      Result<Prediction> p = predict(field, organ, from, to, statistics);
+      const bool fresh = !factor_serves(organ);
+      Result<Prediction> p = predict(field, organ, from, to, fresh, statistics);
+      if (p && p->share < 1.0 && !fresh) p = predict(field, organ, from, to, true, statistics);
       if (!p) return p.failure();
       share = std::min(share, p->share);
       predictions.push_back(std::move(p).value());

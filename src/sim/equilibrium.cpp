@@ -9,7 +9,7 @@
 
 namespace calot {
 BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
-                         const BodyState& start, bool fixed_pressure, ContactSearch* search)
+                         const BodyState& start, bool fixed_pressure)
     : body_(body),
       loads_(loads),
       pairs_(std::move(pairs)),
@@ -17,8 +17,31 @@ BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, std::
       volume_(start.volume),
       multiplier_(start.datum_pressure),
       fixed_pressure_(fixed_pressure),
-      search_(search) {
+      search_(nullptr) {
   for (const Shape& shape : loads.shapes) cores_.push_back(core_of(shape));
+}
+
+BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, ContactSearch& search,
+                         const BodyState& start, bool fixed_pressure)
+    : BodyProblem(body, loads, std::vector<ContactPair>(), start, fixed_pressure) {
+  search_ = &search;
+  pairs_.reset();
+}
+
+const std::vector<ContactPair>& BodyProblem::pairs() const {
+  if (!pairs_) pairs_ = search_->pairs(body_, start_, loads_, 0.0);
+  return *pairs_;
+}
+
+const std::vector<Touch>& BodyProblem::touching(const VecX& x) const {
+  TouchMemory& touches = search_ ? search_->touches : touches_;
+  static const std::vector<ContactPair> none;
+  const bool known = touches.known(body_, x, loads_);
+  return touches.at(body_, x, loads_, known ? none : pairs(), moved(x));
+}
+
+void BodyProblem::prepare(NewtonWorkspace& work) const {
+  if (search_) search_->own.prepare(body_, start_, work);
 }
 
 double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
@@ -127,7 +150,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   }
   const double gone = moved(x), longest = body_.largest_motion(step);
   ContactPlaces places(body_.skin(), x), moves(body_.skin(), step);
-  for (const ContactPair& pair : pairs_) {
+  for (const ContactPair& pair : pairs()) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance + contact_guard - gone)) continue;
     const Shape& shape = cores_[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);
@@ -150,23 +173,15 @@ NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const Newt
   NewtonResult total;
   for (int round = 0; round < max_rounds && total.iterations < settle_iterations; ++round) {
     const VecX before = state.x;
-    double gathering_s = 0;
-    std::vector<ContactPair> pairs;
-    {
-      const Timed timed(gathering_s);
-      pairs = search.pairs(body, state.x, loads, 0.0);
-      search.own.prepare(body, state.x, work);
-    }
     const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
     const auto problem = [&](const BodyState& start, bool at_pressure) {
-      return std::make_unique<BodyProblem>(body, loads, pairs, start, at_pressure, &search);
+      return std::make_unique<BodyProblem>(body, loads, search, start, at_pressure);
     };
     const NewtonResult result =
         staged ? solve_in_stages(body, problem, settings, work, state)
-               : solve_equilibrium(BodyProblem(body, loads, pairs, state, fixed_pressure, &search), settings,
-                                   work, state.x, state.datum_pressure);
+               : solve_equilibrium(BodyProblem(body, loads, search, state, fixed_pressure), settings, work,
+                                   state.x, state.datum_pressure);
     total.add(result);
-    total.safety_s += gathering_s;
     // Walls that met without couplings in the matrix have them in the next round.
     const bool moved =
         (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin || search.own.lacking();

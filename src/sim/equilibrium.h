@@ -18,10 +18,13 @@ inline constexpr int settle_iterations = 1000;
 
 class BodyProblem : public ConstrainedEnergy {
  public:
-  /// `fixed_pressure`: the multiplier is prescribed and the volume free. `search`: remembers what touches and
-  /// knows the contact of the skin with itself, which is left out without it; it must outlive the problem.
+  /// `fixed_pressure`: the multiplier is prescribed and the volume free. Without contact of the skin with itself.
   BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
-              const BodyState& start, bool fixed_pressure = false, ContactSearch* search = nullptr);
+              const BodyState& start, bool fixed_pressure = false);
+  /// With it. `search` finds the pairs, where they are asked for, and remembers what touches; it must outlive the
+  /// problem.
+  BodyProblem(const ShellBody& body, const ContactLoads& loads, ContactSearch& search, const BodyState& start,
+              bool fixed_pressure = false);
 
   bool constrained() const override { return body_.bile().has_value() && !fixed_pressure_; }
   double value(const VecX& x) const override;
@@ -34,14 +37,14 @@ class BodyProblem : public ConstrainedEnergy {
   double constraint_scale() const override { return volume_; }
   double length_scale() const override { return body_.size(); }
   int places() const override { return body_.coarse_nodes(); }
+  void prepare(NewtonWorkspace& work) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
 
  private:
   /// How far any node, and so any skin point, is from where the solve began, m.
   double moved(const VecX& x) const;
-  const std::vector<Touch>& touching(const VecX& x) const {
-    return (search_ ? search_->touches : touches_).at(body_, x, loads_, pairs_, moved(x));
-  }
+  const std::vector<ContactPair>& pairs() const;
+  const std::vector<Touch>& touching(const VecX& x) const;
   /// Gradient but for the bile's part.
   void add_dry_gradient(const VecX& x, VecX& gradient, double& largest_internal) const;
   /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
@@ -49,7 +52,7 @@ class BodyProblem : public ConstrainedEnergy {
   void for_held_details(const Use& use) const;
   const ShellBody& body_;
   const ContactLoads& loads_;
-  std::vector<ContactPair> pairs_;
+  mutable std::optional<std::vector<ContactPair>> pairs_;  ///< none: not looked for yet
   std::vector<Shape> cores_;  ///< of the shapes: what no trial may reach
   VecX start_;
   double volume_, multiplier_;

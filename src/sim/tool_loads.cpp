@@ -10,7 +10,9 @@ namespace {
 /// Adds up what acts on the tools, part by part.
 class LoadSum {
  public:
-  explicit LoadSum(const Field& field) : field_(field), loads_(field.tools.size()) {}
+  explicit LoadSum(const Field& field) : field_(field), loads_(field.tools.size()) {
+    for (const Tool& tool : field.tools) tips_.push_back(tip_position(tool.trocar, tool.pose, tool.geometry));
+  }
 
   /// False for the support's shape.
   bool is_tool(int shape) const { return shape / shapes_per_tool < static_cast<int>(loads_.size()); }
@@ -23,7 +25,7 @@ class LoadSum {
     if (touches && load.touches++ == 0) load.organ = organ;
     const bool is_shaft = shape % shapes_per_tool == 0;
     add(load.parts, is_shaft ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
-    const Vec3 tip = tip_position(tool.trocar, tool.pose, tool.geometry);
+    const Vec3& tip = tips_[shape / shapes_per_tool];
     if (!is_shaft && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)
       add(load.parts, ToolPart::tip, at, force, touches, organ);
   }
@@ -42,6 +44,7 @@ class LoadSum {
   }
 
   const Field& field_;
+  std::vector<Vec3> tips_;  ///< of the tools, m
   std::vector<ToolLoad> loads_;
 };
 

@@ -176,8 +176,7 @@ Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads
                                 const BodyMass& mass) {
   NewtonWorkspace work(body.pattern());
   ContactSearch search;
-  search.own.prepare(body, state.x, work);
-  const BodyProblem problem(body, loads, gather_pairs(body, state.x, loads, 0.0), state, false, &search);
+  const BodyProblem problem(body, loads, search, state);
   const NewtonResult factored = factorise_tangent(problem, work, state.x, state.datum_pressure, true);
   if (!factored.converged())
     return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
