@@ -16,8 +16,7 @@ constexpr double tight = 1e-9, slack = 1e-7;  // N
 
 TEST(Balance, ForceOnTheToolIsWhatBedAndWeightLeave) {
   CALOT_SLOW_WHEN_SANITIZED("a motion in small steps");
-  const SceneDefinition scene = test::grasper_scene(90);
-  Field field = test::make_field(scene.anatomy.organs[0], tight, up);
+  Field field = test::make_field(test::bedded_ball(), tight, up);
   const Organ& organ = field.organs[0];
   EXPECT_LT((test::bed_force(organ) - test::bile_weight(organ) * up).norm(), slack);
 

@@ -4,9 +4,9 @@
 #include "base/units.h"
 #include "rig.h"
 #include "sim/advance.h"
-#include "sim/tool_loads.h"
 #include "sim/grip.h"
 #include "sim/structural_extension.h"
+#include "sim/tool_loads.h"
 
 namespace calot::test {
 
@@ -23,15 +23,6 @@ inline OrganDefinition ball(const Vec3& neck = Vec3::Zero()) {
 inline OrganDefinition held_ball() {
   OrganDefinition organ = ball();
   organ.held = {{"base", "neck", 10e-3, 1e6}};
-  return organ;
-}
-
-/// One that stands firmly under a grasper in its port: grown on by its lower half, well filled.
-inline OrganDefinition bedded_ball() {
-  OrganDefinition organ = ball({-80e-3, 70e-3, -150e-3});
-  organ.name = "ball";
-  organ.held = {{"base", "neck", 22e-3, 1e6}};
-  organ.bile.fill_pressure = 1600;
   return organ;
 }
 
@@ -63,7 +54,7 @@ inline void add_grasper(Field& field, const Vec3& trocar) {
   Tool tool;
   tool.definition.name = "left";
   tool.trocar = trocar;
-  tool.pose = pose_reaching(trocar, trocar + 1e-3 * Vec3::UnitZ(), 0, 0);
+  tool.pose = pose_reaching(trocar, trocar - 1e-3 * Vec3::UnitZ(), 0, 0);  // the shaft above it
   tool.pose.insertion = 0;
   field.tools.push_back(tool);
 }
@@ -89,7 +80,7 @@ struct FundusField {
     field = make_field(scene.anatomy.organs[0], 1e-6, world.up());
     add_grasper(field, world.port_position("right_subcostal"));
     field.tools[0].definition = scene.instruments[0];
-    fundus = world.landmark("gallbladder.fundus");
+    fundus = world.landmark(scene.anatomy.organs[0].name + ".fundus");
     out = (field.tools[0].trocar - fundus).normalized();
   }
   /// The tip to `height` (m) above the fundus, as move_tip.

@@ -34,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(WithNodes, RandomGrasps, ::testing::Values(120, 180));
 
 TEST_P(RandomGrasps, StayOutOfTheSkinAndFailCleanlyIfAtAll) {
   CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
-  const int grasps = test::cases(6, 100);
+  const int grasps = test::cases(4, 100);
   SceneDefinition scene = test::grasper_scene(GetParam());
   const World rest = World::create(scene).value();
   const double volume = rest.report().organs[0].volume;

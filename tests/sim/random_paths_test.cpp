@@ -36,7 +36,7 @@ SceneDefinition ball_scene() {
 
 TEST(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
   CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
-  const int paths = test::cases(40, 400);
+  const int paths = test::cases(20, 400);
   SceneDefinition scene = ball_scene();
   int followed = 0, touched = 0, changed = 0, refused = 0;
   for (int number = 0; number < paths; ++number) {
@@ -52,7 +52,7 @@ TEST(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
       // Places up to 5 mm under the skin's highest point and as far above it, jaws anyhow.
       const Vec3 place = fundus + test::random_vector(rng, 5e-3);
       const InstrumentPose to = pose_reaching(trocar, place, rng.uniform(-0.5, 0.5), rng.uniform(0.0, 1.0));
-      const int steps = leg == 0 ? 20 : 6;
+      const int steps = leg == 0 ? 10 : 6;
       for (int k = 1; k <= steps && !failure; ++k) {
         const Result<StepReport> report =
             world.step({.instruments = {interpolate(from, to, static_cast<double>(k) / steps)}});

@@ -22,7 +22,31 @@ inline SceneDefinition grasper_scene(int nodes = 120) {
   return scene;
 }
 
-/// The same with an instrument of another type.
+/// A ball of 20 mm radius that stands firmly under the grasper's port, grown on by its lower half, well filled: most
+/// laws of grasps hold on it too, and it has a third of a gallbladder's skin.
+inline OrganDefinition bedded_ball() {
+  OrganDefinition organ;
+  organ.name = "ball";
+  organ.shape = SphereShape{20e-3};
+  organ.nodes = 61;
+  organ.neck = Vec3(-80e-3, 70e-3, -150e-3);
+  organ.fundus = organ.neck + Vec3(0, 0, 40e-3);
+  organ.held = {{"base", "neck", 22e-3, 1e6}};
+  organ.bile.fill_pressure = 1600;
+  return organ;
+}
+
+/// It under a grasper, "left", on a level table.
+inline SceneDefinition ball_scene(const OrganDefinition& ball = bedded_ball()) {
+  SceneDefinition scene = grasper_scene();
+  scene.anatomy = {};
+  scene.anatomy.organs = {ball};
+  scene.anatomy.table_head_up = scene.anatomy.table_left_down = 0;
+  scene.laparoscope.look_at = ball.name + ".fundus";
+  return scene;
+}
+
+/// The standard gallbladder with an instrument of another type.
 inline SceneDefinition scene_with(InstrumentType type) {
   SceneDefinition scene = grasper_scene();
   InstrumentDefinition tool = default_instrument(type);
@@ -104,7 +128,7 @@ struct FundusPath {
   explicit FundusPath(const SceneDefinition& scene)
       : world(World::create(scene).value()),
         driver(world),
-        fundus(world.landmark("gallbladder.fundus")),
+        fundus(world.landmark(scene.anatomy.organs[0].name + ".fundus")),
         out((driver.trocar() - fundus).normalized()) {}
 
   bool grasp(int steps = 5) { return test::grasp(driver, fundus, out, steps); }

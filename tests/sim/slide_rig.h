@@ -27,7 +27,7 @@ struct Slide {
   double way = 0;         ///< along the shaft, m
   double work = 0;        ///< of the tool on the tissue so far, J, by the trapezoidal rule
 
-  explicit Slide(double friction, int nodes = 61)
+  explicit Slide(double friction, int nodes = 40)
       : field(make_field(taut_ball(nodes), 1e-6, -Vec3::UnitZ())) {
     top = organ().body.skin_point(organ().landmarks.at("fundus"), organ().state.x);
     add_grasper(field, top - 150e-3 * Vec3::UnitY());

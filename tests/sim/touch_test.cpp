@@ -34,24 +34,23 @@ void look(const Field& field, Touch& touch) {
   touch.deepest = std::max(touch.deepest, deepest_penetration(field));
 }
 
-/// A standard gallbladder and a grasper that comes along `out` from its fundus, or across it.
+/// A ball and a grasper that comes along `out` from its fundus, or across it.
 struct Handled {
   Field field;
   Vec3 fundus, out, across;
   Touch touch;
 
   Handled(int levels, bool from_the_side) : field(make(levels)) {
-    const World world = World::create(test::grasper_scene()).value();
-    fundus = world.landmark("gallbladder.fundus");
-    out = world.landmark_normal("gallbladder.fundus");
+    const Organ& organ = field.organs[0];
+    const int row = organ.landmarks.at("fundus");
+    fundus = organ.body.skin_point(row, organ.state.x);
+    out = organ.body.skin_normals(organ.state.x)[row];
     across = out.unitOrthogonal();
     test::add_grasper(
         field, from_the_side ? Vec3(fundus + 20e-3 * out - 150e-3 * across) : Vec3(fundus + 150e-3 * out));
   }
   static Field make(int levels) {
-    const SceneDefinition scene = test::grasper_scene();
-    const World world = World::create(scene).value();
-    return test::make_field(scene.anatomy.organs[0], 1e-6, world.up(), {}, levels);
+    return test::make_field(test::bedded_ball(), 1e-6, Vec3::UnitZ(), {}, levels);
   }
   void go(const Vec3& tip, double jaw, int parts) {
     for (int k = 1; k <= parts; ++k) {
