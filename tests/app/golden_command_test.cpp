@@ -26,13 +26,17 @@ class GoldenProject : public ProgramTest {
   }
   fs::path golden(const std::string& name) const { return folder_ / "golden" / "small" / name; }
 
-  /// Accepts the small scenario's two frames in a size that is drawn fast: that of a golden already there.
-  void accept_small() {
+  /// A golden in a size that is drawn fast: what is accepted beside it has that size too.
+  static void write_blank(const fs::path& golden) {
     Golden blank;
     blank.image.width = blank.sidecar.width = 64;
     blank.image.height = blank.sidecar.height = 36;
     blank.image.rgb.assign(3 * 64 * 36, 0);
-    ASSERT_TRUE(write_golden(golden("t000.00s"), blank));
+    ASSERT_TRUE(write_golden(golden, blank));
+  }
+  /// Accepts the small scenario's two frames in that size.
+  void accept_small() {
+    write_blank(golden("t000.00s"));
     ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
   }
 
@@ -58,8 +62,13 @@ TEST_F(GoldenProject, OnlyAcceptWithNamesWritesGoldens) {
   EXPECT_EQ(calot({"golden", "accept"}).code, 4);
   EXPECT_EQ(calot({"golden", "accept", "none"}).code, 5);
   EXPECT_TRUE(goldens().empty());
+  write_blank(golden("t000.40s"));
+  const auto blank = goldens();
+  EXPECT_EQ(calot({"golden", "test"}).code, 1);
+  EXPECT_EQ(goldens(), blank);
   ASSERT_EQ(calot({"golden", "accept", "small/t000.40s"}).code, 0);
   EXPECT_EQ(goldens().size(), 2u);
+  EXPECT_NE(goldens(), blank);
   const Outcome all = calot({"golden", "accept", "small"});
   ASSERT_EQ(all.code, 0) << all.err;
   const auto accepted = goldens();
@@ -100,8 +109,11 @@ TEST_F(GoldenProject, ASidecarOfAnySizeAndDepthIsRefusedInAFewLines) {
 
 TEST_F(GoldenProject, AScenarioInAFolderIsNamedByItsPathAndTheFolderMayBeLeftOut) {
   spill(folder_ / "scenarios" / "paper" / "deep.lua", small_scenario());
+  const fs::path golden = folder_ / "golden" / "paper" / "deep" / "t000.40s";
+  write_blank(golden);
+  const std::string blank = slurp(golden.string() + ".png");
   ASSERT_EQ(calot({"golden", "accept", "deep/t000.40s"}).code, 0);
-  EXPECT_TRUE(fs::exists(folder_ / "golden" / "paper" / "deep" / "t000.40s.png"));
+  EXPECT_NE(slurp(golden.string() + ".png"), blank);
   EXPECT_EQ(goldens().size(), 2u);
   ASSERT_EQ(calot({"golden", "accept", "paper/deep"}).code, 0);
   EXPECT_EQ(goldens().size(), 4u);
