@@ -68,7 +68,8 @@ struct Touched {
       return Capsule{axis - 30e-3 * side, axis + 30e-3 * side, 2.5e-3};
     }));
     Pose jaw = Pose::Identity();
-    jaw.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), out[c]).toRotationMatrix();
+    const Vec3 across = out[c].unitOrthogonal();  // not by FromTwoVectors, whose templates take six seconds
+    jaw.linear() << across, out[c].cross(across), out[c];
     around.shapes.push_back(at_gap(skin, gap, [&](double way) -> Shape {
       jaw.translation() = skin[c] + way * out[c];
       return RoundedBox{jaw, {2e-3, 6e-3, 1.2e-3}, 0.8e-3};
