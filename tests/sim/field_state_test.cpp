@@ -16,13 +16,13 @@ SceneDefinition refined_scene(bool skip_still = true) {
   return scene;
 }
 
-/// Hashes of 20 steps that pull a held fold, hold still, and let go.
-std::vector<std::uint64_t> twenty_steps(test::FundusPath& path) {
+/// Hashes of 50 steps that pull a held fold, hold still, and let go.
+std::vector<std::uint64_t> fifty_steps(test::FundusPath& path) {
   std::vector<std::uint64_t> hashes;
   path.driver.watch = [&](const StepReport& report) { hashes.push_back(report.state_hash); };
-  path.lift(8);
-  path.driver.stay(4);
-  path.release(8);
+  path.lift(20);
+  path.driver.stay(10);
+  path.release(20);
   return hashes;
 }
 
@@ -35,13 +35,13 @@ TEST(FieldState, RestoredTheSameStepsHaveTheSameBits) {
   const FieldState state = path.world.state();
   const test::Driver driver = path.driver;
   const std::uint64_t at_start = path.world.state_hash();
-  const std::vector<std::uint64_t> first = twenty_steps(path);
-  ASSERT_EQ(first.size(), 20u) << path.driver.why();
+  const std::vector<std::uint64_t> first = fifty_steps(path);
+  ASSERT_EQ(first.size(), 50u) << path.driver.why();
   EXPECT_NE(path.world.state_hash(), at_start);
   ASSERT_TRUE(path.world.restore(state));
   EXPECT_EQ(path.world.state_hash(), at_start);
   path.driver.follow(driver);
-  EXPECT_EQ(twenty_steps(path), first);
+  EXPECT_EQ(fifty_steps(path), first);
 }
 
 TEST(FieldState, EachPartOfItIsInTheStateHash) {
@@ -104,19 +104,24 @@ TEST(FieldState, OfAnotherWorldIsRefused) {
 TEST(StillSteps, AreWhatTheyWouldBeIfTheyWereComputed) {
   CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   std::vector<std::uint64_t> hashes[2];
-  int substeps[2] = {0, 0};
+  int substeps[2] = {0, 0}, still[2] = {0, 0};
   for (int skip = 0; skip < 2; ++skip) {
-    test::FundusPath path(refined_scene(skip == 1));
+    SceneDefinition scene = refined_scene(skip == 1);
+    scene.instruments[0].pinch_force = 0.3;  // slips as it is lifted: no more in the first step that stays
+    test::FundusPath path(scene);
     ASSERT_TRUE(path.grasp(2) && path.lift(2)) << path.driver.why();
+    ASSERT_TRUE(path.world.state().tools[0].slipping);
     path.driver.watch = [&](const StepReport& report) {
       hashes[skip].push_back(report.state_hash);
       substeps[skip] += report.statistics.substeps;
     };
-    ASSERT_TRUE(path.driver.stay(12) && path.lower(2)) << path.driver.why();
+    ASSERT_TRUE(path.driver.stay(12)) << path.driver.why();
+    still[skip] = substeps[skip];
+    ASSERT_TRUE(path.lower(2)) << path.driver.why();
   }
   EXPECT_EQ(hashes[0], hashes[1]);
-  EXPECT_GE(substeps[0], 14);
-  EXPECT_LT(substeps[1], 8) << "a held fold comes to rest within a few steps";
+  EXPECT_GE(still[0], 12);
+  EXPECT_LE(still[1], still[0] - 8) << "a held fold comes to rest within a few steps";
 }
 
 }  // namespace
