@@ -10,6 +10,7 @@
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/rubbing.h"
+#include "sim/settle_field.h"
 #include "sim/structural_extension.h"
 
 namespace calot {

@@ -53,7 +53,7 @@ class BodyProblem : public ConstrainedEnergy {
   const ShellBody& body_;
   const ContactLoads& loads_;
   mutable std::optional<std::vector<ContactPair>> pairs_;  ///< none: not looked for yet
-  std::vector<Shape> cores_;  ///< of the shapes: what no trial may reach
+  std::vector<Shape> cores_;                               ///< of the shapes: what no trial may reach
   VecX start_;
   double volume_, multiplier_;
   bool fixed_pressure_;

@@ -7,6 +7,7 @@
 
 #include "sim/field_state.h"
 #include "sim/grip.h"
+#include "sim/settle_field.h"
 
 namespace calot {
 namespace {

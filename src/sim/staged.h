@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "sim/equilibrium.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -24,6 +24,7 @@ class PartProblem : public ConstrainedEnergy {
   double constraint_scale() const override { return whole_.constraint_scale(); }
   double length_scale() const override { return whole_.length_scale(); }
   int places() const override { return whole_.places(); }
+  void prepare(NewtonWorkspace& work) const override { whole_.prepare(work); }
   double safe_share(const VecX& x, const VecX& step) const override { return whole_.safe_share(x, step); }
 
  private:

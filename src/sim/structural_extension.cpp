@@ -8,6 +8,7 @@
 
 #include "base/timed.h"
 #include "sim/detail_fading.h"
+#include "sim/settle_field.h"
 
 namespace calot {
 namespace {

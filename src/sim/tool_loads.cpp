@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/settle_field.h"
+
 namespace calot {
 namespace {
 

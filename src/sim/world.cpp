@@ -10,6 +10,7 @@
 #include "sim/advance.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
+#include "sim/settle_field.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
 #include "sim/vibration.h"

@@ -96,6 +96,36 @@ TEST(IncludeDirection, EverySourceIncludesOnlyItsOwnRoomAndThoseBelow) {
   }
 }
 
+/// The units (a header and its source) of a room that lead back to themselves, from what each includes.
+std::set<std::string> in_circles(const std::map<std::string, std::set<std::string>>& includes) {
+  std::set<std::string> out;
+  for (const auto& [unit, direct] : includes) {
+    std::set<std::string> reached;
+    std::vector<std::string> next(direct.begin(), direct.end());
+    while (!next.empty()) {
+      const std::string at = next.back();
+      next.pop_back();
+      if (!reached.insert(at).second || !includes.contains(at)) continue;
+      next.insert(next.end(), includes.at(at).begin(), includes.at(at).end());
+    }
+    if (reached.contains(unit)) out.insert(unit);
+  }
+  return out;
+}
+
+TEST(IncludeDirection, TheUnitsOfSimDoNotIncludeEachOtherInCircles) {
+  EXPECT_EQ(in_circles({{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}}), (std::set<std::string>{"b", "c"}));
+  std::map<std::string, std::set<std::string>> includes;
+  const std::regex own(R"(#include "sim/(\w+)\.h")");
+  for (const auto& entry : fs::directory_iterator(kRoot / "src/sim")) {
+    const std::string unit = entry.path().stem(), source = read(entry.path());
+    for (std::sregex_iterator it(source.begin(), source.end(), own), end; it != end; ++it)
+      if ((*it)[1] != unit) includes[unit].insert((*it)[1]);
+  }
+  ASSERT_GT(includes.size(), 20u);
+  EXPECT_EQ(in_circles(includes), std::set<std::string>());
+}
+
 TEST(IncludeDirection, TheTableIsTheHouseOfTheDesign) {
   const Rooms rooms = house();
   const std::map<std::string, std::set<std::string>> hidden = {

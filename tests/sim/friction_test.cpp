@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/settle_field.h"
 #include "slide_rig.h"
 #include "support/long_run.h"
 

@@ -3,6 +3,7 @@
 
 #include "field_rig.h"
 #include "sim/rubbing.h"
+#include "sim/settle_field.h"
 
 namespace calot::test {
 

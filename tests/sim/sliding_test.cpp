@@ -6,6 +6,7 @@
 
 #include "field_rig.h"
 #include "sim/field_state.h"
+#include "sim/settle_field.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -7,6 +7,7 @@
 #include "field_rig.h"
 #include "rig.h"
 #include "sim/detail_fading.h"
+#include "sim/settle_field.h"
 #include "support/derivatives.h"
 #include "support/long_run.h"
 

@@ -4,6 +4,7 @@
 
 #include "field_rig.h"
 #include "rig.h"
+#include "sim/settle_field.h"
 #include "support/long_run.h"
 #include "support/random.h"
 
