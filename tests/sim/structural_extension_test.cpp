@@ -276,6 +276,32 @@ struct Drawn {
   }
 };
 
+TEST(StructuralExtension, WhereNoRestIsFoundWithItTheOrganStaysAsItWasAndTheRefusalIsCountedOnce) {
+  Drawn drawn(1);
+  Organ& organ = drawn.organ;
+  const auto go_to = [&](double along, double down) {
+    drawn.rest_at(pose_reaching(drawn.field.tools[0].trocar, drawn.top + Vec3(along, 0, -down), 0.3, 0));
+  };
+  for (int k = -8; k <= 4; ++k) go_to(-5e-3, k * Drawn::way);
+  ASSERT_GT(drawn.statistics.newton_iterations, 0) << "it presses";
+  const OrganSnapshot before = snapshot(organ);
+  drawn.field.tolerance = 0;  // no solve reaches it
+  SolveStatistics statistics;
+  follow_contacts(drawn.field, organ, statistics);
+  EXPECT_EQ(statistics.extensions_refused, 1);
+  EXPECT_EQ(statistics.extensions_changed, 0);
+  EXPECT_TRUE(organ.body.details().empty());
+  EXPECT_EQ(organ.state.x, before.state.x);
+  EXPECT_EQ(organ.state.datum_pressure, before.state.datum_pressure);
+  follow_contacts(drawn.field, organ, statistics);
+  EXPECT_EQ(statistics.extensions_refused, 1) << "not tried again while the same is wanted";
+  drawn.field.tolerance = 1e-6;
+  for (int k = 0; k <= 20; ++k) go_to(-5e-3 + k * Drawn::way, 1e-3);
+  follow_contacts(drawn.field, organ, statistics);
+  EXPECT_EQ(statistics.extensions_changed, 1);
+  EXPECT_FALSE(organ.body.details().empty());
+}
+
 TEST(StructuralExtension, NeitherForceNorSkinJumpsAsItIsLaidMovedOrTakenAwayUnderLoad) {
   CALOT_SLOW_WHEN_SANITIZED("details laid over and over");
   for (int levels : {1, 2}) {
