@@ -8,7 +8,7 @@
 namespace calot {
 namespace {
 
-constexpr const char* registry_key = "calot.metatables";
+constexpr const char* metatables_key = "calot.metatables";
 constexpr lua_Integer own = 1;  // where a hidden metatable keeps the script's
 
 /// Pushes the metatable that the script gave; false, and nothing pushed, for a value without one or with one of
@@ -138,7 +138,7 @@ void push_new_hidden(lua_State* L, int index) {
 /// One for each metatable: classes have many objects. The list lets go of those that nothing uses any more,
 /// which no script can see.
 void push_hidden(lua_State* L, int index) {
-  if (luaL_newmetatable(L, registry_key) != 0) {
+  if (luaL_newmetatable(L, metatables_key) != 0) {
     lua_createtable(L, 0, 1);
     lua_pushliteral(L, "k");
     lua_setfield(L, -2, "__mode");

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* registry_key = "calot.modules";
+constexpr const char* modules_key = "calot.modules";
 
 bool is_name_part(const std::string& part) {
   return !part.empty() && std::all_of(part.begin(), part.end(), [](char c) {
@@ -63,7 +63,7 @@ fs::path find_module(const SandboxOptions& options, const std::string& name) {
 }  // namespace
 
 void add_builtin_module(lua_State* L, const char* name) {
-  luaL_getsubtable(L, LUA_REGISTRYINDEX, registry_key);
+  luaL_getsubtable(L, LUA_REGISTRYINDEX, modules_key);
   lua_insert(L, -2);
   lua_setfield(L, -2, name);
   lua_pop(L, 1);
@@ -71,7 +71,7 @@ void add_builtin_module(lua_State* L, const char* name) {
 
 int require_module(lua_State* L) {
   const std::string name = luaL_checkstring(L, 1);
-  luaL_getsubtable(L, LUA_REGISTRYINDEX, registry_key);
+  luaL_getsubtable(L, LUA_REGISTRYINDEX, modules_key);
   const int modules = lua_gettop(L);
   if (lua_getfield(L, modules, name.c_str()) != LUA_TNIL) {
     if (lua_islightuserdata(L, -1))

@@ -21,7 +21,7 @@ constexpr int error_cost = 1000;          // instructions that raising and catch
 constexpr int longest_trace = 8;          // frames
 constexpr int most_printed_lines = 1000;  // of a run
 constexpr std::size_t most_printed_bytes = 1 << 18;  // of a run
-constexpr std::size_t longest_text = 1 << 20;        // bytes of one file
+constexpr std::size_t longest_file = 1 << 20;        // bytes of one file
 constexpr std::size_t longest_message = 2000;        // bytes of an error's text
 
 std::string text_at_top(lua_State* L) {
@@ -244,13 +244,13 @@ bool Sandbox::owns(lua_State* thread) const {
 
 Result<std::string> Sandbox::read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string text(longest_text + 1, '\0');
+  std::string text(longest_file + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   const Place place{path.string(), 0, {}};
   if (file.bad() || (!file.eof() && file.fail()))
     return fail(FailureKind::usage, "the file cannot be read", "check who may read it", place);
   text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > longest_text) {
+  if (text.size() > longest_file) {
     const auto lines = std::count(text.begin(), text.end() - 1, '\n');
     return fail(FailureKind::scenario, "a script has at most 1 MiB, and this one has more from this line on",
                 "move what is large into modules", {path.string(), static_cast<int>(lines) + 1, {}});

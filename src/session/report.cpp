@@ -8,24 +8,24 @@
 namespace calot {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json steps_json(const Progress& progress) {
-  Json list = Json::array();
+OrderedJson steps_json(const Progress& progress) {
+  OrderedJson list = OrderedJson::array();
   for (const StepRecord& step : progress.steps()) {
-    Json json = {
+    OrderedJson json = {
         {"name", step.name}, {"title", step.title}, {"outcome", step.outcome}, {"started_s", step.started}};
-    json["ended_s"] = step.ended >= 0 ? Json(step.ended) : Json();
-    json["limit_s"] = step.limit > 0 ? Json(step.limit) : Json();
+    json["ended_s"] = step.ended >= 0 ? OrderedJson(step.ended) : OrderedJson();
+    json["limit_s"] = step.limit > 0 ? OrderedJson(step.limit) : OrderedJson();
     list.push_back(std::move(json));
   }
   return list;
 }
 
-Json events_json(const Progress& progress) {
-  Json list = Json::array();
+OrderedJson events_json(const Progress& progress) {
+  OrderedJson list = OrderedJson::array();
   for (const SessionEvent& event : progress.events()) {
-    Json json = {{"event", to_text(event.kind)}, {"time_s", event.time}, {"step", event.step}};
+    OrderedJson json = {{"event", to_text(event.kind)}, {"time_s", event.time}, {"step", event.step}};
     if (!event.instrument.empty()) json["instrument"] = event.instrument;
     if (!event.organ.empty()) json["organ"] = event.organ;
     if (const char* key = event_row(event.kind).value; *key != 0) json[key] = event.value;
@@ -34,10 +34,10 @@ Json events_json(const Progress& progress) {
   return list;
 }
 
-Json notes_json(const Progress& progress) {
-  Json list = Json::array();
+OrderedJson notes_json(const Progress& progress) {
+  OrderedJson list = OrderedJson::array();
   for (const Note& note : progress.notes()) {
-    Json json = {{"name", note.name}};
+    OrderedJson json = {{"name", note.name}};
     std::visit([&](const auto& value) { json["value"] = value; }, note.value);
     json["unit"] = note.unit;
     json["time_s"] = note.time;
@@ -48,8 +48,8 @@ Json notes_json(const Progress& progress) {
 }
 
 /// Benchmarks are design values of the exercise, not yet measured on surgeons, and say so.
-Json benchmark_json(const ScorePart& part) {
-  Json json;
+OrderedJson benchmark_json(const ScorePart& part) {
+  OrderedJson json;
   if (part.kind == ScorePartKind::benchmark) {
     json = {{"metric", part.metric}, {"novice", part.novice}, {"expert", part.expert}};
   } else {
@@ -59,22 +59,22 @@ Json benchmark_json(const ScorePart& part) {
   return json;
 }
 
-Json score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted) {
-  Json json = {{"total", aborted ? Json() : Json(score.total)},
-               {"out_of", 100},
-               {"passed", score.passed && !aborted},
-               {"pass_mark", exercise.score.pass},
-               {"completed", score.completed},
-               {"uncapped_total", aborted ? Json() : Json(score.uncapped)}};
-  json["critical"] = Json::array();
+OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted) {
+  OrderedJson json = {{"total", aborted ? OrderedJson() : OrderedJson(score.total)},
+                      {"out_of", 100},
+                      {"passed", score.passed && !aborted},
+                      {"pass_mark", exercise.score.pass},
+                      {"completed", score.completed},
+                      {"uncapped_total", aborted ? OrderedJson() : OrderedJson(score.uncapped)}};
+  json["critical"] = OrderedJson::array();
   for (const CriticalEvent& event : score.critical) {
     json["critical"].push_back(
         {{"event", to_text(event.event)}, {"times_s", event.times}, {"cap", exercise.score.cap}});
   }
-  json["parts"] = Json::array();
+  json["parts"] = OrderedJson::array();
   for (const ScoredPart& part : score.parts) {
-    Json entry = {{"name", part.definition.name}};
-    entry["measured"] = part.measured ? Json(*part.measured) : Json();
+    OrderedJson entry = {{"name", part.definition.name}};
+    entry["measured"] = part.measured ? OrderedJson(*part.measured) : OrderedJson();
     entry["benchmark"] = benchmark_json(part.definition);
     entry["points"] = part.points;
     entry["weight"] = part.definition.weight;
@@ -85,21 +85,22 @@ Json score_json(const ExerciseDefinition& exercise, const Score& score, bool abo
   return json;
 }
 
-Json timing_json(const SessionResult& session, double start_to_first_frame) {
+OrderedJson timing_json(const SessionResult& session, double start_to_first_frame) {
   const SessionTiming& timing = session.timing;
-  Json json = {{"real_time_factor", real_time_factor(session)},
-               {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
-               {"wall_s", timing.wall_s},
-               {"simulation_s", timing.simulation_s},
-               {"frames_s", timing.frames_s},
-               {"assembly_s", timing.assembly_s},
-               {"factorisation_s", timing.factorisation_s},
-               {"solve_s", timing.solve_s},
-               {"contact_s", timing.contact_s},
-               {"steps", session.state_hashes.empty() ? 0 : session.state_hashes.size() - 1},
-               {"substeps", timing.substeps},
-               {"newton_iterations", timing.newton_iterations}};
-  json["start_to_first_frame_s"] = start_to_first_frame >= 0 ? Json(start_to_first_frame) : Json();
+  OrderedJson json = {{"real_time_factor", real_time_factor(session)},
+                      {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
+                      {"wall_s", timing.wall_s},
+                      {"simulation_s", timing.simulation_s},
+                      {"frames_s", timing.frames_s},
+                      {"assembly_s", timing.assembly_s},
+                      {"factorisation_s", timing.factorisation_s},
+                      {"solve_s", timing.solve_s},
+                      {"contact_s", timing.contact_s},
+                      {"steps", session.state_hashes.empty() ? 0 : session.state_hashes.size() - 1},
+                      {"substeps", timing.substeps},
+                      {"newton_iterations", timing.newton_iterations}};
+  json["start_to_first_frame_s"] =
+      start_to_first_frame >= 0 ? OrderedJson(start_to_first_frame) : OrderedJson();
   return json;
 }
 
@@ -112,9 +113,9 @@ double real_time_factor(const SessionResult& session) {
 
 std::string report_json(const ExerciseDefinition& exercise, const SessionResult& session,
                         const SessionReport& report) {
-  Json json = {{"schema", "calot.report/1"}, {"scenario", exercise.id}, {"title", exercise.title},
-               {"file", exercise.file},      {"seed", exercise.seed},   {"params", exercise.params},
-               {"end", to_text(session.end)}};
+  OrderedJson json = {{"schema", "calot.report/1"}, {"scenario", exercise.id}, {"title", exercise.title},
+                      {"file", exercise.file},      {"seed", exercise.seed},   {"params", exercise.params},
+                      {"end", to_text(session.end)}};
   if (session.end == SessionEnd::failed) json["failure"] = to_text(session.failure);
   json["steps"] = steps_json(session.progress);
   json["events"] = events_json(session.progress);
@@ -132,7 +133,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
                    {"mathematics", make.mathematics}};
   json["timing"] = timing_json(session, report.start_to_first_frame_s);
   // Text from a scenario may hold any bytes; replace what is not UTF-8 instead of throwing.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace calot

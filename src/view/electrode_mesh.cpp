@@ -9,7 +9,7 @@
 namespace calot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double channel_radius = 0.75e-3, channel_depth = 2.5e-3;  // m (d)
 constexpr double strip = 0.7e-3;                                    // m across, between the poles (d)
 constexpr int arc = 10;                                             // points of a round end's profile

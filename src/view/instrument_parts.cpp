@@ -9,7 +9,7 @@
 namespace calot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// One prong of the clevis (side +1 or -1 in y): the shaft's capsule ends in a ball about z = -r, and the
 /// prong is the slice of it, and of the cylinder behind, with |y| beyond the jaws' tangs. Closed by its first

@@ -10,7 +10,7 @@ namespace calot {
 namespace {
 
 constexpr double mm = 1e-3;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double bump(double x, double width) { return std::exp(-x * x / (width * width)); }
 
