@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
@@ -308,6 +308,10 @@ function Instrument:handle_force() end
 ---@return boolean
 function Instrument:touching(part) end
 
+---Whether current flows in it. An error for an instrument without current.
+---@return boolean
+function Instrument:active() end
+
 ---Where it touches, or the part named does, at the point that is pressed hardest; nil where it does not.
 ---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
 ---@return calot.contact?
@@ -341,6 +345,10 @@ function DemoInstrument:open(angle) end
 
 ---Closes the jaws on what is between them. An error without jaws.
 function DemoInstrument:close() end
+
+---Lets current flow for a while, and waits for that. An error for an instrument without current.
+---@param duration number how long; 0.001 to 3600 s
+function DemoInstrument:activate(duration) end
 
 ---Moves the tip straight to a place.
 ---@param target calot.point|string a point, m, or a landmark such as "gallbladder.fundus"

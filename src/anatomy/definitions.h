@@ -131,11 +131,28 @@ struct InstrumentDefinition {
   double friction = 0;
 };
 
+/// What an instrument can be made to do beside moving and closing, for as long as a foot or a finger asks for it.
+enum class InstrumentAction {
+  none,
+  activate,  ///< current flows
+  fire,      ///< what it carries is set: a clip
+  irrigate,
+  aspirate,
+  exchange,  ///< it leaves through its port for another one
+};
+
 /// "atraumatic_grasper", "bipolar_electrode", "semm_forceps", in the order of the types.
 const std::vector<std::string>& instrument_type_names();
 std::string to_text(InstrumentType type);
 std::optional<InstrumentType> instrument_type_called(const std::string& name);
 bool has_jaws(InstrumentType type);
+
+/// "none", "activate", "fire", "irrigate", "aspirate", "exchange", in the order of the actions.
+const std::vector<std::string>& instrument_action_names();
+std::string to_text(InstrumentAction action);
+std::optional<InstrumentAction> instrument_action_called(const std::string& name);
+/// Whether an instrument of this type knows the action; each knows none.
+bool has_action(InstrumentType type, InstrumentAction action);
 /// An unnamed instrument with the defaults of its type. Semm's flat pads hold as smooth metal does, friction 0.3
 /// (c). Pinch and friction mean nothing without jaws.
 InstrumentDefinition default_instrument(InstrumentType type);

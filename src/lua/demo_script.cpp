@@ -54,6 +54,7 @@ void DemoScript::make_paths(const World& world) {
     paths_.emplace_back(world.port_position(scene().instruments[i].port), world.report().instruments[i].pose,
                         geometry(static_cast<int>(i)));
   }
+  flows_.resize(paths_.size());
 }
 
 Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt) {
@@ -74,6 +75,9 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   if (failure) return *failure;
   StepInput input;
   for (const InstrumentPath& path : paths_) input.instruments.push_back(path.pose(end));
+  for (const Flow& flow : flows_)
+    input.actions.push_back(flow.from < end - slack && end <= flow.to + slack ? InstrumentAction::activate
+                                                                              : InstrumentAction::none);
   return {std::optional<StepInput>(std::move(input))};
 }
 
@@ -354,6 +358,15 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
   task.predicate = how.predicate;
   task.state = Task::condition;
   return lua_yield(L, 0);
+}
+
+int DemoScript::activate(lua_State* L, int instrument, double duration) {
+  if (!can_activate(L, instrument, "activate")) return 0;
+  if (checking() && !has_world()) return dry_wait(L, duration);
+  if (free_path(L, instrument) == nullptr) return 0;
+  const double now = current(L)->clock;
+  flows_[static_cast<std::size_t>(instrument)] = {now, now + duration};
+  return sleep_until(L, now + duration);
 }
 
 int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {

@@ -51,6 +51,8 @@ class DemoScript final : public ScriptSession, public InputSource {
   int move_by(lua_State* L, int instrument, const Vec3& vector, double speed);
   /// Returns to Lua whether the predicate came to hold, and how far the tip was moved, m.
   int move_until(lua_State* L, int instrument, const MoveUntil& how);
+  /// Lets current flow for a duration, s, and waits for that.
+  int activate(lua_State* L, int instrument, double duration);
   int rotate(lua_State* L, int instrument, double angle, double speed);
 
  protected:
@@ -95,6 +97,11 @@ class DemoScript final : public ScriptSession, public InputSource {
   int function_;
   std::vector<Task> tasks_;
   std::vector<InstrumentPath> paths_;
+  /// When current flows in each instrument, s: in the steps that end within it.
+  struct Flow {
+    double from = 0, to = 0;
+  };
+  std::vector<Flow> flows_;
   int running_ = -1;
   double step_start_ = 0;  ///< s: the world's time in the present call
 };

@@ -163,6 +163,14 @@ int touching(lua_State* L) {
   return 1;
 }
 
+int active(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "active");
+  target.session->can_activate(L, target.instrument, "active");
+  const bool flows = instrument_state(L, "active").action == InstrumentAction::activate;
+  lua_pushboolean(L, target.session->checking() ? target.session->next_guess() : flows);
+  return 1;
+}
+
 int force(lua_State* L) {
   lua_pushnumber(L, load_of(L, "force").force.norm());
   return 1;
@@ -389,6 +397,12 @@ int rotate(lua_State* L) {
   return call.demo.rotate(L, call.instrument, arguments.number("angle"), speed);
 }
 
+int activate(lua_State* L) {
+  const DemoCall call = demo_call(L, "activate");
+  const Arguments arguments(L, call.demo, "DemoInstrument", "activate");
+  return call.demo.activate(L, call.instrument, arguments.number("duration"));
+}
+
 int instrument_wait(lua_State* L) {
   const DemoCall call = demo_call(L, "wait");
   const Arguments arguments(L, call.demo, "DemoInstrument", "wait");
@@ -415,6 +429,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Instrument", "force", guarded<force>},
                           {"Instrument", "handle_force", guarded<handle_force>},
                           {"Instrument", "touching", guarded<touching>},
+                          {"Instrument", "active", guarded<active>},
                           {"Instrument", "tip", guarded<tip>},
                           {"Instrument", "distance", guarded<distance>},
                           {"Instrument", "force_vector", guarded<force_vector>},
@@ -426,6 +441,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"DemoInstrument", "approach", guarded<approach>},
                           {"DemoInstrument", "open", guarded<open>},
                           {"DemoInstrument", "close", guarded<close>},
+                          {"DemoInstrument", "activate", guarded<activate>},
                           {"DemoInstrument", "move_to", guarded<move_to>},
                           {"DemoInstrument", "move_by", guarded<move_by>},
                           {"DemoInstrument", "rotate", guarded<rotate>},

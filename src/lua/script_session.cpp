@@ -105,6 +105,16 @@ bool ScriptSession::can_use_jaws(lua_State* L, int instrument, const std::string
   return false;
 }
 
+bool ScriptSession::can_activate(lua_State* L, int instrument, const std::string& command) {
+  const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
+  if (has_action(definition.type, InstrumentAction::activate)) return true;
+  complain(L,
+           fmt::format("{} is for what carries current, which {} does not: its type is {}", command,
+                       definition.name, to_text(definition.type)),
+           "give it another type, such as bipolar_electrode");
+  return false;
+}
+
 Vec3 ScriptSession::landmark(lua_State* L, const std::string& name) const {
   if (!checking() || has_world()) return world(L).landmark(name);
   for (const OrganDefinition& organ : scene().anatomy.organs)

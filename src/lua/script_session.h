@@ -60,6 +60,8 @@ class ScriptSession {
   bool is_landmark(lua_State* L, const std::string& name);
   /// Complains about what needs jaws, of an instrument that has none.
   bool can_use_jaws(lua_State* L, int instrument, const std::string& command);
+  /// The same of current.
+  bool can_activate(lua_State* L, int instrument, const std::string& command);
   /// Where a landmark of this scene is now, m; in a dry run without a world about where it will be.
   Vec3 landmark(lua_State* L, const std::string& name) const;
   /// Where an instrument's tip is now, m; a stand-in where a dry run does not know it.

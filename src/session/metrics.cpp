@@ -82,6 +82,14 @@ void measure_motion(const std::vector<MotionSample>& motion, const std::vector<d
   measure_idleness(motion, prefix, metrics);
 }
 
+void measure_activation(const std::vector<double>& time, const std::vector<InstrumentSample>& samples,
+                        const std::string& prefix, Metrics& metrics) {
+  double active = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (samples[i].active) active += time[i] - time[i - 1];
+  metrics[prefix + "activation_time_s"] = active;
+}
+
 void measure_forces(const std::vector<InstrumentSample>& samples, const std::string& prefix,
                     Metrics& metrics) {
   double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, sum = 0;
@@ -162,6 +170,8 @@ const std::vector<MetricRow>& metric_rows() {
       {"empty_grasps", instrument, "how often it closed on nothing", EventKind::empty_grasp, true},
       {"releases", instrument, "how often it let go", EventKind::release, true},
       {"slips", instrument, "how often what it held slid", EventKind::slip, true},
+      {"activations", instrument, "how often current began to flow in it", EventKind::activation, true},
+      {"activation_time_s", instrument, "time for which current flowed", EventKind::activation},
       {"peak_pressure_Pa", organ, "largest pressure of its filling"},
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
       {"lowest_frequency_Hz", organ,
@@ -220,6 +230,7 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
     if (motion.empty()) continue;
     measure_motion(motion, leg_ends(progress, name), name + ".", metrics);
     measure_forces(traces.instruments[i], name + ".", metrics);
+    measure_activation(traces.time, traces.instruments[i], name + ".", metrics);
     count_events(progress, name, metrics);
   }
   for (std::size_t i = 0; i < traces.organs.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/suggest.h"
 #include "session/json_fields.h"
 #include "session/runner.h"
 
@@ -15,7 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* schema = "calot.recording/1";
+constexpr const char* schema = "calot.recording/2";
+constexpr const char* schema_without_actions = "calot.recording/1";
 constexpr std::size_t longest_line = 1 << 20;                 // bytes
 constexpr std::size_t longest_file = std::size_t{128} << 20;  // bytes: an hour of two instruments at 200 Hz
 constexpr double highest_rate = 1e6;                          // Hz
@@ -32,10 +34,12 @@ Make parse_make(JsonFields& fields) {
 RecordingHeader parse_header(const Json& json, std::vector<std::string>& problems) {
   JsonFields fields(json, problems);
   RecordingHeader header;
-  if (fields.text("schema") != schema) {
-    problems = {fmt::format("this is not a recording of schema {}", schema)};
+  const std::string given = fields.text("schema");
+  if (given != schema && given != schema_without_actions) {
+    problems = {fmt::format("this is not a recording of schema {} or {}", schema, schema_without_actions)};
     return header;
   }
+  header.has_actions = given == schema;
   header.scenario = fields.text("scenario");
   if (fields.has("file")) header.file = fields.text("file");
   if (fields.has("source_hash")) header.source_hash = fields.hash("source_hash");
@@ -67,6 +71,20 @@ std::vector<InstrumentPose> parse_poses(const Json& poses, std::vector<std::stri
   return result;
 }
 
+std::vector<InstrumentAction> parse_actions(const std::vector<std::string>& names,
+                                            std::vector<std::string>& problems) {
+  std::vector<InstrumentAction> result;
+  for (const std::string& name : names) {
+    const std::optional<InstrumentAction> action = instrument_action_called(name);
+    if (!action)
+      problems.push_back(fmt::format("\"{}\" is no action; {}", shortened(name, 40),
+                                     suggestion(name, instrument_action_names())));
+    else
+      result.push_back(*action);
+  }
+  return result;
+}
+
 /// `time` is that of a whole number of steps.
 RecordedStep parse_step(const Json& json, const RecordingHeader& header, double time,
                         std::vector<std::string>& problems) {
@@ -74,12 +92,16 @@ RecordedStep parse_step(const Json& json, const RecordingHeader& header, double 
   RecordedStep step;
   step.time = fields.number("time_s");
   step.input.instruments = parse_poses(fields.any("poses"), problems);
+  if (header.has_actions && fields.has("actions"))
+    step.input.actions = parse_actions(fields.texts("actions"), problems);
   if (header.state_hash) step.state_hash = fields.hash("state_hash");
   fields.expect_no_others();
   const std::size_t poses = step.input.instruments.size();
   if (problems.empty() && poses != header.instruments.size())
     problems.push_back(
         fmt::format("{} poses where the header names {} instruments", poses, header.instruments.size()));
+  if (problems.empty() && !step.input.actions.empty() && step.input.actions.size() != poses)
+    problems.push_back(fmt::format("{} actions for {} instruments", step.input.actions.size(), poses));
   if (problems.empty() && std::abs(step.time - time) > time_slack)
     problems.push_back(fmt::format("time_s is {}, not {:.6g}: there is one line for each step at {:g} Hz",
                                    step.time, time, header.rate));
@@ -242,6 +264,11 @@ bool RecordingWriter::write(const RecordedStep& step) {
   nlohmann::ordered_json json = {{"time_s", step.time}, {"poses", Json::array()}};
   for (const InstrumentPose& pose : step.input.instruments) {
     json["poses"].push_back({pose.pitch, pose.yaw, pose.insertion, pose.roll, pose.jaw});
+  }
+  const auto acts = [](InstrumentAction action) { return action != InstrumentAction::none; };
+  if (std::any_of(step.input.actions.begin(), step.input.actions.end(), acts)) {
+    json["actions"] = Json::array();
+    for (InstrumentAction action : step.input.actions) json["actions"].push_back(to_text(action));
   }
   if (step.state_hash) json["state_hash"] = hex(*step.state_hash);
   ++steps_;

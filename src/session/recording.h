@@ -2,14 +2,15 @@
 // A recording: every input of a session with the state hash it led to, one JSON object a line.
 //
 //   line 1
-//   {"schema":"calot.recording/1","scenario":...,"file":...,"source_hash":...,"seed":...,"params":{...},
+//   {"schema":"calot.recording/2","scenario":...,"file":...,"source_hash":...,"seed":...,"params":{...},
 //               "rate_Hz":50,"instruments":["left"],"toolchain":...,"instruction_set":...,"mathematics":...,
 //               "state_hash":...}
-//   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"state_hash":"..."}   (rad, m)
+//   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"actions":["activate",...],
+//               "state_hash":"..."}   (rad, m; actions where an instrument acts, "none" for one that does not)
 //   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before)
 //
 // Poses that come from elsewhere need schema, scenario, rate_Hz, instruments and, in each step, time_s and poses; what
-// has no state hash is played and not compared.
+// has no state hash is played and not compared. calot.recording/1 is the same without actions, and is read too.
 //
 // Numbers have the fewest digits that read back as the same bits, so a replay is bit-exact. Each line is
 // flushed: an interrupted run loses nothing. A recording without its last line is still a recording, of a run that was
@@ -30,6 +31,7 @@
 namespace calot {
 
 struct RecordingHeader {
+  bool has_actions = true;  ///< of version 2
   std::string scenario;  ///< id
   /// Where the scenario is: below its project or the folder it was played from, else its file's name. May be empty.
   std::string file;

@@ -93,6 +93,8 @@ class Session {
     } else if (options_.end_with_source) {
       end(SessionEnd::source_ended);
       return false;
+    } else {
+      input_.actions.clear();  // poses are held, pedals are not
     }
     return true;
   }
@@ -172,7 +174,7 @@ class Session {
   const SessionOptions& options_;
   SkinDifferences differences_;
   double dt_;
-  StepInput input_;  ///< held where the source has ended
+  StepInput input_;  ///< its poses are held where the source has ended
   int refused_ = 0;  ///< changes of structural extensions
   bool ended_ = false;
   SessionResult result_;

@@ -13,6 +13,8 @@ const std::vector<EventRow>& event_rows() {
       {release, "release", "what was held is let go, by opening or because it slipped off", "", true, true},
       {slip, "slip", "what is held begins to slide through the jaws; with the pull that does it", "force_N",
        true, true},
+      {activation, "activation", "current begins to flow in an instrument; with the organ it touches", "",
+       true, true},
       {overforce, "overforce", "the force on an instrument rises above its force_limit", "force_N", true,
        true},
       {overstretch, "overstretch", "an organ's wall is stretched beyond its overstretch", "stretch", false,

@@ -14,6 +14,7 @@ enum class EventKind {
   empty_grasp,
   release,
   slip,
+  activation,
   overforce,
   overstretch,
   step_done,

@@ -6,8 +6,8 @@ FieldState field_state(const Field& field) {
   FieldState state;
   for (const Organ& organ : field.organs) state.organs.push_back(snapshot(organ));
   for (const Tool& tool : field.tools)
-    state.tools.push_back(
-        {tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside, tool.slipping});
+    state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
+                           tool.slipping, tool.action});
   return state;
 }
 
@@ -23,6 +23,7 @@ void restore(Field& field, const FieldState& state) {
     tool.lost = was.lost;
     tool.beside = was.beside;
     tool.slipping = was.slipping;
+    tool.action = was.action;
   }
 }
 

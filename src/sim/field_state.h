@@ -11,6 +11,7 @@ struct ToolSnapshot {
   InstrumentPose pose;
   bool touched = false, over_limit = false, jaw_stopped = false, lost = false, beside = false,
        slipping = false;
+  InstrumentAction action = InstrumentAction::none;
 };
 
 struct FieldState {

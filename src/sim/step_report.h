@@ -15,6 +15,7 @@ namespace calot {
 /// whatever its source (demo, recording, live device).
 struct StepInput {
   std::vector<InstrumentPose> instruments;
+  std::vector<InstrumentAction> actions = {};  ///< one an instrument; empty: none acts
   bool operator==(const StepInput&) const = default;
 };
 
@@ -28,6 +29,7 @@ struct InstrumentState {
   std::string holds;  ///< organ's name, empty when nothing is held
   int grip_points = 0;
   GripState grip = GripState::open;
+  InstrumentAction action = InstrumentAction::none;
 };
 
 struct OrganState {

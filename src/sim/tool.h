@@ -19,6 +19,7 @@ struct Tool {
   bool lost = false;  ///< what it held slid off; until the jaws open or hold again; for reports
   bool beside =
       false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
+  InstrumentAction action = InstrumentAction::none;
   bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
 };
 

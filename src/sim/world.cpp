@@ -56,7 +56,7 @@ struct World::Impl {
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
 
-  void observe(std::vector<WorldEvent> events);
+  void observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions);
   InstrumentState instrument_state(std::size_t index, const ToolLoad& load) const;
   OrganState organ_state(const Organ& organ) const;
   std::uint64_t hash_field() const;
@@ -126,7 +126,8 @@ void add_factor(Hash& hash, const NewtonWorkspace& work) {
 }
 
 void add_tool(Hash& hash, const Tool& tool) {
-  const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0);
+  const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0) |
+                   static_cast<int>(tool.action) << 3;
   hash.add(tool.jaw_stopped);
   hash.add(static_cast<unsigned char>(grip));
   hash.add(tool.touched);
@@ -204,7 +205,7 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
   return state;
 }
 
-void World::Impl::observe(std::vector<WorldEvent> events) {
+void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions) {
   const std::vector<ToolLoad> loads = tool_loads(field);
   report.time = static_cast<double>(steps) / scene.solver.rate;
   report.instruments.clear();
@@ -220,6 +221,10 @@ void World::Impl::observe(std::vector<WorldEvent> events) {
     const std::string& organ = loads[i].organ;
     if (state.touching && !tool.touched)
       events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0});
+    const InstrumentAction asked = actions.empty() ? InstrumentAction::none : actions[i];
+    if (asked == InstrumentAction::activate && tool.action != asked)
+      events.push_back({EventKind::activation, 0, tool.definition.name, organ, 0});
+    tool.action = report.instruments[i].action = asked;
     const double force = state.tip_force.norm();
     const bool over = force > tool.definition.force_limit;
     if (over && !tool.over_limit)
@@ -262,6 +267,14 @@ std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) 
       fmt::format("its insertion is 0 to {:.2f} m, {}", g.max_insertion,
                   g.has_jaws() ? fmt::format("its jaws open from 0 to {:.2f} rad", g.jaw_opening)
                                : "it has no jaws: its jaw angle is 0"));
+}
+
+std::optional<Failure> check_action(const Tool& tool, InstrumentAction action) {
+  if (has_action(tool.definition.type, action)) return std::nullopt;
+  return fail(FailureKind::scenario,
+              fmt::format("instrument '{}' cannot {}: its type is {}", tool.definition.name, to_text(action),
+                          to_text(tool.definition.type)),
+              "give the action to an instrument that knows it");
 }
 
 }  // namespace
@@ -313,7 +326,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
-  world.impl_->observe({});
+  world.impl_->observe({}, {});
   return world;
 }
 
@@ -323,9 +336,15 @@ Result<StepReport> World::step(const StepInput& input) {
   if (input.instruments.size() != self.field.tools.size())
     return fail(FailureKind::internal, fmt::format("a step needs {} instrument poses, not {}",
                                                    self.field.tools.size(), input.instruments.size()));
-  for (std::size_t i = 0; i < self.field.tools.size(); ++i)
+  if (!input.actions.empty() && input.actions.size() != self.field.tools.size())
+    return fail(FailureKind::internal, fmt::format("a step needs {} actions or none, not {}",
+                                                   self.field.tools.size(), input.actions.size()));
+  for (std::size_t i = 0; i < self.field.tools.size(); ++i) {
     if (std::optional<Failure> failure = check_pose(self.field.tools[i], input.instruments[i]))
       return *failure;
+    if (input.actions.empty()) continue;
+    if (std::optional<Failure> failure = check_action(self.field.tools[i], input.actions[i])) return *failure;
+  }
   self.report.statistics = {};
   if (self.scene.solver.skip_still && self.still == input) {
     ++self.steps;
@@ -347,7 +366,7 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   ++self.steps;
-  self.observe(std::move(events).value());
+  self.observe(std::move(events).value(), input.actions);
   self.still.reset();
   if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
     self.still = input;

@@ -224,6 +224,15 @@ TEST(Demo, MovesUntilAConditionHoldsOrItsLimitIsReached) {
   EXPECT_EQ(played.moments.back().tips[0], played.moments[played.moments.size() - 20].tips[0]);
 }
 
+const char* const electrode_scene =
+    "return { anatomy = { organs = { { name = 'ball', shape = { type = 'sphere', radius = 20 * mm }, nodes "
+    "= 61,\n"
+    "neck = { -80 * mm, 75 * mm, -120 * mm }, fundus = { -80 * mm, 75 * mm, -80 * mm }, liver_side = { 0, "
+    "1, 0 },\n"
+    "held = { { landmark = 'neck', radius = 20 * mm } } } } }, laparoscope = { look_at = 'ball.fundus' },\n"
+    "solver = { rate = 50 }, instruments = { left = { port = 'right_subcostal', type = 'bipolar_electrode' "
+    "} } }";
+
 TEST(Demo, PressesUntilAForceIsReachedAndStepsSeeWhere) {
   ScenarioText text = with_steps(
       "t:wait_until(function() return t.left:push('tip') > 0.2 * N end)\n"
@@ -234,20 +243,24 @@ TEST(Demo, PressesUntilAForceIsReachedAndStepsSeeWhere) {
       "t.left:approach('ball.fundus', { depth = -3 * mm })\n"
       "print(t.left:move_until(function() return t.left:push('tip') > 0.2 * N end, { towards = 'ball.fundus' "
       "}))";
-  text.scene =
-      "return { anatomy = { organs = { { name = 'ball', shape = { type = 'sphere', radius = 20 * mm }, nodes "
-      "= 61,\n"
-      "neck = { -80 * mm, 75 * mm, -120 * mm }, fundus = { -80 * mm, 75 * mm, -80 * mm }, liver_side = { 0, "
-      "1, 0 },\n"
-      "held = { { landmark = 'neck', radius = 20 * mm } } } } }, laparoscope = { look_at = 'ball.fundus' },\n"
-      "solver = { rate = 50 }, instruments = { left = { port = 'right_subcostal', type = 'bipolar_electrode' "
-      "} } }";
+  text.scene = electrode_scene;
   const Played played = play_own(text, 50, 8);
   ASSERT_FALSE(played.failure) << to_text(*played.failure);
   ASSERT_EQ(played.printed.size(), 3u);
   EXPECT_EQ(played.printed[0], "tip\tball\tball.fundus\ttrue\ttrue\t0.0");
   EXPECT_EQ(played.printed[1], "false\tnil");
   EXPECT_EQ(played.printed[2].substr(0, 5), "true\t") << "the demo asks when the next step begins";
+}
+
+TEST(Demo, CurrentFlowsInTheStepsThatEndWithinItsTimeAndStepsSeeIt) {
+  ScenarioText text = with_steps(
+      "t:wait_until(function() return t.left:active() end) print(t:time())\n"
+      "t:wait_until(function() return not t.left:active() end) print(t:time())");
+  text.demo = "t:wait(0.1 * s) t.left:activate(0.3 * s) t:wait(0.2 * s)";
+  text.scene = electrode_scene;
+  const Played played = play_own(text, 50, 0.6);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("0.12", "0.42"));
 }
 
 TEST(Demo, RefusesASecondMotionWhileItMovesUntilAConditionHolds) {

@@ -205,6 +205,40 @@ TEST_F(RecordingFile, PosesFromElsewhereNeedNoHashes) {
   EXPECT_EQ(noticed(path_), "");
 }
 
+TEST_F(RecordingFile, ActionsAreWrittenWhereSomethingActsAndReadBack) {
+  using enum InstrumentAction;
+  RecordedStep step{0.02, {{{0.1, 0.2, 0.03, 0, 0}, {0, 0, 0.03, 0, 0}}, {none, none}}, 1};
+  RecordedStep acts = step;
+  acts.time = 0.04;
+  acts.input.actions = {none, activate};
+  write({step, acts}, "done");
+  const Result<Recording> recording = read_recording(path_);
+  ASSERT_TRUE(recording) << complaint();
+  EXPECT_TRUE(recording->steps[0].input.actions.empty());
+  EXPECT_EQ(recording->steps[1].input.actions, acts.input.actions);
+}
+
+TEST_F(RecordingFile, ARecordingOfVersionOneIsReadAndKnowsNoActions) {
+  const std::string head = R"(,"scenario":"small","rate_Hz":50,"instruments":["left"]})"
+                           "\n";
+  const std::string step = R"({"time_s":0.02,"poses":[[0,0,0.03,0,0]])";
+  const auto said = [&](int version, const std::string& actions) {
+    std::ofstream(path_) << R"({"schema":"calot.recording/)" << version << '"' << head << step << actions
+                         << "}\n"
+                         << R"({"end":"done","steps":1})"
+                            "\n";
+    return complaint();
+  };
+  EXPECT_EQ(said(1, ""), "");
+  EXPECT_NE(said(1, R"(,"actions":["activate"])").find("actions is not known here"), std::string::npos);
+  EXPECT_EQ(said(2, R"(,"actions":["activate"])"), "");
+  EXPECT_NE(said(2, R"(,"actions":["activat"])").find("\"activat\" is no action; did you mean \"activate\"?"),
+            std::string::npos);
+  EXPECT_NE(said(2, R"(,"actions":["none","none"])").find("2 actions for 1 instruments"), std::string::npos);
+  EXPECT_NE(said(3, "").find("not a recording of schema calot.recording/2 or calot.recording/1"),
+            std::string::npos);
+}
+
 TEST_F(RecordingFile, AnErrorIsNeverThatOfALibrary) {
   constexpr int deep = 400'000;  // levels: more than a stack of 8 MiB has room for
   const std::string head =

@@ -87,6 +87,9 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("pose", [](FieldState& s) { s.tools[0].pose.roll += 1e-12; });
   differs("jaws", [](FieldState& s) { s.tools[0].jaw_stopped ^= true; });
   differs("slip", [](FieldState& s) { s.tools[0].slipping ^= true; });
+  differs("action", [](FieldState& s) { s.tools[0].action = InstrumentAction::activate; });
+  differs("lost", [](FieldState& s) { s.tools[0].lost ^= true; });
+  differs("beside", [](FieldState& s) { s.tools[0].beside ^= true; });
   differs("touch", [](FieldState& s) { s.tools[0].touched ^= true; });
   differs("limit", [](FieldState& s) { s.tools[0].over_limit ^= true; });
   ASSERT_TRUE(path.world.restore(state));

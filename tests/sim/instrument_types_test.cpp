@@ -62,6 +62,54 @@ TEST(Electrode, RefusesAJawAngleAndChangesNothing) {
   EXPECT_EQ(goes_on(), spared);
 }
 
+TEST(Electrode, AnActivationIsAnEventWhereItBeginsAndNamesWhatIsTouched) {
+  CALOT_SLOW_WHEN_SANITIZED("a world pressed on");
+  SceneDefinition scene = test::ball_scene();
+  scene.instruments[0] = test::scene_with(InstrumentType::bipolar_electrode).instruments[0];
+  test::FundusPath path(scene);
+  const auto act = [&](InstrumentAction action) {
+    const StepInput input{{path.world.report().instruments[0].pose}, {action}};
+    const Result<StepReport> step = path.world.step(input);
+    EXPECT_TRUE(step);
+    EXPECT_EQ(step->instruments[0].action, action);
+    return step->events;
+  };
+  const std::vector<WorldEvent> in_the_air = act(InstrumentAction::activate);
+  ASSERT_EQ(in_the_air.size(), 1u);
+  EXPECT_EQ(in_the_air[0].kind, EventKind::activation);
+  EXPECT_EQ(in_the_air[0].organ, "");
+  EXPECT_TRUE(act(InstrumentAction::activate).empty()) << "it goes on";
+  const std::uint64_t active = path.world.state_hash();
+  const FieldState state = path.world.state();
+  EXPECT_TRUE(act(InstrumentAction::none).empty());
+  ASSERT_TRUE(path.world.restore(state));
+  EXPECT_EQ(path.world.state_hash(), active);
+  EXPECT_TRUE(act(InstrumentAction::activate).empty()) << "it went on before";
+  ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 1)) << path.driver.why();
+  ASSERT_TRUE(path.driver.go(path.fundus - 1e-3 * path.out, 0, 2)) << path.driver.why();
+  ASSERT_TRUE(path.world.report().instruments[0].touching);
+  const std::vector<WorldEvent> pressed = act(InstrumentAction::activate);
+  ASSERT_EQ(pressed.size(), 1u) << "the driver asks for no action: it began anew";
+  EXPECT_EQ(pressed[0].organ, "ball");
+}
+
+TEST(Instruments, AnActionThatOneDoesNotKnowIsRefusedAndChangesNothing) {
+  World world = World::create(test::ball_scene()).value();
+  const std::uint64_t hash = world.state_hash();
+  StepInput input{{world.report().instruments[0].pose}, {InstrumentAction::activate}};
+  const Result<StepReport> refused = world.step(input);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(to_text(refused.failure()).find("cannot activate: its type is atraumatic_grasper"),
+            std::string::npos)
+      << to_text(refused.failure());
+  input.actions = {InstrumentAction::none, InstrumentAction::none};
+  EXPECT_EQ(world.step(input).failure().kind, FailureKind::internal);
+  EXPECT_EQ(world.state_hash(), hash);
+  for (const std::string& name : instrument_action_names())
+    EXPECT_EQ(to_text(*instrument_action_called(name)), name);
+  EXPECT_FALSE(instrument_action_called("explode"));
+}
+
 TEST(SemmGrasp, GripsLiftsAndLetsGo) {
   CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::scene_with(InstrumentType::semm_forceps));
