@@ -1,0 +1,53 @@
+#pragma once
+// The middle line of a duct or a vessel: a cubic B-spline over an open uniform knot vector (Piegl and Tiller, The NURBS
+// Book, 2nd ed., sections 2.2 and 2.3), which begins at its first control node and ends at its last.
+
+#include <vector>
+
+#include "base/status.h"
+#include "geometry/stencil.h"
+
+namespace calot {
+
+/// Where a rod's energy is sampled.
+struct RodQuadrature {
+  StencilTable stencils;        ///< a row a point: value, and du and duu by the line's parameter
+  std::vector<double> weights;  ///< length of each row, in that parameter
+  std::vector<double> shares;   ///< of the way along, 0 to 1: a section may depend on it
+};
+
+class Centreline {
+ public:
+  /// Control nodes of the shortest line. One span of four would stretch in a way that its two quadrature points miss.
+  static constexpr int least_nodes = 5;
+
+  /// Fails (scenario) with fewer nodes than that.
+  static Result<Centreline> create(int nodes);
+
+  int nodes() const { return spans() + 3; }
+  /// The parameter runs from 0 to this, a span each unit.
+  int spans() const { return spans_; }
+
+  /// A row of four nodes for each parameter in [0, spans()]; its derivatives are du and duu, the others empty. A line
+  /// that is held at its end node and at the direction to the next one is clamped.
+  StencilTable stencils(const std::vector<double>& parameters) const;
+
+  /// Two Gauss points a span. They are exact to degree 3: for a straight line that is all of bending (degree 2). Its
+  /// stretch has degree 4, but a third point would ask as much of a span, not to stretch at three places, as it has
+  /// unknowns: a thin curved rod would lock.
+  RodQuadrature quadrature() const;
+
+  /// 3 * nodes() coordinates (m) of the line along a polyline: each node where its Greville abscissa lies by length.
+  /// Such a line never swings out beyond the polyline, keeps its ends and their directions, rounds its corners, and cuts a
+  /// bend by h^2 / 6 of its curvature, h the length of a span (Schoenberg's approximation: de Boor, A Practical Guide
+  /// to Splines, ch. XI). Equal spans of a straight line are equally long. Fails (scenario) where there is no length.
+  Result<VecX> along(const std::vector<Vec3>& polyline) const;
+
+ private:
+  explicit Centreline(int spans);
+
+  int spans_;
+  std::vector<double> knots_;
+};
+
+}  // namespace calot
