@@ -32,9 +32,10 @@ class Centreline {
   /// that is held at its end node and at the direction to the next one is clamped.
   StencilTable stencils(const std::vector<double>& parameters) const;
 
-  /// Two Gauss points a span. They are exact to degree 3: for a straight line that is all of bending (degree 2). Its
-  /// stretch has degree 4, but a third point would ask as much of a span, not to stretch at three places, as it has
-  /// unknowns: a thin curved rod would lock.
+  /// Two Gauss points a span, exact to degree 3: all of a straight line's bending (degree 2), not of its stretch (4). Of a
+  /// cantilever as thick as a duct, bent to a right angle, eight spans put the tip 1.3e-4 of the length off; three points
+  /// 1.5e-5, for half as much work again. A thread a hundred times thinner locks less with two: four spans are 2 % off,
+  /// with three points 13 %.
   RodQuadrature quadrature() const;
 
   /// 3 * nodes() coordinates (m) of the line along a polyline: each node where its Greville abscissa lies by length.

@@ -9,7 +9,7 @@
 namespace calot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The line's derivatives at a row, and what its energy is made of.
 struct RodPoint {

@@ -13,7 +13,7 @@
 namespace calot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double length = 30e-3, radius = 1.6e-3, wall = 0.4e-3, young = 3e5;
 constexpr double high = 20e3;  // Pa: the hoop strains by 0.3 or so, far from nothing and from bursting
 
