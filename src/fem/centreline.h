@@ -32,16 +32,17 @@ class Centreline {
   /// that is held at its end node and at the direction to the next one is clamped.
   StencilTable stencils(const std::vector<double>& parameters) const;
 
-  /// Two Gauss points a span, exact to degree 3: all of a straight line's bending (degree 2), not of its stretch (4). Of a
-  /// cantilever as thick as a duct, bent to a right angle, eight spans put the tip 1.3e-4 of the length off; three points
-  /// 1.5e-5, for half as much work again. A thread a hundred times thinner locks less with two: four spans are 2 % off,
-  /// with three points 13 %.
+  /// Two Gauss points a span, exact to degree 3: all of a straight line's bending (degree 2), not of its stretch (4).
+  /// Of a cantilever as thick as a duct, bent to a right angle, eight spans put the tip 1.3e-4 of the length off; three
+  /// points 1.5e-5, for half as much work again. A thread a hundred times thinner locks less with two: four spans are
+  /// 2 % off, with three points 13 %.
   RodQuadrature quadrature() const;
 
   /// 3 * nodes() coordinates (m) of the line along a polyline: each node where its Greville abscissa lies by length.
-  /// Such a line never swings out beyond the polyline, keeps its ends and their directions, rounds its corners, and cuts a
-  /// bend by h^2 / 6 of its curvature, h the length of a span (Schoenberg's approximation: de Boor, A Practical Guide
-  /// to Splines, ch. XI). Equal spans of a straight line are equally long. Fails (scenario) where there is no length.
+  /// Such a line never swings out beyond the polyline, keeps its ends and their directions, rounds its corners, and
+  /// cuts a bend by h^2 / 6 of its curvature, h the length of a span (Schoenberg's approximation: de Boor, A Practical
+  /// Guide to Splines, ch. XI). Equal spans of a straight line are equally long. Fails (scenario) where there is no
+  /// length.
   Result<VecX> along(const std::vector<Vec3>& polyline) const;
 
  private:

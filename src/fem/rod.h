@@ -1,7 +1,7 @@
 #pragma once
-// A thin tube or a solid thread on a centreline, by its control nodes alone: an extensible rod after Kirchhoff that does
-// not shear and twists freely (Antman, Nonlinear Problems of Elasticity, 2nd ed., ch. IV and VIII; Audoly and Pomeau,
-// Elasticity and Geometry, ch. 3), with a liquid's pressure inside.
+// A thin tube or a solid thread on a centreline, by its control nodes alone: an extensible rod after Kirchhoff that
+// does not shear and twists freely (Antman, Nonlinear Problems of Elasticity, 2nd ed., ch. IV and VIII; Audoly and
+// Pomeau, Elasticity and Geometry, ch. 3), with a liquid's pressure inside.
 //
 // Energy a unit of rest length, L = |r'| / |r0'| being the stretch, r' and r'' derivatives of the line, r0 at rest:
 //
@@ -11,14 +11,16 @@
 // - Bending: K = |r' x r''| / (|r'|^2 |r0'|) is the turning of the tangent a unit of rest length (the stretch times the
 //   line's curvature), the size of the curvature vector: the same however the rod is moved, and EI K the moment.
 //   The rod is straight when nothing bends it, whatever its rest line. Without twist nothing tells in which direction a
-//   bend at rest would point: held to its size alone, (K - K0)^2, a rod would turn its bends to any side at no cost (an
-//   arc becomes a helix freely: a mechanism), and its straight state would be a peak of energy. So a curved
-//   rest line is under the moments EI K0: 1e-4 N m for a duct of 3 mm bent over 20 mm, the order of its own weight's.
-// - Pressure p: minus its work on the lumen, pi R^2 L, and the energy of the wall round it, pi Et (R - r)^2 / r, least at
-//   the radius R = r / (1 - p r L / Et), a hoop strain of p r / (E t) where both are small. It pushes on the rod's ends, which count
-//   as closed, by p pi R^2, and makes a held rod buckle as a thrust of that size would (Sparks 1984, "The influence of
-//   tension, pressure and weight on pipe and riser deformations and stresses", J. Energy Resour. Technol. 106(1):46-54).
-//   What the wall's hoop and axial strains do to each other is left out, as is the liquid's weight.
+//   bend at rest would point: held to its size alone, (K - K0)^2, a rod would turn its bends to any side at no cost
+//   (an arc becomes a helix freely: a mechanism), and its straight state would be a peak of energy. So a curved rest
+//   line is under the moments EI K0: some 1e-4 N m for a duct of 3 mm bent over 20 mm, a few times what its weight and
+//   its bile's do.
+// - Pressure p: minus its work on the lumen, pi R^2 L, and the energy of the wall round it, pi Et (R - r)^2 / r, least
+//   at the radius R = r / (1 - p r L / Et), a hoop strain of p r / (E t) where that is small. It pushes on the rod's
+//   ends, which count as closed, by p pi R^2, and makes a held rod buckle as a thrust of that size would (Sparks 1984,
+//   "The influence of tension, pressure and weight on pipe and riser deformations and stresses", J. Energy Resour.
+//   Technol. 106(1):46-54). What the wall's hoop and axial strains do to each other is left out, as is the liquid's
+//   weight.
 
 #include "fem/centreline.h"
 #include "numerics/block_matrix.h"
@@ -33,7 +35,8 @@ struct RodSection {
   double hoop = 0;     ///< Et, N/m; 0: no lumen, pressure does nothing
 };
 
-/// A thin wall: A = 2 pi r t, I = pi r^3 t; short of the thick one's I by the share (t / r)^2 / 4. Young's modulus in Pa.
+/// A thin wall: A = 2 pi r t, I = pi r^3 t; short of the thick one's I by the share (t / r)^2 / 4. Young's modulus in
+/// Pa.
 RodSection tube_section(double young, double radius, double wall);
 RodSection solid_section(double young, double radius);
 
@@ -49,8 +52,8 @@ SectionAnswer answer(const RodSection& section, double stretch, double pressure)
 
 class Rod {
  public:
-  /// `rest`: 3 * nodes coordinates, m; `sections`: one a row of the quadrature. Fails (scenario) where the rest line has no
-  /// direction and where a section has no stiffness.
+  /// `rest`: 3 * nodes coordinates, m; `sections`: one a row of the quadrature. Fails (scenario) where the rest line has
+  /// no direction and where a section has no stiffness.
   static Result<Rod> create(RodQuadrature quadrature, const VecX& rest, std::vector<RodSection> sections);
 
   /// Energy, J, at a gauge pressure in Pa; infinite where the line has no direction or the pressure bursts it.

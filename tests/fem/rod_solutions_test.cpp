@@ -142,7 +142,7 @@ TEST(RodSolutions, ACantileversTipSinksByPL3Over3EIUnderASmallLoad) {
 }
 
 TEST(RodSolutions, TheElasticaUsedHereIsThatOfTheTables) {
-  // Mattiasson 1981, doi 10.1002/nme.1620170113: P L^2 / EI = 5, no stretch.
+  // Mattiasson 1981, Int. J. Numer. Methods Eng. 17:145-153: P L^2 / EI = 5, no stretch.
   const Vec3 tip = Elastica(1e12, 1, 5).tip;
   EXPECT_NEAR(tip.y(), 0.71379, 5e-6);
   EXPECT_NEAR(1 - tip.x(), 0.38763, 5e-6);
