@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/parted_motion.h"
+
 namespace calot {
 namespace {
 
@@ -96,34 +98,19 @@ Eigen::Matrix<double, 12, 12> flat_hessian(std::span<const Vec3> corners, const 
   return out / sample.distance;
 }
 
-// A plane across the line to the nearest point parts the two: how far they stay on their sides of it is linear in
-// the share, and the distance is at least that.
 double safe_share(const Vec3& p, const Vec3& motion, std::span<const Vec3> corners,
                   std::span<const Vec3> corner_motions, double keep) {
   constexpr int max_steps = 256;
-  constexpr double negligible = 1e-9;  // of the whole motion
   std::array<Vec3, 3> now;
-  double share = 0, target = 0;
-  for (int step = 0; step < max_steps; ++step) {
-    const Vec3 at = p + share * motion;
-    Vec3 arm = at;
-    for (std::size_t k = 0; k < corners.size(); ++k) now[k] = corners[k] + share * corner_motions[k];
-    const NearestPoint nearest = nearest_point(at, std::span<const Vec3>(now.data(), corners.size()));
-    for (std::size_t k = 0; k < corners.size(); ++k) arm -= nearest.weight[k] * now[k];
-    if (step == 0) target = keep * nearest.distance;
-    if (!(nearest.distance > target)) return share;
-    const Vec3 normal = arm / nearest.distance;
-    double advance = 1.0 - share;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const double room = normal.dot(at - now[k]) - target, approach = normal.dot(corner_motions[k] - motion);
-      if (!(approach * advance <= room)) advance = room / approach;
-      if (!(advance > 0)) return share;  // a NaN, which the next corner must not hide
-    }
-    if (advance >= 1.0 - share) return 1.0;
-    if (!(advance > negligible)) return share;
-    share += advance;
-  }
-  return share;
+  return safe_share_of(
+      {{&p, 1}, {&motion, 1}}, {corners, corner_motions}, keep, max_steps, [&](double share) -> Parting {
+        const Vec3 at = p + share * motion;
+        Vec3 arm = at;
+        for (std::size_t k = 0; k < corners.size(); ++k) now[k] = corners[k] + share * corner_motions[k];
+        const NearestPoint nearest = nearest_point(at, std::span<const Vec3>(now.data(), corners.size()));
+        for (std::size_t k = 0; k < corners.size(); ++k) arm -= nearest.weight[k] * now[k];
+        return {nearest.distance, arm / nearest.distance};
+      });
 }
 
 }  // namespace calot
