@@ -143,7 +143,8 @@ std::vector<double> shares_in_one_plane(const EdgePair& e, const EdgePair& motio
   return out;
 }
 
-/// Edges 2 mm long at distances down to a hundredth of a millimetre, each end going its own way at up to 500 mm/s for 20 ms.
+/// Edges of some mm at distances down to a hundredth of a millimetre, each end going its own way at up to 500 mm/s for
+/// 20 ms.
 TEST(EdgeDistance, NothingPassesOnTheWayOfASafeShareAndItIsTheLargest) {
   constexpr double keep = 0.2, fastest = 0.5 * 20e-3;
   Rng rng(4);
