@@ -117,8 +117,11 @@ void BlockMatrix::add(const std::vector<double>& values) {
 }
 
 void BlockMatrix::add_to_diagonal(double shift) {
-  for (int j = 0; j < nodes(); ++j)
-    for (int c = 0; c < 3; ++c) values_[column_starts()[3 * j + c] + c] += shift;
+  for (int j = 0; j < nodes(); ++j) add_to_diagonal(j, shift);
+}
+
+void BlockMatrix::add_to_diagonal(int node, double shift) {
+  for (int c = 0; c < 3; ++c) values_[column_starts()[3 * node + c] + c] += shift;
 }
 
 void BlockMatrix::hold_all_but(int first, int last) {
@@ -134,8 +137,7 @@ void BlockMatrix::hold_all_but(int first, int last) {
 
 double BlockMatrix::diagonal_mean() const {
   double sum = 0;
-  for (int j = 0; j < nodes(); ++j)
-    for (int c = 0; c < 3; ++c) sum += std::abs(values_[column_starts()[3 * j + c] + c]);
+  for (int k = 0; k < size(); ++k) sum += std::abs(diagonal(k));
   return sum / size();
 }
 

@@ -51,6 +51,8 @@ class BlockMatrix {
   /// Adds to block (i, j), i >= j, which the pattern must hold.
   void add(int i, int j, const Mat3& block);
   void add_to_diagonal(double shift);
+  void add_to_diagonal(int node, double shift);
+  double diagonal(int unknown) const { return values_[column_starts()[unknown] + unknown % 3]; }
   /// Nodes other than first .. last - 1 are held: not coupled any more, on their diagonals the matrix' mean.
   void hold_all_but(int first, int last);
   double diagonal_mean() const;

@@ -11,6 +11,12 @@ std::optional<Modes6> modes(const Mat6& k) {
   return Modes6{solver.eigenvalues(), solver.eigenvectors()};
 }
 
+std::optional<Modes> modes(const Eigen::MatrixXd& k) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k);
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  return Modes{solver.eigenvalues(), solver.eigenvectors()};
+}
+
 std::optional<Modes6> modes(const Mat6& k, const Mat6& m) {
   // In the measure of M: with M = L L', the ordinary problem of L^-1 K L^-T.
   const Eigen::LLT<Mat6> measure(m);

@@ -22,7 +22,7 @@ struct Springs {
 };
 
 /// A body under springs on surface points of any kind.
-class SpringProblem : public ConstrainedEnergy {
+class SpringProblem : public BodyEnergy {
  public:
   SpringProblem(const ShellBody& body, const ContactLoads& nothing, const StencilTable& points,
                 const Springs& springs, const BodyState& start, bool fixed_pressure = false)
@@ -157,7 +157,7 @@ class ComparedShell : public ComparedBody {
     if (!answer.result.converged()) return answer.result;
     const double part = std::min(most, answer.share);
     state_.x += part * answer.dx;
-    state_.datum_pressure += part * answer.dmultiplier;
+    state_.datum_pressure += part * answer.dmultiplier();
     share_ = part >= 1 ? share : share_ + part * (share - share_);
     springs_.move_to(share_);
     return answer.result;

@@ -49,7 +49,7 @@ struct PaperSprings {
 };
 
 /// Equilibrium of nodes `first`, first + 1, ... (the unknowns), those before held where `nodes` has them.
-class PaperProblem : public ConstrainedEnergy {
+class PaperProblem : public BodyEnergy {
  public:
   /// `points` are points of the elements' triangles, springs its rows. Without `volume` the bile's datum_pressure
   /// (pressure at the origin's height, Pa) is given.

@@ -197,7 +197,7 @@ Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, 
     if (!answer.result.converged())
       return solve_failure(answer.result, organ.definition.name, "under its instruments");
     out.first_order = std::move(answer.dx);
-    out.first_order_pressure = answer.dmultiplier;
+    out.first_order_pressure = answer.dmultiplier();
     out.share = answer.share;
     out.dx = out.first_order;
     out.dpressure = out.first_order_pressure;

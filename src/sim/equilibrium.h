@@ -16,7 +16,7 @@ inline constexpr double contact_keep = 0.2;
 /// No equilibrium takes more Newton iterations, whatever its rounds: one that needs them is blocked.
 inline constexpr int settle_iterations = 1000;
 
-class BodyProblem : public ConstrainedEnergy {
+class BodyProblem : public BodyEnergy {
  public:
   /// `fixed_pressure`: the multiplier is prescribed and the volume free. Without contact of the skin with itself.
   BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,

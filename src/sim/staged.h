@@ -10,10 +10,9 @@
 namespace calot {
 
 /// A problem in part of its nodes, first .. last - 1: the others are held where they are.
-class PartProblem : public ConstrainedEnergy {
+class PartProblem : public BodyEnergy {
  public:
-  PartProblem(const ConstrainedEnergy& whole, int first, int last)
-      : whole_(whole), first_(first), last_(last) {}
+  PartProblem(const BodyEnergy& whole, int first, int last) : whole_(whole), first_(first), last_(last) {}
 
   bool constrained() const override { return whole_.constrained(); }
   double value(const VecX& x) const override { return whole_.value(x); }
@@ -31,13 +30,12 @@ class PartProblem : public ConstrainedEnergy {
   /// Zero at the held nodes.
   void keep_free(VecX& v) const;
 
-  const ConstrainedEnergy& whole_;
+  const BodyEnergy& whole_;
   int first_, last_;
 };
 
 /// A problem in the whole body from a state on, its pressure fixed (and its volume free) or not.
-using StagedProblem =
-    std::function<std::unique_ptr<ConstrainedEnergy>(const BodyState& start, bool fixed_pressure)>;
+using StagedProblem = std::function<std::unique_ptr<BodyEnergy>(const BodyState& start, bool fixed_pressure)>;
 
 /// Both stages once. The volume is the coarse stage's, whose pressure the second one takes over; what is left out
 /// of balance is what the extensions pass back. The workspace is left without a factor.

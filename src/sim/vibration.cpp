@@ -182,13 +182,13 @@ Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads
     return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
                 "hold the organ, or give it fewer nodes");
   Response response = [&](const VecX& load) {
-    double ignored = 0;
+    VecX ignored;
     return linear_response(work, load, ignored);
   };
   std::optional<KeptVolumeFactor> kept;
   if (work.shifted) {
     problem.hessian(state.x, state.datum_pressure, work.matrix);
-    if (problem.constrained()) kept.emplace(work.matrix, work.constraint_gradient);
+    if (problem.constrained()) kept.emplace(work.matrix, work.border.gradients.col(0));
     if (!kept || !kept->stable())
       return fail(FailureKind::simulation,
                   "the organ has no natural frequency: its equilibrium is not stable",

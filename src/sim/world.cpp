@@ -66,7 +66,9 @@ struct World::Impl {
 
 namespace {
 
-void add_vector(Hash& hash, const VecX& v) {
+/// Or a matrix, column by column.
+template <class Numbers>
+void add_vector(Hash& hash, const Numbers& v) {
   hash.add(v.size());
   hash.add(std::span<const double>(v.data(), static_cast<std::size_t>(v.size())));
 }
@@ -121,8 +123,8 @@ void add_factor(Hash& hash, const NewtonWorkspace& work) {
   hash.add(work.factored);
   hash.add(work.shifted);
   if (!work.factored) return;
-  add_vector(hash, work.constraint_gradient);
-  add_vector(hash, work.bordered);
+  add_vector(hash, work.border.gradients);
+  add_vector(hash, work.border.answers);
 }
 
 void add_tool(Hash& hash, const Tool& tool) {

@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 /// A rod under dead loads and a pressure, some of its coordinates held where they are at the start.
-class HeldRod : public ConstrainedEnergy {
+class HeldRod : public BodyEnergy {
  public:
   HeldRod(const Rod& rod, VecX load, std::vector<int> held, double pressure = 0)
       : rod_(rod), load_(std::move(load)), held_(std::move(held)), pressure_(pressure) {}

@@ -2,120 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "support/derivatives.h"
+#include "spring_net.h"
 
 namespace calot {
 namespace {
 
-/// A net of stiffening springs, some to the ground, under a dead load; optionally the enclosed volume of a
-/// tetrahedron of its first four nodes is kept.
-class Net : public ConstrainedEnergy {
- public:
-  explicit Net(bool keeps_volume) : keeps_volume_(keeps_volume) {
-    Rng rng(1);
-    rest_ = test::random_coordinates(rng, 3 * nodes, 0.5);
-    rest_.segment<12>(0) << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-    load = 0.05 * test::random_coordinates(rng, 3 * nodes, 1.0);
-    for (int i = 0; i < nodes; ++i)
-      for (int j = i + 1; j < nodes; ++j) springs_.push_back({i, j});
-    volume = volume_of(rest_);
-  }
-
-  static constexpr int nodes = 6;
-  VecX load;
-  double ground = 1.0;  ///< N/m, of every node to its rest place
-  double poison = 0.0;  ///< added to gradients
-  double volume = 0;
-
-  const VecX& rest() const { return rest_; }
-  NewtonWorkspace workspace() const {
-    std::vector<int> all(nodes);
-    for (int i = 0; i < nodes; ++i) all[i] = i;
-    return NewtonWorkspace(BlockMatrix(nodes, std::vector<std::vector<int>>{all}));
-  }
-
-  bool constrained() const override { return keeps_volume_; }
-  double value(const VecX& x) const override {
-    double sum = 0.5 * ground * (x - rest_).squaredNorm() - load.dot(x);
-    for (const auto& [i, j] : springs_) {
-      const double e = extension(x, i, j);
-      sum += 0.5 * e * e + 0.25 * e * e * e * e;
-    }
-    return sum;
-  }
-  void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override {
-    gradient = ground * (x - rest_) - load;
-    for (const auto& [i, j] : springs_) {
-      const double e = extension(x, i, j);
-      const Vec3 pull = (e + e * e * e) * 2 * (x.segment<3>(3 * i) - x.segment<3>(3 * j));
-      gradient.segment<3>(3 * i) += pull;
-      gradient.segment<3>(3 * j) -= pull;
-    }
-    gradient[0] += poison;
-    largest_internal = load.lpNorm<Eigen::Infinity>();
-  }
-  void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override {
-    matrix.set_zero();
-    for (int i = 0; i < nodes; ++i) matrix.add(i, i, ground * Mat3::Identity());
-    for (const auto& [i, j] : springs_) {
-      const double e = extension(x, i, j);
-      const Vec3 d = 2 * (x.segment<3>(3 * i) - x.segment<3>(3 * j));
-      const Mat3 h = (1 + 3 * e * e) * d * d.transpose() + 2 * (e + e * e * e) * Mat3::Identity();
-      matrix.add(i, i, h);
-      matrix.add(j, j, h);
-      matrix.add(j, i, -h);
-    }
-    if (!keeps_volume_) return;
-    // Minus multiplier times the volume's Hessian, itself by differences: exact, the volume being cubic.
-    const Eigen::MatrixXd second =
-        test::difference_hessian([&](const VecX& y) { return volume_gradient(y); }, x, 0.1);
-    for (int j = 0; j < 4; ++j)
-      for (int i = j; i < 4; ++i) matrix.add(i, j, -multiplier * second.block<3, 3>(3 * i, 3 * j));
-  }
-  double constraint(const VecX& x, VecX& gradient) const override {
-    gradient = volume_gradient(x);
-    return constraint_value(x);
-  }
-  double constraint_value(const VecX& x) const override { return volume_of(x) - volume; }
-  double constraint_scale() const override { return volume_of(rest_); }
-  double length_scale() const override { return 1.0; }
-  double safe_share(const VecX&, const VecX&) const override { return 1.0; }
-
- private:
-  /// Half the growth of the squared length.
-  double extension(const VecX& x, int i, int j) const {
-    return (x.segment<3>(3 * i) - x.segment<3>(3 * j)).squaredNorm() -
-           (rest_.segment<3>(3 * i) - rest_.segment<3>(3 * j)).squaredNorm();
-  }
-  static double volume_of(const VecX& x) {
-    const Vec3 a = x.segment<3>(0);
-    return (x.segment<3>(3) - a).dot((x.segment<3>(6) - a).cross(x.segment<3>(9) - a)) / 6;
-  }
-  static VecX volume_gradient(const VecX& x) {
-    const Vec3 a = x.segment<3>(0);
-    const Vec3 b = x.segment<3>(3) - a, c = x.segment<3>(6) - a, d = x.segment<3>(9) - a;
-    VecX g = VecX::Zero(x.size());
-    g.segment<3>(3) = c.cross(d) / 6;
-    g.segment<3>(6) = d.cross(b) / 6;
-    g.segment<3>(9) = b.cross(c) / 6;
-    g.segment<3>(0) = -(g.segment<3>(3) + g.segment<3>(6) + g.segment<3>(9));
-    return g;
-  }
-
-  bool keeps_volume_;
-  VecX rest_;
-  std::vector<std::pair<int, int>> springs_;
-};
-
-/// Residual of stationarity of the Lagrangian.
-VecX residual(const Net& net, const VecX& x, double multiplier) {
-  VecX g, c;
-  double scale = 0;
-  net.gradient(x, g, scale);
-  if (!net.constrained()) return g;
-  net.constraint(x, c);
-  return g - multiplier * c;
-}
+using test::Net;
+using test::residual;
 
 TEST(Newton, NetUsedHereHasExactDerivatives) {
   const Net net(true);
@@ -330,15 +223,15 @@ TEST(Newton, LinearResponseIsTheChangeOfTheSolutionToFirstOrder) {
   ASSERT_TRUE(factorise_tangent(net, work, x, multiplier, true).converged());
   Rng rng(4);
   const VecX more = test::random_coordinates(rng, 18, 1.0);
-  double dmultiplier = 0;
+  VecX dmultipliers;
   const double h = 1e-5;
-  const VecX dx = linear_response(work, h * more, dmultiplier);
+  const VecX dx = linear_response(work, h * more, dmultipliers);
   net.load += h * more;
   VecX moved = x;
   double there = multiplier;
   ASSERT_TRUE(solve_equilibrium(net, tight, work, moved, there).converged());
   EXPECT_LT((moved - x - dx).norm(), 1e-3 * dx.norm());
-  EXPECT_NEAR(there - multiplier, dmultiplier, 1e-3 * std::abs(dmultiplier));
+  EXPECT_NEAR(there - multiplier, dmultipliers[0], 1e-3 * std::abs(dmultipliers[0]));
 }
 
 TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFinite) {
@@ -346,7 +239,8 @@ TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFin
   net.volume *= 1.1;
   NewtonWorkspace work = net.workspace();
   VecX x = net.rest();
-  double multiplier = 0, dmultiplier = 0;
+  double multiplier = 0;
+  VecX dmultipliers;
   ASSERT_TRUE(solve_equilibrium(net, {}, work, x, multiplier).converged());
   Rng rng(4);
   VecX more = test::random_coordinates(rng, 3 * Net::nodes, 1.0);
@@ -354,8 +248,8 @@ TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFin
   const FirstOrderAnswer whole = first_order_answer(net, work, x, multiplier, more, edges, true);
   ASSERT_TRUE(whole.result.converged());
   EXPECT_EQ(whole.share, 1);
-  EXPECT_EQ(whole.dx, linear_response(work, more, dmultiplier));
-  EXPECT_EQ(whole.dmultiplier, dmultiplier);
+  EXPECT_EQ(whole.dx, linear_response(work, more, dmultipliers));
+  EXPECT_EQ(whole.dmultipliers, dmultipliers);
   edges[2] = 0.1 * whole.dx.segment<3>(6).norm();
   edges[4] = 0.2 * whole.dx.segment<3>(12).norm();
   const FirstOrderAnswer part = first_order_answer(net, work, x, multiplier, more, edges, false);
@@ -369,8 +263,9 @@ TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFin
 TEST(Newton, EveryStatusHasItsWords) {
   std::vector<std::string> words;
   for (NewtonStatus status :
-       {NewtonStatus::converged, NewtonStatus::not_finite, NewtonStatus::mechanism, NewtonStatus::stalled,
-        NewtonStatus::iteration_limit, NewtonStatus::out_of_memory, NewtonStatus::stopped})
+       {NewtonStatus::converged, NewtonStatus::not_finite, NewtonStatus::mechanism,
+        NewtonStatus::dependent_constraints, NewtonStatus::stalled, NewtonStatus::iteration_limit,
+        NewtonStatus::out_of_memory, NewtonStatus::stopped})
     words.push_back(to_text(status));
   for (std::size_t i = 0; i < words.size(); ++i) {
     EXPECT_FALSE(words[i].empty());

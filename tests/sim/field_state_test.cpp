@@ -81,7 +81,7 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("friction", [](FieldState& s) {
     s.organs[0].friction.points.push_back({0, 0, StickSlip{.limit = 1e-3, .stiffness = 1}});
   });
-  differs("factor", [](FieldState& s) { s.organs[0].factor.bordered[0] += 1e-12; });
+  differs("factor", [](FieldState& s) { s.organs[0].factor.border.answers(0, 0) += 1e-12; });
   differs("no factor", [](FieldState& s) { s.organs[0].factor.factored = false; });
   differs("shifted", [](FieldState& s) { s.organs[0].factor.shifted ^= true; });
   differs("pose", [](FieldState& s) { s.tools[0].pose.roll += 1e-12; });

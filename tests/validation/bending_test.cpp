@@ -84,7 +84,7 @@ TEST(Validation, SphereGrownAtConstantShapeHoldsTheClosedFormsBendingEnergy) {
 }
 
 /// A plate pinned at points, under dead nodal loads.
-class PlateProblem : public ConstrainedEnergy {
+class PlateProblem : public BodyEnergy {
  public:
   PlateProblem(const Shell& shell, const Links& pins, const StencilTable& table, const VecX& load,
                double size)

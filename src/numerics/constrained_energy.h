@@ -1,0 +1,46 @@
+#pragma once
+// What Newton's method makes stationary: the energy of one body or of a group of them, with volumes that are kept.
+
+#include "numerics/block_matrix.h"
+#include "numerics/parts.h"
+
+namespace calot {
+
+struct NewtonWorkspace;
+
+/// L(x, m) = energy(x) - sum of m_k * constraint_k(x), to be made stationary in x with each constraint_k(x) = 0.
+class ConstrainedEnergy {
+ public:
+  virtual ~ConstrainedEnergy() = default;
+  /// The bodies: each node is in one of them.
+  virtual std::vector<Part> parts() const = 0;
+  /// How many, >= 0; where there are none, none of the functions of them is called.
+  virtual int constraints() const = 0;
+  /// J; infinite where x is not admissible.
+  virtual double value(const VecX& x) const = 0;
+  /// Size of what cancels in value() and is not in a constraint, J: it is rounded like this.
+  virtual double cancelling() const { return 0; }
+  /// Gradient (N, 3 a node); `largest_internal` receives, for each part, the largest nodal force of its elastic
+  /// energies (N): the scale of its residual.
+  virtual void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const = 0;
+  /// Hessian of L into `matrix` (values are overwritten).
+  virtual void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const = 0;
+  /// Constraints and their gradients, a column each.
+  virtual void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const = 0;
+  virtual VecX constraint_values(const VecX& x) const = 0;
+  /// gradient() and constraint() at once, for where they share what they are made of.
+  virtual void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
+                                       Eigen::MatrixXd& of_constraints) const {
+    gradient(x, of_energy, largest_internal);
+    constraint(x, values, of_constraints);
+  }
+  /// Scales of the constraints (the kept volumes), > 0.
+  virtual VecX constraint_scales() const = 0;
+  /// Called before a tangent is asked for, and before the first step of a solve that does not begin in balance: makes
+  /// room in the matrix for what the solve may couple.
+  virtual void prepare(NewtonWorkspace&) const {}
+  /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
+  virtual double safe_share(const VecX& x, const VecX& step) const = 0;
+};
+
+}  // namespace calot

@@ -1,0 +1,32 @@
+#pragma once
+// What Newton's method keeps from one solve to the next.
+
+#include <limits>
+
+#include "numerics/border.h"
+
+namespace calot {
+
+struct NewtonWorkspace {
+  /// `coarse` nodes first, those of extensions after them.
+  explicit NewtonWorkspace(BlockMatrix pattern, int coarse = std::numeric_limits<int>::max())
+      : matrix(std::move(pattern)), factor(matrix, coarse) {}
+  BlockMatrix matrix;
+  Cholesky factor;
+  Border border;  ///< of the factor
+  bool factored = false;
+  bool shifted = false;  ///< the factor is of a shifted matrix: no use for chord steps
+
+  /// All that later solves depend on: the matrix' values are written anew by each. Cheap to copy, as the factor is
+  /// shared until the next one is made.
+  struct Kept {
+    BlockMatrix pattern;
+    Cholesky factor;
+    Border border;
+    bool factored, shifted;
+  };
+  Kept keep() const { return {matrix.pattern_only(), factor, border, factored, shifted}; }
+  void restore(const Kept& kept);
+};
+
+}  // namespace calot

@@ -1,0 +1,81 @@
+#include "numerics/tangent.h"
+
+#include <cmath>
+
+#include "base/timed.h"
+#include "numerics/mechanism.h"
+
+namespace calot {
+namespace {
+
+/// Each part's first shift, N/m.
+VecX first_shifts(const BlockMatrix& matrix, std::span<const Part> parts) {
+  VecX out(static_cast<Eigen::Index>(parts.size()));
+  for (Eigen::Index p = 0; p < out.size(); ++p) out[p] = 1e-4 * mean_stiffness(matrix, parts[p]);
+  return out;
+}
+
+void add_shifts(const VecX& shifts, std::span<const Part> parts, BlockMatrix& matrix) {
+  for (Eigen::Index p = 0; p < shifts.size(); ++p)
+    parts[p].for_nodes([&](int node) { matrix.add_to_diagonal(node, shifts[p]); });
+}
+
+NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, NewtonWorkspace& work,
+                              NewtonResult& result) {
+  FactorStatus status = work.factor.factorise(work.matrix);
+  const bool doubtful = status == FactorStatus::not_positive_definite ||
+                        (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12);
+  if (doubtful)
+    if (const std::optional<int> loose = mechanism(work.matrix, work.border.gradients, x, parts)) {
+      result.part = *loose;
+      return NewtonStatus::mechanism;
+    }
+  const bool shifted = status == FactorStatus::not_positive_definite;
+  VecX shifts = shifted ? first_shifts(work.matrix, parts) : VecX();
+  while (status == FactorStatus::not_positive_definite) {
+    add_shifts(shifts, parts, work.matrix);
+    ++result.shifts;
+    status = work.factor.factorise(work.matrix);
+    shifts *= 4;
+    if (!shifts.allFinite()) return NewtonStatus::not_finite;
+  }
+  if (status == FactorStatus::not_finite) return NewtonStatus::not_finite;
+  if (status == FactorStatus::out_of_memory) return NewtonStatus::out_of_memory;
+  work.shifted = shifted;
+  return NewtonStatus::converged;
+}
+
+}  // namespace
+
+bool serves(const NewtonWorkspace& work, const ConstrainedEnergy& problem) {
+  return work.factored && !work.shifted && problem.constraints() == work.border.constraints();
+}
+
+void factorise(const ConstrainedEnergy& problem, std::span<const Part> parts, const VecX& x,
+               const VecX& multipliers, NewtonWorkspace& work, NewtonResult& result) {
+  {
+    const Timed timed(result.assembly_s);
+    problem.hessian(x, multipliers, work.matrix);
+  }
+  const Timed timed(result.factorisation_s);
+  work.factored = false;
+  result.status = factorise_matrix(parts, x, work, result);
+  if (result.status != NewtonStatus::converged) return;
+  work.border.solve_with(work.factor);
+  if (!work.border.complement.allFinite()) {
+    result.status = NewtonStatus::not_finite;
+  } else if (const std::optional<int> dependent = work.border.dependent()) {
+    result.status = NewtonStatus::dependent_constraints;
+    result.part = part_of_constraint(parts, work.border.gradients, *dependent);
+  }
+  work.factored = result.status == NewtonStatus::converged;
+}
+
+int part_of_constraint(std::span<const Part> parts, const Eigen::MatrixXd& gradients, int constraint) {
+  Worst most;
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    most.take(largest_node(parts[p], gradients.col(constraint)), static_cast<int>(p));
+  return most.index;
+}
+
+}  // namespace calot
