@@ -260,6 +260,19 @@ TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFin
             NewtonStatus::not_finite);
 }
 
+TEST(Newton, ABodyAloneIsAGroupOfOne) {
+  const Net free(false), filled(true);
+  const LoneBody at_pressure(free, Net::nodes, -3), kept(filled, Net::nodes, -3);
+  EXPECT_EQ(at_pressure.multipliers().size(), 0);
+  EXPECT_EQ(kept.multipliers(), VecX::Constant(1, -3));
+  EXPECT_EQ(at_pressure.cancelling(), 3 * free.constraint_scale())
+      << "the work of the pressure that is given";
+  EXPECT_EQ(kept.cancelling(), 0) << "it is its constraint's";
+  ASSERT_EQ(kept.parts().size(), 1u);
+  EXPECT_EQ(kept.parts()[0].places.size(), Net::nodes);
+  EXPECT_EQ(kept.parts()[0].displacements.size(), 0);
+}
+
 TEST(Newton, EveryStatusHasItsWords) {
   std::vector<std::string> words;
   for (NewtonStatus status :
