@@ -39,11 +39,11 @@ class BodyEnergy {
   virtual double safe_share(const VecX& x, const VecX& step) const = 0;
 };
 
-/// A body as a group of one, of so many nodes. `multiplier`: of the work that value() holds where it is prescribed.
+/// A body with nodes at x as a group of one. `multiplier`: of the work that value() holds where it is prescribed.
 class LoneBody : public ConstrainedEnergy {
  public:
-  LoneBody(const BodyEnergy& body, int nodes, double multiplier)
-      : body_(body), nodes_(nodes), multiplier_(multiplier) {}
+  LoneBody(const BodyEnergy& body, const VecX& x, double multiplier)
+      : body_(body), nodes_(static_cast<int>(x.size()) / 3), multiplier_(multiplier) {}
 
   /// One, or none.
   VecX multipliers() const { return VecX::Constant(constraints(), multiplier_); }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "base/timed.h"
+#include "numerics/response.h"
 #include "paper/comparison_run.h"
 #include "sim/staged.h"
 #include "sim/structural_extension.h"

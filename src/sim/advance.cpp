@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/timed.h"
+#include "numerics/response.h"
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/rubbing.h"

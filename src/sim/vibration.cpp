@@ -11,6 +11,7 @@
 #include "base/rng.h"
 #include "numerics/dense_cholesky.h"
 #include "numerics/modes.h"
+#include "numerics/response.h"
 
 namespace calot {
 namespace {

@@ -262,7 +262,7 @@ TEST(Newton, AFirstOrderAnswerIsBelievedAsFarAsHalfAnEdgeAndFailsWhereItIsNotFin
 
 TEST(Newton, ABodyAloneIsAGroupOfOne) {
   const Net free(false), filled(true);
-  const LoneBody at_pressure(free, Net::nodes, -3), kept(filled, Net::nodes, -3);
+  const LoneBody at_pressure(free, free.rest(), -3), kept(filled, filled.rest(), -3);
   EXPECT_EQ(at_pressure.multipliers().size(), 0);
   EXPECT_EQ(kept.multipliers(), VecX::Constant(1, -3));
   EXPECT_EQ(at_pressure.cancelling(), 3 * free.constraint_scale())

@@ -2,6 +2,7 @@
 // A body for tests of Newton's method: few nodes, nonlinear, with a volume that can be kept.
 
 #include "numerics/newton.h"
+#include "numerics/response.h"
 #include "support/derivatives.h"
 
 namespace calot::test {
