@@ -14,10 +14,10 @@ namespace {
 }();
 
 /// Columns k .. k + size - 1, and the `below` rows under their corner that count.
-struct Part {
+struct Panel {
   Eigen::Index k, size, below;
 
-  Part(const Eigen::MatrixXd& l, const std::vector<Eigen::Index>& ends, Eigen::Index first)
+  Panel(const Eigen::MatrixXd& l, const std::vector<Eigen::Index>& ends, Eigen::Index first)
       : k(first), size(std::min(cholesky_block, l.rows() - first)) {
     const Eigen::Index end = ends.empty() ? l.rows() : ends[static_cast<std::size_t>(first / cholesky_block)];
     below = std::max<Eigen::Index>(0, end - k - size);
@@ -29,7 +29,7 @@ struct Part {
 // Block by block. As Eigen::LLT, which copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
 bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends) {
   for (Eigen::Index first = 0; first < a.rows(); first += cholesky_block) {
-    const auto [k, size, below] = Part(a, ends, first);
+    const auto [k, size, below] = Panel(a, ends, first);
     const Eigen::LLT<Eigen::MatrixXd> corner(a.block(k, k, size, size));
     if (corner.info() != Eigen::Success) return false;
     a.block(k, k, size, size).triangularView<Eigen::Lower>() = corner.matrixLLT();
@@ -43,14 +43,14 @@ bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends
 
 VecX cholesky_solve(const Eigen::MatrixXd& l, VecX right, const std::vector<Eigen::Index>& ends) {
   for (Eigen::Index first = 0; first < l.rows(); first += cholesky_block) {
-    const auto [k, size, below] = Part(l, ends, first);
+    const auto [k, size, below] = Panel(l, ends, first);
     auto here = right.segment(k, size);
     l.block(k, k, size, size).triangularView<Eigen::Lower>().solveInPlace(here);
     if (below > 0) right.segment(k + size, below).noalias() -= l.block(k + size, k, below, size) * here;
   }
   for (Eigen::Index first = (l.rows() - 1) / cholesky_block * cholesky_block; first >= 0;
        first -= cholesky_block) {
-    const auto [k, size, below] = Part(l, ends, first);
+    const auto [k, size, below] = Panel(l, ends, first);
     auto here = right.segment(k, size);
     if (below > 0)
       here.noalias() -= l.block(k + size, k, below, size).transpose() * right.segment(k + size, below);
