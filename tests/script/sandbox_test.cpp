@@ -22,19 +22,42 @@ struct Attack {
   const char* script;
 };
 
-/// Runs the text as a chunk of its own.
+/// A script alone in its sandbox.
+class Script {
+ public:
+  explicit Script(const std::string& text, SandboxOptions options = {},
+                  const std::string& name = "attack.lua")
+      : file_(folder_.write(name, text)) {
+    options.script = file_;
+    sandbox_ = Sandbox::create(options).value();
+  }
+
+  Sandbox& sandbox() { return *sandbox_; }
+  /// Runs a file as a chunk of its own.
+  std::optional<Failure> call(const std::filesystem::path& file) {
+    return sandbox_->protect([&](lua_State* L) {
+      sandbox_->push_chunk(L, file);
+      lua_call(L, 0, 0);
+    });
+  }
+  std::optional<Failure> call() { return call(file_); }
+  std::filesystem::path add_file(const std::string& name, const std::string& text) {
+    return folder_.write(name, text);
+  }
+
+ private:
+  Folder folder_;
+  std::filesystem::path file_;
+  std::unique_ptr<Sandbox> sandbox_;
+};
+
 std::optional<Failure> run(const std::string& text, const ScriptLimits& limits = {}) {
-  const Folder folder;
   SandboxOptions options;
-  options.script = folder.write("attack.lua", text);
   options.limits = limits;
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  if (!sandbox) return sandbox.failure();
-  return sandbox.value()->protect([&](lua_State* L) {
-    sandbox.value()->push_chunk(L, options.script);
-    lua_call(L, 0, 0);
-  });
+  return Script(text, options).call();
 }
+
+constexpr const char* counting_loop = "for i = 1, 100000 do end";  // a bit over 100,000 instructions
 
 class EndlessLoops : public ::testing::TestWithParam<Attack> {};
 
@@ -196,19 +219,13 @@ TEST(Sandbox, LibraryCallsOverLongTextsCountAsInstructions) {
 }
 
 TEST(Sandbox, BudgetIsPerSimulatedSecond) {
-  const Folder folder;
   SandboxOptions options;
-  options.script = folder.write("a.lua", "for i = 1, 100000 do end");
-  options.limits.instructions_per_second = 450'000;  // four runs of a bit over 100,000 instructions
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  ASSERT_TRUE(sandbox);
+  options.limits.instructions_per_second = 450'000;  // four runs
+  Script script(counting_loop, options);
   std::optional<Failure> failure;
   const auto call = [&](double time) {
-    sandbox.value()->set_time(time);
-    failure = sandbox.value()->protect([&](lua_State* L) {
-      sandbox.value()->push_chunk(L, options.script);
-      lua_call(L, 0, 0);
-    });
+    script.sandbox().set_time(time);
+    failure = script.call();
   };
   for (int i = 0; i < 30; ++i) {
     call(0.25 * i);
@@ -377,19 +394,13 @@ TEST(Sandbox, PlacesErrorsOfItsOwnLuaAtTheScriptsLine) {
 }
 
 TEST(Sandbox, BudgetIsPerCallAndPerRun) {
-  const Folder folder;
   SandboxOptions options;
-  options.script = folder.write("a.lua", "for i = 1, 100000 do end");
-  options.limits.instructions_per_run = 450'000;  // four runs of a bit over 100,000 instructions
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  ASSERT_TRUE(sandbox);
+  options.limits.instructions_per_run = 450'000;  // four runs
+  Script script(counting_loop, options);
   int runs = 0;
   std::optional<Failure> failure;
   while (!failure && runs < 10) {
-    failure = sandbox.value()->protect([&](lua_State* L) {
-      sandbox.value()->push_chunk(L, options.script);
-      lua_call(L, 0, 0);
-    });
+    failure = script.call();
     ++runs;
   }
   ASSERT_TRUE(failure);
@@ -398,18 +409,10 @@ TEST(Sandbox, BudgetIsPerCallAndPerRun) {
 }
 
 TEST(Sandbox, StaysDeadOnceItsBudgetIsUsedUp) {
-  const Folder folder;
-  SandboxOptions options;
-  options.script = folder.write("a.lua", "while true do end");
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  ASSERT_TRUE(sandbox);
-  folder.write("b.lua", "return 1 + 1");
-  for (const char* name : {"a.lua", "b.lua"}) {
-    const std::optional<Failure> failure = sandbox.value()->protect([&](lua_State* L) {
-      sandbox.value()->push_chunk(L, folder.path() / name);
-      lua_call(L, 0, 0);
-    });
-    ASSERT_TRUE(failure) << name;
+  Script script("while true do end");
+  const std::filesystem::path harmless = script.add_file("b.lua", "return 1 + 1");
+  for (const std::optional<Failure>& failure : {script.call(), script.call(harmless)}) {
+    ASSERT_TRUE(failure);
     EXPECT_EQ(failure->kind, FailureKind::resource);
   }
 }
@@ -419,16 +422,11 @@ TEST(Sandbox, StaysDeadOnceItsBudgetIsUsedUp) {
 using SandboxDeathTest = ::testing::Test;
 
 void hang(const std::string& code) {
-  const Folder folder;
   SandboxOptions options;
-  options.script = folder.write("hang.lua", code);
   options.limits.call_seconds = 0.2;
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  sandbox.value()->watchdog().set_flush([] { std::fputs("flushed\n", stderr); });
-  (void)sandbox.value()->protect([&](lua_State* L) {
-    sandbox.value()->push_chunk(L, options.script);
-    lua_call(L, 0, 0);
-  });
+  Script script(code, options, "hang.lua");
+  script.sandbox().watchdog().set_flush([] { std::fputs("flushed\n", stderr); });
+  (void)script.call();
   std::fputs("it came back\n", stderr);
 }
 
@@ -458,16 +456,10 @@ TEST(SandboxDeathTest, WatchdogEndsTableFunctionsOverHugeRanges) {
 }
 
 TEST(Sandbox, WatchdogSleepsWhileNoScriptRuns) {
-  const Folder folder;
   SandboxOptions options;
-  options.script = folder.write("a.lua", "return 1");
   options.limits.call_seconds = 0.05;
-  Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-  ASSERT_TRUE(sandbox);
-  EXPECT_FALSE(sandbox.value()->protect([&](lua_State* L) {
-    sandbox.value()->push_chunk(L, options.script);
-    lua_call(L, 0, 0);
-  }));
+  Script script("return 1", options);
+  EXPECT_FALSE(script.call());
   ::usleep(200'000);  // a long solve: the process must still be there after it
 }
 
@@ -508,17 +500,12 @@ TEST(Sandbox, OrderAndRandomNumbersAreTheSameInFreshProcesses) {
 
 TEST(Sandbox, RandomNumbersFollowTheSeed) {
   const auto numbers = [](std::uint64_t seed) {
-    const Folder folder;
     SandboxOptions options;
-    options.script = folder.write("a.lua", "print(math.random(), math.random(1000))");
     options.seed = seed;
+    Script script("print(math.random(), math.random(1000))", options);
     std::string printed;
     LogSink before = set_log_sink([&](LogLevel, const std::string& text) { printed += text; });
-    Result<std::unique_ptr<Sandbox>> sandbox = Sandbox::create(options);
-    (void)sandbox.value()->protect([&](lua_State* L) {
-      sandbox.value()->push_chunk(L, options.script);
-      lua_call(L, 0, 0);
-    });
+    EXPECT_FALSE(script.call());
     set_log_sink(std::move(before));
     return printed;
   };

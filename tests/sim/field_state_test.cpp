@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "milestone.h"
 #include "sim/rig.h"
 #include "support/long_run.h"
 
@@ -32,15 +33,13 @@ TEST(FieldState, RestoredTheSameStepsHaveTheSameBits) {
   ASSERT_TRUE(path.grasp()) << path.driver.why();
   ASSERT_EQ(path.world.report().instruments[0].holds, "ball");
   ASSERT_GT(path.world.report().organs[0].details, 0);
-  const FieldState state = path.world.state();
-  const test::Driver driver = path.driver;
+  const test::Milestone grasped(path);
   const std::uint64_t at_start = path.world.state_hash();
   const std::vector<std::uint64_t> first = fifty_steps(path);
   ASSERT_EQ(first.size(), 50u) << path.driver.why();
   EXPECT_NE(path.world.state_hash(), at_start);
-  ASSERT_TRUE(path.world.restore(state));
+  grasped.go_back();
   EXPECT_EQ(path.world.state_hash(), at_start);
-  path.driver.follow(driver);
   EXPECT_EQ(fifty_steps(path), first);
 }
 

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/rng.h"
+#include "milestone.h"
 #include "rig.h"
-#include "sim/field_state.h"
 #include "support/bodies.h"
 #include "support/long_run.h"
 
@@ -30,11 +30,9 @@ TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
   CALOT_SLOW_WHEN_SANITIZED("fast motions in many parts");
   test::FundusPath path(test::ball_scene());
   ASSERT_TRUE(path.grasp()) << path.driver.why();
-  const FieldState grasped = path.world.state();
-  const test::Driver driver = path.driver;
+  const test::Milestone grasped(path);
   const auto pulled = [&](int steps) {
-    EXPECT_TRUE(path.world.restore(grasped));
-    path.driver.follow(driver);
+    grasped.go_back();
     EXPECT_TRUE(path.lift(steps)) << path.driver.why();
     EXPECT_EQ(path.driver.count(EventKind::slip), 0);
     return path.world.skin_positions(0);
