@@ -1,8 +1,7 @@
 // The instruments an author names.
 
-#include <algorithm>
-
 #include "anatomy/definitions.h"
+#include "base/index_of.h"
 
 namespace calot {
 
@@ -14,10 +13,7 @@ const std::vector<std::string>& instrument_type_names() {
 std::string to_text(InstrumentType type) { return instrument_type_names()[static_cast<std::size_t>(type)]; }
 
 std::optional<InstrumentType> instrument_type_called(const std::string& name) {
-  const std::vector<std::string>& names = instrument_type_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<InstrumentType>(found - names.begin());
+  return enumerator_called<InstrumentType>(name, instrument_type_names());
 }
 
 const std::vector<std::string>& instrument_action_names() {
@@ -31,10 +27,7 @@ std::string to_text(InstrumentAction action) {
 }
 
 std::optional<InstrumentAction> instrument_action_called(const std::string& name) {
-  const std::vector<std::string>& names = instrument_action_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<InstrumentAction>(found - names.begin());
+  return enumerator_called<InstrumentAction>(name, instrument_action_names());
 }
 
 bool has_action(InstrumentType type, InstrumentAction action) {

@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "app/terminal.h"
 #include "session/build_info.h"
+#include "session/json.h"
 
 namespace calot {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Figure = std::function<double(const ComparisonRow&)>;
 
 bool of_extensions(const ComparisonRow& row, int levels, double rate) {
@@ -45,9 +44,9 @@ std::optional<double> worst_load(const std::vector<ComparisonRow>& rows, int lev
 }
 
 /// None as null: what was not run has no figure.
-Json figure_or_null(double value) { return value > 0 ? Json(value) : Json(); }
+OrderedJson figure_or_null(double value) { return value > 0 ? OrderedJson(value) : OrderedJson(); }
 
-Json row_json(const ComparisonRow& row) {
+OrderedJson row_json(const ComparisonRow& row) {
   return {{"formulation", row.formulation},
           {"nodes", row.nodes},
           {"extensions", row.extensions},
@@ -72,7 +71,7 @@ Json row_json(const ComparisonRow& row) {
           {"insertion_ms", figure_or_null(row.insertion_ms)}};
 }
 
-Json staged_json(const StagedRow& row) {
+OrderedJson staged_json(const StagedRow& row) {
   return {{"levels", row.levels},
           {"load", row.load},
           {"rate_hz", row.rate_hz},
@@ -172,7 +171,7 @@ BenchMachine this_machine() {
 }
 
 std::string bench_json(const Comparison& comparison, const BenchMachine& machine, bool quick) {
-  Json json = {
+  OrderedJson json = {
       {"schema", "calot.bench/1"},
       {"quick", quick},
       {"interrupted", comparison.interrupted},
@@ -183,18 +182,18 @@ std::string bench_json(const Comparison& comparison, const BenchMachine& machine
        {{"processor", machine.processor}, {"cores", machine.cores}, {"load_average", machine.load_average}}},
       {"largest_displacement_mm", comparison.largest_mm},
       {"formulations_apart_pct", comparison.formulations_apart_pct},
-      {"targets", Json::array()},
-      {"rows", Json::array()}};
+      {"targets", OrderedJson::array()},
+      {"rows", OrderedJson::array()}};
   for (const BenchTarget& target : bench_targets(comparison.rows))
     json["targets"].push_back({{"name", target.name},
                                {"unit", target.unit},
-                               {"value", target.value ? Json(*target.value) : Json()},
+                               {"value", target.value ? OrderedJson(*target.value) : OrderedJson()},
                                {target.at_least ? "at_least" : "at_most", target.limit},
                                {"met", target.met()}});
   for (const ComparisonRow& row : comparison.rows) json["rows"].push_back(row_json(row));
-  json["staged"] = Json::array();
+  json["staged"] = OrderedJson::array();
   for (const StagedRow& row : comparison.staged) json["staged"].push_back(staged_json(row));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 std::string bench_text(const Comparison& comparison, const BenchMachine& machine) {

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/play.h"
 #include "app/project.h"
 #include "app/terminal.h"
+#include "session/json.h"
 #include "session/metrics.h"
 
 namespace calot {
@@ -88,8 +88,8 @@ Checked check(const Named& named, bool with_world) {
   return checked;
 }
 
-nlohmann::ordered_json checked_json(const Checked& checked) {
-  nlohmann::ordered_json json = {{"file", checked.file}, {"ok", checked.ok()}};
+OrderedJson checked_json(const Checked& checked) {
+  OrderedJson json = {{"file", checked.file}, {"ok", checked.ok()}};
   if (checked.module) json["module"] = true;
   if (checked.exercise) {
     const ExerciseDefinition& exercise = *checked.exercise;
@@ -98,14 +98,7 @@ nlohmann::ordered_json checked_json(const Checked& checked) {
     json["steps"] = exercise.step_names;
     json["metrics"] = metric_names(exercise);
   }
-  json["problems"] = nlohmann::json::array();
-  for (const Problem& problem : checked.failure.problems) {
-    json["problems"].push_back({{"file", problem.place.file},
-                                {"line", problem.place.line},
-                                {"path", problem.place.path},
-                                {"message", problem.message},
-                                {"hint", problem.hint}});
-  }
+  json["problems"] = problems_json(checked.failure);
   return json;
 }
 
@@ -130,7 +123,7 @@ ExitCode check_command(const CheckCommand& command) {
   const std::string again = command.build ? "calot check --build " : "calot check ";
   std::string next;
   std::size_t done = 0;
-  nlohmann::ordered_json json = {{"schema", "calot.check/1"}, {"scenarios", nlohmann::json::array()}};
+  OrderedJson json = {{"schema", "calot.check/1"}, {"scenarios", OrderedJson::array()}};
   for (const Named& file : files) {
     if (stop) break;
     const Checked checked = check(file, command.build);
@@ -152,7 +145,7 @@ ExitCode check_command(const CheckCommand& command) {
     }
   }
   json["interrupted"] = done < files.size();
-  if (command.json) print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (command.json) print(json_text(json));
   std::fflush(stdout);
   if (done < files.size()) {
     std::fprintf(stderr, "Interrupted: %zu of %zu scenarios were checked.\nNext: %s%s\n", done, files.size(),

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "app/commands.h"
 #include "app/golden_compare.h"
 #include "app/interrupt.h"
@@ -10,6 +8,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "render/png.h"
+#include "session/json.h"
 
 namespace calot {
 namespace {
@@ -22,7 +21,7 @@ struct Compared {
   std::optional<ExitCode> ended;  ///< nothing was selected; it has been said
   std::size_t frames = 0, failed = 0, unreadable = 0;
   std::vector<std::string> unplayed;  ///< scenarios that an interruption left out, wholly or in part
-  nlohmann::ordered_json failures = nlohmann::json::array();
+  OrderedJson failures = OrderedJson::array();
 };
 
 void note_failure(const SelectedGolden& scenario, const Failure& failure, Compared& compared) {
@@ -78,12 +77,12 @@ std::optional<Failure> keep_failed(const GoldenResult& result, const fs::path& f
   return drawn ? std::nullopt : std::optional<Failure>(drawn.failure());
 }
 
-nlohmann::ordered_json result_json(const GoldenResult& result) {
-  nlohmann::ordered_json json = {{"scenario", result.scenario},
-                                 {"frame", result.frame},
-                                 {"passed", result.judgement.passed},
-                                 {"verdict", to_text(result.judgement.verdict)},
-                                 {"message", result.judgement.message}};
+OrderedJson result_json(const GoldenResult& result) {
+  OrderedJson json = {{"scenario", result.scenario},
+                      {"frame", result.frame},
+                      {"passed", result.judgement.passed},
+                      {"verdict", to_text(result.judgement.verdict)},
+                      {"message", result.judgement.message}};
   if (result.actual) json["state_hash"] = hex(result.actual->sidecar.state_hash);
   if (result.judgement.difference) {
     json["differing_pixels"] = result.judgement.difference->differing_pixels;
@@ -117,7 +116,7 @@ fs::path golden_folder(const GoldenCommand& command) {
 }
 
 ExitCode golden_test_command(const GoldenCommand& command) {
-  nlohmann::ordered_json json = {{"schema", "calot.golden_test/1"}, {"frames", nlohmann::json::array()}};
+  OrderedJson json = {{"schema", "calot.golden_test/1"}, {"frames", OrderedJson::array()}};
   const fs::path output = command.output.empty() ? fs::path("out") / "golden" : fs::path(command.output);
   const Compared compared = compare_selected(command, [&](const GoldenResult& result) {
     json["frames"].push_back(result_json(result));
@@ -128,7 +127,7 @@ ExitCode golden_test_command(const GoldenCommand& command) {
   if (compared.ended) return *compared.ended;
   json["failures"] = compared.failures;
   json["not_finished"] = compared.unplayed;
-  if (command.json) print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (command.json) print(json_text(json));
   std::fflush(stdout);
   if (!compared.unplayed.empty())
     return stopped(compared, "test",

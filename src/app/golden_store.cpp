@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "app/project.h"
 #include "base/hash.h"
 #include "render/png.h"
@@ -14,7 +12,6 @@ namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* schema = "calot.golden/1";
 constexpr std::size_t longest_sidecar = 1 << 16;  // bytes: a hundred times what is written
@@ -23,7 +20,7 @@ fs::path with_extension(const fs::path& stem, const char* extension) {
   return stem.parent_path() / (stem.filename().string() + extension);  // frame names hold dots
 }
 
-CompareTolerance parse_tolerance(const nlohmann::json& json, std::vector<std::string>& problems) {
+CompareTolerance parse_tolerance(const Json& json, std::vector<std::string>& problems) {
   constexpr int all_pixels = 4096 * 4096;
   JsonFields fields(json, problems, "tolerance.");
   CompareTolerance tolerance;
@@ -38,7 +35,7 @@ CompareTolerance parse_tolerance(const nlohmann::json& json, std::vector<std::st
 GoldenSidecar parse_sidecar(const std::string& text, std::vector<std::string>& problems) {
   GoldenSidecar sidecar;
   std::string broken;
-  const nlohmann::json json = parse_json(text, broken);
+  const Json json = parse_json(text, broken);
   if (!broken.empty()) {
     problems.push_back(broken);
     return sidecar;
@@ -62,21 +59,21 @@ GoldenSidecar parse_sidecar(const std::string& text, std::vector<std::string>& p
 
 std::string sidecar_text(const GoldenSidecar& sidecar) {
   const CompareTolerance& tolerance = sidecar.tolerance;
-  const Json json = {{"schema", schema},
-                     {"width_px", sidecar.width},
-                     {"height_px", sidecar.height},
-                     {"time_s", sidecar.time},
-                     {"tolerance",
-                      {{"small_delta", tolerance.small_delta},
-                       {"differing_pixels", tolerance.differing_pixels},
-                       {"large_delta", tolerance.large_delta},
-                       {"blob_pixels", tolerance.blob_pixels}}},
-                     {"renderer", sidecar.renderer},
-                     {"scenario_hash", hex(sidecar.scenario_hash)},
-                     {"state_hash", hex(sidecar.state_hash)},
-                     {"toolchain", sidecar.make.toolchain},
-                     {"instruction_set", sidecar.make.instruction_set},
-                     {"mathematics", sidecar.make.mathematics}};
+  const OrderedJson json = {{"schema", schema},
+                            {"width_px", sidecar.width},
+                            {"height_px", sidecar.height},
+                            {"time_s", sidecar.time},
+                            {"tolerance",
+                             {{"small_delta", tolerance.small_delta},
+                              {"differing_pixels", tolerance.differing_pixels},
+                              {"large_delta", tolerance.large_delta},
+                              {"blob_pixels", tolerance.blob_pixels}}},
+                            {"renderer", sidecar.renderer},
+                            {"scenario_hash", hex(sidecar.scenario_hash)},
+                            {"state_hash", hex(sidecar.state_hash)},
+                            {"toolchain", sidecar.make.toolchain},
+                            {"instruction_set", sidecar.make.instruction_set},
+                            {"mathematics", sidecar.make.mathematics}};
   return json.dump(2) + "\n";
 }
 

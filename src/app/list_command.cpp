@@ -1,23 +1,20 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "app/commands.h"
 #include "app/play.h"
 #include "app/terminal.h"
 #include "base/units.h"
+#include "session/json.h"
 #include "session/metrics.h"
 
 namespace calot {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// One list: its rows to print, and the same for programs.
 struct Listing {
   std::string key, title;
   std::vector<std::vector<std::string>> rows;
-  Json json = Json::array();
+  OrderedJson json = OrderedJson::array();
 };
 
 Listing ports(const std::vector<PortDefinition>& list) {
@@ -95,13 +92,13 @@ Listing parameters(const ExerciseDefinition& exercise) {
     if (parameter.low) range += fmt::format(", at least {:g}", *parameter.low);
     if (parameter.high) range += fmt::format(", at most {:g}", *parameter.high);
     listing.rows.push_back({parameter.name, "default " + parameter.fallback, range, parameter.title});
-    Json json = {{"name", parameter.name},
-                 {"type", parameter.type},
-                 {"default", parameter.fallback},
-                 {"choices", parameter.choices},
-                 {"title", parameter.title}};
-    json["min"] = parameter.low ? Json(*parameter.low) : Json();
-    json["max"] = parameter.high ? Json(*parameter.high) : Json();
+    OrderedJson json = {{"name", parameter.name},
+                        {"type", parameter.type},
+                        {"default", parameter.fallback},
+                        {"choices", parameter.choices},
+                        {"title", parameter.title}};
+    json["min"] = parameter.low ? OrderedJson(*parameter.low) : OrderedJson();
+    json["max"] = parameter.high ? OrderedJson(*parameter.high) : OrderedJson();
     listing.json.push_back(std::move(json));
   }
   return listing;
@@ -131,7 +128,7 @@ std::string listed(const Listing& listing) {
 
 ExitCode list_command(const ListCommand& command) {
   std::vector<Listing> listings;
-  Json json = {{"schema", "calot.list/1"}};
+  OrderedJson json = {{"schema", "calot.list/1"}};
   if (command.scenario.empty()) {
     listings = of_every_scenario();
   } else {
@@ -147,7 +144,7 @@ ExitCode list_command(const ListCommand& command) {
     const std::string part = listed(listing);
     if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
   }
-  if (command.json) text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (command.json) text = json_text(json) + "\n";
   std::fputs(text.c_str(), stdout);
   return ExitCode::ok;
 }

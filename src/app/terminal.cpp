@@ -6,7 +6,8 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
+
+#include "session/json.h"
 
 namespace calot {
 namespace {
@@ -41,19 +42,12 @@ const char* to_text(FailureKind kind) {
 }
 
 std::string failure_json(const Failure& failure, const std::string& next) {
-  nlohmann::ordered_json json = {{"schema", "calot.failure/1"},
-                                 {"kind", to_text(failure.kind)},
-                                 {"exit_code", static_cast<int>(exit_code(failure.kind))},
-                                 {"problems", nlohmann::json::array()}};
-  for (const Problem& problem : failure.problems) {
-    json["problems"].push_back({{"file", problem.place.file},
-                                {"line", problem.place.line},
-                                {"path", problem.place.path},
-                                {"message", problem.message},
-                                {"hint", problem.hint}});
-  }
-  json["next"] = next;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  const OrderedJson json = {{"schema", "calot.failure/1"},
+                            {"kind", to_text(failure.kind)},
+                            {"exit_code", static_cast<int>(exit_code(failure.kind))},
+                            {"problems", problems_json(failure)},
+                            {"next", next}};
+  return json_text(json);
 }
 
 }  // namespace

@@ -276,56 +276,63 @@ bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3&
   return false;
 }
 
-int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
-  if (how.jaw && !can_use_jaws(L, instrument, "approach's jaw")) return 0;
-  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
+template <typename Motion>
+int DemoScript::play_motion(lua_State* L, int instrument, double dry_duration, const Motion& motion) {
+  if (checking() && !has_world()) return dry_wait(L, dry_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
-  const Vec3 normal = world(L).landmark_normal(how.landmark);
-  const Vec3 open_tip = world(L).landmark(how.landmark) + how.offset - how.depth * normal;
-  const double jaw = how.jaw.value_or(path->geometry().jaw_opening);
-  const Vec3 tip = closed_tip(path->trocar(), open_tip, jaw, path->geometry());
-  // Straight in at the end, halfway between the shaft's way and the skin's normal: both jaws come down
-  // together.
-  const Vec3 shaft = (tip - path->trocar()).normalized();
-  const Vec3 outward = (normal - shaft).norm() > 1e-3 ? (normal - shaft).normalized() : normal;
-  const Vec3 before = tip + how.clearance * outward;
-  if (!can_reach(L, *path, before) || !can_reach(L, *path, tip)) return 0;
-  const double now = current(L)->clock;
-  if (path->geometry().has_jaws()) path->set_jaw(now, jaw, jaw_duration);
-  path->move(now, before, how.speed);
-  path->move(now, tip, how.speed);
-  return sleep_until(L, path->busy_until());
+  const std::optional<double> end = motion(*path, current(L)->clock);
+  return end ? sleep_until(L, *end) : 0;
+}
+
+int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
+  if (how.jaw && !can_use_jaws(L, instrument, "approach's jaw")) return 0;
+  const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
+    const Vec3 normal = world(L).landmark_normal(how.landmark);
+    const Vec3 open_tip = world(L).landmark(how.landmark) + how.offset - how.depth * normal;
+    const double jaw = how.jaw.value_or(path.geometry().jaw_opening);
+    const Vec3 tip = closed_tip(path.trocar(), open_tip, jaw, path.geometry());
+    // Straight in at the end, halfway between the shaft's way and the skin's normal: both jaws come down
+    // together.
+    const Vec3 shaft = (tip - path.trocar()).normalized();
+    const Vec3 outward = (normal - shaft).norm() > 1e-3 ? (normal - shaft).normalized() : normal;
+    const Vec3 before = tip + how.clearance * outward;
+    if (!can_reach(L, path, before) || !can_reach(L, path, tip)) return std::nullopt;
+    if (path.geometry().has_jaws()) path.set_jaw(now, jaw, jaw_duration);
+    path.move(now, before, how.speed);
+    path.move(now, tip, how.speed);
+    return path.busy_until();
+  };
+  return play_motion(L, instrument, dry_motion_duration, motion);
 }
 
 int DemoScript::set_jaw(lua_State* L, int instrument, const std::string& method,
                         std::optional<double> angle) {
   if (!can_use_jaws(L, instrument, method)) return 0;
-  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
-  InstrumentPath* path = free_path(L, instrument);
-  if (path == nullptr) return 0;
-  path->set_jaw(current(L)->clock, angle.value_or(path->geometry().jaw_opening), jaw_duration);
-  return sleep_until(L, path->busy_until());
+  return play_motion(L, instrument, dry_motion_duration, [&](InstrumentPath& path, double now) {
+    path.set_jaw(now, angle.value_or(path.geometry().jaw_opening), jaw_duration);
+    return path.busy_until();
+  });
 }
 
 int DemoScript::move_to(lua_State* L, int instrument, const Vec3& tip, double speed) {
-  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
-  InstrumentPath* path = free_path(L, instrument);
-  if (path == nullptr) return 0;
-  const Vec3 closed = closed_tip(path->trocar(), tip, path->jaw(), path->geometry());
-  if (!can_reach(L, *path, closed)) return 0;
-  path->move(current(L)->clock, closed, speed);
-  return sleep_until(L, path->busy_until());
+  const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
+    const Vec3 closed = closed_tip(path.trocar(), tip, path.jaw(), path.geometry());
+    if (!can_reach(L, path, closed)) return std::nullopt;
+    path.move(now, closed, speed);
+    return path.busy_until();
+  };
+  return play_motion(L, instrument, dry_motion_duration, motion);
 }
 
 int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double speed) {
-  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
-  InstrumentPath* path = free_path(L, instrument);
-  if (path == nullptr) return 0;
-  const Vec3 tip = path->tip() + vector;
-  if (!can_reach(L, *path, tip)) return 0;
-  path->move(current(L)->clock, tip, speed);
-  return sleep_until(L, path->busy_until());
+  const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
+    const Vec3 tip = path.tip() + vector;
+    if (!can_reach(L, path, tip)) return std::nullopt;
+    path.move(now, tip, speed);
+    return path.busy_until();
+  };
+  return play_motion(L, instrument, dry_motion_duration, motion);
 }
 
 int DemoScript::dry_move_until(lua_State* L, const MoveUntil& how) {
@@ -362,19 +369,17 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
 
 int DemoScript::activate(lua_State* L, int instrument, double duration) {
   if (!can_activate(L, instrument, "activate")) return 0;
-  if (checking() && !has_world()) return dry_wait(L, duration);
-  if (free_path(L, instrument) == nullptr) return 0;
-  const double now = current(L)->clock;
-  flows_[static_cast<std::size_t>(instrument)] = {now, now + duration};
-  return sleep_until(L, now + duration);
+  return play_motion(L, instrument, duration, [&](InstrumentPath&, double now) {
+    flows_[static_cast<std::size_t>(instrument)] = {now, now + duration};
+    return now + duration;
+  });
 }
 
 int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {
-  if (checking() && !has_world()) return dry_wait(L, dry_motion_duration);
-  InstrumentPath* path = free_path(L, instrument);
-  if (path == nullptr) return 0;
-  path->rotate(current(L)->clock, path->roll() + angle, speed);
-  return sleep_until(L, path->busy_until());
+  return play_motion(L, instrument, dry_motion_duration, [&](InstrumentPath& path, double now) {
+    path.rotate(now, path.roll() + angle, speed);
+    return path.busy_until();
+  });
 }
 
 }  // namespace calot

@@ -82,6 +82,11 @@ class DemoScript final : public ScriptSession, public InputSource {
   int sleep_until(lua_State* L, double time);
   int run_children_dry(lua_State* L, std::size_t first);
   void make_paths(const World& world);
+  /// What a method does that moves an instrument and waits for the end. `motion` is told the instrument's path and
+  /// the time, and says when it will have ended, s; none: it complained. It is not asked where a dry run knows no
+  /// world: that counts `dry_duration`, s.
+  template <typename Motion>
+  int play_motion(lua_State* L, int instrument, double dry_duration, const Motion& motion);
   InstrumentPath* free_path(lua_State* L, int instrument);
   bool can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip);
   std::optional<Failure> start();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/index_of.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"
 #include "lua/steps_script.h"
@@ -114,9 +115,7 @@ InstrumentState instrument_state(lua_State* L, const char* method) {
 
 /// None without a name, or after a complaint.
 std::optional<ToolPart> part_called(const std::string& name) {
-  const std::vector<std::string>& names = tool_part_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? std::nullopt : std::optional(static_cast<ToolPart>(found - names.begin()));
+  return enumerator_called<ToolPart>(name, tool_part_names());
 }
 
 int holds(lua_State* L) {

@@ -11,8 +11,6 @@
 namespace calot {
 namespace {
 
-using Json = nlohmann::json;
-
 const Json nothing;
 
 constexpr std::size_t longest_shown = 60;   // bytes

@@ -5,23 +5,24 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "session/json.h"
+
 namespace calot {
 
 /// A text as JSON. Where it is none, `problem` says why and at which byte (from 1), and the value is null.
-nlohmann::json parse_json(std::string_view text, std::string& problem);
+Json parse_json(std::string_view text, std::string& problem);
 
 bool is_utf8(const std::string& text);
 
 class JsonFields {
  public:
   /// `json` and `problems` outlive this. Of anything but an object, every member is missing.
-  JsonFields(const nlohmann::json& json, std::vector<std::string>& problems, std::string prefix = {})
+  JsonFields(const Json& json, std::vector<std::string>& problems, std::string prefix = {})
       : json_(json), problems_(problems), prefix_(std::move(prefix)) {}
 
   bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
@@ -34,15 +35,15 @@ class JsonFields {
   std::uint64_t hash(const std::string& key);  ///< sixteen lower-case hexadecimal digits
   std::vector<std::string> texts(const std::string& key);
   std::map<std::string, std::string> text_map(const std::string& key);
-  const nlohmann::json& any(const std::string& key);  ///< null where it is missing
+  const Json& any(const std::string& key);  ///< null where it is missing
   void wrong(const std::string& key, const std::string& why);
   /// Says which members nobody took.
   void expect_no_others();
 
  private:
-  const nlohmann::json* take(const std::string& key);
+  const Json* take(const std::string& key);
 
-  const nlohmann::json& json_;
+  const Json& json_;
   std::vector<std::string>& problems_;
   std::string prefix_;
   std::set<std::string> taken_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "base/suggest.h"
@@ -13,8 +12,6 @@
 
 namespace calot {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* schema = "calot.recording/2";
 constexpr const char* schema_without_actions = "calot.recording/1";
@@ -234,7 +231,7 @@ RecordingHeader recording_header(const ExerciseDefinition& exercise, const World
 Result<RecordingWriter> RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
   RecordingWriter writer;
   writer.out_.open(path, std::ios::trunc);
-  nlohmann::ordered_json json = {{"schema", schema}, {"scenario", header.scenario}, {"file", header.file}};
+  OrderedJson json = {{"schema", schema}, {"scenario", header.scenario}, {"file", header.file}};
   if (header.source_hash) json["source_hash"] = hex(*header.source_hash);
   json["seed"] = header.seed;
   json["params"] = header.params;
@@ -245,7 +242,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, const R
   json["mathematics"] = header.make.mathematics;
   if (header.state_hash) json["state_hash"] = hex(*header.state_hash);
   // A file's name may hold any bytes: what is not UTF-8 is replaced.
-  if (!writer.add_line(json.dump(-1, ' ', false, Json::error_handler_t::replace))) {
+  if (!writer.add_line(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace))) {
     return fail(FailureKind::usage, fmt::format("cannot write {}", path),
                 "choose another folder with -o DIR");
   }
@@ -261,13 +258,13 @@ bool RecordingWriter::add_line(const std::string& line) {
 
 bool RecordingWriter::write(const RecordedStep& step) {
   // The library's digits read back as the same bits, the sign of a zero included.
-  nlohmann::ordered_json json = {{"time_s", step.time}, {"poses", Json::array()}};
+  OrderedJson json = {{"time_s", step.time}, {"poses", OrderedJson::array()}};
   for (const InstrumentPose& pose : step.input.instruments) {
     json["poses"].push_back({pose.pitch, pose.yaw, pose.insertion, pose.roll, pose.jaw});
   }
   const auto acts = [](InstrumentAction action) { return action != InstrumentAction::none; };
   if (std::any_of(step.input.actions.begin(), step.input.actions.end(), acts)) {
-    json["actions"] = Json::array();
+    json["actions"] = OrderedJson::array();
     for (InstrumentAction action : step.input.actions) json["actions"].push_back(to_text(action));
   }
   if (step.state_hash) json["state_hash"] = hex(*step.state_hash);

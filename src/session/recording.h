@@ -31,7 +31,6 @@
 namespace calot {
 
 struct RecordingHeader {
-  bool has_actions = true;  ///< of version 2
   std::string scenario;  ///< id
   /// Where the scenario is: below its project or the folder it was played from, else its file's name. May be empty.
   std::string file;
@@ -42,6 +41,7 @@ struct RecordingHeader {
   std::vector<std::string> instruments;
   Make make;                                ///< parts may be empty
   std::optional<std::uint64_t> state_hash;  ///< at rest, before the first step; without one no step has one
+  bool has_actions = true;                  ///< of calot.recording/2
 };
 
 struct RecordedStep {

@@ -1,14 +1,11 @@
 #include "session/report.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/hash.h"
 #include "session/build_info.h"
+#include "session/json.h"
 
 namespace calot {
 namespace {
-
-using OrderedJson = nlohmann::ordered_json;
 
 OrderedJson steps_json(const Progress& progress) {
   OrderedJson list = OrderedJson::array();
@@ -132,8 +129,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
                    {"instruction_set", make.instruction_set},
                    {"mathematics", make.mathematics}};
   json["timing"] = timing_json(session, report.start_to_first_frame_s);
-  // Text from a scenario may hold any bytes; replace what is not UTF-8 instead of throwing.
-  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 }  // namespace calot

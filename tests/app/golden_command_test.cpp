@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/golden_store.h"
 #include "app/program.h"
 #include "render/png.h"
+#include "session/json.h"
 #include "support/paths.h"
 
 namespace calot::test {
 namespace {
-
-using Json = nlohmann::json;
 
 class GoldenProject : public ProgramTest {
  protected:

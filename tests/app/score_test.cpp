@@ -1,15 +1,13 @@
 // The score can fail: what a trainee does differently shows in the parts of the main scenario's score.
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/program.h"
+#include "session/json.h"
 #include "support/paths.h"
 
 namespace calot::test {
 namespace {
-
-using Json = nlohmann::json;
 
 class MainScenario : public ProgramTest {
  protected:
