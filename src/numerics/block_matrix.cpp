@@ -79,27 +79,49 @@ BlockMatrix BlockMatrix::blank() const {
   return out;
 }
 
-BlockMatrix BlockMatrix::widened(std::span<const std::vector<int>> cliques) const {
-  std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
+void BlockMatrix::add_cliques(int first, std::vector<std::vector<int>>& cliques) const {
   for (int j = 0; j < nodes(); ++j)
     for (int k = pattern_->block_start[j]; k < pattern_->block_start[j + 1]; ++k)
-      all.push_back({j, pattern_->block_row[k]});
+      cliques.push_back({first + j, first + pattern_->block_row[k]});
+}
+
+BlockMatrix BlockMatrix::widened(std::span<const std::vector<int>> cliques) const {
+  std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
+  add_cliques(0, all);
   BlockMatrix out(nodes(), all);
   out.assign(*this);
   return out;
 }
 
+BlockMatrix::BlockMatrix(std::span<const BlockMatrix> parts, std::span<const std::vector<int>> cliques) {
+  std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
+  int nodes = 0;
+  for (const BlockMatrix& part : parts) {
+    part.add_cliques(nodes, all);
+    nodes += part.nodes();
+  }
+  *this = BlockMatrix(nodes, all);
+}
+
 void BlockMatrix::assign(const BlockMatrix& part) {
   if (values_.size() == part.values_.size()) return assign(part.values_);
   set_zero();
-  for (int j = 0; j < nodes(); ++j) {
+  add_part(part, 0);
+}
+
+void BlockMatrix::add_part(const BlockMatrix& part, int first) {
+  for (int j = 0; j < part.nodes(); ++j) {
+    const int step = stride(first + j);
+    int block = pattern_->block_start[first + j];
     for (int k = part.pattern_->block_start[j]; k < part.pattern_->block_start[j + 1]; ++k) {
+      const int row = first + part.pattern_->block_row[k];
+      while (pattern_->block_row[block] != row)
+        if (++block == pattern_->block_start[first + j + 1]) std::abort();  // as in add()
       const int from = part.pattern_->column_starts[3 * j] + 3 * (k - part.pattern_->block_start[j]);
-      const int to = slot(part.pattern_->block_row[k], j);
-      if (to < 0) std::abort();  // as in add()
+      const int to =
+          pattern_->column_starts[3 * (first + j)] + 3 * (block - pattern_->block_start[first + j]);
       for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r)
-          values_[to + c * stride(j) + r] = part.values_[from + c * part.stride(j) + r];
+        for (int r = 0; r < 3; ++r) values_[to + c * step + r] += part.values_[from + c * part.stride(j) + r];
     }
   }
 }
@@ -124,9 +146,9 @@ void BlockMatrix::add_to_diagonal(int node, double shift) {
   for (int c = 0; c < 3; ++c) values_[column_starts()[3 * node + c] + c] += shift;
 }
 
-void BlockMatrix::hold_all_but(int first, int last) {
+void BlockMatrix::hold_all_but(const std::vector<char>& free) {
   const double mean = diagonal_mean();
-  const auto is_free = [&](int unknown) { return unknown >= 3 * first && unknown < 3 * last; };
+  const auto is_free = [&](int unknown) { return free[unknown / 3] != 0; };
   for (int column = 0; column < size(); ++column) {
     for (int e = column_starts()[column]; e < column_starts()[column + 1]; ++e) {
       if (is_free(column) && is_free(rows()[e])) continue;

@@ -17,6 +17,9 @@ class BlockMatrix {
  public:
   /// `cliques`: groups of nodes coupled with each other (an element's nodes). Every diagonal block exists.
   BlockMatrix(int nodes, std::span<const std::vector<int>> cliques);
+  /// Of bodies whose nodes follow each other in the order of `parts`, with room for theirs and for the couplings of
+  /// further cliques.
+  BlockMatrix(std::span<const BlockMatrix> parts, std::span<const std::vector<int>> cliques);
 
   int nodes() const { return static_cast<int>(pattern_->block_start.size()) - 1; }
   int size() const { return 3 * nodes(); }
@@ -36,6 +39,8 @@ class BlockMatrix {
   BlockMatrix widened(std::span<const std::vector<int>> cliques) const;
   /// Starts from a matrix whose pattern this one's holds.
   void assign(const BlockMatrix& part);
+  /// Adds a matrix whose first node is this one's `first`, and whose pattern this one's holds there.
+  void add_part(const BlockMatrix& part, int first);
 
   /// Offset of entry (0, 0) of block (i, j), i >= j; -1 when the pattern does not hold it. Entry (r, c) lies
   /// at slot + c * stride(j) + r.
@@ -53,8 +58,8 @@ class BlockMatrix {
   void add_to_diagonal(double shift);
   void add_to_diagonal(int node, double shift);
   double diagonal(int unknown) const { return values_[column_starts()[unknown] + unknown % 3]; }
-  /// Nodes other than first .. last - 1 are held: not coupled any more, on their diagonals the matrix' mean.
-  void hold_all_but(int first, int last);
+  /// Nodes that are not `free` (one a node) are held: not coupled any more, on their diagonals the matrix' mean.
+  void hold_all_but(const std::vector<char>& free);
   double diagonal_mean() const;
   bool all_finite() const;
   /// y = A x.
@@ -75,6 +80,8 @@ class BlockMatrix {
   };
   explicit BlockMatrix(std::shared_ptr<const Pattern> pattern) : pattern_(std::move(pattern)) {}
   int search(int i, int j) const;
+  /// A clique of two for each block, nodes counted from `first`.
+  void add_cliques(int first, std::vector<std::vector<int>>& cliques) const;
 
   std::shared_ptr<const Pattern> pattern_;
   std::vector<double> values_;

@@ -22,38 +22,19 @@ struct Springs {
   }
 };
 
-/// A body under springs on surface points of any kind.
-class SpringProblem : public BodyEnergy {
+/// What the springs add to a body's energy.
+class SpringJoin : public Join {
  public:
-  SpringProblem(const ShellBody& body, const ContactLoads& nothing, const StencilTable& points,
-                const Springs& springs, const BodyState& start, bool fixed_pressure = false)
-      : body_(body, nothing, {}, start, fixed_pressure), points_(points), springs_(springs) {}
+  SpringJoin(const StencilTable& points, const Springs& springs) : points_(points), springs_(springs) {}
 
-  bool constrained() const override { return body_.constrained(); }
-  double value(const VecX& x) const override { return body_.value(x) + springs_.links.value(points_, x); }
-  void gradient(const VecX& x, VecX& gradient, double& largest_internal) const override {
-    body_.gradient(x, gradient, largest_internal);
+  double value(const VecX& x) const override { return springs_.links.value(points_, x); }
+  void add_gradient(const VecX& x, VecX& gradient) const override {
     springs_.links.add_gradient(points_, x, gradient);
   }
-  void hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const override {
-    body_.hessian(x, multiplier, matrix);
-    matrix.add(springs_.hessian);
-  }
-  double constraint(const VecX& x, VecX& gradient) const override { return body_.constraint(x, gradient); }
-  double constraint_value(const VecX& x) const override { return body_.constraint_value(x); }
-  double gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
-                                 VecX& of_constraint) const override {
-    const double out = body_.gradient_and_constraint(x, of_energy, largest_internal, of_constraint);
-    springs_.links.add_gradient(points_, x, of_energy);
-    return out;
-  }
-  double constraint_scale() const override { return body_.constraint_scale(); }
-  double length_scale() const override { return body_.length_scale(); }
-  int places() const override { return body_.places(); }
-  double safe_share(const VecX& x, const VecX& step) const override { return body_.safe_share(x, step); }
+  void add_hessian(const VecX& /*x*/, BlockMatrix& matrix) const override { matrix.add(springs_.hessian); }
+  void add_cliques(std::vector<std::vector<int>>& /*cliques*/) const override {}
 
  private:
-  BodyProblem body_;
   const StencilTable& points_;
   const Springs& springs_;
 };
@@ -73,7 +54,10 @@ class ComparedShell : public ComparedBody {
         work_(body_.pattern(), body_.coarse_nodes()),
         filled_(std::move(rested.state)),
         state_(filled_),
-        insertion_s_(insertion_s) {}
+        insertion_s_(insertion_s) {
+    search_.own.active = false;  // these bodies are never folded
+    joins_.push_back(std::make_shared<SpringJoin>(points_, springs_));
+  }
 
   NewtonResult begin(const ComparedLoad& load, FactorKind solver) override {
     state_ = filled_;
@@ -134,17 +118,11 @@ class ComparedShell : public ComparedBody {
   }
 
  private:
-  SpringProblem problem() const { return {body_, nothing_, points_, springs_, state_}; }
+  GroupProblem problem() { return {{&member_, 1}, joins_, patterns_}; }
 
   NewtonResult settle() {
-    if (staged_)
-      return solve_in_stages(
-          body_,
-          [&](const BodyState& start, bool fixed_pressure) {
-            return std::make_unique<SpringProblem>(body_, nothing_, points_, springs_, start, fixed_pressure);
-          },
-          NewtonSettings{}, work_, state_);
-    return solve_equilibrium(problem(), NewtonSettings{}, work_, state_.x, state_.datum_pressure);
+    if (staged_) return solve_in_stages({&member_, 1}, joins_, patterns_, NewtonSettings{}, work_);
+    return solve(problem(), NewtonSettings{}, work_);
   }
 
   /// Moves springs and body on towards `share` to first order, as far as no node goes beyond half an edge.
@@ -153,7 +131,8 @@ class ComparedShell : public ComparedBody {
     for (std::size_t i = 0; i < springs_.from.size(); ++i)
       spread(points_, springs_.links.row[i],
              springs_.links.stiffness[i] * (share - share_) * springs_.travel[i], load);
-    const FirstOrderAnswer answer = first_order_answer(problem(), work_, state_.x, state_.datum_pressure,
+    const GroupProblem whole = problem();
+    const FirstOrderAnswer answer = first_order_answer(whole, work_, whole.coordinates(), whole.multipliers(),
                                                        load, body_.edge_lengths(), fresh);
     if (!answer.result.converged()) return answer.result;
     const double part = std::min(most, answer.share);
@@ -169,8 +148,12 @@ class ComparedShell : public ComparedBody {
   StencilTable points_;
   NewtonWorkspace work_;
   ContactLoads nothing_;
+  ContactSearch search_;
   BodyState filled_, state_;
   Springs springs_;
+  Member member_{body_, nothing_, search_, state_};
+  std::vector<JoinPointer> joins_;
+  GroupPatterns patterns_;
   double share_ = 0, insertion_s_ = 0;
   bool staged_ = false;
 };
@@ -192,9 +175,11 @@ ShellBody::Setup setup_of(const TriMesh& control, double radius, int levels) {
 Result<Rested> brought_to_rest(ShellBody body, BodyState state) {
   NewtonWorkspace work(body.pattern(), body.coarse_nodes());
   const ContactLoads nothing;
-  const BodyProblem problem(body, nothing, {}, state);
-  const NewtonResult result =
-      solve_equilibrium(problem, NewtonSettings{}, work, state.x, state.datum_pressure);
+  ContactSearch search;
+  search.own.active = false;
+  const Member member{body, nothing, search, state};
+  GroupPatterns patterns;
+  const NewtonResult result = solve(GroupProblem({&member, 1}, {}, patterns), NewtonSettings{}, work);
   if (!result.converged())
     return fail(FailureKind::simulation, "a filled sphere found no rest: " + to_text(result.status));
   return Rested{std::move(body), std::move(state)};

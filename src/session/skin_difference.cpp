@@ -43,8 +43,8 @@ class MotionField {
 
 /// Since its skin points were at `first`, m.
 MovedSkin moved_skin(const Organ& organ, const std::vector<Vec3>& first) {
-  MovedSkin out{organ.body.skin_rest(), organ.body.skin_positions(organ.state.x), organ.body.skin_areas(),
-                organ.body.skin().triangles};
+  MovedSkin out{organ.body->skin_rest(), organ.body->skin_positions(organ.state.x), organ.body->skin_areas(),
+                organ.body->skin().triangles};
   for (std::size_t p = 0; p < first.size(); ++p) {
     out.rest[p] -= organ.definition.neck;
     out.motion[p] -= first[p];
@@ -72,7 +72,7 @@ std::optional<SkinDifference> skin_difference(const MovedSkin& skin, const Moved
 }
 
 SkinDifferences::SkinDifferences(const World& world) {
-  for (const Organ& organ : world.field().organs) first_.push_back(organ.body.skin_positions(organ.state.x));
+  for (const Organ& organ : world.field().organs) first_.push_back(organ.body->skin_positions(organ.state.x));
 }
 
 std::optional<SkinDifference> SkinDifferences::of(const World& world, int index) const {

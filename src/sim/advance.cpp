@@ -33,25 +33,24 @@ Poses between(const Poses& a, const Poses& b, double share) {
   return out;
 }
 
-/// What an organ answers to a part of a motion.
+/// What the organs answer to a part of a motion.
 struct Prediction {
-  VecX first_order, dx;                            ///< m, 3 a node; dx with what the last answer missed
-  double first_order_pressure = 0, dpressure = 0;  ///< Pa
-  double travel = 0;                               ///< of the tool that travels most, m
-  double share = 1;                                ///< that can be believed, and is safe
-  bool loaded = false;                             ///< whether the tools' motion loads the organ
+  VecX first_order, dx;                    ///< m, 3 a node; dx with what the last answer missed
+  VecX first_order_pressures, dpressures;  ///< Pa, one an organ
+  double travel = 0;                       ///< of the tool that travels most, m
+  double share = 1;                        ///< that can be believed, and is safe
+  bool loaded = false;                     ///< whether the tools' motion loads any organ
 };
 
 /// Motion of `part` of a tool from one pose to another, at x.
 Vec3 carried(const Pose& motion, const Vec3& x) { return motion * x - x; }
 
-/// The load that the tools' motion to `to` puts on the organ to first order; none for a tool that stays, not
-/// even rounding.
+/// The load that the tools' motion to `to` puts on the organ to first order (then `loaded` becomes true); none for a
+/// tool that stays, not even rounding.
 VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now,
                  const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
   VecX load = VecX::Zero(organ.state.x.size());
-  loaded = false;
-  ContactLoad pressed(organ.body.skin(), load);
+  ContactLoad pressed(organ.body->skin(), load);
   std::vector<std::optional<Pose>> motions;  // of the shapes; the support stays
   for (std::size_t shape = 0; shape < now.shapes.size(); ++shape) {
     const std::size_t tool = shape / shapes_per_tool;
@@ -60,23 +59,23 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
       motions.back() =
           part_motion(field.tools[tool], from[tool], to[tool], static_cast<int>(shape % shapes_per_tool));
   }
-  for (const Touch& touch : organ.search.touches.at(organ.body, organ.state.x, now, pairs, 0.0)) {
+  for (const Touch& touch : organ.search.touches.at(*organ.body, organ.state.x, now, pairs, 0.0)) {
     if (!motions[touch.shape]) continue;
     pressed.add(touch.point,
-                contact_hessian(organ.body, now, touch) * carried(*motions[touch.shape], touch.at));
+                contact_hessian(*organ.body, now, touch) * carried(*motions[touch.shape], touch.at));
     loaded = true;
   }
   const Links target = grip_links(organ, field.tools, to);
   for (std::size_t i = 0; i < target.row.size(); ++i) {
     const int tool = organ.grips[i].instrument;
     if (from[tool] == to[tool]) continue;
-    spread(organ.body.skin().stencils, target.row[i],
+    spread(organ.body->skin().stencils, target.row[i],
            target.stiffness[i] * (target.target[i] - now.grip.target[i]), load);
     loaded = true;
   }
   // What rubs touches as well: it has been found loaded above.
   const FrictionLoad carried_on = friction_load(field, organ, to);
-  ContactPlaces places(organ.body.skin(), organ.state.x);
+  ContactPlaces places(organ.body->skin(), organ.state.x);
   for (std::size_t i = 0; i < carried_on.points.size(); ++i) {
     const RubbingPoint& rubbing = now.friction.points[i];
     const FrictionSample sample = rubbing.hold.sample(places.at(rubbing.point));
@@ -121,11 +120,11 @@ class ShapePaths {
 double share_kept_apart(const Field& field, const Organ& organ, const ContactLoads& now,
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
-  const double longest = organ.body.largest_motion(dx);
+  const double longest = organ.body->largest_motion(dx);
   ShapePaths paths(field, from, to);
   std::vector<Shape> cores;
   for (const Shape& shape : now.shapes) cores.push_back(core_of(shape));
-  ContactPlaces places(organ.body.skin(), organ.state.x), moves(organ.body.skin(), dx);
+  ContactPlaces places(organ.body->skin(), organ.state.x), moves(organ.body->skin(), dx);
   double share = 1.0;
   for (const ContactPair& pair : pairs) {
     const Shape& core = cores[pair.shape];
@@ -158,56 +157,111 @@ void add_missed(const MissedMotion& missed, Prediction& out) {
   // No second order is believed that is not small beside the first.
   if (!(ratio_squared * missed.dx.norm() < out.first_order.norm())) return;
   out.dx += ratio_squared * missed.dx;
-  out.dpressure += ratio_squared * missed.dpressure;
+  out.dpressures += ratio_squared * missed.dpressures;
 }
 
-/// What the answer to a part of a motion missed, once the organ is in equilibrium.
-MissedMotion missed_by(const Prediction& answer, double share, const BodyState& before,
-                       const BodyState& after, int iterations) {
+/// What the answer to a part of a motion missed, once the organs are in equilibrium.
+MissedMotion missed_by(const Prediction& answer, double share, const GroupSnapshot& before,
+                       const Field& field, int iterations) {
   if (!answer.loaded || share < 1.0) return {};
-  return {after.x - before.x - answer.first_order,
-          after.datum_pressure - before.datum_pressure - answer.first_order_pressure, answer.travel,
-          iterations};
+  MissedMotion out{-answer.first_order, -answer.first_order_pressures, answer.travel, iterations};
+  Eigen::Index first = 0;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const BodyState &was = before.organs[k].state, &is = field.organs[k].state;
+    out.dx.segment(first, is.x.size()) += is.x - was.x;
+    out.dpressures[static_cast<Eigen::Index>(k)] += is.datum_pressure - was.datum_pressure;
+    first += is.x.size();
+  }
+  return out;
 }
 
 /// Whether the last factor answered the last motion well: a new one takes as long as three iterations.
-bool factor_serves(const Organ& organ) { return organ.missed.dx.size() > 0 && organ.missed.iterations <= 3; }
+bool factor_serves(const Group& group) { return group.missed.dx.size() > 0 && group.missed.iterations <= 3; }
 
-/// Answer of an organ to tools that move from `from` to `to`, and the share of it that is safe. With `fresh` the tangent
-/// is factorised anew, else the last factor serves if there is one.
-Result<Prediction> predict(const Field& field, Organ& organ, const Poses& from, const Poses& to, bool fresh,
-                           SolveStatistics& statistics) {
-  Prediction out;
-  out.dx = out.first_order = VecX::Zero(organ.state.x.size());
-  if (from == to) return out;
-  const ContactLoads now = contact_loads(field, organ, from);
-  for (std::size_t i = 0; i < from.size(); ++i)
-    out.travel = std::max(out.travel, travel_bound(field.tools[i], from[i], to[i]));
-  std::vector<ContactPair> pairs;
-  {
-    const Timed timed(statistics.contact_s);
-    pairs = organ.search.pairs(organ.body, organ.state.x, now, out.travel);
+/// What of dx is an organ's.
+class OrganParts {
+ public:
+  explicit OrganParts(const Field& field) {
+    for (const Organ& organ : field.organs) {
+      first_.push_back(total_);
+      sizes_.push_back(organ.state.x.size());
+      total_ += sizes_.back();
+    }
   }
-  const VecX load = motion_load(field, organ, now, pairs, from, to, out.loaded);
+  Eigen::Index total() const { return total_; }
+  auto of(std::size_t organ, VecX& dx) const { return dx.segment(first_[organ], sizes_[organ]); }
+  auto of(std::size_t organ, const VecX& dx) const { return dx.segment(first_[organ], sizes_[organ]); }
+
+ private:
+  std::vector<Eigen::Index> first_, sizes_;
+  Eigen::Index total_ = 0;
+};
+
+std::vector<double> all_edge_lengths(const Field& field) {
+  std::vector<double> out;
+  for (const Organ& organ : field.organs)
+    out.insert(out.end(), organ.body->edge_lengths().begin(), organ.body->edge_lengths().end());
+  return out;
+}
+
+/// Limits a prediction to what keeps skins and tools apart.
+void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
+                const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
+                Prediction& out) {
+  const OrganParts parts(field);
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const Organ& organ = field.organs[k];
+    out.share = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),
+                                            contact_keep, out.share);
+  }
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const Poses partly = between(from, to, out.share);
+    out.share *= share_kept_apart(field, field.organs[k], loads[k], pairs[k],
+                                  out.share * parts.of(k, std::as_const(out.dx)), from, partly);
+  }
+}
+
+/// Answer of the organs to tools that move from `from` to `to`, and the share of it that is safe. With `fresh` the
+/// tangent is factorised anew, else the last factor serves if there is one.
+Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, bool fresh,
+                           SolveStatistics& statistics) {
+  const OrganParts parts(field);
+  Prediction out;
+  out.dx = out.first_order = VecX::Zero(parts.total());
+  out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
+  if (from == to) return out;
+  out.travel = largest_travel(field, to);
+  std::vector<ContactLoads> loads;
+  std::vector<std::vector<ContactPair>> pairs;
+  VecX load(parts.total());
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    loads.push_back(contact_loads(field, organ, from));
+    {
+      const Timed timed(statistics.contact_s);
+      pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel));
+    }
+    parts.of(k, load) = motion_load(field, organ, loads[k], pairs[k], from, to, out.loaded);
+  }
   if (out.loaded) {
-    const BodyProblem problem(organ.body, now, organ.search, organ.state);
-    FirstOrderAnswer answer =
-        first_order_answer(problem, organ.work, organ.state.x, organ.state.datum_pressure, load,
-                           organ.body.edge_lengths(), fresh);
+    const std::vector<Member> members = members_of(field, loads);
+    Group& group = field.group;
+    const GroupProblem problem(members, group.joins, group.patterns);
+    FirstOrderAnswer answer = first_order_answer(problem, group.work, problem.coordinates(),
+                                                 problem.multipliers(), load, all_edge_lengths(field), fresh);
     count(answer.result, statistics);
     if (!answer.result.converged())
-      return solve_failure(answer.result, organ.definition.name, "under its instruments");
+      return solve_failure(answer.result, field.organs[answer.result.part].definition.name,
+                           "under its instruments");
     out.first_order = std::move(answer.dx);
-    out.first_order_pressure = answer.dmultiplier();
+    out.first_order_pressures = problem.pressures(answer.dmultipliers);
     out.share = answer.share;
     out.dx = out.first_order;
-    out.dpressure = out.first_order_pressure;
-    add_missed(organ.missed, out);
+    out.dpressures = out.first_order_pressures;
+    add_missed(group.missed, out);
   }
   const Timed timed(statistics.contact_s);
-  out.share = organ.search.own.safe_share(organ.body, organ.state.x, out.dx, contact_keep, out.share);
-  const Poses partly = between(from, to, out.share);
-  out.share *= share_kept_apart(field, organ, now, pairs, out.share * out.dx, from, partly);
+  keep_apart(field, loads, pairs, from, to, out);
   return out;
 }
 
@@ -254,6 +308,16 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
   return true;
 }
 
+/// Moves the organs by a share of what is predicted.
+void move_by(double share, const Prediction& prediction, Field& field) {
+  const OrganParts parts(field);
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    BodyState& state = field.organs[k].state;
+    state.x += share * parts.of(k, prediction.dx);
+    state.datum_pressure += share * prediction.dpressures[static_cast<Eigen::Index>(k)];
+  }
+}
+
 /// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
 /// of each part.
 Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slipped_before,
@@ -263,16 +327,12 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
   NewtonResult last;  // of the solve that failed last, if any did in this part
   for (int part = 0; done < 1.0; ++part) {
     const Poses from = present_poses(field);
-    double share = 1.0;
-    std::vector<Prediction> predictions;
-    for (Organ& organ : field.organs) {
-      const bool fresh = !factor_serves(organ);
-      Result<Prediction> p = predict(field, organ, from, to, fresh, statistics);
-      if (p && p->share < 1.0 && !fresh) p = predict(field, organ, from, to, true, statistics);
-      if (!p) return p.failure();
-      share = std::min(share, p->share);
-      predictions.push_back(std::move(p).value());
-    }
+    const bool fresh = !factor_serves(field.group);
+    Result<Prediction> answer = predict(field, from, to, fresh, statistics);
+    if (answer && answer->share < 1.0 && !fresh) answer = predict(field, from, to, true, statistics);
+    if (!answer) return answer.failure();
+    const Prediction& prediction = answer.value();
+    double share = prediction.share;
     const double left = 1.0 - done;
     bool accepted = false;
     while (!accepted) {
@@ -288,20 +348,13 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
                              done);
       const double next = share >= 1.0 ? 1.0 : done + share * left;
       const Poses poses = next >= 1.0 ? to : between(from, to, share);
-      accepted = true;
-      std::vector<MissedMotion> missed;
-      std::vector<OrganSnapshot> before;
-      for (std::size_t k = 0; k < field.organs.size() && accepted; ++k) {
-        Organ& organ = field.organs[k];
-        before.push_back(snapshot(organ));
-        organ.state.x += share * predictions[k].dx;
-        organ.state.datum_pressure += share * predictions[k].dpressure;
-        last = settle_organ(field, organ, poses, before.back().state.x, part_iterations, statistics);
-        accepted = last.converged();
-        missed.push_back(missed_by(predictions[k], share, before.back().state, organ.state, last.iterations));
-      }
+      const GroupSnapshot before = snapshot(field);
+      const std::vector<VecX> places = present_places(field);
+      move_by(share, prediction, field);
+      last = settle_group(field, poses, places, part_iterations, statistics);
+      accepted = last.converged();
       if (accepted) {
-        for (std::size_t k = 0; k < field.organs.size(); ++k) field.organs[k].missed = std::move(missed[k]);
+        field.group.missed = missed_by(prediction, share, before, field, last.iterations);
         for (std::size_t i = 0; i < field.tools.size(); ++i) field.tools[i].pose = poses[i];
         for (Organ& organ : field.organs) follow_contacts(field, organ, statistics);
         done = next;
@@ -312,7 +365,7 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
         if (!held) return held;
         iterations_before += statistics.newton_iterations - iterations_moving;
       } else {
-        for (std::size_t k = 0; k < before.size(); ++k) restore(field.organs[k], before[k]);
+        restore(field, before);
         share *= 0.5;
       }
     }

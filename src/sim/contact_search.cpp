@@ -7,7 +7,7 @@ namespace calot {
 namespace {
 
 /// Of each face of the control mesh, which holds its skin.
-std::vector<Eigen::AlignedBox3d> face_boxes(const ShellBody& body, const VecX& x) {
+std::vector<Eigen::AlignedBox3d> face_boxes(const Body& body, const VecX& x) {
   std::vector<Eigen::AlignedBox3d> boxes;
   for (const std::vector<int>& nodes : body.face_nodes()) {
     Eigen::AlignedBox3d box;
@@ -26,7 +26,7 @@ std::vector<Eigen::AlignedBox3d> face_boxes(const ShellBody& body, const VecX& x
 }
 
 /// Adds the pairs with a shape that are nearer than `reach`.
-void pairs_within(int index, const Shape& shape, const ShellBody& body,
+void pairs_within(int index, const Shape& shape, const Body& body,
                   const std::vector<Eigen::AlignedBox3d>& faces, double reach, ContactPlaces& places,
                   std::vector<ContactPair>& out) {
   const int each = body.triangles_each();
@@ -48,7 +48,7 @@ double reach_of(const ContactLoads& loads, double extra) {
 
 }  // namespace
 
-std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+std::vector<ContactPair> gather_pairs(const Body& body, const VecX& x, const ContactLoads& loads,
                                       double extra) {
   const std::vector<Eigen::AlignedBox3d> faces = face_boxes(body, x);
   ContactPlaces places(body.skin(), x);
@@ -58,7 +58,7 @@ std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, cons
   return pairs;
 }
 
-void ContactSearch::pairs_with(int index, const ShellBody& body, const VecX& x, const ContactLoads& loads,
+void ContactSearch::pairs_with(int index, const Body& body, const VecX& x, const ContactLoads& loads,
                                double reach, std::vector<ContactPair>& out) {
   constexpr double ahead = 4e-3;    // m remembered beyond what is asked for
   constexpr double stale = 0.5e-3;  // m of motion after which remembered distances are measured again
@@ -94,7 +94,7 @@ void ContactSearch::pairs_with(int index, const ShellBody& body, const VecX& x, 
   }
 }
 
-std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, const ContactLoads& loads,
                                               double extra) {
   std::vector<ContactPair> out;
   for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape)
@@ -102,7 +102,7 @@ std::vector<ContactPair> ContactSearch::pairs(const ShellBody& body, const VecX&
   return out;
 }
 
-const std::vector<Touch>* TouchMemory::known(const ShellBody& body, const VecX& x,
+const std::vector<Touch>* TouchMemory::known(const Body& body, const VecX& x,
                                              const ContactLoads& loads) const {
   for (const State& state : states_)
     if (state.range == loads.barrier.range && state.x.size() == x.size() && state.x == x &&
@@ -111,7 +111,7 @@ const std::vector<Touch>* TouchMemory::known(const ShellBody& body, const VecX& 
   return nullptr;
 }
 
-const std::vector<Touch>& TouchMemory::at(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const ContactLoads& loads,
                                           const std::vector<ContactPair>& pairs, double approach) {
   if (const std::vector<Touch>* touches = known(body, x, loads)) {
     newest_ = &states_[0].touches == touches ? 0 : 1;
@@ -131,7 +131,7 @@ const std::vector<Touch>& TouchMemory::at(const ShellBody& body, const VecX& x, 
   return state.touches;
 }
 
-const std::vector<Touch>& ContactSearch::touching(const ShellBody& body, const VecX& x,
+const std::vector<Touch>& ContactSearch::touching(const Body& body, const VecX& x,
                                                   const ContactLoads& loads) {
   if (const std::vector<Touch>* known = touches.known(body, x, loads)) return *known;
   return touches.at(body, x, loads, pairs(body, x, loads, -contact_margin), 0.0);

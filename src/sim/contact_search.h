@@ -5,9 +5,10 @@
 
 #include "collision/barrier.h"
 #include "collision/shapes.h"
+#include "fem/links.h"
+#include "sim/body.h"
 #include "sim/friction_load.h"
 #include "sim/self_contact.h"
-#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -55,7 +56,7 @@ inline constexpr double contact_margin = 2.5e-3;
 /// Calls use(contact point, index of the shape, its place, distance and gradient there) for the points of the pairs that are in range of
 /// the shapes when the nodes are at x, m. No pair has come nearer than by `approach` since it was gathered.
 template <class Use>
-void for_touching(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+void for_touching(const Body& body, const VecX& x, const ContactLoads& loads,
                   const std::vector<ContactPair>& pairs, double approach, const Use& use) {
   ContactPlaces places(body.skin(), x);
   for (const ContactPair& pair : pairs) {
@@ -86,10 +87,10 @@ class TouchMemory {
  public:
   /// All contact points in range when the nodes are at x, m, ordered by shape, then point. `pairs` are ordered and hold
   /// all that may meet; none has come nearer than by `approach` since it was gathered. Valid until the next call.
-  const std::vector<Touch>& at(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+  const std::vector<Touch>& at(const Body& body, const VecX& x, const ContactLoads& loads,
                                const std::vector<ContactPair>& pairs, double approach);
   /// The same where it is known, else null.
-  const std::vector<Touch>* known(const ShellBody& body, const VecX& x, const ContactLoads& loads) const;
+  const std::vector<Touch>* known(const Body& body, const VecX& x, const ContactLoads& loads) const;
 
  private:
   struct State {
@@ -104,7 +105,7 @@ class TouchMemory {
 };
 
 /// Pairs within range + contact_margin + extra of the shapes, ordered by shape, then triangle.
-std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
+std::vector<ContactPair> gather_pairs(const Body& body, const VecX& x, const ContactLoads& loads,
                                       double extra);
 
 /// The same pairs with less work: triangles a little further away are remembered, and only these are looked at
@@ -113,14 +114,13 @@ std::vector<ContactPair> gather_pairs(const ShellBody& body, const VecX& x, cons
 class ContactSearch {
  public:
   static constexpr double exact = 0.5e-3;  ///< m
-  std::vector<ContactPair> pairs(const ShellBody& body, const VecX& x, const ContactLoads& loads,
-                                 double extra);
+  std::vector<ContactPair> pairs(const Body& body, const VecX& x, const ContactLoads& loads, double extra);
   /// Only those with one of the shapes, within `reach` of it, m, ordered by triangle; added to `out`.
-  void pairs_with(int shape, const ShellBody& body, const VecX& x, const ContactLoads& loads, double reach,
+  void pairs_with(int shape, const Body& body, const VecX& x, const ContactLoads& loads, double reach,
                   std::vector<ContactPair>& out);
 
   /// What touches at x, looked for only where that is not known yet. Valid until the next call or solve.
-  const std::vector<Touch>& touching(const ShellBody& body, const VecX& x, const ContactLoads& loads);
+  const std::vector<Touch>& touching(const Body& body, const VecX& x, const ContactLoads& loads);
 
   SelfContact own;  ///< the skin's with itself
   TouchMemory touches;

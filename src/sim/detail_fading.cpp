@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/index_of.h"
+#include "numerics/parts.h"
 
 namespace calot {
 namespace {

@@ -1,190 +1,47 @@
 #include "sim/equilibrium.h"
 
-#include <cmath>
-#include <limits>
-#include <memory>
+#include <algorithm>
 
-#include "base/timed.h"
 #include "sim/staged.h"
 
 namespace calot {
-BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
-                         const BodyState& start, bool fixed_pressure)
-    : body_(body),
-      loads_(loads),
-      pairs_(std::move(pairs)),
-      start_(start.x),
-      volume_(start.volume),
-      multiplier_(start.datum_pressure),
-      fixed_pressure_(fixed_pressure),
-      search_(nullptr) {
-  for (const Shape& shape : loads.shapes) cores_.push_back(core_of(shape));
+
+NewtonResult solve(const GroupProblem& problem, const NewtonSettings& settings, NewtonWorkspace& work) {
+  VecX x = problem.coordinates(), multipliers = problem.multipliers();
+  const NewtonResult result = solve_equilibrium(problem, settings, work, x, multipliers);
+  problem.keep(x, multipliers);
+  return result;
 }
 
-BodyProblem::BodyProblem(const ShellBody& body, const ContactLoads& loads, ContactSearch& search,
-                         const BodyState& start, bool fixed_pressure)
-    : BodyProblem(body, loads, std::vector<ContactPair>(), start, fixed_pressure) {
-  search_ = &search;
-  pairs_.reset();
+namespace {
+
+bool refined(std::span<const Member> members) {
+  return std::any_of(members.begin(), members.end(),
+                     [](const Member& member) { return !member.body.details().empty(); });
 }
 
-const std::vector<ContactPair>& BodyProblem::pairs() const {
-  if (!pairs_) pairs_ = search_->pairs(body_, start_, loads_, 0.0);
-  return *pairs_;
-}
+}  // namespace
 
-const std::vector<Touch>& BodyProblem::touching(const VecX& x) const {
-  TouchMemory& touches = search_ ? search_->touches : touches_;
-  static const std::vector<ContactPair> none;
-  const bool known = touches.known(body_, x, loads_);
-  return touches.at(body_, x, loads_, known ? none : pairs(), moved(x));
-}
-
-void BodyProblem::prepare(NewtonWorkspace& work) const {
-  if (search_) search_->own.prepare(body_, start_, work);
-}
-
-double BodyProblem::moved(const VecX& x) const { return body_.largest_motion(x - start_); }
-
-template <class Use>
-void BodyProblem::for_held_details(const Use& use) const {
-  const auto first = 3 * Eigen::Index{body_.coarse_nodes()};
-  for (std::size_t i = 0; i < loads_.detail_holds.size(); ++i)
-    use(first + 3 * static_cast<Eigen::Index>(i), loads_.detail_holds[i]);
-}
-
-double BodyProblem::value(const VecX& x) const {
-  double sum = body_.shell().value(x);
-  if (!std::isfinite(sum)) return sum;
-  sum += body_.foundation().value(body_.bed_points(), x);
-  sum += loads_.grip.value(body_.skin().stencils, x);
-  sum += loads_.friction.value(body_.skin(), x);
-  if (body_.bile()) {
-    sum += body_.bile()->value(x);
-    if (fixed_pressure_) sum -= multiplier_ * body_.volume(x);
-  }
-  if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
-  if (loads_.load.size() > 0) sum -= loads_.load.dot(x);
-  for (const Touch& touch : touching(x))
-    sum += body_.contact_area(touch.point) * loads_.barrier.sample(touch.slope.distance).energy;
-  for_held_details(
-      [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
-  if (search_) sum += search_->own.value(body_, x);
-  return sum;
-}
-
-void BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
-  body_.shell().add_gradient(x, gradient);
-  largest_internal = largest_node(gradient);
-  body_.foundation().add_gradient(body_.bed_points(), x, gradient);
-  loads_.grip.add_gradient(body_.skin().stencils, x, gradient);
-  loads_.friction.add_gradient(body_.skin(), x, gradient);
-  if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
-  if (loads_.load.size() > 0) gradient -= loads_.load;
-  ContactLoad pressed(body_.skin(), gradient);
-  for (const Touch& touch : touching(x))
-    pressed.add(touch.point, body_.contact_area(touch.point) *
-                                 loads_.barrier.sample(touch.slope.distance).derivative *
-                                 touch.slope.gradient);
-  pressed.finish();
-  for_held_details(
-      [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
-  if (search_) search_->own.add_gradient(body_, x, gradient);
-}
-
-void BodyProblem::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
-  gradient.setZero(x.size());
-  add_dry_gradient(x, gradient, largest_internal);
-  if (body_.bile()) body_.bile()->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
-  largest_internal = force_scale(largest_internal, gradient);
-}
-
-double BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, double& largest_internal,
-                                            VecX& of_constraint) const {
-  of_energy.setZero(x.size());
-  of_constraint.setZero(x.size());
-  add_dry_gradient(x, of_energy, largest_internal);
-  const double volume = body_.add_weight_and_volume_gradient(x, of_energy, of_constraint);
-  largest_internal = force_scale(largest_internal, of_energy);
-  return volume - volume_;
-}
-
-void BodyProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
-  matrix.assign(body_.pattern());
-  body_.shell().add_hessian(x, matrix);
-  loads_.grip.add_hessian(body_.skin().stencils, matrix);
-  loads_.friction.add_hessian(body_.skin(), x, matrix);
-  if (body_.bile()) body_.bile()->add_hessian(x, fixed_pressure_ ? multiplier_ : multiplier, matrix);
-  ContactStiffness pressed(body_.skin(), matrix);
-  for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(body_, loads_, touch));
-  pressed.finish();
-  for_held_details([&](Eigen::Index at, double stiffness) {
-    const int node = static_cast<int>(at / 3);
-    matrix.add(node, node, stiffness * Mat3::Identity());
-  });
-  if (search_) search_->own.add_hessian(body_, x, matrix);
-}
-
-double BodyProblem::constraint(const VecX& x, VecX& gradient) const {
-  gradient.setZero(x.size());
-  return body_.add_volume_gradient(x, gradient) - volume_;
-}
-
-double BodyProblem::constraint_value(const VecX& x) const { return body_.volume(x) - volume_; }
-
-double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
-  double share = 1.0;
-  // A surface point moves with the coarse nodes and with the details of each level: each has its part.
-  const double margin = contact_margin / (1 + body_.levels_used());
-  for (int i = 0; i < body_.nodes(); ++i) {
-    const Vec3 move = step.segment<3>(3 * i);
-    const double length = move.norm();
-    if (length * share > body_.edge_lengths()[i]) share = body_.edge_lengths()[i] / length;
-    // Pairs were gathered for nodes that stay within the margin of where the solve began.
-    const Vec3 gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
-    if (!loads_.shapes.empty() && (gone + share * move).norm() > margin) {
-      const double left = margin - gone.norm();
-      if (left < 0.5 * margin) return 0;  // better gather anew than go on in ever shorter steps
-      share = std::min(share, left / length);
-    }
-  }
-  const double gone = moved(x), longest = body_.largest_motion(step);
-  ContactPlaces places(body_.skin(), x), moves(body_.skin(), step);
-  for (const ContactPair& pair : pairs()) {
-    if (share * longest < (1.0 - contact_keep) * (pair.distance + contact_guard - gone)) continue;
-    const Shape& shape = cores_[pair.shape];
-    const Nearness near = places.nearness(pair.triangle, shape);
-    const double way = share * std::sqrt(moves.corners(pair.triangle).colwise().squaredNorm().maxCoeff());
-    if (way < (1.0 - contact_keep) * near.of_all()) continue;
-    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
-      if (way < (1.0 - contact_keep) * near.of(point)) continue;
-      const Vec3 motion = share * moves.at(point), at = places.at(point);
-      if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
-      share *= calot::safe_share(at, motion, shape, contact_keep);
-    }
-  }
-  return search_ ? search_->own.safe_share(body_, x, step, contact_keep, share) : share;
-}
-
-NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const NewtonSettings& settings,
-                    NewtonWorkspace& work, ContactSearch& search, BodyState& state, bool fixed_pressure,
-                    ExtensionScheme scheme) {
+NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer> joins,
+                    GroupPatterns& patterns, const NewtonSettings& settings, NewtonWorkspace& work,
+                    const SettleOptions& options) {
   constexpr int max_rounds = 30;
   NewtonResult total;
   for (int round = 0; round < max_rounds && total.iterations < settle_iterations; ++round) {
-    const VecX before = state.x;
-    const bool staged = scheme == ExtensionScheme::staged && !body.details().empty();
-    const auto problem = [&](const BodyState& start, bool at_pressure) {
-      return std::make_unique<BodyProblem>(body, loads, search, start, at_pressure);
-    };
+    std::vector<VecX> before;
+    for (const Member& member : members) before.push_back(member.state.x);
+    const bool staged = options.scheme == ExtensionScheme::staged && refined(members);
     const NewtonResult result =
-        staged ? solve_in_stages(body, problem, settings, work, state)
-               : solve_equilibrium(BodyProblem(body, loads, search, state, fixed_pressure), settings, work,
-                                   state.x, state.datum_pressure);
+        staged ? solve_in_stages(members, joins, patterns, settings, work)
+               : solve(GroupProblem(members, joins, patterns, options.fixed_pressures), settings, work);
     total.add(result);
-    // Walls that met without couplings in the matrix have them in the next round.
-    const bool moved =
-        (state.x - before).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin || search.own.lacking();
+    bool moved = false;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const Member& member = members[k];
+      moved |= (member.state.x - before[k]).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;
+      // Walls that met without couplings in the matrix have them in the next round.
+      moved |= member.search.own.lacking();
+    }
     const bool cut_short =
         result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
     if (!cut_short || !moved) break;
@@ -192,29 +49,10 @@ NewtonResult settle(const ShellBody& body, const ContactLoads& loads, const Newt
   return total;
 }
 
-std::vector<ContactForce> contact_forces(const ShellBody& body, const ContactLoads& loads,
-                                         const std::vector<Touch>& touches) {
-  std::vector<ContactForce> out;
-  for (const Touch& touch : touches) {
-    const double pressure = loads.barrier.sample(touch.slope.distance).derivative;
-    out.push_back({touch.shape, touch.point, touch.at,
-                   body.contact_area(touch.point) * pressure * touch.slope.gradient});
-  }
-  return out;
-}
-
-std::vector<ContactForce> contact_forces(const ShellBody& body, const VecX& x, const ContactLoads& loads,
-                                         const std::vector<ContactPair>& pairs) {
-  TouchMemory memory;
-  return contact_forces(body, loads, memory.at(body, x, loads, pairs, 0.0));
-}
-
-Mat3 contact_hessian(const ShellBody& body, const ContactLoads& loads, const Touch& touch) {
-  const DistanceSlope& d = touch.slope;
-  const BarrierSample b = loads.barrier.sample(d.distance);
-  return body.contact_area(touch.point) *
-         (b.second * d.gradient * d.gradient.transpose() +
-          b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));
+NewtonResult settle(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
+                    const SettleOptions& options) {
+  GroupPatterns none;
+  return settle({&member, 1}, {}, none, settings, work, options);
 }
 
 }  // namespace calot

@@ -8,4 +8,31 @@ std::vector<InstrumentPose> present_poses(const Field& field) {
   return poses;
 }
 
+void Field::add(RestedOrgan made) {
+  organs.push_back(std::move(made.organ));
+  group.forget_bodies();
+  group.missed = {};
+  if (organs.size() == 1) group.work = std::move(made.work);
+}
+
+GroupSnapshot snapshot(const Field& field) {
+  const Group& group = field.group;
+  GroupSnapshot out{{}, group.work.keep(), {{}, group.patterns.joined}, group.missed};
+  for (const Organ& organ : field.organs) out.organs.push_back(snapshot(organ));
+  for (const BlockMatrix& own : group.patterns.own) out.patterns.own.push_back(own.pattern_only());
+  return out;
+}
+
+void restore(Field& field, const GroupSnapshot& snapshot) {
+  for (std::size_t k = 0; k < field.organs.size(); ++k) restore(field.organs[k], snapshot.organs[k]);
+  Group& group = field.group;
+  group.work.restore(snapshot.factor);
+  group.missed = snapshot.missed;
+  group.patterns.joined = snapshot.patterns.joined;
+  group.patterns.own.resize(snapshot.patterns.own.size(), BlockMatrix(0, {}));
+  for (std::size_t k = 0; k < group.patterns.own.size(); ++k)
+    if (!group.patterns.own[k].same_pattern(snapshot.patterns.own[k]))
+      group.patterns.own[k] = snapshot.patterns.own[k].blank();
+}
+
 }  // namespace calot

@@ -1,6 +1,7 @@
 #pragma once
 // Organs, tools and what carries them.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,8 +16,33 @@ struct ViewedPlace {
   int organ = 0, skin_point = 0;
 };
 
+/// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
+/// the second order in the way.
+struct MissedMotion {
+  VecX dx;             ///< m, 3 a node of all organs; empty: none known
+  VecX dpressures;     ///< Pa, one an organ
+  double travel = 0;   ///< of the tool that travelled furthest, m
+  int iterations = 0;  ///< that it took to make good
+};
+
+/// How the organs of a field are solved together, kept from one solve to the next.
+struct Group {
+  /// Without nodes until it is asked for (GroupProblem::prepare).
+  NewtonWorkspace work{BlockMatrix(0, {})};
+  GroupPatterns patterns;
+  std::vector<JoinPointer> joins;
+  MissedMotion missed;
+
+  /// After a body has become another one: nothing that was made for it serves.
+  void forget_bodies() {
+    work = NewtonWorkspace(BlockMatrix(0, {}));
+    patterns = {};
+  }
+};
+
 struct Field {
   std::vector<Organ> organs;
+  Group group;
   std::vector<Tool> tools;
   std::optional<Plane> support;
   double support_friction = 0;  ///< Coulomb's
@@ -24,8 +50,22 @@ struct Field {
   double tolerance = 1e-6;
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
+
+  /// The first one's last factor serves on.
+  void add(RestedOrgan made);
 };
 
 std::vector<InstrumentPose> present_poses(const Field& field);
+
+/// All that moves of the organs, cheap to copy: what failed is undone by it.
+struct GroupSnapshot {
+  std::vector<OrganSnapshot> organs;
+  NewtonWorkspace::Kept factor = NewtonWorkspace(BlockMatrix(0, {})).keep();
+  GroupPatterns patterns;  ///< without values
+  MissedMotion missed;
+};
+GroupSnapshot snapshot(const Field& field);
+/// The field must have the organs that it is of.
+void restore(Field& field, const GroupSnapshot& snapshot);
 
 }  // namespace calot

@@ -4,7 +4,7 @@ namespace calot {
 
 FieldState field_state(const Field& field) {
   FieldState state;
-  for (const Organ& organ : field.organs) state.organs.push_back(snapshot(organ));
+  state.group = snapshot(field);
   for (const Tool& tool : field.tools)
     state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
                            tool.slipping, tool.action});
@@ -12,7 +12,7 @@ FieldState field_state(const Field& field) {
 }
 
 void restore(Field& field, const FieldState& state) {
-  for (std::size_t k = 0; k < field.organs.size(); ++k) restore(field.organs[k], state.organs[k]);
+  restore(field, state.group);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     const ToolSnapshot& was = state.tools[i];

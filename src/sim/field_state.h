@@ -16,7 +16,7 @@ struct ToolSnapshot {
 
 struct FieldState {
   long steps = 0;
-  std::vector<OrganSnapshot> organs;
+  GroupSnapshot group;
   std::vector<ToolSnapshot> tools;
   StepReport report;  ///< of the step that led here: events are raised by what differs from it
 };

@@ -25,7 +25,7 @@ bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
 void take_hold(Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
   for (Organ& organ : field.organs) {
-    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     std::vector<char> held(skin.size(), 0);
     for (const GripPoint& grip : organ.grips) held[grip.skin_point] = 1;
     const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),

@@ -85,9 +85,9 @@ Vec3 pad_pull(const Field& field, int instrument) {
     for (std::size_t g = 0; g < organ.grips.size(); ++g)
       if (organ.grips[g].instrument == instrument)
         pull += now.grip.stiffness[g] *
-                (organ.body.skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
-    const std::vector<Touch>& touching = organ.search.touching(organ.body, organ.state.x, now);
-    for (const ContactForce& contact : contact_forces(organ.body, now, touching))
+                (organ.body->skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
+    const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
+    for (const ContactForce& contact : contact_forces(*organ.body, now, touching))
       if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
         pull += contact.on_shape;
   }

@@ -152,10 +152,12 @@ Failure fill_failure(const NewtonResult& result, const std::string& organ, const
 }
 
 /// Volume and pressure that the author asked for, by small steps from the unstressed shape.
-Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings& settings,
+Result<bool> fill(RestedOrgan& filled, const ContactLoads& loads, const NewtonSettings& settings,
                   const FillingLimits* limits) {
+  Organ& organ = filled.organ;
   const BileDefinition& bile = organ.definition.bile;
-  const Bile& liquid = *organ.body.bile();
+  const Bile& liquid = *shell_of(organ)->bile();
+  const Member member{*organ.body, loads, organ.search, organ.state};
   const double unstressed = liquid.volume(organ.state.x);
   if (bile.fill_pressure) {
     // The pressure at the highest point depends on where that point settles: a fixed point of few rounds.
@@ -166,8 +168,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
       const double offset = liquid.pressure_at_top(organ.state.x, 0.0);
       const double next = ramp * *bile.fill_pressure - offset;
       organ.state.datum_pressure = next;
-      const NewtonResult result =
-          settle(organ.body, loads, settings, organ.work, organ.search, organ.state, true);
+      const NewtonResult result = settle(member, settings, filled.work, {.fixed_pressures = true});
       if (!result.converged()) return fill_failure(result, organ.definition.name, limits);
       settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
       aim = next;
@@ -188,8 +189,7 @@ Result<bool> fill(Organ& organ, const ContactLoads& loads, const NewtonSettings&
     const int steps = 1 + static_cast<int>(std::ceil(std::abs(target - unstressed) / (0.05 * unstressed)));
     for (int k = 1; k <= steps; ++k) {
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
-      const NewtonResult result =
-          settle(organ.body, loads, settings, organ.work, organ.search, organ.state, false);
+      const NewtonResult result = settle(member, settings, filled.work);
       if (!result.converged()) return fill_failure(result, organ.definition.name, limits);
     }
   }
@@ -221,20 +221,20 @@ std::optional<Failure> check_skin_spacing(const ShellBody& body) {
 
 }  // namespace
 
+const ShellBody* shell_of(const Organ& organ) { return dynamic_cast<const ShellBody*>(organ.body.get()); }
+
 OrganSnapshot snapshot(const Organ& organ) {
-  return {organ.body,       organ.state,           organ.work.keep(), organ.grips,
-          organ.extensions, organ.refused_details, organ.friction,    organ.missed};
+  return {organ.body,       organ.state,           organ.grips,
+          organ.extensions, organ.refused_details, organ.friction};
 }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.body = snapshot.body;
   organ.state = snapshot.state;
-  organ.work.restore(snapshot.factor);
   organ.grips = snapshot.grips;
   organ.extensions = snapshot.extensions;
   organ.refused_details = snapshot.refused_details;
   organ.friction = snapshot.friction;
-  organ.missed = snapshot.missed;
 }
 
 Failure at_organ(Failure failure, std::size_t index) {
@@ -288,8 +288,8 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
               hint);
 }
 
-Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
-                         double tolerance, int levels, FillingLimits* limits) {
+Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
+                               double tolerance, int levels, FillingLimits* limits) {
   Result<TriMesh> control = control_mesh(definition);
   if (!control) return control.failure();
   ShellBody::Setup setup;
@@ -325,13 +325,15 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
   }
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
-  Organ organ{definition, std::move(body).value(), {}, std::move(work), {}, {}, {}, {}, {}, {}, {}, {}};
-  organ.state.x = organ.body.rest();
-  organ.state.volume = organ.body.bile()->volume(organ.state.x);
-  for (const auto& [name, place] : landmark_places(definition, organ.body.skin_rest()))
-    organ.landmarks[name] = nearest_of(organ.body.skin_rest(), place);
+  const auto shell = std::make_shared<ShellBody>(std::move(body).value());
+  RestedOrgan made{Organ{definition, shell, {}, {}, {}, {}, {}, {}, {}, {}}, std::move(work)};
+  Organ& organ = made.organ;
+  organ.state.x = shell->rest();
+  organ.state.volume = shell->bile()->volume(organ.state.x);
+  for (const auto& [name, place] : landmark_places(definition, organ.body->skin_rest()))
+    organ.landmarks[name] = nearest_of(organ.body->skin_rest(), place);
   for (const Shape& shape : loads.shapes)
-    for (const Vec3& p : organ.body.skin_rest())
+    for (const Vec3& p : organ.body->skin_rest())
       if (signed_distance(shape, p) <= 0)
         return fail(FailureKind::scenario,
                     fmt::format("organ '{}' starts {:.2g} mm inside the supporting plane", definition.name,
@@ -346,11 +348,11 @@ Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& 
       return limits->node_iterations <= 0;
     };
   organ.search.own.active = !swells(organ);
-  Result<bool> filled = fill(organ, loads, settings, limits);
+  Result<bool> filled = fill(made, loads, settings, limits);
   organ.search.own.active = true;
   if (!filled) return filled.failure();
-  organ.body.keep_in_equilibrium(organ.state);
-  return organ;
+  shell->keep_in_equilibrium(organ.state);
+  return made;
 }
 
 }  // namespace calot

@@ -9,6 +9,7 @@
 
 #include "sim/equilibrium.h"
 #include "sim/instrument.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 
@@ -44,20 +45,10 @@ struct ContactPlace {
   }
 };
 
-/// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
-/// the second order in the way.
-struct MissedMotion {
-  VecX dx;               ///< m, 3 a node; empty: none known
-  double dpressure = 0;  ///< Pa
-  double travel = 0;     ///< of the tool that travelled furthest, m
-  int iterations = 0;    ///< that it took to make good
-};
-
 struct Organ {
   OrganDefinition definition;
-  ShellBody body;
+  BodyPointer body;  ///< never null
   BodyState state;
-  NewtonWorkspace work;
   mutable ContactSearch search;  ///< remembers where it looked last: what it finds does not depend on it
   std::map<std::string, int> landmarks;  ///< skin point of each
   std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, skin_point
@@ -65,21 +56,21 @@ struct Organ {
   /// Details that found no rest when they were tried last: not tried again until others are wanted.
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
-  MissedMotion missed;
   /// Where the details were found to be those that are wanted: remembered, no part of any result.
   std::optional<ContactPlace> looked_at;
 };
 
-/// All that moves of an organ, cheap to copy: what failed is undone by it. `search` only remembers.
+/// The body as a shell, which alone is refined; null: it is none.
+const ShellBody* shell_of(const Organ& organ);
+
+/// All that moves of an organ. `search` only remembers.
 struct OrganSnapshot {
-  ShellBody body;
+  BodyPointer body;
   BodyState state;
-  NewtonWorkspace::Kept factor;
   std::vector<GripPoint> grips;
   std::vector<Extension> extensions;
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;
-  MissedMotion missed;
 };
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);
@@ -91,12 +82,18 @@ struct FillingLimits {
   std::int64_t node_iterations = 200'000;
 };
 
+/// An organ that has come to rest alone, and what was kept of its last solve.
+struct RestedOrgan {
+  Organ organ;
+  NewtonWorkspace work;
+};
+
 /// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its
 /// bile (and on `field`). Failures: scenario (a mesh that
 /// cannot be used), simulation (no rest state found), resource or interrupted (`limits`, where there are any); see
 /// at_organ.
-Result<Organ> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
-                         double tolerance, int levels = 0, FillingLimits* limits = nullptr);
+Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
+                               double tolerance, int levels = 0, FillingLimits* limits = nullptr);
 
 /// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
 std::vector<Problem> mesh_problems(const SceneDefinition& scene);

@@ -75,11 +75,11 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   const std::vector<bool> holding = holding_tools(field, organ);
   const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));
   FrictionLoad now;
-  ContactPlaces places_before(organ.body.skin(), before);
-  for (const auto& [point, shape, at, d] : organ.search.touching(organ.body, organ.state.x, around)) {
+  ContactPlaces places_before(organ.body->skin(), before);
+  for (const auto& [point, shape, at, d] : organ.search.touching(*organ.body, organ.state.x, around)) {
     const double mu = coefficient(field, shape);
     if (mu <= 0 || is_holding_jaw(holding, shape)) continue;
-    const double area = organ.body.contact_area(point);
+    const double area = organ.body->contact_area(point);
     StickSlip hold;
     hold.normal = d.gradient;
     hold.limit = -mu * area * around.barrier.sample(d.distance).derivative;
@@ -102,7 +102,7 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
 void keep_friction(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
                    const FrictionLoad& friction) {
   const std::vector<Pose> frames = shape_frames(field, poses);
-  ContactPlaces places(organ.body.skin(), organ.state.x);
+  ContactPlaces places(organ.body->skin(), organ.state.x);
   organ.friction.points.clear();
   for (RubbingPoint rubbing : friction.points) {
     rubbing.hold.anchor = rubbing.hold.anchor_after(places.at(rubbing.point));

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "fem/links.h"
 #include "geometry/turn.h"
 
 namespace calot {
@@ -20,7 +21,7 @@ constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 
 
 /// Bound on how much any two skin points that hang on `nodes` move against each other when the nodes move by `dx`, m:
 /// what the coarse nodes' motions differ by, and the details' of each level.
-double relative_motion(const ShellBody& body, const VecX& dx, const std::vector<int>& nodes) {
+double relative_motion(const Body& body, const VecX& dx, const std::vector<int>& nodes) {
   Eigen::AlignedBox3d coarse;
   std::vector<double> of_level(body.levels_used() + 1, 0.0);
   for (int node : nodes) {
@@ -28,7 +29,7 @@ double relative_motion(const ShellBody& body, const VecX& dx, const std::vector<
     if (node < body.coarse_nodes()) {
       coarse.extend(move);
     } else {
-      double& largest = of_level[body.levels().level_of(body.details()[node - body.coarse_nodes()])];
+      double& largest = of_level[body.level_of_detail(node - body.coarse_nodes())];
       largest = std::max(largest, move.norm());
     }
   }
@@ -37,7 +38,7 @@ double relative_motion(const ShellBody& body, const VecX& dx, const std::vector<
   return sum;
 }
 
-std::vector<int> all_nodes(const ShellBody& body) {
+std::vector<int> all_nodes(const Body& body) {
   std::vector<int> all(body.nodes());
   std::iota(all.begin(), all.end(), 0);
   return all;
@@ -45,7 +46,7 @@ std::vector<int> all_nodes(const ShellBody& body) {
 
 /// Bound on how much any two skin points have come nearer between two states, m: what their motions differ by but for
 /// a turn of the whole, which changes no distance.
-double approach_between(const ShellBody& body, const VecX& before, const VecX& now) {
+double approach_between(const Body& body, const VecX& before, const VecX& now) {
   const auto coarse = [&](const VecX& x) {
     return Eigen::Map<const Eigen::Matrix3Xd>(x.data(), 3, body.coarse_nodes());
   };
@@ -76,12 +77,12 @@ double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>&
 
 }  // namespace
 
-const SkinNet& SelfContact::net(const ShellBody& body) {
+const SkinNet& SelfContact::net(const Body& body) {
   if (!net_) net_.emplace(body);
   return *net_;
 }
 
-void SelfContact::refresh_groups(const ShellBody& body, const VecX& x, double need) {
+void SelfContact::refresh_groups(const Body& body, const VecX& x, double need) {
   // A group is near by its triangles' corners: these come nearer by what moves, and edges lengthen by that.
   constexpr double by_motion = 1.6;
   if (groups_known_ && groups_x_.size() == x.size() && groups_details_ == body.details() &&
@@ -115,7 +116,7 @@ void SelfContact::refresh_groups(const ShellBody& body, const VecX& x, double ne
   pairs_known_ = false;
 }
 
-double SelfContact::refresh(const ShellBody& body, const VecX& x, double need) {
+double SelfContact::refresh(const Body& body, const VecX& x, double need) {
   if (!active || !x.allFinite()) {
     near_.clear();
     groups_known_ = pairs_known_ = false;
@@ -141,12 +142,12 @@ double SelfContact::refresh(const ShellBody& body, const VecX& x, double need) {
   return 0;
 }
 
-void SelfContact::look_up(const ShellBody& body, const VecX& x, std::vector<Vec3>& points) const {
+void SelfContact::look_up(const Body& body, const VecX& x, std::vector<Vec3>& points) const {
   points.resize(body.skin_rest().size());
   for (int row : rows_) points[row] = body.skin_point(row, x);
 }
 
-const std::vector<SelfTouch>& SelfContact::touching(const ShellBody& body, const VecX& x) {
+const std::vector<SelfTouch>& SelfContact::touching(const Body& body, const VecX& x) {
   for (std::size_t k = 0; active && k < found_.size(); ++k) {
     const Touching& known = found_[k];
     if (known.x.size() != x.size() || known.x != x || known.details != body.details()) continue;
@@ -158,7 +159,7 @@ const std::vector<SelfTouch>& SelfContact::touching(const ShellBody& body, const
   return found_[newest_].touches;
 }
 
-std::vector<SelfTouch> SelfContact::find_touching(const ShellBody& body, const VecX& x) {
+std::vector<SelfTouch> SelfContact::find_touching(const Body& body, const VecX& x) {
   const double near = self_barrier.range + refresh(body, x, self_barrier.range);
   std::vector<SelfTouch> out;
   if (near_.empty() || nearest_ >= near) return out;
@@ -184,14 +185,14 @@ std::vector<SelfTouch> SelfContact::find_touching(const ShellBody& body, const V
   return out;
 }
 
-double SelfContact::value(const ShellBody& body, const VecX& x) {
+double SelfContact::value(const Body& body, const VecX& x) {
   double sum = 0;
   for (const SelfTouch& touch : touching(body, x))
     sum += touch.area * self_barrier.sample(touch.sample.distance).energy;
   return sum;
 }
 
-void SelfContact::add_gradient(const ShellBody& body, const VecX& x, VecX& gradient) {
+void SelfContact::add_gradient(const Body& body, const VecX& x, VecX& gradient) {
   const StencilTable& skin = body.skin().stencils;
   for (const SelfTouch& touch : touching(body, x)) {
     const Vec3 force =
@@ -202,7 +203,7 @@ void SelfContact::add_gradient(const ShellBody& body, const VecX& x, VecX& gradi
   }
 }
 
-void SelfContact::add_hessian(const ShellBody& body, const VecX& x, BlockMatrix& matrix) {
+void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix) {
   lacking_ = false;
   for (const SelfTouch& touch : touching(body, x)) {
     const BarrierSample b = self_barrier.sample(touch.sample.distance);
@@ -223,8 +224,7 @@ void SelfContact::add_hessian(const ShellBody& body, const VecX& x, BlockMatrix&
   }
 }
 
-double SelfContact::safe_share(const ShellBody& body, const VecX& x, const VecX& step, double keep,
-                               double share) {
+double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step, double keep, double share) {
   if (!active || !step.allFinite() || !x.allFinite() || step.isZero(0)) return share;
   // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
   // way would be everything: that is gone in parts.
@@ -238,7 +238,7 @@ double SelfContact::safe_share(const ShellBody& body, const VecX& x, const VecX&
   return share;
 }
 
-double SelfContact::safe_part(const ShellBody& body, const VecX& x, const VecX& step, double keep) {
+double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step, double keep) {
   const double lost = 1.0 - keep;
   const double anywhere = relative_motion(body, step, all_nodes(body)) / lost;
   refresh_groups(body, x, anywhere);
@@ -261,7 +261,7 @@ double SelfContact::safe_part(const ShellBody& body, const VecX& x, const VecX& 
   return share;
 }
 
-bool SelfContact::any_nearer(const ShellBody& body, const VecX& x, double distance) {
+bool SelfContact::any_nearer(const Body& body, const VecX& x, double distance) {
   const double near = distance + refresh(body, x, distance);
   if (near_.empty() || nearest_ >= near) return false;
   look_up(body, x, at_);
@@ -272,13 +272,12 @@ bool SelfContact::any_nearer(const ShellBody& body, const VecX& x, double distan
   });
 }
 
-void SelfContact::prepare(const ShellBody& body, const VecX& x, NewtonWorkspace& work) {
+std::optional<BlockMatrix> SelfContact::new_pattern(const Body& body, const VecX& x,
+                                                    const BlockMatrix& present) {
   const BlockMatrix& own = body.pattern();
-  const bool widened = work.matrix.entries().size() != own.entries().size();
-  if (!any_nearer(body, x, widened ? uncouple_above : couple_below)) {
-    if (widened) work = NewtonWorkspace(own, body.coarse_nodes());
-    return;
-  }
+  const bool widened = present.entries().size() != own.entries().size();
+  if (!any_nearer(body, x, widened ? uncouple_above : couple_below))
+    return widened ? std::optional(own) : std::nullopt;
   // Of all pairs this near, however many more are remembered: the pattern must not depend on where else the skin was
   // looked at.
   const double near = uncouple_above + refresh(body, x, uncouple_above);
@@ -303,10 +302,10 @@ void SelfContact::prepare(const ShellBody& body, const VecX& x, NewtonWorkspace&
     std::sort(clique.begin(), clique.end());
     clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
     for (int j : clique)
-      for (int i : clique) missing |= i > j && work.matrix.slot(i, j) < 0;
+      for (int i : clique) missing |= i > j && present.slot(i, j) < 0;
     cliques.push_back(std::move(clique));
   }
-  if (missing) work = NewtonWorkspace(own.widened(cliques), body.coarse_nodes());
+  return missing ? std::optional(own.widened(cliques)) : std::nullopt;
 }
 
 }  // namespace calot

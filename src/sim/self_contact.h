@@ -39,36 +39,36 @@ class SelfContact {
   bool active = true;
 
   /// All that touches at x, ordered by skin point, then part; found once for a state. Valid until the next call.
-  const std::vector<SelfTouch>& touching(const ShellBody& body, const VecX& x);
+  const std::vector<SelfTouch>& touching(const Body& body, const VecX& x);
   /// Energy (J) and derivatives.
-  double value(const ShellBody& body, const VecX& x);
-  void add_gradient(const ShellBody& body, const VecX& x, VecX& gradient);
+  double value(const Body& body, const VecX& x);
+  void add_gradient(const Body& body, const VecX& x, VecX& gradient);
   /// Couplings that the matrix' pattern does not hold are left out: Newton then converges more slowly.
-  void add_hessian(const ShellBody& body, const VecX& x, BlockMatrix& matrix);
+  void add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix);
   /// Whether the last add_hessian left some out.
   bool lacking() const { return lacking_; }
 
   /// The largest part of `share` of the step on which no point and triangle lose more than 1 - keep of their
   /// distance; of a long step, gone in parts, in none of these.
-  double safe_share(const ShellBody& body, const VecX& x, const VecX& step, double keep, double share);
-  /// Gives the workspace a pattern that holds the couplings of what is near at x, and the body's own once that has
-  /// moved apart.
-  void prepare(const ShellBody& body, const VecX& x, NewtonWorkspace& work);
+  double safe_share(const Body& body, const VecX& x, const VecX& step, double keep, double share);
+  /// The pattern that a matrix needs to hold the couplings of what is near at x, or the body's own once that has moved
+  /// apart; none: `present` serves.
+  std::optional<BlockMatrix> new_pattern(const Body& body, const VecX& x, const BlockMatrix& present);
 
  private:
   /// Sees to it that near_ holds all pairs nearer than `need` at x, at most close_reach. Returns how much of their
   /// distance its pairs may have lost since it was gathered, m.
-  double refresh(const ShellBody& body, const VecX& x, double need);
+  double refresh(const Body& body, const VecX& x, double need);
   /// safe_share() of a step no longer than groups are remembered.
-  double safe_part(const ShellBody& body, const VecX& x, const VecX& step, double keep);
+  double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
-  void refresh_groups(const ShellBody& body, const VecX& x, double need);
+  void refresh_groups(const Body& body, const VecX& x, double need);
   /// Whether walls are nearer than this (at most close_reach) at x.
-  bool any_nearer(const ShellBody& body, const VecX& x, double distance);
+  bool any_nearer(const Body& body, const VecX& x, double distance);
   /// Places (at x) or motions of the skin points in rows_; the others mean nothing.
-  void look_up(const ShellBody& body, const VecX& x, std::vector<Vec3>& points) const;
-  const SkinNet& net(const ShellBody& body);
-  std::vector<SelfTouch> find_touching(const ShellBody& body, const VecX& x);
+  void look_up(const Body& body, const VecX& x, std::vector<Vec3>& points) const;
+  const SkinNet& net(const Body& body);
+  std::vector<SelfTouch> find_touching(const Body& body, const VecX& x);
 
   /// What touched at the last two states that were asked for: where a step began and where it is tried.
   struct Touching {

@@ -159,7 +159,7 @@ class Boxes {
 
 }  // namespace
 
-SkinNet::SkinNet(const ShellBody& body)
+SkinNet::SkinNet(const Body& body)
     : rest(body.skin_rest()),
       triangles(body.skin().triangles),
       begin(rest.size() + 1, 0),

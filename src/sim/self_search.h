@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "sim/shell_body.h"
+#include "sim/body.h"
 
 namespace calot {
 
@@ -24,7 +24,7 @@ struct SkinNet {
   std::vector<Node> nodes;
   std::vector<int> order;
 
-  explicit SkinNet(const ShellBody& body);
+  explicit SkinNet(const Body& body);
   /// Whether the point is so near to the triangle at rest (to one of its corners: 6 mm, or twice the widest gap of
   /// the skin's points if that is more) that they are one piece of wall. These do not meet: the wall's own stiffness
   /// keeps them in order, they would press on each other at rest, and as the barrier's range is a small part of that

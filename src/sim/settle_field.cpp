@@ -15,7 +15,7 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
   if (field.support) out.shapes.push_back(contact_shape(*field.support));
   out.grip = grip_links(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
-  out.detail_holds = detail_holds(organ.body, organ.state.shares);
+  if (const ShellBody* shell = shell_of(organ)) out.detail_holds = detail_holds(*shell, organ.state.shares);
   out.load = organ.state.fading_load;
   return out;
 }
@@ -28,7 +28,20 @@ void count(const NewtonResult& result, SolveStatistics& statistics) {
   statistics.contact_s += result.safety_s;
 }
 
-namespace {
+std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads) {
+  std::vector<Member> out;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    out.push_back({*organ.body, loads[k], organ.search, organ.state});
+  }
+  return out;
+}
+
+std::vector<VecX> present_places(const Field& field) {
+  std::vector<VecX> out;
+  for (const Organ& organ : field.organs) out.push_back(organ.state.x);
+  return out;
+}
 
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to) {
   double travel = 0;
@@ -37,25 +50,44 @@ double largest_travel(const Field& field, const std::vector<InstrumentPose>& to)
   return travel;
 }
 
+namespace {
+
+/// Renews what rubs on all organs; whether no normal force asks for another limit any more.
+bool friction_agrees(Field& field, const std::vector<InstrumentPose>& poses, const std::vector<VecX>& before,
+                     int round, std::vector<ContactLoads>& loads) {
+  const double share = round < relaxed_round ? 1.0 : 0.5;
+  bool agrees = true;
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
+    agrees &= renew_friction(field, field.organs[k], poses, before[k], share, loads[k]) <= friction_tolerance;
+  return agrees;
+}
+
 }  // namespace
 
-NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                          const VecX& before, int max_iterations, SolveStatistics& statistics) {
+NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics) {
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
-  fade_details(largest_travel(field, poses), organ.state);
-  ContactLoads around = contact_loads(field, organ, poses);
+  std::vector<ContactLoads> loads;
+  for (Organ& organ : field.organs) {
+    fade_details(largest_travel(field, poses), organ.state);
+    loads.push_back(contact_loads(field, organ, poses));
+  }
+  const std::vector<Member> members = members_of(field, loads);
+  Group& group = field.group;
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {
-    total.add(
-        settle(organ.body, around, settings, organ.work, organ.search, organ.state, false, field.scheme));
+    total.add(settle(members, group.joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
     if (!total.converged() || !has_friction(field)) break;
-    const FrictionLoad used = around.friction;
-    const double share = round < relaxed_round ? 1.0 : 0.5;
-    if (renew_friction(field, organ, poses, before, share, around) <= friction_tolerance) {
+    std::vector<FrictionLoad> used;
+    for (const ContactLoads& of_organ : loads) used.push_back(of_organ.friction);
+    if (friction_agrees(field, poses, before, round, loads)) {
       // Where nothing moved, not even rounding may.
-      if (organ.state.x != before || poses != present_poses(field)) keep_friction(field, organ, poses, used);
+      const bool stayed = poses == present_poses(field);
+      for (std::size_t k = 0; k < field.organs.size(); ++k)
+        if (!stayed || field.organs[k].state.x != before[k])
+          keep_friction(field, field.organs[k], poses, used[k]);
       break;
     }
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
@@ -65,12 +97,9 @@ NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<In
 }
 
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
-  for (Organ& organ : field.organs) {
-    const VecX before = organ.state.x;
-    const NewtonResult result =
-        settle_organ(field, organ, present_poses(field), before, NewtonSettings{}.max_iterations, statistics);
-    if (!result.converged()) return solve_failure(result, organ.definition.name, when);
-  }
+  const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
+                                           NewtonSettings{}.max_iterations, statistics);
+  if (!result.converged()) return solve_failure(result, field.organs[result.part].definition.name, when);
   return true;
 }
 

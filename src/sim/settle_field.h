@@ -14,11 +14,20 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);
 
-/// Brings one organ to rest with the tools at `poses`; on failure it is left at the last iterate. `before` is
-/// where it was at its last equilibrium, tools as field.tools stand: friction resists what moved since, and details
-/// fade as far as the tools travel from there.
-NewtonResult settle_organ(const Field& field, Organ& organ, const std::vector<InstrumentPose>& poses,
-                          const VecX& before, int max_iterations, SolveStatistics& statistics);
+/// The organs as members of one group under `loads`, one an organ.
+std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads);
+
+/// Where the nodes of each organ are, m.
+std::vector<VecX> present_places(const Field& field);
+
+/// The way of the tool that travels most from where it stands, m.
+double largest_travel(const Field& field, const std::vector<InstrumentPose>& to);
+
+/// Brings the organs to rest with the tools at `poses`; on failure they are left at the last iterate. `before`, one an
+/// organ, is where they were at their last equilibrium, tools as field.tools stand: friction resists what moved since,
+/// and details fade as far as the tools travel from there.
+NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics);
 
 /// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.

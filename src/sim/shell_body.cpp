@@ -6,6 +6,7 @@
 
 #include "base/index_of.h"
 #include "base/units.h"
+#include "numerics/parts.h"
 #include "skin/subdivision.h"
 
 namespace calot {
@@ -72,13 +73,6 @@ StencilTable without_derivatives(const StencilTable& table) {
   out.node = table.node;
   out.value = table.value;
   return out;
-}
-
-double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  double widest = 0;
-  for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) widest = std::max(widest, (points[t[k]] - points[t[(k + 1) % 3]]).norm());
-  return widest;
 }
 
 /// The coarsest tessellation whose points stand close enough, or the finest that is allowed.
@@ -177,6 +171,21 @@ Result<ShellBody> ShellBody::with_details(std::vector<int> details) const {
   return out;
 }
 
+double ShellBody::value(const VecX& x) const {
+  const double wall = refined_->shell.value(x);
+  return std::isfinite(wall) ? wall + foundation().value(refined_->bed_points, x) : wall;
+}
+
+void ShellBody::add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
+  refined_->shell.add_gradient(x, gradient);
+  largest_internal = largest_node(gradient);
+  foundation().add_gradient(refined_->bed_points, x, gradient);
+}
+
+void ShellBody::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  refined_->shell.add_hessian(x, matrix);
+}
+
 VecX ShellBody::own_forces(const VecX& x, double datum_pressure) const {
   VecX out = VecX::Zero(x.size());
   refined_->shell.add_gradient(x, out);
@@ -202,7 +211,7 @@ void ShellBody::make_good() {
   x.head(state.x.size()) = state.x;
   refined_->kept_load = own_forces(x, state.datum_pressure);
   refined_->kept_load.head(state.x.size()) -= kept_->own_forces;
-  if (refined_->bile) refined_->kept_volume = refined_->bile->volume(x) - state.volume;
+  if (refined_->bile) refined_->bile->kept_volume = refined_->bile->bile.volume(x) - state.volume;
 }
 
 DetailedSurface ShellBody::detailed(const SurfaceLevels& levels, std::vector<int> details) {
@@ -228,7 +237,7 @@ std::optional<Failure> ShellBody::build(const ShellBody* before) {
   std::vector<std::vector<int>> cliques = refined_->shell.cliques();
   if (base_->setup.bile) {
     if (Result<bool> built = build_bile(before, rows); !built) return built.failure();
-    for (std::vector<int>& clique : refined_->bile->cliques()) cliques.push_back(std::move(clique));
+    for (std::vector<int>& clique : refined_->bile->bile.cliques()) cliques.push_back(std::move(clique));
   }
   cliques.insert(cliques.end(), refined_->face_nodes.begin(), refined_->face_nodes.end());
   build_bed(before, rows);
@@ -300,7 +309,7 @@ Result<bool> ShellBody::build_bile(const ShellBody* before, const SharedRows* sh
     known.push_back(shared && shared->same(places.back().face) ? index_of(node, before->refined_->bile_nodes)
                                                                : -1);
   }
-  surface.points = shared ? shared->rows(places, 0, before->refined_->bile->points(), known)
+  surface.points = shared ? shared->rows(places, 0, before->refined_->bile->bile.points(), known)
                           : refined_->surface.basis.evaluate(places, 0);
   for (std::vector<BileSurface::Part>& cell : surface.cells)
     for (BileSurface::Part& part : cell)
@@ -308,7 +317,7 @@ Result<bool> ShellBody::build_bile(const ShellBody* before, const SharedRows* sh
   const double weight = base_->setup.bile->density * units::standard_gravity;
   Result<Bile> bile = Bile::create(surface, weight, base_->setup.up, base_->middle);
   if (!bile) return bile.failure();
-  refined_->bile = std::move(bile).value();
+  refined_->bile.emplace(std::move(bile).value());
   return true;
 }
 
@@ -349,12 +358,6 @@ double ShellBody::largest_motion(const VecX& dx) const {
     begin = end;
   }
   return sum;
-}
-
-double ShellBody::widest_skin_gap() const { return widest_gap(skin_rest(), refined_->skin.triangles); }
-
-std::vector<Vec3> ShellBody::skin_positions(const VecX& x) const {
-  return blend_all(refined_->skin.stencils, refined_->skin.stencils.value, x);
 }
 
 std::vector<Vec3> ShellBody::skin_normals(const VecX& x) const {

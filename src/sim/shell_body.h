@@ -1,7 +1,6 @@
 #pragma once
-// One organ: the shell on its subdivision surface, its bile, its bed, and the skin that is drawn and touched
-// (the paper's virtual structure, section 5). Everything here is fixed once built; what moves is in
-// BodyState.
+// A hollow organ: the shell on its subdivision surface, its bile, its bed, and the skin that is drawn and touched
+// (the paper's virtual structure, section 5).
 
 #include <functional>
 #include <memory>
@@ -12,8 +11,7 @@
 #include "fem/links.h"
 #include "fem/shell.h"
 #include "geometry/tri_mesh.h"
-#include "numerics/newton.h"
-#include "sim/contact_points.h"
+#include "sim/body.h"
 #include "skin/shared_rows.h"
 
 namespace calot {
@@ -22,23 +20,32 @@ namespace calot {
 /// edge, 0.8 mm round.
 inline constexpr double skin_spacing = 1.0e-3;
 
-/// How freely a detail moves (detail_fading.h).
-struct DetailShare {
-  double share = 1;      ///< 0: held at rest, 1: free
-  bool leaving = false;  ///< its share falls
-  bool operator==(const DetailShare&) const = default;
+/// The bile of a shell, less what keeps the rest state as it is (ShellBody::keep_in_equilibrium).
+struct ShellBile : Liquid {
+  explicit ShellBile(Bile filling) : bile(std::move(filling)) {}
+  double volume(const VecX& x) const override { return bile.volume(x) - kept_volume; }
+  double add_volume_gradient(const VecX& x, VecX& gradient) const override {
+    return bile.add_volume_gradient(x, gradient) - kept_volume;
+  }
+  double add_weight_and_volume_gradient(const VecX& x, VecX& load, VecX& gradient) const override {
+    return bile.add_load_and_volume_gradient(x, 0, load, gradient) - kept_volume;
+  }
+  double weight_value(const VecX& x) const override { return bile.value(x); }
+  void add_load(const VecX& x, double datum_pressure, VecX& gradient) const override {
+    bile.add_load(x, datum_pressure, gradient);
+  }
+  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const override {
+    bile.add_hessian(x, datum_pressure, matrix);
+  }
+  double pressure_at_top(const VecX& x, double datum_pressure) const override {
+    return bile.pressure_at_top(x, datum_pressure);
+  }
+
+  Bile bile;
+  double kept_volume = 0;  ///< m^3
 };
 
-struct BodyState {
-  VecX x;                     ///< 3 a node, m: places of the control nodes, then displacements of the details
-  double datum_pressure = 0;  ///< pressure at the datum's height, Pa
-  double volume = 0;          ///< m^3, what the constraint keeps
-  std::vector<DetailShare> shares = {};  ///< one a detail; none: all are free
-  /// N, 3 a node: what a change of the details altered and is still made good; empty: nothing.
-  VecX fading_load = {};
-};
-
-class ShellBody {
+class ShellBody : public Body {
  public:
   /// From a control mesh whose limit surface is the unstressed shape (m, world).
   struct Setup {
@@ -64,20 +71,10 @@ class ShellBody {
   /// taken away unloaded (the defect correction of the full approximation scheme: Brandt 1977).
   void keep_in_equilibrium(const BodyState& rest);
   /// That load, N, 3 a node; empty without details or before keep_in_equilibrium.
-  const VecX& kept_load() const { return refined_->kept_load; }
+  const VecX& kept_load() const override { return refined_->kept_load; }
   /// Gradient of the energies of wall, bed and bile less that load, N.
   VecX forces(const VecX& x, double datum_pressure) const;
-  /// Enclosed volume, m^3, of a structure with bile.
-  double volume(const VecX& x) const { return refined_->bile->volume(x) - refined_->kept_volume; }
-  /// The same, its gradient (m^2) added to `gradient`.
-  double add_volume_gradient(const VecX& x, VecX& gradient) const {
-    return refined_->bile->add_volume_gradient(x, gradient) - refined_->kept_volume;
-  }
-  /// The same with the load of the bile's weight added to `load`.
-  double add_weight_and_volume_gradient(const VecX& x, VecX& load, VecX& gradient) const {
-    return refined_->bile->add_load_and_volume_gradient(x, 0, load, gradient) - refined_->kept_volume;
-  }
-  const std::vector<int>& details() const { return refined_->surface.basis.details(); }
+  const std::vector<int>& details() const override { return refined_->surface.basis.details(); }
   const DetailBasis& basis() const { return refined_->surface.basis; }
   const SurfaceLevels& levels() const { return base_->levels; }
   /// Where the nodes of all levels lie on the surface at rest, m.
@@ -85,59 +82,50 @@ class ShellBody {
   /// Coordinates `x` of this structure as those of `other`, which differs in its details only: those that are new
   /// there begin at zero.
   VecX coordinates_in(const ShellBody& other, const VecX& x) const;
-  /// Levels that have active details.
-  int levels_used() const;
-  /// Bound on how far any surface point moves when the nodes move by `dx`, m.
-  double largest_motion(const VecX& dx) const;
+  int levels_used() const override;
+  int level_of_detail(int index) const override { return levels().level_of(details()[index]); }
+  int most_levels() const override { return base_->levels.levels(); }
+  double largest_motion(const VecX& dx) const override;
 
-  /// Whether both are one structure, but for their details.
-  bool same_base(const ShellBody& other) const { return base_ == other.base_; }
+  bool same_as(const Body& other) const override {
+    const auto* shell = dynamic_cast<const ShellBody*>(&other);
+    return shell != nullptr && base_ == shell->base_;
+  }
 
-  const std::string& name() const { return base_->setup.name; }
-  int nodes() const { return static_cast<int>(refined_->rest.size()) / 3; }
-  int coarse_nodes() const { return refined_->surface.basis.coarse_nodes(); }
-  const VecX& rest() const { return refined_->rest; }
+  const std::string& name() const override { return base_->setup.name; }
+  int coarse_nodes() const override { return refined_->surface.basis.coarse_nodes(); }
+  const VecX& rest() const override { return refined_->rest; }
   const TriMesh& control() const { return base_->setup.control; }
   const Shell& shell() const { return refined_->shell; }
-  const std::optional<Bile>& bile() const { return refined_->bile; }
-  const Tessellation& skin() const { return refined_->skin; }
-  /// Rest area that each skin point stands for, m^2.
-  const std::vector<double>& skin_areas() const { return base_->skin_areas; }
-  /// Rest area that a contact point (contact_points.h) stands for, m^2.
-  double contact_area(int point) const {
+  const Bile* bile() const { return refined_->bile ? &refined_->bile->bile : nullptr; }
+  const std::vector<double>& edge_lengths() const override { return refined_->edge_lengths; }
+  double size() const override { return base_->size; }
+  const BlockMatrix& pattern() const override {
+    return refined_->constant;
+  }  ///< its constant part is the bed's
+
+  double value(const VecX& x) const override;
+  void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  const Liquid* liquid() const override { return refined_->bile ? &*refined_->bile : nullptr; }
+  double strain_energy(const VecX& x) const override { return refined_->shell.value(x); }
+  double max_stretch(const VecX& x) const override { return refined_->shell.max_stretch(x); }
+
+  const Tessellation& skin() const override { return refined_->skin; }
+  const std::vector<double>& skin_areas() const override { return base_->skin_areas; }
+  double contact_area(int point) const override {
     return base_->triangle_areas[point / contacts_each] / contacts_each;
   }
-  const std::vector<Vec3>& skin_rest() const { return base_->skin_rest; }
-  /// Longest edge of the skin's triangles at rest, m.
-  double widest_skin_gap() const;
-  /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe
-  /// step there.
-  const std::vector<double>& edge_lengths() const { return refined_->edge_lengths; }
+  const std::vector<Vec3>& skin_rest() const override { return base_->skin_rest; }
+  const std::vector<std::vector<int>>& face_nodes() const override { return refined_->face_nodes; }
+  std::vector<Vec3> skin_normals(const VecX& x) const override;
   /// About the wall's own resistance to a detail (by its place among details()), N/m.
   double detail_stiffness(int index) const;
-  double size() const { return base_->size; }  ///< m, diagonal of the rest shape's box
-
-  /// Nodes that the skin of each control face depends on. As the weights are not negative it lies in the box of the
-  /// coarse ones among them, widened by half of each detail's length, whatever the state.
-  const std::vector<std::vector<int>>& face_nodes() const { return refined_->face_nodes; }
-  /// Triangles of the skin on each control face, which follow each other: those of the first face first.
-  int triangles_each() const {
-    return static_cast<int>(refined_->skin.triangles.size() / refined_->face_nodes.size());
-  }
-
-  /// A matrix with this structure's pattern that holds the constant part of its Hessian (the bed).
-  const BlockMatrix& pattern() const { return refined_->constant; }
 
   /// The bed's springs and the surface points that they hold, the same at rest whatever the details.
   const Links& foundation() const { return base_->bed; }
   const StencilTable& bed_points() const { return refined_->bed_points; }
   const StencilTable& quadrature() const { return refined_->quadrature; }
-
-  std::vector<Vec3> skin_positions(const VecX& x) const;  ///< m
-  Vec3 skin_point(int row, const VecX& x) const {
-    return blend(refined_->skin.stencils, refined_->skin.stencils.value, row, x);
-  }
-  std::vector<Vec3> skin_normals(const VecX& x) const;  ///< unit, outward
 
  private:
   /// What does not depend on the details.
@@ -185,9 +173,8 @@ class ShellBody {
     explicit Refined(DetailedSurface detailed) : surface(std::move(detailed)) {}
     DetailedSurface surface;
     VecX rest, kept_load;
-    double kept_volume = 0;
     Shell shell;
-    std::optional<Bile> bile;
+    std::optional<ShellBile> bile;
     Tessellation skin;
     std::vector<double> edge_lengths;
     BlockMatrix constant{0, {}};

@@ -2,38 +2,42 @@
 
 namespace calot {
 
-void PartProblem::keep_free(VecX& v) const {
-  v.head(3 * Eigen::Index{first_}).setZero();
-  v.tail(v.size() - 3 * Eigen::Index{last_}).setZero();
-}
-
-void PartProblem::gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
+void PartProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const {
   whole_.gradient(x, gradient, largest_internal);
-  keep_free(gradient);
+  for (std::size_t node = 0; node < free_.size(); ++node)
+    if (!free_[node]) gradient.segment<3>(3 * static_cast<Eigen::Index>(node)).setZero();
 }
 
-void PartProblem::hessian(const VecX& x, double multiplier, BlockMatrix& matrix) const {
-  whole_.hessian(x, multiplier, matrix);
-  matrix.hold_all_but(first_, last_);
+void PartProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const {
+  whole_.hessian(x, multipliers, matrix);
+  matrix.hold_all_but(free_);
 }
 
-double PartProblem::constraint(const VecX& x, VecX& gradient) const {
-  const double value = whole_.constraint(x, gradient);
-  keep_free(gradient);
-  return value;
+void PartProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
+  whole_.constraint(x, values, gradients);
+  for (std::size_t node = 0; node < free_.size(); ++node)
+    if (!free_[node]) gradients.middleRows<3>(3 * static_cast<Eigen::Index>(node)).setZero();
 }
 
-NewtonResult solve_in_stages(const ShellBody& body, const StagedProblem& problem,
-                             const NewtonSettings& settings, NewtonWorkspace& work, BodyState& state) {
-  work.factored = false;  // each stage has a matrix of its own
-  NewtonResult result = solve_equilibrium(PartProblem(*problem(state, false), 0, body.coarse_nodes()),
-                                          settings, work, state.x, state.datum_pressure);
-  work.factored = false;
-  if (!result.converged()) return result;
-  double pressure = state.datum_pressure;
-  result.add(solve_equilibrium(PartProblem(*problem(state, true), body.coarse_nodes(), body.nodes()),
-                               settings, work, state.x, pressure));
-  work.factored = false;
+NewtonResult solve_in_stages(std::span<const Member> members, std::span<const JoinPointer> joins,
+                             GroupPatterns& patterns, const NewtonSettings& settings, NewtonWorkspace& work) {
+  std::vector<char> coarse, details;
+  for (const Member& member : members)
+    for (int node = 0; node < member.body.nodes(); ++node) {
+      coarse.push_back(node < member.body.coarse_nodes());
+      details.push_back(!coarse.back());
+    }
+  NewtonResult result;
+  for (bool second : {false, true}) {
+    const GroupProblem problem(members, joins, patterns, second);
+    VecX x = problem.coordinates(), multipliers = problem.multipliers();
+    work.factored = false;  // each stage has a matrix of its own
+    result.add(
+        solve_equilibrium(PartProblem(problem, second ? details : coarse), settings, work, x, multipliers));
+    work.factored = false;
+    problem.keep(x, multipliers);
+    if (!result.converged()) break;
+  }
   return result;
 }
 

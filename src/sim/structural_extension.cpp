@@ -35,16 +35,17 @@ std::vector<NearPoint> points_near(int shape, const Field& field, const Organ& o
   const double reach = served ? extension_behind : extension_ahead;
   double counts = reach + middle_depth, nearest = counts;
   std::vector<ContactPair> pairs;
-  organ.search.pairs_with(shape, organ.body, organ.state.x, loads, counts, pairs);
+  organ.search.pairs_with(shape, *organ.body, organ.state.x, loads, counts, pairs);
   std::sort(pairs.begin(), pairs.end(),
             [](const ContactPair& a, const ContactPair& b) { return a.distance < b.distance; });
   // The nearest first, as their bounds say, until no other can count.
-  std::vector<char> seen(organ.body.skin_rest().size(), 0);
+  std::vector<char> seen(organ.body->skin_rest().size(), 0);
   for (const ContactPair& pair : pairs) {
     if (pair.distance > counts) break;
-    for (int row : organ.body.skin().triangles[pair.triangle]) {
+    for (int row : organ.body->skin().triangles[pair.triangle]) {
       if (std::exchange(seen[row], 1)) continue;
-      const double distance = signed_distance(loads.shapes[shape], organ.body.skin_point(row, organ.state.x));
+      const double distance =
+          signed_distance(loads.shapes[shape], organ.body->skin_point(row, organ.state.x));
       if (distance > counts) continue;
       out.push_back({row, shape, distance});
       nearest = std::min(nearest, distance);
@@ -94,16 +95,16 @@ int middle_of(const ShellBody& body, const std::vector<NearPoint>& points, const
 }
 
 bool clear_of_tools(const Organ& organ, const ContactLoads& loads) {
-  const std::vector<ContactPair> near = gather_pairs(organ.body, organ.state.x, loads, 0.0);
+  const std::vector<ContactPair> near = gather_pairs(*organ.body, organ.state.x, loads, 0.0);
   bool clear = true;
-  for_touching(organ.body, organ.state.x, loads, near, std::numeric_limits<double>::infinity(),
+  for_touching(*organ.body, organ.state.x, loads, near, std::numeric_limits<double>::infinity(),
                [&](int, int, const Vec3&, const DistanceSlope& d) { clear &= d.distance > -contact_guard; });
   return clear;
 }
 
 /// Whether no wall passes through another as the details that are left out go. Those that are new move nothing yet.
 bool clear_of_itself(Organ& organ, const ShellBody& before, const VecX& x) {
-  const VecX going = organ.body.coordinates_in(before, organ.state.x) - x;
+  const VecX going = shell_of(organ)->coordinates_in(before, organ.state.x) - x;
   return organ.search.own.safe_share(before, x, going, contact_keep, 1.0) == 1.0;
 }
 
@@ -115,9 +116,9 @@ std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
 
 /// The extensions that the organ needs with the tools where they stand: one for each part of a tool that is near
 /// or holds on, two for a part that lies along the organ. Those that still serve stay as they are.
-std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ, const ContactLoads& loads) {
+std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ, const ShellBody& body,
+                                         const ContactLoads& loads) {
   constexpr int most_along_a_part = 2;
-  const ShellBody& body = organ.body;
   std::vector<Extension> out;
   if (field.viewed && &field.organs[field.viewed->organ] == &organ)
     out.push_back({-1, field.viewed->skin_point});
@@ -168,11 +169,13 @@ std::vector<int> details_around(const ShellBody& body, const std::vector<Extensi
 }
 
 void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
-  if (organ.body.levels().levels() == 0) return;
+  const BodyPointer present = organ.body;
+  const ShellBody* shell = shell_of(organ);
+  if (shell == nullptr || shell->most_levels() == 0) return;
   const std::vector<InstrumentPose> poses = present_poses(field);
   const auto place = [&] {
     return ContactPlace{
-        organ.state.x,        poses, organ.grips, organ.extensions, organ.state.shares, organ.body.details(),
+        organ.state.x,        poses, organ.grips, organ.extensions, organ.state.shares, shell->details(),
         organ.refused_details};
   };
   if (organ.looked_at == place()) return;
@@ -180,45 +183,45 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   std::vector<int> wanted, details;
   {
     const Timed timed(statistics.contact_s);
-    organ.extensions = wanted_extensions(field, organ, now);
-    wanted = details_around(organ.body, organ.extensions);
-    details = united(wanted, lasting_details(organ.body, organ.state, wanted));
+    organ.extensions = wanted_extensions(field, organ, *shell, now);
+    wanted = details_around(*shell, organ.extensions);
+    details = united(wanted, lasting_details(*shell, organ.state, wanted));
   }
   if (details == organ.refused_details) {
     organ.looked_at = place();
     return;
   }
-  const std::vector<int>& active = organ.body.details();
+  const std::vector<int>& active = shell->details();
   // What has faded goes with the next change or with the last that fades: a change costs as much as many details.
   if (details == active ||
       (details != wanted && std::includes(active.begin(), active.end(), wanted.begin(), wanted.end()))) {
-    organ.state.shares = shares_of(active, wanted, organ.body, organ.state.shares);
+    organ.state.shares = shares_of(active, wanted, *shell, organ.state.shares);
     organ.looked_at = place();
     return;
   }
 
   organ.refused_details = details;
   const Timed timed(statistics.extension_s);
-  Result<ShellBody> next = organ.body.with_details(std::move(details));
+  Result<ShellBody> next = shell->with_details(std::move(details));
   if (!next) {
     ++statistics.extensions_refused;
     return;
   }
-  NewtonWorkspace work(next->pattern(), next->coarse_nodes());
-  const OrganSnapshot before = snapshot(organ);
-  organ.state.x = organ.body.coordinates_in(next.value(), before.state.x);
-  organ.state.shares = shares_of(next->details(), wanted, organ.body, before.state.shares);
-  organ.state.fading_load = made_good(organ.body, before.state, next.value(), organ.state.x);
-  organ.body = next.value();
-  organ.work = std::move(work);
-  const VecX start = organ.state.x;
+  const GroupSnapshot before = snapshot(field);
+  const BodyState was = organ.state;
+  organ.state.x = shell->coordinates_in(next.value(), was.x);
+  organ.state.shares = shares_of(next->details(), wanted, *shell, was.shares);
+  organ.state.fading_load = made_good(*shell, was, next.value(), organ.state.x);
+  organ.body = std::make_shared<const ShellBody>(std::move(next).value());
+  field.group.forget_bodies();
   ++statistics.extensions_changed;
-  if (clear_of_tools(organ, now) && clear_of_itself(organ, before.body, before.state.x) &&
-      settle_organ(field, organ, poses, start, NewtonSettings{}.max_iterations, statistics).converged()) {
+  if (clear_of_tools(organ, now) && clear_of_itself(organ, *shell, was.x) &&
+      settle_group(field, poses, present_places(field), NewtonSettings{}.max_iterations, statistics)
+          .converged()) {
     organ.refused_details.reset();
     return;
   }
-  restore(organ, before);
+  restore(field, before);
   --statistics.extensions_changed;
   ++statistics.extensions_refused;
 }

@@ -58,10 +58,10 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
   for (const Organ& organ : field.organs) {
     const std::string& name = organ.definition.name;
     const ContactLoads now = contact_loads(field, organ, poses);
-    const std::vector<Touch>& touching = organ.search.touching(organ.body, organ.state.x, now);
-    for (const ContactForce& contact : contact_forces(organ.body, now, touching))
+    const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
+    for (const ContactForce& contact : contact_forces(*organ.body, now, touching))
       if (sum.is_tool(contact.shape)) sum.add(contact.shape, contact.at, contact.on_shape, true, name);
-    ContactPlaces places(organ.body.skin(), organ.state.x);
+    ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points) {
       if (!sum.is_tool(rubbing.shape)) continue;
       // The point is counted where it presses.
@@ -70,7 +70,7 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const GripPoint& grip = organ.grips[g];
-      const Vec3 at = organ.body.skin_point(grip.skin_point, organ.state.x);
+      const Vec3 at = organ.body->skin_point(grip.skin_point, organ.state.x);
       sum.add(shapes_per_tool * grip.instrument + 1 + grip.jaw, at,
               now.grip.stiffness[g] * (at - now.grip.target[g]), true, name);
     }
@@ -99,8 +99,8 @@ double deepest_penetration(const Field& field) {
     for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {
       const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
       for (const Organ& organ : field.organs) {
-        const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
-        for (const Triangle& t : organ.body.skin().triangles) {
+        const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+        for (const Triangle& t : organ.body->skin().triangles) {
           Eigen::AlignedBox3d around;
           for (int corner : t) around.extend(skin[corner]);
           if (!around.intersects(box)) continue;

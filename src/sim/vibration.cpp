@@ -178,7 +178,7 @@ Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads
   NewtonWorkspace work(body.pattern());
   ContactSearch search;
   const BodyProblem problem(body, loads, search, state);
-  const NewtonResult factored = factorise_tangent(problem, work, state.x, state.datum_pressure, true);
+  const NewtonResult factored = factorise_tangent(problem, work, state.x, problem.multipliers(), true);
   if (!factored.converged())
     return fail(FailureKind::simulation, "the organ has no natural frequency: " + to_text(factored.status),
                 "hold the organ, or give it fewer nodes");
@@ -188,8 +188,8 @@ Result<double> lowest_frequency(const ShellBody& body, const ContactLoads& loads
   };
   std::optional<KeptVolumeFactor> kept;
   if (work.shifted) {
-    problem.hessian(state.x, state.datum_pressure, work.matrix);
-    if (problem.constrained()) kept.emplace(work.matrix, work.border.gradients.col(0));
+    problem.hessian(state.x, problem.multipliers(), work.matrix);
+    if (problem.constraints() > 0) kept.emplace(work.matrix, work.border.gradients.col(0));
     if (!kept || !kept->stable())
       return fail(FailureKind::simulation,
                   "the organ has no natural frequency: its equilibrium is not stable",

@@ -3,6 +3,7 @@
 // below a third of its lowest natural frequency, a structure may be treated as static).
 
 #include "sim/equilibrium.h"
+#include "sim/shell_body.h"
 
 namespace calot {
 

@@ -80,7 +80,7 @@ void add_body_state(Hash& hash, const Organ& organ) {
   add_vector(hash, state.x);
   hash.add(state.datum_pressure);
   hash.add(state.volume);
-  for (int detail : organ.body.details()) hash.add(detail);
+  for (int detail : organ.body->details()) hash.add(detail);
   for (const DetailShare& detail : state.shares) {
     hash.add(detail.share);
     hash.add(detail.leaving);
@@ -93,10 +93,6 @@ void add_body_state(Hash& hash, const Organ& organ) {
   hash.add(organ.refused_details.has_value());
   if (organ.refused_details)
     for (int detail : *organ.refused_details) hash.add(detail);
-  add_vector(hash, organ.missed.dx);
-  hash.add(organ.missed.dpressure);
-  hash.add(organ.missed.travel);
-  hash.add(organ.missed.iterations);
 }
 
 void add_holds(Hash& hash, const Organ& organ) {
@@ -127,6 +123,13 @@ void add_factor(Hash& hash, const NewtonWorkspace& work) {
   add_vector(hash, work.border.answers);
 }
 
+void add_missed(Hash& hash, const MissedMotion& missed) {
+  add_vector(hash, missed.dx);
+  add_vector(hash, missed.dpressures);
+  hash.add(missed.travel);
+  hash.add(missed.iterations);
+}
+
 void add_tool(Hash& hash, const Tool& tool) {
   const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0) |
                    static_cast<int>(tool.action) << 3;
@@ -145,17 +148,16 @@ std::uint64_t World::Impl::hash_field() const {
   for (const Organ& organ : field.organs) {
     add_body_state(hash, organ);
     add_holds(hash, organ);
-    add_factor(hash, organ.work);
   }
+  add_missed(hash, field.group.missed);
+  add_factor(hash, field.group.work);
   for (const Tool& tool : field.tools) add_tool(hash, tool);
   return hash.value();
 }
 
 /// The hash knows a factor only by what it makes of one vector.
 bool World::Impl::same_factors(const FieldState& state) const {
-  for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (!field.organs[k].work.factor.shares_factor_with(state.organs[k].factor.factor)) return false;
-  return true;
+  return field.group.work.factor.shares_factor_with(state.group.factor.factor);
 }
 
 std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
@@ -198,12 +200,14 @@ InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad&
 OrganState World::Impl::organ_state(const Organ& organ) const {
   OrganState state;
   const VecX& x = organ.state.x;
-  state.pressure = organ.body.bile()->pressure_at_top(x, organ.state.datum_pressure);
-  state.volume = organ.body.volume(x);
-  state.energy = organ.body.shell().value(x);
-  state.max_stretch = organ.body.shell().max_stretch(x);
+  if (const Liquid* liquid = organ.body->liquid()) {
+    state.pressure = liquid->pressure_at_top(x, organ.state.datum_pressure);
+    state.volume = liquid->volume(x);
+  }
+  state.energy = organ.body->strain_energy(x);
+  state.max_stretch = organ.body->max_stretch(x);
   state.extensions = static_cast<int>(organ.extensions.size());
-  state.details = static_cast<int>(organ.body.details().size());
+  state.details = static_cast<int>(organ.body->details().size());
   return state;
 }
 
@@ -303,10 +307,10 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (impl->field.support) still.shapes.push_back(contact_shape(*impl->field.support));
   FillingLimits limits{stop};
   for (const OrganDefinition& definition : scene.anatomy.organs) {
-    Result<Organ> organ = make_organ(definition, still, impl->up, scene.solver.tolerance,
-                                     definition.extensions ? scene.solver.extension_levels : 0, &limits);
-    if (!organ) return at_organ(organ.failure(), impl->field.organs.size());
-    impl->field.organs.push_back(std::move(organ).value());
+    Result<RestedOrgan> made = make_organ(definition, still, impl->up, scene.solver.tolerance,
+                                          definition.extensions ? scene.solver.extension_levels : 0, &limits);
+    if (!made) return at_organ(made.failure(), impl->field.organs.size());
+    impl->field.add(std::move(made).value());
   }
   World world(std::move(impl));
   for (const InstrumentDefinition& definition : scene.instruments) {
@@ -389,9 +393,9 @@ FieldState World::state() const {
 Result<bool> World::restore(const FieldState& state) {
   Impl& self = *impl_;
   bool same =
-      state.organs.size() == self.field.organs.size() && state.tools.size() == self.field.tools.size();
-  for (std::size_t k = 0; same && k < state.organs.size(); ++k)
-    same = state.organs[k].body.same_base(self.field.organs[k].body);
+      state.group.organs.size() == self.field.organs.size() && state.tools.size() == self.field.tools.size();
+  for (std::size_t k = 0; same && k < state.group.organs.size(); ++k)
+    same = state.group.organs[k].body->same_as(*self.field.organs[k].body);
   if (!same) return fail(FailureKind::internal, "a field state can only be given back to the world it is of");
   calot::restore(self.field, state);
   self.steps = state.steps;
@@ -414,7 +418,7 @@ Vec3 World::landmark(const std::string& name) const {
   const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
   if (skin_point < 0) unknown_name("landmark", name);
   const Organ& at = impl_->field.organs[organ];
-  return at.body.skin_point(skin_point, at.state.x);
+  return at.body->skin_point(skin_point, at.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
@@ -423,23 +427,23 @@ Vec3 World::landmark_normal(const std::string& name) const {
   return skin_normals(organ)[skin_point];
 }
 
-const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body.skin(); }
+const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }
 std::vector<Vec3> World::skin_positions(int organ) const {
-  return impl_->field.organs[organ].body.skin_positions(impl_->field.organs[organ].state.x);
+  return impl_->field.organs[organ].body->skin_positions(impl_->field.organs[organ].state.x);
 }
 std::vector<Vec3> World::skin_normals(int organ) const {
-  return impl_->field.organs[organ].body.skin_normals(impl_->field.organs[organ].state.x);
+  return impl_->field.organs[organ].body->skin_normals(impl_->field.organs[organ].state.x);
 }
 const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
-  return impl_->field.organs[organ].body.skin_rest();
+  return impl_->field.organs[organ].body->skin_rest();
 }
 
 Result<double> World::lowest_frequency(int index) const {
   const Organ& organ = impl_->field.organs[index];
-  const BodyMass mass(organ.body, organ.state.x, organ.definition.wall.thickness,
+  const BodyMass mass(*shell_of(organ), organ.state.x, organ.definition.wall.thickness,
                       organ.definition.bile.density);
-  return calot::lowest_frequency(organ.body, contact_loads(impl_->field, organ, present_poses(impl_->field)),
-                                 organ.state, mass);
+  return calot::lowest_frequency(
+      *shell_of(organ), contact_loads(impl_->field, organ, present_poses(impl_->field)), organ.state, mass);
 }
 
 double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }

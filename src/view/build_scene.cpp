@@ -45,7 +45,7 @@ Scene SceneBuilder::build(const World& world) const {
   }
   for (const Organ& organ : world.field().organs) {
     if (!definition.laparoscope.show_structure) break;
-    for (SceneMesh& mesh : structure_meshes(draw_structure(organ.body, organ.state.x)))
+    for (SceneMesh& mesh : structure_meshes(draw_structure(*shell_of(organ), organ.state.x)))
       scene.meshes.push_back(std::move(mesh));
   }
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());

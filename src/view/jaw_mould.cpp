@@ -92,7 +92,7 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
     for (const GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
       const Pose jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, grip.jaw);
-      const Vec3 at = organ.body.skin_point(grip.skin_point, organ.state.x);
+      const Vec3 at = organ.body->skin_point(grip.skin_point, organ.state.x);
       const Vec3 local = jaw.inverse(Eigen::Isometry) * at;
       Vec3 moved = local;
       moved.x() += share_on_pad(tool.geometry, local.y(), local.z()) *

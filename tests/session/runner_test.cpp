@@ -233,7 +233,8 @@ TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
   }
   const std::optional<SkinDifference> found = differences.of(world, 0);
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->largest_pct, 100, 1e-9) << "one has not moved at all";
+  // Both are solved together, so the one at rest is brought nearer to balance within the solver's tolerance.
+  EXPECT_NEAR(found->largest_pct, 100, 100 * scene.solver.tolerance) << "one has not moved at all";
   EXPECT_GT(found->mean_pct, 0);
   EXPECT_LT(found->mean_pct, found->largest_pct);
 }

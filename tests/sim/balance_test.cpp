@@ -20,9 +20,9 @@ TEST(Balance, ForceOnTheToolIsWhatBedAndWeightLeave) {
   const Organ& organ = field.organs[0];
   EXPECT_LT((test::bed_force(organ) - test::bile_weight(organ) * up).norm(), slack);
 
-  const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
   const Vec3 fundus = skin[organ.landmarks.at("fundus")];
-  const Vec3 out = organ.body.skin_normals(organ.state.x)[organ.landmarks.at("fundus")];
+  const Vec3 out = organ.body->skin_normals(organ.state.x)[organ.landmarks.at("fundus")];
   test::add_grasper(field, fundus + 150e-3 * out);
   const auto expect_balance = [&](const char* when) {
     const Vec3 on_organ = test::bed_force(organ) - test::bile_weight(organ) * up - test::tool_force(field);
@@ -51,8 +51,8 @@ TEST(Balance, PlaneAndHeldPoleCarryTheWeightTogether) {
   ContactLoads now;
   now.shapes = {contact_shape(*field.support)};
   Vec3 push = Vec3::Zero();
-  for (const ContactForce& contact :
-       contact_forces(placed.body, placed.state.x, now, gather_pairs(placed.body, placed.state.x, now, 0.0)))
+  for (const ContactForce& contact : contact_forces(*placed.body, placed.state.x, now,
+                                                    gather_pairs(*placed.body, placed.state.x, now, 0.0)))
     push += contact.on_shape;
   const double weight = test::bile_weight(placed);
   const double on_plane = -push.z();

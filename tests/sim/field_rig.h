@@ -34,20 +34,22 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
   field.support = support;
   ContactLoads still;
   if (support) still.shapes.push_back(contact_shape(*support));
-  field.organs.push_back(make_organ(definition, still, up, tolerance, levels).value());
+  field.add(make_organ(definition, still, up, tolerance, levels).value());
   return field;
 }
 
-/// Lays extensions around skin points without seeking the equilibrium that follows.
-inline void extend(Organ& organ, const std::vector<int>& centres) {
+/// Lays extensions around skin points of the first organ without seeking the equilibrium that follows.
+inline void extend(Field& field, const std::vector<int>& centres) {
+  Organ& organ = field.organs[0];
   organ.extensions.clear();
   for (int row : centres) organ.extensions.push_back({0, row});
-  ShellBody next = organ.body.with_details(details_around(organ.body, organ.extensions)).value();
-  organ.state.x = organ.body.coordinates_in(next, organ.state.x);
+  const ShellBody& shell = *shell_of(organ);
+  ShellBody next = shell.with_details(details_around(shell, organ.extensions)).value();
+  organ.state.x = shell.coordinates_in(next, organ.state.x);
   organ.state.shares.clear();  // free at once
   organ.state.fading_load.resize(0);
-  organ.body = std::move(next);
-  organ.work = NewtonWorkspace(organ.body.pattern(), organ.body.coarse_nodes());
+  organ.body = std::make_shared<const ShellBody>(std::move(next));
+  field.group.forget_bodies();
 }
 
 inline void add_grasper(Field& field, const Vec3& trocar) {
@@ -97,8 +99,8 @@ struct FundusField {
 
 /// Force of the bed and other held regions on the organ, N.
 inline Vec3 bed_force(const Organ& organ) {
-  const Links& bed = organ.body.foundation();
-  const StencilTable& table = organ.body.bed_points();
+  const Links& bed = shell_of(organ)->foundation();
+  const StencilTable& table = shell_of(organ)->bed_points();
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < bed.row.size(); ++i)
     sum += bed.stiffness[i] * (bed.target[i] - blend(table, table.value, bed.row[i], organ.state.x));
@@ -107,7 +109,7 @@ inline Vec3 bed_force(const Organ& organ) {
 
 /// Weight of the organ's bile, N.
 inline double bile_weight(const Organ& organ) {
-  return organ.body.bile()->specific_weight() * organ.body.bile()->volume(organ.state.x);
+  return shell_of(organ)->bile()->specific_weight() * shell_of(organ)->bile()->volume(organ.state.x);
 }
 
 /// Force of the tissue on the first tool, N.

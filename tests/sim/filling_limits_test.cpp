@@ -15,7 +15,7 @@ OrganDefinition swollen_ball() {
   return organ;
 }
 
-Result<Organ> filled(FillingLimits& limits) {
+Result<RestedOrgan> filled(FillingLimits& limits) {
   return make_organ(swollen_ball(), {}, Vec3::UnitZ(), 1e-6, 0, &limits);
 }
 
@@ -27,7 +27,7 @@ TEST(FillingLimits, FillingEndsWhereItsIterationsAreUsedUpAndNamesTheBile) {
   EXPECT_GT(needed, 10 * 61);
   FillingLimits enough{nullptr, needed + 1}, scarce{nullptr, needed};
   EXPECT_TRUE(filled(enough));
-  const Result<Organ> ended = filled(scarce);
+  const Result<RestedOrgan> ended = filled(scarce);
   ASSERT_FALSE(ended);
   EXPECT_EQ(ended.failure().kind, FailureKind::resource);
   EXPECT_EQ(ended.failure().problems.at(0).place.path, ".bile");

@@ -16,7 +16,7 @@ double furthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 std::vector<Vec3> skin(const test::Slide& slide) {
-  return slide.organ().body.skin_positions(slide.organ().state.x);
+  return slide.organ().body->skin_positions(slide.organ().state.x);
 }
 
 TEST(Rubbing, SlidingSkinPullsByFrictionTimesWhatPresses) {
@@ -55,7 +55,7 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
   const auto in_the_jaws = [&] {
     const FrictionLoad load = friction_load(slide.field, slide.organ(), present_poses(slide.field));
     std::vector<std::tuple<int, int, Vec3, double>> out;
-    ContactPlaces places(slide.organ().body.skin(), slide.organ().state.x);
+    ContactPlaces places(slide.organ().body->skin(), slide.organ().state.x);
     for (const RubbingPoint& rubbing : load.points)
       out.emplace_back(
           rubbing.shape, rubbing.point,
@@ -175,11 +175,11 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
     const Organ& organ = field.organs[0];
     const ContactLoads now = contact_loads(field, organ, present_poses(field));
     Vec3 rub = Vec3::Zero(), push = Vec3::Zero();
-    ContactPlaces places(organ.body.skin(), organ.state.x);
+    ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points)
       if (rubbing.shape == shapes_per_tool) rub += rubbing.hold.sample(places.at(rubbing.point)).gradient;
     for (const ContactForce& force :
-         contact_forces(organ.body, organ.state.x, now, gather_pairs(organ.body, organ.state.x, now, 0.0)))
+         contact_forces(*organ.body, organ.state.x, now, gather_pairs(*organ.body, organ.state.x, now, 0.0)))
       if (force.shape == shapes_per_tool) push += force.on_shape;
     EXPECT_GT(test::tool_force(field).norm(), 0.02);
     // Equilibrium to 1e-9 of the nodal forces (below 1 N), on some 60 nodes.

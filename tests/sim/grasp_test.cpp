@@ -43,7 +43,7 @@ TEST(Grasp, GraspedSkinStaysWithTheJaw) {
   const Organ& organ = field.organs[0];
   const auto in_the_jaws = [&] {
     std::vector<Vec3> local;
-    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     for (const GripPoint& grip : organ.grips)
       local.push_back(
           jaw_frame(field.tools[0].trocar, field.tools[0].pose, field.tools[0].geometry, grip.jaw).inverse() *

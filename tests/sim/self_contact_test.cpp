@@ -24,10 +24,10 @@ struct Pinched {
   explicit Pinched(bool contact)
       : field(test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ())), organ(field.organs[0]) {
     organ.search.own.active = contact;
-    const std::vector<Vec3>& rest = organ.body.skin_rest();
+    const std::vector<Vec3>& rest = organ.body->skin_rest();
     for (const Vec3& p : rest) middle += p / static_cast<double>(rest.size());
     organ.state.datum_pressure = 0;
-    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     for (int row = 0; row < static_cast<int>(skin.size()); ++row) {
       if (std::abs(skin[row].x() - middle.x()) < 18e-3) continue;
       around.grip.row.push_back(row);
@@ -40,24 +40,25 @@ struct Pinched {
     const std::vector<Vec3> from = around.grip.target;
     for (int k = 1; k <= parts; ++k) {
       for (std::size_t i = 0; i < from.size(); ++i) {
-        const double side = organ.body.skin_rest()[around.grip.row[i]].x() > middle.x() ? 1 : -1;
+        const double side = organ.body->skin_rest()[around.grip.row[i]].x() > middle.x() ? 1 : -1;
         const double goal = middle.x() + side * to;
         around.grip.target[i].x() = from[i].x() + (goal - from[i].x()) * k / parts;
       }
-      const NewtonResult result = settle(organ.body, around, {}, organ.work, organ.search, organ.state, true);
+      const NewtonResult result = settle({*organ.body, around, organ.search, organ.state}, {},
+                                         field.group.work, {.fixed_pressures = true});
       if (!result.converged()) return false;
     }
     return true;
   }
   std::size_t crossings() const {
-    return touching_pairs({organ.body.skin_positions(organ.state.x), organ.body.skin().triangles}, 0.0)
+    return touching_pairs({organ.body->skin_positions(organ.state.x), organ.body->skin().triangles}, 0.0)
         .size();
   }
 };
 
 /// Least distance of parts of the wall that are no neighbours, m, up to `most`.
 double nearest_pair(const SkinNet& net, const Organ& organ, const VecX& x, double most) {
-  const std::vector<Vec3> skin = organ.body.skin_positions(x);
+  const std::vector<Vec3> skin = organ.body->skin_positions(x);
   double out = most;
   const SkinMotion still{skin, nullptr, out, 1};
   for (const SelfPair& p : near_pairs(net, still, near_groups(net, skin, out)))
@@ -67,7 +68,7 @@ double nearest_pair(const SkinNet& net, const Organ& organ, const VecX& x, doubl
 
 /// The skin point that is farthest at rest in a direction.
 int farthest(const Organ& organ, const Vec3& along) {
-  const std::vector<Vec3>& rest = organ.body.skin_rest();
+  const std::vector<Vec3>& rest = organ.body->skin_rest();
   int best = 0;
   for (int i = 0; i < static_cast<int>(rest.size()); ++i)
     if (rest[i].dot(along) > rest[best].dot(along)) best = i;
@@ -76,26 +77,26 @@ int farthest(const Organ& organ, const Vec3& along) {
 
 /// The ball dented from both sides until its walls come within `gap`, and shaken.
 VecX dented(const Organ& organ, double gap) {
-  const VecX& start = organ.body.rest();
+  const VecX& start = organ.body->rest();
   const Vec3 middle(0, 0, 20e-3);
   Rng rng(3);
   const VecX shake = test::random_coordinates(rng, static_cast<int>(start.size()), 2e-5);
   const auto at = [&](double depth) {
     VecX x = start + shake;
-    for (int i = 0; i < organ.body.coarse_nodes(); ++i) {
+    for (int i = 0; i < organ.body->coarse_nodes(); ++i) {
       const Vec3 arm = start.segment<3>(3 * i) - middle;
       const double off_axis = (arm.y() * arm.y() + arm.z() * arm.z()) / (14e-3 * 14e-3);
       x[3 * i] -= depth * std::exp(-off_axis) * arm.x();
     }
     return x;
   };
-  const SkinNet net(organ.body);
+  const SkinNet net(*organ.body);
   const int right = farthest(organ, Vec3::UnitX()), left = farthest(organ, -Vec3::UnitX());
   double low = 0, high = 5;
   for (int k = 0; k < 25; ++k) {
     const double depth = 0.5 * (low + high);
     const VecX x = at(depth);
-    const bool apart = organ.body.skin_point(right, x).x() > organ.body.skin_point(left, x).x() &&
+    const bool apart = organ.body->skin_point(right, x).x() > organ.body->skin_point(left, x).x() &&
                        nearest_pair(net, organ, x, 1.1 * gap) > gap;
     (apart ? low : high) = depth;
   }
@@ -106,13 +107,13 @@ VecX dented(const Organ& organ, double gap) {
 Field ball_with_details() {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ(), {}, 2);
   Organ& organ = field.organs[0];
-  test::extend(organ, {farthest(organ, Vec3(1, 0.1, 0.1)), farthest(organ, Vec3(-1, 0.1, -0.1))});
+  test::extend(field, {farthest(organ, Vec3(1, 0.1, 0.1)), farthest(organ, Vec3(-1, 0.1, -0.1))});
   return field;
 }
 
 TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   Field field = ball_with_details();
-  const ShellBody& body = field.organs[0].body;
+  const ShellBody& body = *shell_of(field.organs[0]);
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   const std::vector<SelfTouch> touches = own.touching(body, x);
@@ -128,9 +129,10 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   EXPECT_LT(test::net_force(g.head(3 * static_cast<Eigen::Index>(body.coarse_nodes()))).norm(),
             1e-12 * g.lpNorm<1>());
   EXPECT_GT(g.tail(3 * static_cast<Eigen::Index>(body.details().size())).norm(), 1e-3 * g.norm());
-  NewtonWorkspace work(body.pattern(), body.coarse_nodes());
-  own.prepare(body, x, work);
-  BlockMatrix h = work.matrix;
+  std::optional<BlockMatrix> wider = own.new_pattern(body, x, body.pattern());
+  ASSERT_TRUE(wider);
+  EXPECT_FALSE(own.new_pattern(body, x, *wider)) << "it serves";
+  BlockMatrix& h = *wider;
   h.set_zero();
   own.add_hessian(body, x, h);
   EXPECT_FALSE(own.lacking());
@@ -155,7 +157,7 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
 
 TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
-  const ShellBody& body = field.organs[0].body;
+  const ShellBody& body = *shell_of(field.organs[0]);
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   VecX g = VecX::Zero(x.size());
@@ -176,12 +178,12 @@ TEST(SelfContact, MemoryLeavesNoTrace) {
     const double s = 0.5 - 0.5 * std::cos(0.7 * k);
     const VecX x = far + s * (near - far), step = (k % 2 ? 1.2 : 0.02) * (near - x);
     SelfContact fresh;
-    const double value = fresh.value(organ.body, x);
-    EXPECT_EQ(kept.value(organ.body, x), value);
+    const double value = fresh.value(*organ.body, x);
+    EXPECT_EQ(kept.value(*organ.body, x), value);
     touched |= value != 0;
     parted |= value == 0;
-    const double share = SelfContact().safe_share(organ.body, x, step, 0.2, 1.0);
-    EXPECT_EQ(kept.safe_share(organ.body, x, step, 0.2, 1.0), share);
+    const double share = SelfContact().safe_share(*organ.body, x, step, 0.2, 1.0);
+    EXPECT_EQ(kept.safe_share(*organ.body, x, step, 0.2, 1.0), share);
     cut |= share < 1;
   }
   EXPECT_TRUE(touched);
@@ -193,13 +195,13 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOther) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
   const Organ& organ = field.organs[0];
   const VecX x = dented(organ, 1.5e-3);
-  const SkinNet net(organ.body);
+  const SkinNet net(*organ.body);
   const double before = nearest_pair(net, organ, x, 2e-3);
   // Each side towards the other.
   VecX step = VecX::Zero(x.size());
-  for (int i = 0; i < organ.body.nodes(); ++i) step[3 * i] = organ.body.rest()[3 * i] > 0 ? -1 : 1;
+  for (int i = 0; i < organ.body->nodes(); ++i) step[3 * i] = organ.body->rest()[3 * i] > 0 ? -1 : 1;
   for (double length : {1e-3, 2e-3, 5e-3, 50e-3}) {
-    const double share = SelfContact().safe_share(organ.body, x, length * step, 0.2, 1.0);
+    const double share = SelfContact().safe_share(*organ.body, x, length * step, 0.2, 1.0);
     const double after = nearest_pair(net, organ, x + share * length * step, 2e-3);
     EXPECT_LT(share, 1.0) << length;
     EXPECT_GT(share * length, 0.2 * before) << length;
@@ -215,10 +217,10 @@ TEST(SelfContact, NothingIsActiveInAnOrdinaryGrasp) {
   for (const auto& [depth, jaw] :
        {std::pair{15e-3, test::open_jaw}, {-4e-3, test::open_jaw}, {-4e-3, 0.0}, {4e-3, 0.0}}) {
     ASSERT_EQ(grasped.reach(depth, jaw), "");
-    EXPECT_TRUE(organ.search.own.touching(organ.body, organ.state.x).empty());
+    EXPECT_TRUE(organ.search.own.touching(*organ.body, organ.state.x).empty());
   }
   ASSERT_TRUE(grasped.field.tools[0].jaw_stopped);
-  EXPECT_EQ(organ.work.matrix.entries().size(), organ.body.pattern().entries().size());
+  EXPECT_EQ(grasped.field.group.work.matrix.entries().size(), organ.body->pattern().entries().size());
 }
 
 /// A slack ball that closed jaws press down on from above until its wall comes to the wall that the bed holds.
@@ -240,7 +242,7 @@ struct PressedThrough {
     return organ;
   }
   std::size_t crossings() const {
-    return touching_pairs({organ.body.skin_positions(organ.state.x), organ.body.skin().triangles}, 0.0)
+    return touching_pairs({organ.body->skin_positions(organ.state.x), organ.body->skin().triangles}, 0.0)
         .size();
   }
 };
@@ -251,7 +253,7 @@ TEST(SelfContact, AnInstrumentPressesWallOnWallNotThroughIt) {
   ASSERT_EQ(without.why + with.why, "");
   EXPECT_GT(without.crossings(), 50u);
   EXPECT_EQ(with.crossings(), 0u);
-  EXPECT_FALSE(with.organ.search.own.touching(with.organ.body, with.organ.state.x).empty());
+  EXPECT_FALSE(with.organ.search.own.touching(*with.organ.body, with.organ.state.x).empty());
   // What the walls do to each other counts in no tool's load: that is what the bed answers, with the bile's weight.
   const Vec3 weight = -test::bile_weight(with.organ) * Vec3::UnitZ();
   const Vec3 left_over = test::bed_force(with.organ) + weight - test::tool_force(with.field);
@@ -264,10 +266,10 @@ TEST(SelfContact, WallsSqueezedFlatDoNotPassThroughEachOther) {
   for (Pinched* pinched : {&without, &with}) ASSERT_TRUE(pinched->press(0, 10));
   EXPECT_GT(without.crossings(), 100u);
   EXPECT_EQ(with.crossings(), 0u);
-  EXPECT_GT(with.organ.search.own.touching(with.organ.body, with.organ.state.x).size(), 100u);
+  EXPECT_GT(with.organ.search.own.touching(*with.organ.body, with.organ.state.x).size(), 100u);
   // Apart again, the matrix is the body's own.
   ASSERT_TRUE(with.press(5e-3, 2));
-  EXPECT_EQ(with.organ.work.matrix.entries().size(), with.organ.body.pattern().entries().size());
+  EXPECT_EQ(with.field.group.work.matrix.entries().size(), with.organ.body->pattern().entries().size());
 }
 
 }  // namespace

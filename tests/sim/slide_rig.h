@@ -30,7 +30,7 @@ struct Slide {
 
   explicit Slide(double friction, int nodes = 40)
       : field(make_field(taut_ball(nodes), 1e-6, -Vec3::UnitZ())) {
-    top = organ().body.skin_point(organ().landmarks.at("fundus"), organ().state.x);
+    top = organ().body->skin_point(organ().landmarks.at("fundus"), organ().state.x);
     add_grasper(field, top - 150e-3 * Vec3::UnitY());
     field.tools[0].definition.friction = friction;
     field.tools[0].pose = pose();
@@ -72,8 +72,8 @@ struct Slide {
   Contact contact() const {
     Contact out;
     const ContactLoads now = contact_loads(field, organ(), present_poses(field));
-    const std::vector<ContactPair> pairs = gather_pairs(organ().body, organ().state.x, now, -contact_margin);
-    for (const ContactForce& force : contact_forces(organ().body, organ().state.x, now, pairs)) {
+    const std::vector<ContactPair> pairs = gather_pairs(*organ().body, organ().state.x, now, -contact_margin);
+    for (const ContactForce& force : contact_forces(*organ().body, organ().state.x, now, pairs)) {
       const RubbingPoint* point = now.friction.find(force.shape, force.point);
       const Vec3 rub = point ? point->hold.sample(force.at).gradient : Vec3(Vec3::Zero());
       out.normal += force.on_shape.norm();

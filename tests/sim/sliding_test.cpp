@@ -22,7 +22,7 @@ struct DrawnGrasper {
   explicit DrawnGrasper(int levels)
       : field(test::make_field(test::bedded_ball(), 1e-6, Vec3::UnitZ(), {}, levels)) {
     const Organ& organ = field.organs[0];
-    const Vec3 top = organ.body.skin_point(organ.landmarks.at("fundus"), organ.state.x);
+    const Vec3 top = organ.body->skin_point(organ.landmarks.at("fundus"), organ.state.x);
     test::add_grasper(field, top + Vec3(-10e-3, 60e-3, 150e-3));
     from = top + Vec3(-9e-3, -2e-3, -3e-3);
     way = Vec3(18e-3, 5e-3, 0);
@@ -39,9 +39,9 @@ struct DrawnGrasper {
   void look_at_faces() {
     const Organ& organ = field.organs[0];
     const ContactLoads now = contact_loads(field, organ, present_poses(field));
-    const auto pairs = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
-    for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, pairs))
-      faces.insert(contact.point / contacts_each / organ.body.triangles_each());
+    const auto pairs = gather_pairs(*organ.body, organ.state.x, now, -contact_margin);
+    for (const ContactForce& contact : contact_forces(*organ.body, organ.state.x, now, pairs))
+      faces.insert(contact.point / contacts_each / organ.body->triangles_each());
   }
 };
 

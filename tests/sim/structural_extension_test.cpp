@@ -30,10 +30,10 @@ struct Pulled {
   explicit Pulled(int levels)
       : field(test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, levels)),
         organ(field.organs[0]) {
-    const Vec3 top = organ.body.skin_rest()[organ.landmarks.at("fundus")];
-    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    const Vec3 top = organ.body->skin_rest()[organ.landmarks.at("fundus")];
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     for (std::size_t i = 0; i < skin.size(); ++i) {
-      if ((organ.body.skin_rest()[i] - top).norm() > 4e-3) continue;
+      if ((organ.body->skin_rest()[i] - top).norm() > 4e-3) continue;
       around.grip.row.push_back(static_cast<int>(i));
       around.grip.target.push_back(skin[i] + Vec3(3e-3, 1e-3, 4e-3));
       around.grip.stiffness.push_back(20);
@@ -43,10 +43,11 @@ struct Pulled {
   void rest() {
     NewtonSettings settings;
     settings.tolerance = 1e-9;
-    const NewtonResult result = settle(organ.body, around, settings, organ.work, organ.search, organ.state);
+    const NewtonResult result =
+        settle({*organ.body, around, organ.search, organ.state}, settings, field.group.work);
     ASSERT_TRUE(result.converged()) << to_text(result.status) << " " << result.residual;
   }
-  std::vector<Vec3> skin() const { return organ.body.skin_positions(organ.state.x); }
+  std::vector<Vec3> skin() const { return organ.body->skin_positions(organ.state.x); }
 };
 
 TEST(StructuralExtension, HundredsInsertedAndRemovedUnderLoadLeaveTheStateWithoutThem) {
@@ -54,19 +55,19 @@ TEST(StructuralExtension, HundredsInsertedAndRemovedUnderLoadLeaveTheStateWithou
   Pulled pulled(1);
   const std::vector<Vec3> before = pulled.skin();
   const Vec3 moved = before[pulled.organ.landmarks.at("fundus")];
-  EXPECT_GT((moved - pulled.organ.body.skin_rest()[pulled.organ.landmarks.at("fundus")]).norm(), 2e-3);
+  EXPECT_GT((moved - pulled.organ.body->skin_rest()[pulled.organ.landmarks.at("fundus")]).norm(), 2e-3);
   Rng rng(1);
   const double points = static_cast<double>(before.size());
   double changed = 0;
   const int all = test::cases(300, 1000);
   for (int k = 0; k < all; ++k) {
-    test::extend(pulled.organ,
+    test::extend(pulled.field,
                  {static_cast<int>(rng.uniform(0, points)), static_cast<int>(rng.uniform(0, points))});
     if (k % 50 == 0) {  // the others are taken away before they moved
       pulled.rest();
       changed = std::max(changed, furthest(before, pulled.skin()));
     }
-    test::extend(pulled.organ, {});
+    test::extend(pulled.field, {});
     if (k % 50 == 0) pulled.rest();
   }
   pulled.rest();
@@ -82,15 +83,15 @@ std::vector<double> fingerprint(const ShellBody& body, const BodyState& rest) {
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += rng.uniform(-0.5e-3, 0.5e-3);
   const ContactLoads nothing;
   const BodyProblem problem(body, nothing, {}, {x, rest.datum_pressure, rest.volume});
-  VecX gradient, of_constraint;
-  double internal = 0;
-  std::vector<double> out = {problem.value(x),
-                             problem.gradient_and_constraint(x, gradient, internal, of_constraint), internal};
+  VecX gradient, internal, volume;
+  Eigen::MatrixXd of_volume;
+  problem.gradient_and_constraint(x, gradient, internal, volume, of_volume);
+  std::vector<double> out = {problem.value(x), volume[0], internal[0]};
   NewtonWorkspace work(body.pattern(), body.coarse_nodes());
-  problem.hessian(x, rest.datum_pressure, work.matrix);
+  problem.hessian(x, problem.multipliers(), work.matrix);
   const VecX solution =
       work.factor.factorise(work.matrix) == FactorStatus::ok ? work.factor.solve(gradient) : VecX();
-  for (const VecX& v : {gradient, of_constraint, solution, body.kept_load()})
+  for (const VecX& v : {gradient, VecX(of_volume), solution, body.kept_load()})
     out.insert(out.end(), v.data(), v.data() + v.size());
   out.insert(out.end(), work.matrix.entries().begin(), work.matrix.entries().end());
   for (const Vec3& p : body.skin_positions(x)) out.insert(out.end(), p.data(), p.data() + 3);
@@ -100,7 +101,7 @@ std::vector<double> fingerprint(const ShellBody& body, const BodyState& rest) {
 TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
   Field field = test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   const Organ& organ = field.organs[0];
-  const ShellBody& bare = organ.body;
+  const ShellBody& bare = *shell_of(organ);
   const auto about = [&](const std::vector<int>& rows) {
     std::vector<Extension> extensions;
     for (int row : rows) extensions.push_back({0, row});
@@ -119,30 +120,32 @@ TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
 TEST(StructuralExtension, AnOrganAtRestDoesNotMoveWhenItIsExtended) {
   Field field = test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   Organ& organ = field.organs[0];
-  const std::vector<Vec3> before = organ.body.skin_positions(organ.state.x);
+  const std::vector<Vec3> before = organ.body->skin_positions(organ.state.x);
   const double multiplier = organ.state.datum_pressure;
   NewtonSettings settings;
   settings.tolerance = 1e-9;
-  test::extend(organ, {10, 700, organ.landmarks.at("fundus")});
-  EXPECT_GT(organ.body.kept_load().norm(), 1e-4) << "N: the finer rules do see the wall otherwise";
-  EXPECT_TRUE(settle(organ.body, {}, settings, organ.work, organ.search, organ.state).converged());
-  EXPECT_LT(furthest(before, organ.body.skin_positions(organ.state.x)), 1e-9) << "m; met to 1e-9";
+  test::extend(field, {10, 700, organ.landmarks.at("fundus")});
+  EXPECT_GT(organ.body->kept_load().norm(), 1e-4) << "N: the finer rules do see the wall otherwise";
+  const ContactLoads nothing;
+  EXPECT_TRUE(
+      settle({*organ.body, nothing, organ.search, organ.state}, settings, field.group.work).converged());
+  EXPECT_LT(furthest(before, organ.body->skin_positions(organ.state.x)), 1e-9) << "m; met to 1e-9";
   EXPECT_NEAR(organ.state.datum_pressure, multiplier, 1e-6 * multiplier);
 }
 
 TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
   Pulled pulled(2);
   Rng rng(2);
-  test::extend(pulled.organ, {10, 500, 1500});
+  test::extend(pulled.field, {10, 500, 1500});
   VecX& x = pulled.organ.state.x;
-  for (Eigen::Index i = 3 * pulled.organ.body.coarse_nodes(); i < x.size(); ++i)
+  for (Eigen::Index i = 3 * pulled.organ.body->coarse_nodes(); i < x.size(); ++i)
     x[i] = rng.uniform(-1e-3, 1e-3);
-  const Bile& bile = *pulled.organ.body.bile();
+  const Bile& bile = *shell_of(pulled.organ)->bile();
   VecX load = VecX::Zero(x.size());
   bile.add_load(x, pulled.organ.state.datum_pressure, load);
   // The coarse functions sum to one everywhere: their loads are all there are.
   Vec3 net = Vec3::Zero();
-  for (int i = 0; i < pulled.organ.body.coarse_nodes(); ++i) net += load.segment<3>(Eigen::Index{3} * i);
+  for (int i = 0; i < pulled.organ.body->coarse_nodes(); ++i) net += load.segment<3>(Eigen::Index{3} * i);
   const double weight = bile.specific_weight() * bile.volume(x);
   EXPECT_GT(weight, 0.2);
   EXPECT_LT((net - weight * Vec3::UnitZ()).norm(), 1e-12 * weight * 1e3)
@@ -151,12 +154,12 @@ TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
 
 TEST(StructuralExtension, ItsUnknownsCondensedGiveTheWholeSystemsSolution) {
   Pulled pulled(2);
-  test::extend(pulled.organ, {10, 700, pulled.organ.landmarks.at("fundus")});
+  test::extend(pulled.field, {10, 700, pulled.organ.landmarks.at("fundus")});
   pulled.rest();
-  const BodyProblem problem(pulled.organ.body, pulled.around, {}, pulled.organ.state);
-  BlockMatrix matrix = pulled.organ.body.pattern();
-  problem.hessian(pulled.organ.state.x, pulled.organ.state.datum_pressure, matrix);
-  const int coarse = pulled.organ.body.coarse_nodes();
+  const BodyProblem problem(*pulled.organ.body, pulled.around, {}, pulled.organ.state);
+  BlockMatrix matrix = pulled.organ.body->pattern();
+  problem.hessian(pulled.organ.state.x, problem.multipliers(), matrix);
+  const int coarse = pulled.organ.body->coarse_nodes();
   ASSERT_GT(matrix.nodes(), coarse + 40);
   Cholesky whole(matrix, coarse, FactorKind::dense), condensed(matrix, coarse, FactorKind::condensed);
   ASSERT_EQ(whole.factorise(matrix), FactorStatus::ok);
@@ -170,16 +173,16 @@ TEST(StructuralExtension, APulledWallIsTwiceAsTrueWithItAsWithout) {
   CALOT_SLOW_WHEN_SANITIZED("details laid over and over");
   // Against all details of two levels: 946 functions.
   Pulled coarse(0), extended(1), fine(2);
-  test::extend(extended.organ, {extended.organ.landmarks.at("fundus")});
-  EXPECT_EQ(extended.organ.body.details().size(), 12u);
+  test::extend(extended.field, {extended.organ.landmarks.at("fundus")});
+  EXPECT_EQ(extended.organ.body->details().size(), 12u);
   extended.rest();
   std::vector<int> all;
-  for (int node = fine.organ.body.levels().nodes(0); node < fine.organ.body.levels().nodes(2); ++node)
-    all.push_back(node);
-  ShellBody finest = fine.organ.body.with_details(all).value();
-  fine.organ.state.x = fine.organ.body.coordinates_in(finest, fine.organ.state.x);
-  fine.organ.body = std::move(finest);
-  fine.organ.work = NewtonWorkspace(fine.organ.body.pattern());
+  const ShellBody& bare = *shell_of(fine.organ);
+  for (int node = bare.levels().nodes(0); node < bare.levels().nodes(2); ++node) all.push_back(node);
+  const auto finest = std::make_shared<const ShellBody>(bare.with_details(all).value());
+  fine.organ.state.x = bare.coordinates_in(*finest, fine.organ.state.x);
+  fine.organ.body = finest;
+  fine.field.group.forget_bodies();
   fine.rest();
   const double far_off = furthest(coarse.skin(), fine.skin()), near = furthest(extended.skin(), fine.skin());
   EXPECT_GT(far_off, 1e-5);
@@ -238,7 +241,7 @@ struct Drawn {
   explicit Drawn(int levels)
       : field(test::make_field(test::bedded_ball(), 1e-6, Vec3::UnitZ(), {}, levels)),
         organ(field.organs[0]) {
-    rest = organ.body.skin_positions(organ.state.x);
+    rest = organ.body->skin_positions(organ.state.x);
     top = rest[organ.landmarks.at("fundus")];
     tip = top + Vec3(-5e-3, 0, 2e-3);
     test::add_grasper(field, top + Vec3(-10e-3, 60e-3, 150e-3));
@@ -254,17 +257,16 @@ struct Drawn {
     }
   }
   void rest_at(const InstrumentPose& pose) {
-    const VecX before = organ.state.x;
-    ASSERT_TRUE(settle_organ(field, organ, {pose}, before, 80, statistics).converged());
+    ASSERT_TRUE(settle_group(field, {pose}, present_places(field), 80, statistics).converged());
     field.tools[0].pose = pose;
   }
   void step(const InstrumentPose& pose) {
     rest_at(pose);
     const Vec3 force = test::tool_force(field);
-    const std::vector<Vec3> skin = organ.body.skin_positions(organ.state.x);
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     const auto since = [&](double& of_force, double& of_skin) {
       of_force = std::max(of_force, (test::tool_force(field) - force).norm());
-      of_skin = std::max(of_skin, furthest(skin, organ.body.skin_positions(organ.state.x)));
+      of_skin = std::max(of_skin, furthest(skin, organ.body->skin_positions(organ.state.x)));
     };
     follow_contacts(field, organ, statistics);
     since(force_jump, skin_jump);
@@ -290,7 +292,7 @@ TEST(StructuralExtension, WhereNoRestIsFoundWithItTheOrganStaysAsItWasAndTheRefu
   follow_contacts(drawn.field, organ, statistics);
   EXPECT_EQ(statistics.extensions_refused, 1);
   EXPECT_EQ(statistics.extensions_changed, 0);
-  EXPECT_TRUE(organ.body.details().empty());
+  EXPECT_TRUE(organ.body->details().empty());
   EXPECT_EQ(organ.state.x, before.state.x);
   EXPECT_EQ(organ.state.datum_pressure, before.state.datum_pressure);
   follow_contacts(drawn.field, organ, statistics);
@@ -299,7 +301,7 @@ TEST(StructuralExtension, WhereNoRestIsFoundWithItTheOrganStaysAsItWasAndTheRefu
   for (int k = 0; k <= 20; ++k) go_to(-5e-3 + k * Drawn::way, 1e-3);
   follow_contacts(drawn.field, organ, statistics);
   EXPECT_EQ(statistics.extensions_changed, 1);
-  EXPECT_FALSE(organ.body.details().empty());
+  EXPECT_FALSE(organ.body->details().empty());
 }
 
 TEST(StructuralExtension, NeitherForceNorSkinJumpsAsItIsLaidMovedOrTakenAwayUnderLoad) {
@@ -321,8 +323,8 @@ TEST(StructuralExtension, NeitherForceNorSkinJumpsAsItIsLaidMovedOrTakenAwayUnde
     EXPECT_LT(drawn.force_faded, 0.01 * drawn.force_range) << levels << " levels";
     EXPECT_LT(drawn.skin_faded, 0.01 * drawn.skin_range) << levels << " levels";
     drawn.go(top + Vec3(3e-3, 2e-3, 12e-3));
-    EXPECT_TRUE(drawn.organ.body.details().empty()) << "what has gone leaves nothing behind";
-    EXPECT_LT(furthest(drawn.organ.body.skin_positions(drawn.organ.state.x), drawn.rest), 1e-6);
+    EXPECT_TRUE(drawn.organ.body->details().empty()) << "what has gone leaves nothing behind";
+    EXPECT_LT(furthest(drawn.organ.body->skin_positions(drawn.organ.state.x), drawn.rest), 1e-6);
   }
 }
 
@@ -347,7 +349,7 @@ TEST(StructuralExtension, DetailsFadeByTheWayNotByTheSteps) {
 TEST(StructuralExtension, StagesRepeatedTendToTheCondensedSolution) {
   Pulled condensed(1), staged(1);
   for (Pulled* pulled : {&condensed, &staged}) {
-    test::extend(pulled->organ, {pulled->organ.landmarks.at("fundus")});
+    test::extend(pulled->field, {pulled->organ.landmarks.at("fundus")});
     for (Vec3& target : pulled->around.grip.target) target += Vec3(-2e-3, 1e-3, 1e-3);
   }
   condensed.rest();
@@ -357,8 +359,8 @@ TEST(StructuralExtension, StagesRepeatedTendToTheCondensedSolution) {
   std::vector<double> apart;
   for (int k = 0; k < 12; ++k) {
     const NewtonResult result =
-        settle(staged.organ.body, staged.around, settings, staged.organ.work, staged.organ.search,
-               staged.organ.state, false, ExtensionScheme::staged);
+        settle({*staged.organ.body, staged.around, staged.organ.search, staged.organ.state}, settings,
+               staged.field.group.work, {.scheme = ExtensionScheme::staged});
     ASSERT_TRUE(result.converged()) << to_text(result.status);
     apart.push_back(furthest(aim, staged.skin()));
   }

@@ -25,8 +25,8 @@ void look(const Field& field, Touch& touch) {
   const Tool& tool = field.tools[0];
   const ContactLoads now = contact_loads(field, organ, present_poses(field));
   const std::vector<Shape> made = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
-  const auto pairs = gather_pairs(organ.body, organ.state.x, now, -contact_margin);
-  for (const ContactForce& contact : contact_forces(organ.body, organ.state.x, now, pairs)) {
+  const auto pairs = gather_pairs(*organ.body, organ.state.x, now, -contact_margin);
+  for (const ContactForce& contact : contact_forces(*organ.body, organ.state.x, now, pairs)) {
     const double distance = signed_distance(made[contact.shape], contact.at);
     touch.lowest = std::min(touch.lowest, distance);
     touch.highest = std::max(touch.highest, distance);
@@ -44,8 +44,8 @@ struct Handled {
   Handled(int levels, bool from_the_side) : field(make(levels)) {
     const Organ& organ = field.organs[0];
     const int row = organ.landmarks.at("fundus");
-    fundus = organ.body.skin_point(row, organ.state.x);
-    out = organ.body.skin_normals(organ.state.x)[row];
+    fundus = organ.body->skin_point(row, organ.state.x);
+    out = organ.body->skin_normals(organ.state.x)[row];
     across = out.unitOrthogonal();
     test::add_grasper(
         field, from_the_side ? Vec3(fundus + 20e-3 * out - 150e-3 * across) : Vec3(fundus + 150e-3 * out));
@@ -105,7 +105,7 @@ TEST_P(TouchedPoints, LieOnTheJawsThatGraspThem) {
 
 TEST(ContactPoints, StandForAllOfTheSkin) {
   const Field field = Handled::make(0);
-  const ShellBody& body = field.organs[0].body;
+  const ShellBody& body = *shell_of(field.organs[0]);
   double skin = 0, felt = 0;
   for (const Triangle& t : body.skin().triangles)
     skin += 0.5 * (body.skin_rest()[t[1]] - body.skin_rest()[t[0]])
@@ -121,15 +121,15 @@ TEST(ContactPoints, StandForAllOfTheSkin) {
 TEST(ContactPoints, LieEvenlyOnTheirTriangles) {
   Field field = Handled::make(1);
   Organ& organ = field.organs[0];
-  test::extend(organ, {organ.landmarks.at("fundus")});
+  test::extend(field, {organ.landmarks.at("fundus")});
   VecX x = organ.state.x;
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += 1e-3 * std::sin(static_cast<double>(i));
-  const std::vector<Vec3> skin = organ.body.skin_positions(x);
-  ContactPlaces places(organ.body.skin(), x);
+  const std::vector<Vec3> skin = organ.body->skin_positions(x);
+  ContactPlaces places(organ.body->skin(), x);
   // Half as far apart as the corners of the equal triangles that they are the middles of, at most.
-  const double apart = 0.5 * organ.body.widest_skin_gap() / contact_parts;
-  for (int triangle : {0, 777, static_cast<int>(organ.body.skin().triangles.size()) - 1}) {
-    const Triangle& t = organ.body.skin().triangles[triangle];
+  const double apart = 0.5 * shell_of(organ)->widest_skin_gap() / contact_parts;
+  for (int triangle : {0, 777, static_cast<int>(organ.body->skin().triangles.size()) - 1}) {
+    const Triangle& t = organ.body->skin().triangles[triangle];
     Vec3 sum = Vec3::Zero();
     double least = 1;
     for (int point = triangle * contacts_each; point < (triangle + 1) * contacts_each; ++point) {
@@ -150,19 +150,19 @@ TEST(ContactPoints, LieEvenlyOnTheirTriangles) {
 TEST(ContactPoints, BringForcesToTheNodesWithTheirVirtualWork) {
   Field field = Handled::make(1);
   Organ& organ = field.organs[0];
-  test::extend(organ, {organ.landmarks.at("fundus")});
+  test::extend(field, {organ.landmarks.at("fundus")});
   const VecX& x = organ.state.x;
   Rng rng(3);
   VecX move(x.size());
   for (double& d : move) d = rng.uniform(-1e-3, 1e-3);
   VecX nodes = VecX::Zero(x.size());
-  BlockMatrix matrix = organ.body.pattern();
+  BlockMatrix matrix = organ.body->pattern();
   matrix.set_zero();
-  ContactLoad load(organ.body.skin(), nodes);
-  ContactStiffness stiffness(organ.body.skin(), matrix);
-  ContactPlaces moves(organ.body.skin(), move);
+  ContactLoad load(organ.body->skin(), nodes);
+  ContactStiffness stiffness(organ.body->skin(), matrix);
+  ContactPlaces moves(organ.body->skin(), move);
   double work = 0, squared = 0;
-  const int last = contacts_each * static_cast<int>(organ.body.skin().triangles.size());
+  const int last = contacts_each * static_cast<int>(organ.body->skin().triangles.size());
   for (int point = 5; point < last; point += point % 7 == 0 ? 1 : 211) {
     const Vec3 force = test::random_vector(rng, 1.0), way = moves.at(point);
     const Mat3 h = force * force.transpose() + 0.3 * Mat3::Identity();

@@ -46,14 +46,15 @@ Size size_of(const OrganDefinition& definition, const std::vector<Vec3>& skin) {
 
 /// How much girth and length grow by under the pressure, relative to rest.
 Size growth(const OrganDefinition& definition) {
-  const Result<Organ> organ = make_organ(definition, {}, Vec3::UnitZ(), 1e-6);
-  if (!organ) {
-    ADD_FAILURE() << to_text(organ.failure());
+  const Result<RestedOrgan> rested = make_organ(definition, {}, Vec3::UnitZ(), 1e-6);
+  if (!rested) {
+    ADD_FAILURE() << to_text(rested.failure());
     return {};
   }
-  const ShellBody& body = organ->body;
+  const Organ& organ = rested->organ;
+  const Body& body = *organ.body;
   const Size rest = size_of(definition, body.skin_rest());
-  const Size now = size_of(definition, body.skin_positions(organ->state.x));
+  const Size now = size_of(definition, body.skin_positions(organ.state.x));
   return {now.girth / rest.girth - 1, now.length / rest.length - 1};
 }
 
@@ -114,10 +115,10 @@ TEST(Wall, FibresWithoutStiffnessChangeNoBit) {
   const OrganDefinition plain = pressed_pear();
   OrganDefinition slack = plain;
   slack.wall.fibres = FibreDefinition{0, 1.0, 0.4};  // fibres of no stiffness add exact zeros
-  const Result<Organ> one = make_organ(plain, {}, Vec3::UnitZ(), 1e-6);
-  const Result<Organ> other = make_organ(slack, {}, Vec3::UnitZ(), 1e-6);
+  const Result<RestedOrgan> one = make_organ(plain, {}, Vec3::UnitZ(), 1e-6);
+  const Result<RestedOrgan> other = make_organ(slack, {}, Vec3::UnitZ(), 1e-6);
   ASSERT_TRUE(one && other);
-  EXPECT_EQ(one->state.x, other->state.x);
+  EXPECT_EQ(one->organ.state.x, other->organ.state.x);
 }
 
 }  // namespace

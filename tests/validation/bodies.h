@@ -2,6 +2,7 @@
 // Nested spheres, and equilibrium of a body under links alone.
 
 #include "sim/equilibrium.h"
+#include "sim/shell_body.h"
 #include "support/bodies.h"
 
 namespace calot::test {
@@ -27,7 +28,10 @@ inline NewtonResult equilibrium(const ShellBody& body, const ContactLoads& field
   NewtonSettings settings;
   settings.tolerance = tolerance;
   const BodyProblem problem(body, field, gather_pairs(body, state.x, field, 0.0), state);
-  return solve_equilibrium(problem, settings, work, state.x, state.datum_pressure);
+  VecX multipliers = problem.multipliers();
+  const NewtonResult result = solve_equilibrium(problem, settings, work, state.x, multipliers);
+  if (multipliers.size() > 0) state.datum_pressure = multipliers[0];
+  return result;
 }
 
 }  // namespace calot::test

@@ -1,0 +1,37 @@
+#include "sim/body.h"
+
+#include <algorithm>
+
+#include "numerics/parts.h"
+
+namespace calot {
+
+double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  double widest = 0;
+  for (const Triangle& t : triangles)
+    for (int k = 0; k < 3; ++k) widest = std::max(widest, (points[t[k]] - points[t[(k + 1) % 3]]).norm());
+  return widest;
+}
+
+const VecX& Body::kept_load() const {
+  static const VecX none;
+  return none;
+}
+
+const std::vector<double>& Body::skin_radii() const {
+  static const std::vector<double> none;
+  return none;
+}
+
+const std::vector<int>& Body::details() const {
+  static const std::vector<int> none;
+  return none;
+}
+
+double Body::largest_motion(const VecX& dx) const { return largest_node(dx); }
+
+std::vector<Vec3> Body::skin_positions(const VecX& x) const {
+  return blend_all(skin().stencils, skin().stencils.value, x);
+}
+
+}  // namespace calot

@@ -1,0 +1,123 @@
+#pragma once
+// A body of the group: its nodes, its energies, perhaps a liquid, and the skin that is touched and drawn. Everything
+// here is fixed once built; what moves is in BodyState. Coordinates x are the body's own: 3 a node, m.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "geometry/stencil.h"
+#include "numerics/block_matrix.h"
+#include "sim/contact_points.h"
+
+namespace calot {
+
+/// How freely a detail moves (detail_fading.h).
+struct DetailShare {
+  double share = 1;      ///< 0: held at rest, 1: free
+  bool leaving = false;  ///< its share falls
+  bool operator==(const DetailShare&) const = default;
+};
+
+struct BodyState {
+  VecX x;                     ///< 3 a node, m: places of the control nodes, then displacements of the details
+  double datum_pressure = 0;  ///< pressure at the datum's height, Pa
+  double volume = 0;          ///< m^3, what the constraint keeps
+  std::vector<DetailShare> shares = {};  ///< one a detail; none: all are free
+  /// N, 3 a node: what a change of the details altered and is still made good; empty: nothing.
+  VecX fading_load = {};
+};
+
+/// What a closed body is filled with: its weight, and a volume that is kept.
+class Liquid {
+ public:
+  virtual ~Liquid() = default;
+  /// Enclosed volume, m^3.
+  virtual double volume(const VecX& x) const = 0;
+  /// The same, its gradient (m^2) added to `gradient`.
+  virtual double add_volume_gradient(const VecX& x, VecX& gradient) const = 0;
+  /// The same with the load of the liquid's weight added to `load`.
+  virtual double add_weight_and_volume_gradient(const VecX& x, VecX& load, VecX& gradient) const = 0;
+  /// Potential energy of the weight, J.
+  virtual double weight_value(const VecX& x) const = 0;
+  /// Adds the gradient of weight - datum_pressure * volume, N.
+  virtual void add_load(const VecX& x, double datum_pressure, VecX& gradient) const = 0;
+  /// Adds its Hessian, N/m.
+  virtual void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const = 0;
+  /// Gauge pressure at the surface's highest point, Pa.
+  virtual double pressure_at_top(const VecX& x, double datum_pressure) const = 0;
+};
+
+/// Longest edge of triangles, m.
+double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
+
+class Body {
+ public:
+  virtual ~Body() = default;
+
+  virtual const std::string& name() const = 0;
+  /// Whether both are one body, but for their details.
+  virtual bool same_as(const Body& other) const { return this == &other; }
+  virtual const VecX& rest() const = 0;
+  int nodes() const { return static_cast<int>(rest().size()) / 3; }
+  /// The first nodes, which are places; the others are the details, displacements added to them.
+  virtual int coarse_nodes() const { return nodes(); }
+  virtual double size() const = 0;  ///< m, diagonal of the rest shape's box
+  /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe step
+  /// there.
+  virtual const std::vector<double>& edge_lengths() const = 0;
+  /// A matrix with this body's pattern that holds the constant part of its Hessian.
+  virtual const BlockMatrix& pattern() const = 0;
+
+  /// Energy of the body and of what it lies bedded in, J; not finite where x is not admissible.
+  virtual double value(const VecX& x) const = 0;
+  /// Adds the gradient, N; `largest_internal` receives the largest nodal force of the body itself, of which its
+  /// residual is judged.
+  virtual void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const = 0;
+  /// Adds the Hessian but for its constant part, N/m.
+  virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
+  /// A constant load, N, 3 a node, on top of that; empty: none.
+  virtual const VecX& kept_load() const;
+  /// Null: it is not filled.
+  virtual const Liquid* liquid() const { return nullptr; }
+  /// Energy of the deformed body alone, J, and the largest principal stretch in it: for reports.
+  virtual double strain_energy(const VecX& x) const = 0;
+  virtual double max_stretch(const VecX& x) const = 0;
+
+  /// What is touched, by triangles; see skin_radius().
+  virtual const Tessellation& skin() const = 0;
+  /// Of what the skin's points are the middles of, one a point, m: a rod's are on its centreline, and its triangles flat
+  /// as lines. Empty: the skin itself is touched.
+  virtual const std::vector<double>& skin_radii() const;
+  /// Rest area that each skin point stands for, m^2.
+  virtual const std::vector<double>& skin_areas() const = 0;
+  /// Rest area that a contact point (contact_points.h) stands for, m^2.
+  virtual double contact_area(int point) const = 0;
+  virtual const std::vector<Vec3>& skin_rest() const = 0;
+  /// Longest edge of the skin's triangles at rest, m.
+  double widest_skin_gap() const { return widest_gap(skin_rest(), skin().triangles); }
+  /// Nodes that each patch of skin depends on. As the weights are not negative it lies in the box of the coarse ones
+  /// among them, widened by half of each detail's length, whatever the state.
+  virtual const std::vector<std::vector<int>>& face_nodes() const = 0;
+  /// Triangles of each patch, which follow each other: those of the first patch first.
+  int triangles_each() const { return static_cast<int>(skin().triangles.size() / face_nodes().size()); }
+  /// Bound on how far any surface point moves when the nodes move by `dx`, m.
+  virtual double largest_motion(const VecX& dx) const;
+  std::vector<Vec3> skin_positions(const VecX& x) const;  ///< m
+  Vec3 skin_point(int row, const VecX& x) const {
+    return blend(skin().stencils, skin().stencils.value, row, x);
+  }
+  virtual std::vector<Vec3> skin_normals(const VecX& x) const = 0;  ///< unit, outward
+
+  /// Nodes of finer levels that are active, increasing, and how many levels have some.
+  virtual const std::vector<int>& details() const;
+  virtual int levels_used() const { return 0; }
+  /// Of a detail, by its place among details().
+  virtual int level_of_detail(int /*index*/) const { return 0; }
+  /// Levels that it can be refined by.
+  virtual int most_levels() const { return 0; }
+};
+
+using BodyPointer = std::shared_ptr<const Body>;
+
+}  // namespace calot

@@ -1,0 +1,81 @@
+#pragma once
+// What one body of a group makes stationary: its own energies and liquid, the shapes that touch it and the grips that
+// hold it.
+
+#include <optional>
+
+#include "numerics/constrained_energy.h"
+#include "sim/contact_search.h"
+
+namespace calot {
+
+/// No step takes a contact point nearer to a shape's core (contact_guard below it) than this share of its distance
+/// before it.
+inline constexpr double contact_keep = 0.2;
+
+/// A group of one. Its constraint is its liquid's volume, where it has one that is kept.
+class BodyProblem : public ConstrainedEnergy {
+ public:
+  /// `fixed_pressure`: the multiplier is prescribed and the volume free. Without contact of the skin with itself.
+  BodyProblem(const Body& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
+              const BodyState& start, bool fixed_pressure = false);
+  /// With it. `search` finds the pairs, where they are asked for, and remembers what touches; it must outlive the
+  /// problem.
+  BodyProblem(const Body& body, const ContactLoads& loads, ContactSearch& search, const BodyState& start,
+              bool fixed_pressure = false);
+
+  const Body& body() const { return body_; }
+  /// One, or none: where a solve begins.
+  VecX multipliers() const { return VecX::Constant(constraints(), multiplier_); }
+
+  std::vector<Part> parts() const override;
+  int constraints() const override { return body_.liquid() != nullptr && !fixed_pressure_ ? 1 : 0; }
+  double value(const VecX& x) const override;
+  double cancelling() const override;
+  void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
+  void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override;
+  void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override;
+  VecX constraint_values(const VecX& x) const override;
+  void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
+                               Eigen::MatrixXd& of_constraints) const override;
+  VecX constraint_scales() const override { return VecX::Constant(constraints(), volume_); }
+  /// The pattern that the body's matrix needs beside `present`, which it has; none: that serves.
+  std::optional<BlockMatrix> new_pattern(const BlockMatrix& present) const;
+  double safe_share(const VecX& x, const VecX& step) const override;
+
+ private:
+  /// How far any node, and so any skin point, is from where the solve began, m.
+  double moved(const VecX& x) const;
+  const std::vector<ContactPair>& pairs() const;
+  const std::vector<Touch>& touching(const VecX& x) const;
+  /// Gradient but for the liquid's part; its largest internal force.
+  double add_dry_gradient(const VecX& x, VecX& gradient) const;
+  /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
+  template <class Use>
+  void for_held_details(const Use& use) const;
+  const Body& body_;
+  const ContactLoads& loads_;
+  mutable std::optional<std::vector<ContactPair>> pairs_;  ///< none: not looked for yet
+  std::vector<Shape> cores_;                               ///< of the shapes: what no trial may reach
+  VecX start_;
+  double volume_, multiplier_;
+  bool fixed_pressure_;
+  ContactSearch* search_;
+  mutable TouchMemory touches_;  ///< where no search remembers
+};
+
+struct ContactForce {
+  int shape = 0;
+  int point = 0;                 ///< contact point
+  Vec3 at = Vec3::Zero();        ///< its place, m
+  Vec3 on_shape = Vec3::Zero();  ///< N, of the skin on the shape
+};
+/// One for each contact point in range.
+std::vector<ContactForce> contact_forces(const Body& body, const ContactLoads& loads,
+                                         const std::vector<Touch>& touches);
+std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const ContactLoads& loads,
+                                         const std::vector<ContactPair>& pairs);
+/// Hessian of a contact point's energy by its place, N/m.
+Mat3 contact_hessian(const Body& body, const ContactLoads& loads, const Touch& touch);
+
+}  // namespace calot

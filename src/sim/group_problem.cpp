@@ -1,0 +1,209 @@
+#include "sim/group_problem.h"
+
+#include <cmath>
+
+namespace calot {
+
+GroupProblem::GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins,
+                           GroupPatterns& patterns, bool fixed_pressures)
+    : members_(members), joins_(joins), patterns_(patterns) {
+  problems_.reserve(members.size());
+  for (const Member& member : members) {
+    problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures);
+    const Eigen::Index size = member.state.x.size(), constraints = problems_.back().constraints();
+    ranges_.push_back({size_, size, constraints_, constraints});
+    size_ += size;
+    constraints_ += static_cast<int>(constraints);
+  }
+}
+
+VecX GroupProblem::coordinates() const {
+  VecX out(size_);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    out.segment(ranges_[k].first, ranges_[k].size) = members_[k].state.x;
+  return out;
+}
+
+VecX GroupProblem::multipliers() const {
+  VecX out(constraints_);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].multipliers();
+  return out;
+}
+
+void GroupProblem::keep(const VecX& x, const VecX& multipliers) const {
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    members_[k].state.x = part_of(k, x);
+    if (ranges_[k].constraints > 0) members_[k].state.datum_pressure = multipliers[ranges_[k].constraint];
+  }
+}
+
+std::vector<Part> GroupProblem::parts() const {
+  std::vector<Part> out;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    const int first = static_cast<int>(ranges_[k].first) / 3;
+    for (Part part : problems_[k].parts()) {
+      for (NodeRange* range : {&part.places, &part.displacements})
+        range->first += first, range->last += first;
+      out.push_back(part);
+    }
+  }
+  return out;
+}
+
+double GroupProblem::value(const VecX& x) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k)
+    sum += problems_[k].value(part_of(k, x));
+  for (std::size_t j = 0; j < joins_.size() && std::isfinite(sum); ++j) sum += joins_[j]->value(x);
+  return sum;
+}
+
+double GroupProblem::cancelling() const {
+  double sum = 0;
+  for (const BodyProblem& problem : problems_) sum += problem.cancelling();
+  return sum;
+}
+
+void GroupProblem::add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const {
+  if (joins_.empty()) return;
+  for (const JoinPointer& join : joins_) join->add_gradient(x, gradient);
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    largest_internal[static_cast<Eigen::Index>(k)] =
+        force_scale(largest_internal[static_cast<Eigen::Index>(k)], part_of(k, gradient));
+}
+
+void GroupProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const {
+  if (alone()) {
+    problems_[0].gradient(x, gradient, largest_internal);
+    return add_joins(x, gradient, largest_internal);
+  }
+  gradient.resize(size_);
+  largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
+  VecX own, internal;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    problems_[k].gradient(part_of(k, x), own, internal);
+    gradient.segment(ranges_[k].first, ranges_[k].size) = own;
+    largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
+  }
+  add_joins(x, gradient, largest_internal);
+}
+
+void GroupProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const {
+  if (alone()) {
+    problems_[0].hessian(x, multipliers, matrix);
+  } else {
+    matrix.set_zero();
+    for (std::size_t k = 0; k < problems_.size(); ++k) add_own_hessian(k, x, multipliers, matrix);
+  }
+  for (const JoinPointer& join : joins_) join->add_hessian(x, matrix);
+}
+
+void GroupProblem::add_own_hessian(std::size_t k, const VecX& x, const VecX& multipliers,
+                                   BlockMatrix& matrix) const {
+  const Range& range = ranges_[k];
+  BlockMatrix& own = patterns_.own[k];
+  problems_[k].hessian(part_of(k, x), multipliers.segment(range.constraint, range.constraints), own);
+  matrix.add_part(own, static_cast<int>(range.first) / 3);
+}
+
+void GroupProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
+  if (alone()) return problems_[0].constraint(x, values, gradients);
+  values.resize(constraints_);
+  gradients.setZero(size_, constraints_);
+  VecX own_values;
+  Eigen::MatrixXd own;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    const Range& range = ranges_[k];
+    if (range.constraints == 0) continue;
+    problems_[k].constraint(part_of(k, x), own_values, own);
+    values.segment(range.constraint, range.constraints) = own_values;
+    gradients.block(range.first, range.constraint, range.size, range.constraints) = own;
+  }
+}
+
+VecX GroupProblem::constraint_values(const VecX& x) const {
+  VecX values(constraints_);
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    if (ranges_[k].constraints > 0)
+      values.segment(ranges_[k].constraint, ranges_[k].constraints) =
+          problems_[k].constraint_values(part_of(k, x));
+  return values;
+}
+
+void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal,
+                                           VecX& values, Eigen::MatrixXd& of_constraints) const {
+  if (alone()) {
+    problems_[0].gradient_and_constraint(x, of_energy, largest_internal, values, of_constraints);
+    return add_joins(x, of_energy, largest_internal);
+  }
+  of_energy.resize(size_);
+  largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
+  values.resize(constraints_);
+  of_constraints.setZero(size_, constraints_);
+  VecX own, internal, own_values;
+  Eigen::MatrixXd own_constraints;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    const Range& range = ranges_[k];
+    if (range.constraints == 0) {
+      problems_[k].gradient(part_of(k, x), own, internal);
+    } else {
+      problems_[k].gradient_and_constraint(part_of(k, x), own, internal, own_values, own_constraints);
+      values.segment(range.constraint, range.constraints) = own_values;
+      of_constraints.block(range.first, range.constraint, range.size, range.constraints) = own_constraints;
+    }
+    of_energy.segment(range.first, range.size) = own;
+    largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
+  }
+  add_joins(x, of_energy, largest_internal);
+}
+
+VecX GroupProblem::constraint_scales() const {
+  VecX out(constraints_);
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].constraint_scales();
+  return out;
+}
+
+VecX GroupProblem::pressures(const VecX& multipliers) const {
+  VecX out = VecX::Zero(static_cast<Eigen::Index>(members_.size()));
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    if (ranges_[k].constraints > 0) out[static_cast<Eigen::Index>(k)] = multipliers[ranges_[k].constraint];
+  return out;
+}
+
+void GroupProblem::prepare_alone(NewtonWorkspace& work) const {
+  const Body& body = members_[0].body;
+  if (work.matrix.size() != size_) work = NewtonWorkspace(body.pattern(), body.coarse_nodes());
+  if (std::optional<BlockMatrix> pattern = problems_[0].new_pattern(work.matrix))
+    work = NewtonWorkspace(std::move(*pattern), body.coarse_nodes());
+}
+
+void GroupProblem::prepare(NewtonWorkspace& work) const {
+  if (alone()) return prepare_alone(work);
+  bool changed = work.matrix.size() != size_;
+  patterns_.own.resize(problems_.size(), BlockMatrix(0, {}));
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    BlockMatrix& own = patterns_.own[k];
+    const bool other_body = own.size() != ranges_[k].size;
+    if (other_body) own = members_[k].body.pattern();
+    std::optional<BlockMatrix> pattern = problems_[k].new_pattern(own);
+    if (pattern) own = std::move(*pattern);
+    changed |= other_body || pattern.has_value();
+  }
+  std::vector<std::vector<int>> joined;
+  for (const JoinPointer& join : joins_) join->add_cliques(joined);
+  if (!changed && joined == patterns_.joined) return;
+  patterns_.joined = std::move(joined);
+  work = NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined));
+}
+
+double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
+  double share = 1;
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    share = std::min(share, problems_[k].safe_share(part_of(k, x), part_of(k, step)));
+  for (const JoinPointer& join : joins_) share = join->safe_share(x, step, share);
+  return share;
+}
+
+}  // namespace calot

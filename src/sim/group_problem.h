@@ -1,0 +1,94 @@
+#pragma once
+// The bodies that are solved together: one numbering of all nodes, body by body, and one Newton's method (the paper's
+// groupstructure, section 7).
+
+#include <memory>
+#include <span>
+
+#include "numerics/newton_workspace.h"
+#include "sim/body_problem.h"
+
+namespace calot {
+
+/// A body, what acts on it and where it is. All must outlive the problem that is made of it.
+struct Member {
+  const Body& body;
+  const ContactLoads& loads;
+  ContactSearch& search;
+  BodyState& state;
+};
+
+/// What joins bodies: an energy over nodes of several of them, in the group's numbering.
+class Join {
+ public:
+  virtual ~Join() = default;
+  virtual double value(const VecX& x) const = 0;  ///< J
+  virtual void add_gradient(const VecX& x, VecX& gradient) const = 0;
+  virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
+  /// Adds the groups of nodes that add_hessian() may couple in a solve from here on. Not asked for where there is but one
+  /// body: it is joined to nothing but itself, by nodes that its own pattern couples.
+  virtual void add_cliques(std::vector<std::vector<int>>& cliques) const = 0;
+  /// The largest part of `share` of the step that is safe.
+  virtual double safe_share(const VecX& /*x*/, const VecX& /*step*/, double share) const { return share; }
+};
+
+using JoinPointer = std::shared_ptr<const Join>;
+
+/// Matrices of the single bodies, with room for what couples each with itself, and the couplings that the joint one
+/// was made for. Of a body alone there is none: its matrix is the group's.
+struct GroupPatterns {
+  std::vector<BlockMatrix> own;
+  std::vector<std::vector<int>> joined;
+};
+
+class GroupProblem : public ConstrainedEnergy {
+ public:
+  GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins, GroupPatterns& patterns,
+               bool fixed_pressures = false);
+
+  VecX coordinates() const;  ///< of all states
+  VecX multipliers() const;  ///< likewise
+  /// Of each member, Pa; 0 where it has none among the multipliers.
+  VecX pressures(const VecX& multipliers) const;
+  /// Writes a solution into the members' states.
+  void keep(const VecX& x, const VecX& multipliers) const;
+
+  std::vector<Part> parts() const override;
+  int constraints() const override { return constraints_; }
+  double value(const VecX& x) const override;
+  double cancelling() const override;
+  void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
+  void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override;
+  void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override;
+  VecX constraint_values(const VecX& x) const override;
+  void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
+                               Eigen::MatrixXd& of_constraints) const override;
+  VecX constraint_scales() const override;
+  void prepare(NewtonWorkspace& work) const override;
+  double safe_share(const VecX& x, const VecX& step) const override;
+
+ private:
+  struct Range {
+    Eigen::Index first, size;              ///< of the coordinates
+    Eigen::Index constraint, constraints;  ///< the first, and how many
+  };
+  /// Then its matrix is the group's, and holds what its joins couple.
+  bool alone() const { return problems_.size() == 1; }
+  VecX part_of(std::size_t member, const VecX& x) const {
+    return x.segment(ranges_[member].first, ranges_[member].size);
+  }
+  void prepare_alone(NewtonWorkspace& work) const;
+  void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
+  /// Adds what joins the bodies; residuals are judged beside these forces, too.
+  void add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const;
+
+  std::span<const Member> members_;
+  std::span<const JoinPointer> joins_;
+  GroupPatterns& patterns_;
+  std::vector<BodyProblem> problems_;
+  std::vector<Range> ranges_;
+  Eigen::Index size_ = 0;  ///< coordinates
+  int constraints_ = 0;
+};
+
+}  // namespace calot
