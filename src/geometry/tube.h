@@ -1,0 +1,68 @@
+#pragma once
+// A tube swept along a line of points, to be drawn: its triangles stay, its places and normals follow the line.
+
+#include <span>
+
+#include "base/status.h"
+#include "geometry/types.h"
+
+namespace calot {
+
+/// The cross-section at a point of the line: a circle, or an ellipse where the tube is pressed flat.
+struct TubeSection {
+  double radius = 0;     ///< half-axis across `pressed`, m
+  double flattened = 0;  ///< half-axis along it, m; the radius where the section is round
+  /// Direction in which the section is flattened, of any length; only its part across the line counts, and its sign
+  /// does not. Without one the section is round.
+  Vec3 pressed = Vec3::Zero();
+};
+
+/// Directions across a line at each of its points: they turn with the tangent and not about it (rotation minimizing
+/// frames by double reflection, Wang et al. 2008, ACM Trans. Graph. 27(1):2, doi 10.1145/1330511.1330513, of fourth
+/// order). No curvature is asked for: straight lines and turns of the bend are as good as any.
+struct LineFrame {
+  Vec3 tangent, side;  ///< unit, across each other
+  Vec3 up() const { return tangent.cross(side); }
+};
+/// `first` is the side at the first point; its part across the line must not vanish. Tangents are those of the parabola
+/// through a point and its neighbours; a point without a way to the next takes the tangent before it, and a line
+/// without any length has x.
+std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const Vec3& first);
+
+/// The frames of a line that has moved from where its were `rest`: the first turns with its tangent by the least turn,
+/// so that the whole follows the motion without a leap unless the line's beginning points back.
+std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const LineFrame& rest);
+
+/// A closed surface: rings of the sections, and round caps (as far out as the smaller half-axis) at both ends.
+/// The vertices of a ring follow the frames however the section is pressed: what is painted on it does not turn.
+class TubeMesh {
+ public:
+  /// Of as many sectors (at least 3) about a line at rest of at least two points. Fails (scenario) otherwise, and
+  /// where the line has no direction at its beginning.
+  static Result<TubeMesh> create(std::span<const Vec3> rest, int sectors);
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }  ///< outward
+  int vertices() const { return points_ * sectors_ + 2 * (cap_rings_ * sectors_ + 1); }
+  /// Vertex k of the ring at a point of the line; k counts from the frame's side towards its up().
+  int vertex(int point, int k) const { return point * sectors_ + k; }
+
+  struct Surface {
+    std::vector<Vec3> positions;  ///< m
+    std::vector<Vec3> normals;    ///< unit, outward
+  };
+  /// As many points and sections as the line at rest has points; the same inputs give the same bits.
+  void place(std::span<const Vec3> line, std::span<const TubeSection> sections, Surface& out) const;
+
+ private:
+  void join_rings(int before, int after);
+  void place_cap(const LineFrame& frame, const Vec3& end, const TubeSection& section, double outward,
+                 int first, Surface& out) const;
+  Vec3 around(const LineFrame& frame, int k) const { return cosine_[k] * frame.side + sine_[k] * frame.up(); }
+
+  int points_ = 0, sectors_ = 0, cap_rings_ = 0;
+  LineFrame rest_;                     ///< at the first point
+  std::vector<double> cosine_, sine_;  ///< of each sector
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace calot
