@@ -51,7 +51,7 @@ Vec3 reflected(const Vec3& v, const Vec3& mirror) {
   return squared > 0 ? Vec3(v - 2 / squared * mirror.dot(v) * mirror) : v;
 }
 
-/// `v` turned as the least turn takes one unit vector to another.
+/// `v`, across `from`, turned as the least turn takes that unit vector to another; as it is where they are opposite.
 Vec3 least_turn(const Vec3& v, const Vec3& from, const Vec3& to) {
   return reflected(reflected(v, from), from + to);
 }
@@ -86,9 +86,7 @@ std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const Vec3& f
 std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const LineFrame& rest) {
   if (line.empty()) return {};
   const Vec3 tangent = tangents(line).front();
-  Vec3 side = least_turn(rest.side, rest.tangent, tangent);
-  if (rest.tangent + tangent == Vec3::Zero()) side = rest.side;
-  return parallel_frames(line, side);
+  return parallel_frames(line, least_turn(rest.side, rest.tangent, tangent));
 }
 
 Result<TubeMesh> TubeMesh::create(std::span<const Vec3> rest, int sectors) {
