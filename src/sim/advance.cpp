@@ -120,16 +120,17 @@ class ShapePaths {
 double share_kept_apart(const Field& field, const Organ& organ, const ContactLoads& now,
                         const std::vector<ContactPair>& pairs, const VecX& dx, const Poses& from,
                         const Poses& to) {
-  const double longest = organ.body->largest_motion(dx);
+  const double longest = organ.body->largest_motion(dx), depth = organ.body->core_depth();
   ShapePaths paths(field, from, to);
   std::vector<Shape> cores;
   for (const Shape& shape : now.shapes) cores.push_back(core_of(shape));
-  ContactPlaces places(organ.body->skin(), organ.state.x), moves(organ.body->skin(), dx);
+  ContactPlaces places(organ.body->skin(), organ.state.x, organ.body->core_radii()),
+      moves(organ.body->skin(), dx);
   double share = 1.0;
   for (const ContactPair& pair : pairs) {
     const Shape& core = cores[pair.shape];
     const double approach = longest + paths.travel(pair.shape);
-    if (share * approach < (1.0 - contact_keep) * (pair.distance + contact_guard)) continue;
+    if (share * approach < (1.0 - contact_keep) * (pair.distance + depth)) continue;
     const Nearness near = places.nearness(pair.triangle, core);
     const PartPath* path = paths.of(pair.shape, share);
     double way = 0;  // of the triangle's corners
@@ -142,8 +143,10 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 at = places.at(point), motion = share * moves.at(point);
       path = paths.of(pair.shape, share);
-      share *= path ? path->share_apart(core, at, motion, contact_keep)
-                    : safe_share(at, motion, core, contact_keep);
+      const double radius = places.radius(point);
+      const Shape around = radius > 0 ? offset(core, radius) : core;
+      share *= path ? path->share_apart(around, at, motion, contact_keep)
+                    : safe_share(at, motion, around, contact_keep);
     }
   }
   return share;

@@ -23,6 +23,20 @@ const std::vector<double>& Body::skin_radii() const {
   return none;
 }
 
+const std::vector<double>& Body::core_radii() const { return skin_radii(); }
+
+double Body::core_depth() const {
+  double depth = contact_guard;
+  for (std::size_t row = 0; row < skin_radii().size(); ++row)
+    depth = std::min(depth, skin_radii()[row] + contact_guard - core_radii()[row]);
+  return depth;
+}
+
+Vec3 Body::surface_point(int row, const VecX& x) const {
+  const Vec3 at = skin_point(row, x);
+  return skin_radii().empty() ? at : Vec3(at + skin_radii()[row] * skin_normals(x)[row]);
+}
+
 const std::vector<int>& Body::details() const {
   static const std::vector<int> none;
   return none;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "collision/barrier.h"
 #include "geometry/stencil.h"
 #include "numerics/block_matrix.h"
 #include "sim/contact_points.h"
@@ -46,6 +47,12 @@ class Liquid {
   virtual void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const = 0;
   /// Gauge pressure at the surface's highest point, Pa.
   virtual double pressure_at_top(const VecX& x, double datum_pressure) const = 0;
+};
+
+/// One a point of what is drawn.
+struct DrawnSurface {
+  std::vector<Vec3> positions;  ///< m
+  std::vector<Vec3> normals;    ///< unit
 };
 
 /// Longest edge of triangles, m.
@@ -89,10 +96,18 @@ class Body {
   /// Of what the skin's points are the middles of, one a point, m: a rod's are on its centreline, and its triangles flat
   /// as lines. Empty: the skin itself is touched.
   virtual const std::vector<double>& skin_radii() const;
+  /// As skin_radii(), of what no trial of a solver may reach (contact_search.h, contact_guard below the shapes).
+  virtual const std::vector<double>& core_radii() const;
+  /// How deep a shape may be in the surface before a trial reaches what it may not, at least, m.
+  double core_depth() const;
   /// Rest area that each skin point stands for, m^2.
   virtual const std::vector<double>& skin_areas() const = 0;
   /// Rest area that a contact point (contact_points.h) stands for, m^2.
   virtual double contact_area(int point) const = 0;
+  /// What it answers, a unit of that area, to a shape at this distance from its surface, m.
+  virtual BarrierSample contact_sample(int /*point*/, double distance, const Barrier& barrier) const {
+    return barrier.sample(distance);
+  }
   virtual const std::vector<Vec3>& skin_rest() const = 0;
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const { return widest_gap(skin_rest(), skin().triangles); }
@@ -108,6 +123,13 @@ class Body {
     return blend(skin().stencils, skin().stencils.value, row, x);
   }
   virtual std::vector<Vec3> skin_normals(const VecX& x) const = 0;  ///< unit, outward
+  /// Where the surface is at a skin point, along its normal there.
+  Vec3 surface_point(int row, const VecX& x) const;
+
+  /// What is drawn: the skin, or what is around it.
+  virtual const std::vector<Triangle>& drawn_triangles() const { return skin().triangles; }
+  virtual const std::vector<Vec3>& drawn_rest() const { return skin_rest(); }
+  virtual DrawnSurface drawn(const VecX& x) const { return {skin_positions(x), skin_normals(x)}; }
 
   /// Nodes of finer levels that are active, increasing, and how many levels have some.
   virtual const std::vector<int>& details() const;

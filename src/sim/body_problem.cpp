@@ -66,7 +66,8 @@ double BodyProblem::value(const VecX& x) const {
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   if (loads_.load.size() > 0) sum -= loads_.load.dot(x);
   for (const Touch& touch : touching(x))
-    sum += body_.contact_area(touch.point) * loads_.barrier.sample(touch.slope.distance).energy;
+    sum += body_.contact_area(touch.point) *
+           body_.contact_sample(touch.point, touch.slope.distance, loads_.barrier).energy;
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
   if (search_) sum += search_->own.value(body_, x);
@@ -82,9 +83,10 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
   if (loads_.load.size() > 0) gradient -= loads_.load;
   ContactLoad pressed(body_.skin(), gradient);
   for (const Touch& touch : touching(x))
-    pressed.add(touch.point, body_.contact_area(touch.point) *
-                                 loads_.barrier.sample(touch.slope.distance).derivative *
-                                 touch.slope.gradient);
+    pressed.add(touch.point,
+                body_.contact_area(touch.point) *
+                    body_.contact_sample(touch.point, touch.slope.distance, loads_.barrier).derivative *
+                    touch.slope.gradient);
   pressed.finish();
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
@@ -154,10 +156,10 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
       share = std::min(share, left / length);
     }
   }
-  const double gone = moved(x), longest = body_.largest_motion(step);
-  ContactPlaces places(body_.skin(), x), moves(body_.skin(), step);
+  const double depth = body_.core_depth(), gone = moved(x), longest = body_.largest_motion(step);
+  ContactPlaces places(body_.skin(), x, body_.core_radii()), moves(body_.skin(), step);
   for (const ContactPair& pair : pairs()) {
-    if (share * longest < (1.0 - contact_keep) * (pair.distance + contact_guard - gone)) continue;
+    if (share * longest < (1.0 - contact_keep) * (pair.distance + depth - gone)) continue;
     const Shape& shape = cores_[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);
     const double way = share * std::sqrt(moves.corners(pair.triangle).colwise().squaredNorm().maxCoeff());
@@ -165,8 +167,9 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 motion = share * moves.at(point), at = places.at(point);
-      if (motion.norm() < (1.0 - contact_keep) * signed_distance(shape, at)) continue;
-      share *= calot::safe_share(at, motion, shape, contact_keep);
+      const double radius = places.radius(point);
+      if (motion.norm() < (1.0 - contact_keep) * (signed_distance(shape, at) - radius)) continue;
+      share *= calot::safe_share(at, motion, radius > 0 ? offset(shape, radius) : shape, contact_keep);
     }
   }
   return search_ ? search_->own.safe_share(body_, x, step, contact_keep, share) : share;
@@ -176,7 +179,7 @@ std::vector<ContactForce> contact_forces(const Body& body, const ContactLoads& l
                                          const std::vector<Touch>& touches) {
   std::vector<ContactForce> out;
   for (const Touch& touch : touches) {
-    const double pressure = loads.barrier.sample(touch.slope.distance).derivative;
+    const double pressure = body.contact_sample(touch.point, touch.slope.distance, loads.barrier).derivative;
     out.push_back({touch.shape, touch.point, touch.at,
                    body.contact_area(touch.point) * pressure * touch.slope.gradient});
   }
@@ -191,7 +194,7 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
 
 Mat3 contact_hessian(const Body& body, const ContactLoads& loads, const Touch& touch) {
   const DistanceSlope& d = touch.slope;
-  const BarrierSample b = loads.barrier.sample(d.distance);
+  const BarrierSample b = body.contact_sample(touch.point, d.distance, loads.barrier);
   return body.contact_area(touch.point) *
          (b.second * d.gradient * d.gradient.transpose() +
           b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));

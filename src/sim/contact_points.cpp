@@ -41,7 +41,12 @@ Vec3 ContactPlaces::at(int point) { return corners(point / contacts_each) * cont
 Nearness ContactPlaces::nearness(int triangle, const Shape& shape) {
   const Vec3 middle = corners(triangle).rowwise().mean();
   const DistanceSlope d = distance_slope(shape, middle);
-  return {d.distance, (corners_.colwise() - middle).transpose() * d.gradient};
+  Nearness near{d.distance, (corners_.colwise() - middle).transpose() * d.gradient};
+  if (radii_ == nullptr) return near;
+  const Vec3 radii = corner_radii(triangle);
+  near.middle -= radii.mean();
+  near.slopes -= radii - Vec3::Constant(radii.mean());
+  return near;
 }
 
 void ContactLoad::add(int point, const Vec3& force) {

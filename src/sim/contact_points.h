@@ -24,6 +24,10 @@ inline constexpr int contacts_each = contact_parts * contact_parts;
 extern const std::array<Vec3, contacts_each> contact_rule;
 inline const Vec3& contact_weights(int point) { return contact_rule[point % contacts_each]; }
 
+/// No trial of a solver goes deeper than this below a contact shape, m: less than the thinnest of them has to its
+/// middle, beyond which it would be pushed out on the wrong side.
+inline constexpr double contact_guard = 0.3e-3;
+
 /// Lower bounds on a triangle's distance from a shape: the plane that touches the distance, which is convex, at the
 /// triangle's middle.
 struct Nearness {
@@ -34,13 +38,20 @@ struct Nearness {
   double of(int point) const { return middle + contact_weights(point).dot(slopes); }
 };
 
-/// Contact points where the nodes are at x, quick where those of one triangle follow each other. Both must outlive it.
+/// Contact points where the nodes are at x, quick where those of one triangle follow each other. All must outlive it.
 class ContactPlaces {
  public:
   ContactPlaces(const Tessellation& skin, const VecX& x) : skin_(skin), x_(x) {}
+  /// `radii`: one a skin point, of the surface around it, m; empty: the skin is the surface.
+  ContactPlaces(const Tessellation& skin, const VecX& x, const std::vector<double>& radii)
+      : skin_(skin), x_(x), radii_(radii.empty() ? nullptr : &radii) {}
   Vec3 at(int point);  ///< m
+  double radius(int point) const {
+    return radii_ == nullptr ? 0.0 : corner_radii(point / contacts_each).dot(contact_weights(point));
+  }
   /// Columns, m.
   const Mat3& corners(int triangle);
+  /// Of the surface around the triangle.
   Nearness nearness(int triangle, const Shape& shape);
 
  private:
@@ -49,9 +60,14 @@ class ContactPlaces {
     Vec3 at;
   };
   const Vec3& corner(int row);
+  Vec3 corner_radii(int triangle) const {
+    const Triangle& t = skin_.triangles[triangle];
+    return {(*radii_)[t[0]], (*radii_)[t[1]], (*radii_)[t[2]]};
+  }
 
   const Tessellation& skin_;
   const VecX& x_;
+  const std::vector<double>* radii_ = nullptr;
   std::array<Corner, 64> known_;  ///< the last ones looked at: neighbours share them
   int triangle_ = -1;
   Mat3 corners_ = Mat3::Zero();  ///< columns, m

@@ -25,15 +25,23 @@ std::vector<Eigen::AlignedBox3d> face_boxes(const Body& body, const VecX& x) {
   return boxes;
 }
 
+/// Largest radius of the surface around the skin, m.
+double thickest(const Body& body) {
+  const std::vector<double>& radii = body.skin_radii();
+  return radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
+}
+
 /// Adds the pairs with a shape that are nearer than `reach`.
 void pairs_within(int index, const Shape& shape, const Body& body,
                   const std::vector<Eigen::AlignedBox3d>& faces, double reach, ContactPlaces& places,
                   std::vector<ContactPair>& out) {
   const int each = body.triangles_each();
   const Bounds b = bounds(shape);
-  const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach), b.upper + Vec3::Constant(reach));
+  const double thick = thickest(body);
+  const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach + thick),
+                                 b.upper + Vec3::Constant(reach + thick));
   for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
-    const double far = reach + 0.5 * faces[f].diagonal().norm();
+    const double far = reach + thick + 0.5 * faces[f].diagonal().norm();
     if (!near.intersects(faces[f]) || signed_distance(shape, faces[f].center()) > far) continue;
     for (int triangle = f * each; triangle < (f + 1) * each; ++triangle) {
       const double distance = places.nearness(triangle, shape).of_all();
@@ -51,7 +59,7 @@ double reach_of(const ContactLoads& loads, double extra) {
 std::vector<ContactPair> gather_pairs(const Body& body, const VecX& x, const ContactLoads& loads,
                                       double extra) {
   const std::vector<Eigen::AlignedBox3d> faces = face_boxes(body, x);
-  ContactPlaces places(body.skin(), x);
+  ContactPlaces places(body.skin(), x, body.skin_radii());
   std::vector<ContactPair> pairs;
   for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape)
     pairs_within(shape, loads.shapes[shape], body, faces, reach_of(loads, extra), places, pairs);
@@ -65,7 +73,7 @@ void ContactSearch::pairs_with(int index, const Body& body, const VecX& x, const
   if (memory_.size() < loads.shapes.size()) memory_.resize(loads.shapes.size());
   Memory& memory = memory_[index];
   const Shape& shape = loads.shapes[index];
-  ContactPlaces places(body.skin(), x);
+  ContactPlaces places(body.skin(), x, body.skin_radii());
   double approach = std::numeric_limits<double>::infinity();  // how much nearer a pair may have come
   if (memory.reach > 0 && memory.x.size() == x.size() && memory.details == body.details())
     approach = body.largest_motion(x - memory.x) + distance_change(shape, *memory.shape);

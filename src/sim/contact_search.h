@@ -23,9 +23,6 @@ inline constexpr double contact_inset = 0.04e-3;
 /// takes Newton's method another iteration to come out of what a tool has moved into.
 inline constexpr Barrier contact_barrier{
     .range = contact_gap + contact_inset, .stiffness = 200e3, .soft_share = 0.02};
-/// No trial of a solver goes deeper than this below a contact shape, m: less than the thinnest of them has to its
-/// middle, beyond which it would be pushed out on the wrong side.
-inline constexpr double contact_guard = 0.3e-3;
 
 /// What contact acts on for a shape as it is made.
 inline Shape contact_shape(const Shape& made) { return offset(made, -contact_inset); }
@@ -58,7 +55,7 @@ inline constexpr double contact_margin = 2.5e-3;
 template <class Use>
 void for_touching(const Body& body, const VecX& x, const ContactLoads& loads,
                   const std::vector<ContactPair>& pairs, double approach, const Use& use) {
-  ContactPlaces places(body.skin(), x);
+  ContactPlaces places(body.skin(), x, body.skin_radii());
   for (const ContactPair& pair : pairs) {
     const double range = loads.barrier.range;
     if (pair.distance >= range + approach) continue;
@@ -68,7 +65,8 @@ void for_touching(const Body& body, const VecX& x, const ContactLoads& loads,
     for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
       if (near.of(point) >= range) continue;
       const Vec3 at = places.at(point);
-      const DistanceSlope d = distance_slope(shape, at);
+      DistanceSlope d = distance_slope(shape, at);
+      d.distance -= places.radius(point);
       if (d.distance < range) use(point, pair.shape, at, d);
     }
   }
@@ -78,7 +76,7 @@ void for_touching(const Body& body, const VecX& x, const ContactLoads& loads,
 struct Touch {
   int point = 0, shape = 0;
   Vec3 at = Vec3::Zero();  ///< m
-  DistanceSlope slope;
+  DistanceSlope slope;     ///< of the surface there (Body::skin_radii)
 };
 
 /// What touches, found once for a state: a solve's energies and their derivatives, and after it pads, forces and report

@@ -224,8 +224,7 @@ std::optional<Failure> check_skin_spacing(const ShellBody& body) {
 const ShellBody* shell_of(const Organ& organ) { return dynamic_cast<const ShellBody*>(organ.body.get()); }
 
 OrganSnapshot snapshot(const Organ& organ) {
-  return {organ.body,       organ.state,           organ.grips,
-          organ.extensions, organ.refused_details, organ.friction};
+  return {organ.body, organ.state, organ.grips, organ.extensions, organ.refused_details, organ.friction};
 }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {

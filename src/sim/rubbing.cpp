@@ -82,7 +82,7 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
     const double area = organ.body->contact_area(point);
     StickSlip hold;
     hold.normal = d.gradient;
-    hold.limit = -mu * area * around.barrier.sample(d.distance).derivative;
+    hold.limit = -mu * area * organ.body->contact_sample(point, d.distance, around.barrier).derivative;
     hold.stiffness = stick_stiffness * area;
     const RubbingPoint* old = organ.friction.find(shape, point);
     hold.anchor =

@@ -1,0 +1,91 @@
+#pragma once
+// A duct or a vessel as a body: a rod on its centreline, touched as the tube around it and drawn as one.
+
+#include <functional>
+#include <optional>
+
+#include "fem/links.h"
+#include "fem/ring.h"
+#include "fem/rod.h"
+#include "geometry/tube.h"
+#include "sim/body.h"
+
+namespace calot {
+
+class Centreline;
+
+class RodBody : public Body {
+ public:
+  struct Setup {
+    std::string name = "duct";
+    std::vector<Vec3> points;                ///< m, the centreline at rest, from its start to its end
+    double radius = 2.5e-3, end_radius = 0;  ///< m, outer, at both ends; 0: as at the start
+    double wall = 0.8e-3;                    ///< m; as thick as the radius: a solid thread
+    double shear_modulus = 100e3;            ///< Pa, of an incompressible wall: a third of Young's modulus
+    double pressure = 0;                     ///< Pa, gauge, of what it carries
+    double density = 0, liquid_density = 0;  ///< kg/m^3, of the wall and of what fills it
+    int nodes = 11;
+    Vec3 up = Vec3::UnitZ();
+    /// Elastic foundation at a place of the line at rest, N/m per m^2 of skin (0: none).
+    std::function<double(const Vec3& x)> foundation;
+  };
+  /// Fails (scenario) where the line cannot be one.
+  static Result<RodBody> create(const Setup& setup);
+
+  const std::string& name() const override { return setup_.name; }
+  const VecX& rest() const override { return rest_; }
+  double size() const override { return size_; }
+  const std::vector<double>& edge_lengths() const override { return edge_lengths_; }
+  const BlockMatrix& pattern() const override { return constant_; }
+
+  double value(const VecX& x) const override;
+  void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  const VecX& kept_load() const override { return weight_; }
+  double strain_energy(const VecX& x) const override { return rod_.value(x, setup_.pressure); }
+  double max_stretch(const VecX& x) const override;
+
+  const Tessellation& skin() const override { return skin_; }
+  const std::vector<double>& skin_radii() const override { return radii_; }
+  const std::vector<double>& core_radii() const override { return core_radii_; }
+  const std::vector<double>& skin_areas() const override { return skin_areas_; }
+  double contact_area(int point) const override;
+  BarrierSample contact_sample(int point, double distance, const Barrier& barrier) const override;
+  const std::vector<Vec3>& skin_rest() const override { return skin_rest_; }
+  const std::vector<std::vector<int>>& face_nodes() const override { return face_nodes_; }
+  std::vector<Vec3> skin_normals(const VecX& x) const override;
+
+  const std::vector<Triangle>& drawn_triangles() const override { return tube_->triangles(); }
+  const std::vector<Vec3>& drawn_rest() const override { return drawn_rest_; }
+  DrawnSurface drawn(const VecX& x) const override;
+
+  const Rod& rod() const { return rod_; }
+  const Setup& setup() const { return setup_; }
+  double length() const { return length_; }  ///< m, at rest
+  /// kg that a row of the rod's quadrature stands for, with what fills it.
+  double row_mass(int row) const;
+
+ private:
+  double radius_at(double share) const;
+  void lay_skin(const Centreline& line);
+  void lay_bed();
+  void weigh();
+
+  Setup setup_;
+  Rod rod_;
+  VecX rest_, weight_;
+  double size_ = 0, length_ = 0;
+  std::vector<double> edge_lengths_;
+  BlockMatrix constant_{0, {}};
+  std::vector<double> shares_;  ///< of the way, at the rows of the rod's quadrature
+  Links bed_;                   ///< rows of the rod's quadrature
+  Tessellation skin_;
+  std::vector<double> radii_, core_radii_, skin_areas_;
+  std::vector<double> segment_areas_;  ///< m^2, that press, one a segment between two skin points
+  std::vector<FlatRing> rings_;        ///< of each segment
+  std::vector<Vec3> skin_rest_, drawn_rest_;
+  std::vector<std::vector<int>> face_nodes_;
+  std::optional<TubeMesh> tube_;
+};
+
+}  // namespace calot
