@@ -10,18 +10,28 @@ void Border::solve_with(const Cholesky& factor) {
   for (int k = 0; k < constraints(); ++k) answers.col(k) = factor.solve(gradients.col(k));
   for (int k = 0; k < constraints(); ++k)
     for (int i = 0; i < constraints(); ++i) complement(i, k) = gradients.col(i).dot(answers.col(k));
+  if (compliances.size() > 0) complement.diagonal() += compliances;
+}
+
+std::vector<int> Border::kept() const {
+  std::vector<int> out;
+  for (int k = 0; k < constraints(); ++k)
+    if (compliances.size() == 0 || compliances[k] == 0) out.push_back(k);
+  return out;
 }
 
 std::optional<int> Border::dependent() const {
   // What is left of each once those before it are taken off, beside itself. Rounding leaves 1e-16 times K's condition,
   // which factors are trusted up to 1e12 with.
   constexpr double least = 1e-12;
-  if (constraints() == 0) return std::nullopt;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(complement);
-  Eigen::VectorXi order = Eigen::VectorXi::LinSpaced(constraints(), 0, constraints() - 1);
+  const std::vector<int> hard = kept();
+  if (hard.empty()) return std::nullopt;
+  const Eigen::MatrixXd among = complement(hard, hard);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(among);
+  Eigen::VectorXi order = Eigen::VectorXi::LinSpaced(among.cols(), 0, static_cast<int>(among.cols()) - 1);
   order = factor.transpositionsP() * order;
-  for (int i = 0; i < constraints(); ++i)
-    if (!(factor.vectorD()[i] > least * complement(order[i], order[i]))) return order[i];
+  for (int i = 0; i < among.cols(); ++i)
+    if (!(factor.vectorD()[i] > least * among(order[i], order[i]))) return hard[order[i]];
   return std::nullopt;
 }
 

@@ -8,7 +8,10 @@ namespace calot {
 
 struct NewtonWorkspace;
 
-/// L(x, m) = energy(x) - sum of m_k * constraint_k(x), to be made stationary in x with each constraint_k(x) = 0.
+/// L(x, m) = energy(x) - sum of (m_k * constraint_k(x) + e_k / 2 * m_k^2), to be made stationary in x and m: each
+/// constraint_k(x) + e_k m_k = 0. A compliance e_k = 0 keeps its constraint; e_k > 0 lets it give way, as a spring does:
+/// m_k = -constraint_k / e_k, and x is where energy + sum of constraint_k^2 / (2 e_k) is stationary, without that
+/// energy's full matrix, however small e_k is.
 class ConstrainedEnergy {
  public:
   virtual ~ConstrainedEnergy() = default;
@@ -36,6 +39,8 @@ class ConstrainedEnergy {
   }
   /// Scales of the constraints (the kept volumes), > 0.
   virtual VecX constraint_scales() const = 0;
+  /// e_k, >= 0, in units of a constraint over its multiplier's.
+  virtual VecX compliances() const { return VecX::Zero(constraints()); }
   /// Called before a tangent is asked for, and before the first step of a solve that does not begin in balance: makes
   /// room in the matrix for what the solve may couple.
   virtual void prepare(NewtonWorkspace&) const {}

@@ -9,9 +9,10 @@ namespace calot {
 struct SearchStart {
   const VecX& x;
   const VecX& step;
-  const VecX& multipliers;  ///< after the step
-  const VecX& constraints;  ///< their values at x
-  double curvature;         ///< step' K step
+  const VecX& multipliers;   ///< after the step
+  const VecX& dmultipliers;  ///< how they change in it
+  const VecX& left;  ///< of the constraints at x, with compliances times the multipliers before the step
+  double curvature;  ///< step' K step
 };
 
 /// Begins with `share` of the step; returns the share taken, 0 when no decrease was found.

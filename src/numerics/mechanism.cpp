@@ -79,9 +79,10 @@ double mean_stiffness(const BlockMatrix& matrix, const Part& part) {
 // Motions and forces are taken in each part's own measure, so that softness is judged beside the part's stiffness: the
 // matrix is D K D, D^-2 the parts' mean stiffnesses. A motion meets no resistance where its stiffness and the forces it
 // causes, but for what the multipliers take up, are rounding. (The stiffness alone may change its sign where a motion
-// is held softly.) Rigid motions keep volumes, so the constraints cannot hold them.
-std::optional<int> mechanism(const BlockMatrix& matrix, const Eigen::MatrixXd& gradients, const VecX& x,
-                             std::span<const Part> parts) {
+// is held softly.) Rigid motions keep volumes, so the constraints cannot hold them, but for those with a compliance: each
+// is as stiff along its gradient as it allows.
+std::optional<int> mechanism(const BlockMatrix& matrix, const Eigen::MatrixXd& gradients,
+                             const VecX& compliances, const VecX& x, std::span<const Part> parts) {
   VecX measure(x.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const double stiffness = mean_stiffness(matrix, parts[p]);
@@ -92,9 +93,21 @@ std::optional<int> mechanism(const BlockMatrix& matrix, const Eigen::MatrixXd& g
   Eigen::MatrixXd forces(x.size(), motions.columns.cols());
   for (Eigen::Index c = 0; c < forces.cols(); ++c)
     forces.col(c) = measure.cwiseProduct(matrix.multiply(VecX(measure.cwiseProduct(motions.columns.col(c)))));
+  const Eigen::MatrixXd measured = measure.asDiagonal() * gradients;
+  const bool compliant = compliances.size() > 0;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < measured.cols(); ++k) {
+    if (!compliant || compliances[k] == 0) {
+      kept.push_back(k);
+      continue;
+    }
+    // No stiffer than the parts: beside what is stiffer by far the others' resistance would be rounding.
+    const double allowed = std::max(compliances[k], measured.col(k).squaredNorm());
+    forces += measured.col(k) / allowed * (measured.col(k).transpose() * motions.columns);
+  }
   const std::optional<Modes> resisted = modes(Eigen::MatrixXd(motions.columns.transpose() * forces));
   if (!resisted) return std::nullopt;
-  const Eigen::MatrixXd taken = orthonormal(measure.asDiagonal() * gradients);
+  const Eigen::MatrixXd taken = orthonormal(measured(Eigen::all, kept));
   for (Eigen::Index m = 0; m < resisted->values.size(); ++m) {
     if (!(std::abs(resisted->values[m]) < 1e-9)) continue;
     VecX met = forces * resisted->vectors.col(m);

@@ -15,8 +15,8 @@ namespace {
 constexpr double smallest_move = 1e-13;
 
 struct State {
-  VecX gradient;  ///< of the energy
-  VecX constraints;
+  VecX gradient;     ///< of the energy
+  VecX constraints;  ///< with what their compliances allow: 0 where met
   Eigen::MatrixXd constraint_gradients;
   VecX residual;           ///< gradient - constraint gradients * multipliers
   Worst worst_residual;    ///< relative
@@ -38,7 +38,10 @@ class Iteration {
     for (const Part& part : parts_) nodes += part.nodes();
     // A node that no part has would never be judged: a defect of ours.
     if (3 * Eigen::Index{nodes} != x.size() || multipliers.size() != problem.constraints()) std::abort();
-    if (constrained()) scales_ = problem.constraint_scales();
+    if (constrained()) {
+      scales_ = problem.constraint_scales();
+      compliances_ = problem.compliances();
+    }
   }
 
   NewtonResult run() {
@@ -70,6 +73,7 @@ class Iteration {
     state.residual = state.gradient;
     for (Eigen::Index k = 0; k < multipliers.size(); ++k)
       state.residual -= multipliers[k] * state.constraint_gradients.col(k);
+    if (constrained()) state.constraints += compliances_.cwiseProduct(multipliers);
     state.worst_residual = {};
     for (std::size_t p = 0; p < parts_.size(); ++p)
       state.worst_residual.take(largest_node(parts_[p], state.residual) /
@@ -164,6 +168,7 @@ class Iteration {
   bool newton() {
     seen_.clear();
     work_.border.gradients = state_.constraint_gradients;  // no columns when there is no constraint
+    work_.border.compliances = compliances_;
     factorise(problem_, parts_, x_, multipliers_, work_, result_);
     if (result_.status != NewtonStatus::converged) return false;
     VecX dmultipliers;
@@ -186,7 +191,8 @@ class Iteration {
     double share = 0;
     {
       const Timed timed(result_.assembly_s);
-      share = line_search(problem_, {x_, step, multipliers, state_.constraints, curvature}, safe);
+      share =
+          line_search(problem_, {x_, step, multipliers, dmultipliers, state_.constraints, curvature}, safe);
     }
     const Worst increment = relative_increment(step, share);
     if (increment.value <= smallest_move) {
@@ -206,7 +212,7 @@ class Iteration {
   VecX& x_;
   VecX& multipliers_;
   std::vector<Part> parts_;
-  VecX scales_;  ///< of the constraints
+  VecX scales_, compliances_;  ///< of the constraints
   NewtonResult result_;
   State state_;
   Worst increment_;  ///< the last, relative

@@ -13,6 +13,7 @@ NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace
   VecX values;
   work.border.gradients.resize(x.size(), 0);
   if (problem.constraints() > 0) problem.constraint(x, values, work.border.gradients);
+  work.border.compliances = problem.compliances();
   factorise(problem, problem.parts(), x, multipliers, work, result);
   return result;
 }

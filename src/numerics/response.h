@@ -8,7 +8,7 @@
 namespace calot {
 
 /// First-order response to a change of load with the last factor: K dx = load, constraints kept to first
-/// order. `dmultipliers` receives their multipliers' changes. Needs workspace.factored.
+/// order but for their compliances. `dmultipliers` receives their multipliers' changes. Needs workspace.factored.
 VecX linear_response(const NewtonWorkspace& workspace, const VecX& load, VecX& dmultipliers);
 
 /// Factorises the tangent at (x, multipliers) into the workspace, for linear_response; unless `fresh`, a last

@@ -8,10 +8,10 @@
 namespace calot {
 namespace {
 
-/// Each part's first shift, N/m.
-VecX first_shifts(const BlockMatrix& matrix, std::span<const Part> parts) {
+/// Each part's share of its stiffness, N/m.
+VecX shifts_of(double share, const BlockMatrix& matrix, std::span<const Part> parts) {
   VecX out(static_cast<Eigen::Index>(parts.size()));
-  for (Eigen::Index p = 0; p < out.size(); ++p) out[p] = 1e-4 * mean_stiffness(matrix, parts[p]);
+  for (Eigen::Index p = 0; p < out.size(); ++p) out[p] = share * mean_stiffness(matrix, parts[p]);
   return out;
 }
 
@@ -23,15 +23,25 @@ void add_shifts(const VecX& shifts, std::span<const Part> parts, BlockMatrix& ma
 NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, NewtonWorkspace& work,
                               NewtonResult& result) {
   FactorStatus status = work.factor.factorise(work.matrix);
+  const Border& border = work.border;
   const bool doubtful = status == FactorStatus::not_positive_definite ||
                         (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12);
   if (doubtful)
-    if (const std::optional<int> loose = mechanism(work.matrix, work.border.gradients, x, parts)) {
+    if (const std::optional<int> loose =
+            mechanism(work.matrix, border.gradients, border.compliances, x, parts)) {
       result.part = *loose;
       return NewtonStatus::mechanism;
     }
+  // What compliant constraints alone hold has no factor without them. Shifted by this, steps are as good as exact.
+  constexpr double next_to_nothing = 1e-7;
+  if (doubtful && static_cast<Eigen::Index>(border.kept().size()) < border.gradients.cols() &&
+      mechanism(work.matrix, border.gradients, VecX(), x, parts)) {
+    add_shifts(shifts_of(next_to_nothing, work.matrix, parts), parts, work.matrix);
+    ++result.shifts;
+    status = work.factor.factorise(work.matrix);
+  }
   const bool shifted = status == FactorStatus::not_positive_definite;
-  VecX shifts = shifted ? first_shifts(work.matrix, parts) : VecX();
+  VecX shifts = shifted ? shifts_of(1e-4, work.matrix, parts) : VecX();
   while (status == FactorStatus::not_positive_definite) {
     add_shifts(shifts, parts, work.matrix);
     ++result.shifts;

@@ -35,8 +35,8 @@ TEST(Mechanism, WhatOnlyAPressureTakesUpHoldsNothing) {
       }
     }
   const std::vector<Part> parts{{{0, Net::nodes}, {}, 1}};
-  EXPECT_EQ(mechanism(matrix, g, net.rest(), parts), 0);
-  EXPECT_EQ(mechanism(matrix, Eigen::MatrixXd(g.size(), 0), net.rest(), parts), std::nullopt);
+  EXPECT_EQ(mechanism(matrix, g, VecX(), net.rest(), parts), 0);
+  EXPECT_EQ(mechanism(matrix, Eigen::MatrixXd(g.size(), 0), VecX(), net.rest(), parts), std::nullopt);
 }
 
 TEST(Mechanism, DisplacementsThatAreHeldDoNotHoldThePlaces) {
@@ -54,13 +54,14 @@ TEST(Mechanism, DisplacementsThatAreHeldDoNotHoldThePlaces) {
   VecX x = test::random_coordinates(rng, 3 * all, 0.1);
   x.head(3 * Net::nodes) = net.rest();
   const Eigen::MatrixXd unconstrained(x.size(), 0);
-  EXPECT_EQ(mechanism(matrix, unconstrained, x, std::vector<Part>{{{0, Net::nodes}, {Net::nodes, all}, 1}}),
-            0);
+  EXPECT_EQ(
+      mechanism(matrix, unconstrained, VecX(), x, std::vector<Part>{{{0, Net::nodes}, {Net::nodes, all}, 1}}),
+      0);
   // As a body of their own they hold nothing either; as places of the same one they do.
-  EXPECT_EQ(mechanism(matrix, unconstrained, x,
+  EXPECT_EQ(mechanism(matrix, unconstrained, VecX(), x,
                       std::vector<Part>{{{Net::nodes, all}, {}, 1}, {{0, Net::nodes}, {}, 1}}),
             1);
-  EXPECT_EQ(mechanism(matrix, unconstrained, x, std::vector<Part>{{{0, all}, {}, 1}}), std::nullopt);
+  EXPECT_EQ(mechanism(matrix, unconstrained, VecX(), x, std::vector<Part>{{{0, all}, {}, 1}}), std::nullopt);
 }
 
 TEST(Mechanism, AHeldBodyWhoseNodesAreInLineIsNone) {
@@ -68,10 +69,12 @@ TEST(Mechanism, AHeldBodyWhoseNodesAreInLineIsNone) {
   BlockMatrix matrix(nodes, std::vector<std::vector<int>>{{0, 1, 2}});
   for (int i = 0; i < nodes; ++i) matrix.add(i, i, Mat3::Identity());
   const VecX x{{0, 0, 0, 1, 0, 0, 2, 0, 0}};
-  EXPECT_EQ(mechanism(matrix, Eigen::MatrixXd(x.size(), 0), x, std::vector<Part>{{{0, nodes}, {}, 1}}),
-            std::nullopt);
+  EXPECT_EQ(
+      mechanism(matrix, Eigen::MatrixXd(x.size(), 0), VecX(), x, std::vector<Part>{{{0, nodes}, {}, 1}}),
+      std::nullopt);
   BlockMatrix nothing = matrix.blank();
-  EXPECT_EQ(mechanism(nothing, Eigen::MatrixXd(x.size(), 0), x, std::vector<Part>{{{0, nodes}, {}, 1}}), 0)
+  EXPECT_EQ(
+      mechanism(nothing, Eigen::MatrixXd(x.size(), 0), VecX(), x, std::vector<Part>{{{0, nodes}, {}, 1}}), 0)
       << "without any stiffness at all";
 }
 
