@@ -19,8 +19,7 @@ Result<Bile> Bile::create(const BileSurface& surface, double specific_weight, co
                           const Vec3& datum) {
   Bile bile;
   bile.points_ = surface.points;
-  bile.specific_weight_ = specific_weight;
-  bile.up_ = up;
+  bile.weight_ = {specific_weight, up};
   bile.datum_ = datum;
   const StencilTable& table = bile.points_;
   for (std::size_t c = 0; c < surface.cells.size(); ++c) {
@@ -73,12 +72,12 @@ double Bile::volume(const VecX& x) const {
   return sum;
 }
 
-double Bile::value(const VecX& x) const {
+double Bile::value(const VecX& x, const LiquidWeight& weight) const {
   const std::vector<Vec3> at = positions(x);
   double sum = 0;
   for (const auto& [t, local, w] : parts_)
-    sum += w * tetra_volume(at[t[0]], at[t[1]], at[t[2]]) * up_.dot(at[t[0]] + at[t[1]] + at[t[2]]);
-  return 0.25 * specific_weight_ * sum;  // the fourth corner of each tetrahedron is the datum, at height 0
+    sum += w * tetra_volume(at[t[0]], at[t[1]], at[t[2]]) * weight.up.dot(at[t[0]] + at[t[1]] + at[t[2]]);
+  return 0.25 * weight.size * sum;  // the fourth corner of each tetrahedron is the datum, at height 0
 }
 
 /// Triangles side by side; lanes that are not used have no weight.
@@ -98,24 +97,25 @@ Bile::Triangles Bile::triangles(int first, int used, const std::vector<Vec3>& at
   return out;
 }
 
-Bile::PointForces Bile::point_forces(const VecX& x, double datum_pressure) const {
+Bile::PointForces Bile::point_forces(const VecX& x, double datum_pressure, const LiquidWeight& weight) const {
+  const Vec3& up = weight.up;
   const std::vector<Vec3> at = positions(x);
   PointForces out;
   out.load.assign(at.size(), Vec3::Zero());
   out.by_volume.assign(at.size(), Vec3::Zero());
-  const double g4 = 0.25 * specific_weight_;
+  const double g4 = 0.25 * weight.size;
   const int count = static_cast<int>(parts_.size());
   for (int first = 0; first < count; first += lane_count) {
     const int used = std::min(lane_count, count - first);
     const Triangles t = triangles(first, used, at);
     const Lanes3 sum = t.corner[0] + t.corner[1] + t.corner[2];
-    const Lanes s = g4 * (up_[0] * sum[0] + up_[1] * sum[1] + up_[2] * sum[2]) - datum_pressure;
+    const Lanes s = g4 * (up[0] * sum[0] + up[1] * sum[1] + up[2] * sum[2]) - datum_pressure;
     const Lanes share = t.weight / 6.0, volume = share * dot(t.corner[0], cross(t.corner[1], t.corner[2]));
     out.volume += sum_of(volume);
     for (int k = 0; k < 3; ++k) {
       const Lanes3 by = share * cross(t.corner[(k + 1) % 3], t.corner[(k + 2) % 3]);
       for (int c = 0; c < 3; ++c) {
-        const Lanes load = s * by[c] + g4 * up_[c] * volume;
+        const Lanes load = s * by[c] + g4 * up[c] * volume;
         for (int lane = 0; lane < used; ++lane) {
           const int point = parts_[first + lane].corners[k];
           out.by_volume[point][c] += by[c][lane];
@@ -128,18 +128,50 @@ Bile::PointForces Bile::point_forces(const VecX& x, double datum_pressure) const
 }
 
 double Bile::add_volume_gradient(const VecX& x, VecX& gradient) const {
-  const PointForces forces = point_forces(x, 0);
+  const PointForces forces = point_forces(x, 0, weight_);
   spread(points_, forces.by_volume, gradient);
   return forces.volume;
 }
 
-void Bile::add_load(const VecX& x, double datum_pressure, VecX& gradient) const {
-  spread(points_, point_forces(x, datum_pressure).load, gradient);
+LiquidMoments Bile::moments(const VecX& x) const {
+  const std::vector<Vec3> at = positions(x);
+  LiquidMoments out;
+  for (const auto& [t, local, w] : parts_) {
+    const double v = w * tetra_volume(at[t[0]], at[t[1]], at[t[2]]);
+    out.volume += v;
+    out.first += 0.25 * v * (at[t[0]] + at[t[1]] + at[t[2]]);  // the fourth corner is the datum
+  }
+  return out;
 }
 
-double Bile::add_load_and_volume_gradient(const VecX& x, double datum_pressure, VecX& load,
-                                          VecX& by_volume) const {
-  const PointForces forces = point_forces(x, datum_pressure);
+Eigen::MatrixX3d Bile::moment_gradients(const VecX& x) const {
+  const std::vector<Vec3> at = positions(x);
+  // Of the moment's x, y and z (columns) by a point's place (rows).
+  std::vector<Mat3> by_point(at.size(), Mat3::Zero());
+  for (const auto& [t, local, w] : parts_) {
+    const Vec3 &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
+    const Vec3 mean = 0.25 * (a + b + c), by[3] = {b.cross(c), c.cross(a), a.cross(b)};
+    const double quarter = 0.25 * w * tetra_volume(a, b, c);
+    for (int k = 0; k < 3; ++k) {
+      Mat3& sum = by_point[t[k]];
+      sum.noalias() += w / 6 * by[k] * mean.transpose();
+      sum.diagonal().array() += quarter;
+    }
+  }
+  Eigen::MatrixX3d out = Eigen::MatrixX3d::Zero(x.size(), 3);
+  for (int r = 0; r < points_.rows(); ++r)
+    for (int e = points_.begin[r]; e < points_.begin[r + 1]; ++e)
+      out.middleRows<3>(Eigen::Index{3} * points_.node[e]) += points_.value[e] * by_point[r];
+  return out;
+}
+
+void Bile::add_load(const VecX& x, double datum_pressure, const LiquidWeight& weight, VecX& gradient) const {
+  spread(points_, point_forces(x, datum_pressure, weight).load, gradient);
+}
+
+double Bile::add_load_and_volume_gradient(const VecX& x, double datum_pressure, const LiquidWeight& weight,
+                                          VecX& load, VecX& by_volume) const {
+  const PointForces forces = point_forces(x, datum_pressure, weight);
   spread(points_, forces.load, load);
   spread(points_, forces.by_volume, by_volume);
   return forces.volume;
@@ -196,14 +228,14 @@ struct Bile::TriangleDerivatives {
 };
 
 void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure,
-                    CellHessian& h) const {
+                    const LiquidWeight& weight, CellHessian& h) const {
   const int points = cells_[cell].points;
   h.reset(points);
   const int end = cell + 1 < cells_.size() ? cells_[cell + 1].first_part : static_cast<int>(parts_.size());
   for (int first = cells_[cell].first_part; first < end; first += lane_count) {
     const int used = std::min(lane_count, end - first);
     const Triangles t = triangles(first, used, at);
-    const TriangleDerivatives derivatives(t, 0.25 * specific_weight_, up_, datum_pressure);
+    const TriangleDerivatives derivatives(t, 0.25 * weight.size, weight.up, datum_pressure);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         const TriangleDerivatives::Block block = derivatives.block(i, j);
@@ -218,7 +250,8 @@ void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_
   }
 }
 
-void Bile::add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const {
+void Bile::add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight,
+                       BlockMatrix& matrix) const {
   const std::vector<Vec3> at = positions(x);
   ElementMatrix element;
   CellHessian h;
@@ -226,7 +259,7 @@ void Bile::add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const int points = cells_[c].points, n = cells_[c].nodes.padded;
     const double* weights = weights_.data() + cells_[c].weights;
-    assemble(c, at, datum_pressure, h);
+    assemble(c, at, datum_pressure, weight, h);
     int others[most_points][most_points], count[most_points] = {};  // that each point is coupled with
     for (int i = 0; i < points; ++i)
       for (int j = 0; j < points; ++j)
@@ -250,13 +283,17 @@ void Bile::add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix
 }
 
 double Bile::pressure_at(const Vec3& position, double datum_pressure) const {
-  return datum_pressure - specific_weight_ * up_.dot(position - datum_);
+  return pressure_at(position, datum_pressure, weight_);
+}
+
+double Bile::pressure_at(const Vec3& position, double datum_pressure, const LiquidWeight& weight) const {
+  return datum_pressure - weight.size * weight.up.dot(position - datum_);
 }
 
 double Bile::pressure_at_top(const VecX& x, double datum_pressure) const {
   double top = -1e300;
-  for (const Vec3& p : positions(x)) top = std::max(top, up_.dot(p));
-  return datum_pressure - specific_weight_ * top;
+  for (const Vec3& p : positions(x)) top = std::max(top, weight_.up.dot(p));
+  return datum_pressure - weight_.size * top;
 }
 
 std::vector<std::vector<int>> Bile::cliques() const {

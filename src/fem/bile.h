@@ -21,6 +21,27 @@ struct BileSurface {
   std::vector<std::vector<Part>> cells;  ///< parts that share points, at most 28 different ones a cell
 };
 
+/// What a m^3 of a liquid weighs: `size`, N/m^3, against the unit vector `up`.
+struct LiquidWeight {
+  double size = 0;
+  Vec3 up = Vec3::UnitZ();
+
+  /// From its vector, N/m^3, the way it pulls: density (g - a) in a liquid that is accelerated by a.
+  static LiquidWeight pulling(const Vec3& weight) {
+    const double size = weight.norm();
+    return size > 0 ? LiquidWeight{size, -weight / size} : LiquidWeight{};
+  }
+  Vec3 vector() const { return -size * up; }
+};
+
+/// What a liquid holds, by coordinates counted from the datum.
+struct LiquidMoments {
+  double volume = 0;          ///< m^3
+  Vec3 first = Vec3::Zero();  ///< integral of the position over the volume, m^4
+};
+
+/// The weight is that of the liquid at rest where none is given. Minus the scalar product of a vector and the first
+/// moment has the value, load and Hessian of a weight of that vector, without pressure.
 class Bile {
  public:
   /// `specific_weight` in N/m^3; `up` is unit; heights count from `datum` (m, a point; near the organ keeps
@@ -33,18 +54,35 @@ class Bile {
   /// Volume, and its gradient (m^2) added to `gradient`.
   double add_volume_gradient(const VecX& x, VecX& gradient) const;
   /// Potential energy of the liquid's weight, J, relative to the datum's height.
-  double value(const VecX& x) const;
+  double value(const VecX& x) const { return value(x, weight_); }
+  double value(const VecX& x, const LiquidWeight& weight) const;
   /// Adds the gradient of weight - datum_pressure * volume (N): the load of pressure datum_pressure - weight *
   /// height.
-  void add_load(const VecX& x, double datum_pressure, VecX& gradient) const;
+  void add_load(const VecX& x, double datum_pressure, VecX& gradient) const {
+    add_load(x, datum_pressure, weight_, gradient);
+  }
+  void add_load(const VecX& x, double datum_pressure, const LiquidWeight& weight, VecX& gradient) const;
   /// Both: add_load to `load`, add_volume_gradient to `by_volume`, for little more than one.
   double add_load_and_volume_gradient(const VecX& x, double datum_pressure, VecX& load,
-                                      VecX& by_volume) const;
+                                      VecX& by_volume) const {
+    return add_load_and_volume_gradient(x, datum_pressure, weight_, load, by_volume);
+  }
+  double add_load_and_volume_gradient(const VecX& x, double datum_pressure, const LiquidWeight& weight,
+                                      VecX& load, VecX& by_volume) const;
   /// Adds the exact Hessian of weight - datum_pressure * volume (N/m).
-  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const;
+  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const {
+    add_hessian(x, datum_pressure, weight_, matrix);
+  }
+  void add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight,
+                   BlockMatrix& matrix) const;
+
+  LiquidMoments moments(const VecX& x) const;
+  /// The first moment's gradients, m^3: a column each for its x, y and z, 3 rows a node.
+  Eigen::MatrixX3d moment_gradients(const VecX& x) const;
 
   /// Gauge pressure (Pa) at `position` when the datum_pressure is given: datum_pressure - specific weight * height.
   double pressure_at(const Vec3& position, double datum_pressure) const;
+  double pressure_at(const Vec3& position, double datum_pressure, const LiquidWeight& weight) const;
   /// Gauge pressure at the surface's highest point.
   double pressure_at_top(const VecX& x, double datum_pressure) const;
 
@@ -57,7 +95,9 @@ class Bile {
   const std::vector<Part>& parts() const { return parts_; }
 
   const StencilTable& points() const { return points_; }
-  double specific_weight() const { return specific_weight_; }
+  const Vec3& datum() const { return datum_; }
+  double specific_weight() const { return weight_.size; }
+  const LiquidWeight& weight() const { return weight_; }
   std::vector<std::vector<int>> cliques() const;
 
  private:
@@ -70,15 +110,16 @@ class Bile {
     std::vector<Vec3> load, by_volume;
     double volume = 0;
   };
-  PointForces point_forces(const VecX& x, double datum_pressure) const;
+  PointForces point_forces(const VecX& x, double datum_pressure, const LiquidWeight& weight) const;
   /// Adds the parts of a cell; returns its points.
   std::vector<int> add_parts(const std::vector<BileSurface::Part>& parts);
   struct CellHessian;
-  void assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure, CellHessian& h) const;
+  void assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure,
+                const LiquidWeight& weight, CellHessian& h) const;
 
   StencilTable points_;
-  double specific_weight_ = 0;
-  Vec3 up_ = Vec3::UnitZ(), datum_ = Vec3::Zero();
+  LiquidWeight weight_;
+  Vec3 datum_ = Vec3::Zero();
   struct Cell {
     FaceNodes nodes;
     int points = 0;      ///< rows of weights

@@ -195,6 +195,7 @@ TEST(Bile, PressureGrowsWithDepthByTheSpecificWeight) {
   Rng rng(6);
   for (const Body& body : bodies()) {
     EXPECT_EQ(body.bile.specific_weight(), weight);
+    EXPECT_EQ(body.bile.weight().up, up);
     const VecX x = deformed(body, rng);
     const std::vector<Vec3> skin = blend_all(body.surface.stencils, body.surface.stencils.value, x);
     const double datum_pressure = 1200, top = body.bile.pressure_at_top(x, datum_pressure);
@@ -241,6 +242,66 @@ TEST(Bile, VolumeGradientIntegratesToTheChangeOfVolume) {
     const double by_gradient = (rate(0) + 4 * rate(0.5) + rate(1)) / 6;
     const double change = body.bile.volume(body.rest + step) - body.bile.volume(body.rest);
     EXPECT_NEAR(by_gradient, change, 1e-12 * body.bile.volume(body.rest));
+  }
+}
+
+const Vec3 aside(4e3, -7e3, -2e3);  // N/m^3: of a liquid that is pushed about
+
+TEST(Bile, AWeightToAnySideIsThatOfALiquidThatHasIt) {
+  Rng rng(10);
+  for (Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const LiquidWeight other = LiquidWeight::pulling(aside);
+    EXPECT_LT((other.vector() - aside).norm(), 1e-12 * aside.norm());
+    const Bile bile = Bile::create(extrapolated(body.surface), other.size, other.up, body.datum).value();
+    const double datum_pressure = 900;
+    EXPECT_EQ(body.bile.value(x, other), bile.value(x));
+    VecX own_load = VecX::Zero(x.size()), own_volume = own_load, next = own_load, next_volume = own_load;
+    body.bile.add_load(x, datum_pressure, other, own_load);
+    EXPECT_EQ(own_load, load(bile, x, datum_pressure));
+    body.bile.add_load_and_volume_gradient(x, datum_pressure, other, next, next_volume);
+    EXPECT_EQ(next, own_load);
+    EXPECT_EQ(next_volume, volume_gradient(bile, x));
+    BlockMatrix matrix = body.matrix;
+    body.matrix.set_zero();
+    matrix.set_zero();
+    body.bile.add_hessian(x, datum_pressure, other, body.matrix);
+    bile.add_hessian(x, datum_pressure, matrix);
+    EXPECT_EQ(test::stored(body.matrix), test::stored(matrix));
+    const Vec3 at = x.head<3>();
+    EXPECT_EQ(body.bile.pressure_at(at, datum_pressure, other), bile.pressure_at(at, datum_pressure));
+    EXPECT_NEAR(body.bile.pressure_at(at, datum_pressure, other), datum_pressure + aside.dot(at - body.datum),
+                1e-9);
+  }
+  EXPECT_EQ(LiquidWeight::pulling(Vec3::Zero()).vector(), Vec3::Zero());
+}
+
+TEST(Bile, TheFirstMomentIsTheCentroidTimesTheVolumeAndItsDerivativesAreAWeights) {
+  Rng rng(11);
+  for (Body& body : bodies()) {
+    const VecX x = deformed(body, rng);
+    const Content inside = content(body, x);
+    const LiquidMoments moments = body.bile.moments(x);
+    EXPECT_EQ(moments.volume, body.bile.volume(x));
+    EXPECT_LT((moments.first / inside.volume - (inside.centroid - body.datum)).norm(), 1e-13);
+    const Eigen::MatrixX3d gradients = body.bile.moment_gradients(x);
+    for (int c = 0; c < 3; ++c) {
+      const VecX by_difference =
+          test::difference_gradient([&](const VecX& y) { return body.bile.moments(y).first[c]; }, x, 1e-6);
+      EXPECT_LT(test::relative_error(gradients.col(c), by_difference), 1e-7) << c;
+    }
+    const LiquidWeight other = LiquidWeight::pulling(aside);
+    EXPECT_NEAR(body.bile.value(x, other), -aside.dot(moments.first),
+                1e-12 * aside.norm() * moments.first.norm());
+    VecX by_weight = VecX::Zero(x.size());
+    body.bile.add_load(x, 0, other, by_weight);
+    EXPECT_LT(test::relative_error(-gradients * aside, by_weight), 1e-12);
+    body.matrix.set_zero();
+    body.bile.add_hessian(x, 0, other, body.matrix);
+    const Eigen::MatrixXd second = test::difference_hessian(
+        [&](const VecX& y) { return VecX(-body.bile.moment_gradients(y) * aside); }, x, 1e-6);
+    EXPECT_GT(second.norm(), 0);
+    EXPECT_LT(test::relative_error(test::dense(body.matrix), second), 1e-7);
   }
 }
 
