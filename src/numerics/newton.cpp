@@ -196,8 +196,10 @@ class Iteration {
     }
     const Worst increment = relative_increment(step, share);
     if (increment.value <= smallest_move) {
-      result_.status = NewtonStatus::stalled;
-      return false;
+      // In balance to rounding no step improves it: a step that is no longer worth taking is the last increment.
+      increment_ = relative_increment(step, 1.0);
+      if (!balanced()) result_.status = NewtonStatus::stalled;
+      return balanced();
     }
     x_ += share * step;
     multipliers_ += share * dmultipliers;

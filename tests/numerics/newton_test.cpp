@@ -50,6 +50,29 @@ TEST(Newton, FindsTheStationaryPointOfANonlinearEnergy) {
   }
 }
 
+TEST(Newton, InBalanceToRoundingIsConverged) {
+  for (bool constrained : {false, true}) {
+    Net net(constrained);
+    NewtonSettings tight;
+    tight.tolerance = 1e-12;
+    NewtonWorkspace work = net.workspace();
+    VecX x = net.rest();
+    double multiplier = 0;
+    ASSERT_TRUE(solve_equilibrium(net, tight, work, x, multiplier).converged());
+    // One step is too long to be the last and ends where none gets any further.
+    Rng rng(6);
+    for (double off : {1e-8, 1e-9, 1e-10, 1e-11}) {
+      VecX from = x + test::random_coordinates(rng, 18, off);
+      double pressure = multiplier;
+      NewtonWorkspace fresh = net.workspace();
+      const NewtonResult result = solve_equilibrium(net, tight, fresh, from, pressure);
+      EXPECT_TRUE(result.converged()) << off << ' ' << to_text(result.status);
+      EXPECT_LE(result.increment, tight.tolerance);
+      EXPECT_LT((from - x).norm(), 1e-11);
+    }
+  }
+}
+
 TEST(Newton, ConstraintIsKeptToItsTolerance) {
   Net net(true);
   const double unstressed = net.volume;
