@@ -1,6 +1,5 @@
 #include "sim/vibration.h"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,61 +8,12 @@
 #include <utility>
 
 #include "base/rng.h"
+#include "fem/potential_flow.h"
 #include "numerics/dense_cholesky.h"
 #include "numerics/modes.h"
 #include "numerics/response.h"
 
 namespace calot {
-namespace {
-
-constexpr int harmonics = 15;  // of degree 1 (3), 2 (5) and 3 (7)
-
-/// Values and gradients of the solid harmonics at p.
-void sample_harmonics(const Vec3& p, std::array<double, harmonics>& h, std::array<Vec3, harmonics>& g) {
-  const double x = p.x(), y = p.y(), z = p.z();
-  h = {x,
-       y,
-       z,
-       x * y,
-       y * z,
-       z * x,
-       x * x - y * y,
-       2 * z * z - x * x - y * y,
-       z * (2 * z * z - 3 * x * x - 3 * y * y),
-       x * (4 * z * z - x * x - y * y),
-       y * (4 * z * z - x * x - y * y),
-       z * (x * x - y * y),
-       x * y * z,
-       x * (x * x - 3 * y * y),
-       y * (3 * x * x - y * y)};
-  g = {Vec3(1, 0, 0),
-       Vec3(0, 1, 0),
-       Vec3(0, 0, 1),
-       Vec3(y, x, 0),
-       Vec3(0, z, y),
-       Vec3(z, 0, x),
-       Vec3(2 * x, -2 * y, 0),
-       Vec3(-2 * x, -2 * y, 4 * z),
-       Vec3(-6 * x * z, -6 * y * z, 6 * z * z - 3 * x * x - 3 * y * y),
-       Vec3(4 * z * z - 3 * x * x - y * y, -2 * x * y, 8 * x * z),
-       Vec3(-2 * x * y, 4 * z * z - x * x - 3 * y * y, 8 * y * z),
-       Vec3(2 * x * z, -2 * y * z, x * x - y * y),
-       Vec3(y * z, z * x, x * y),
-       Vec3(3 * x * x - 3 * y * y, -6 * x * y, 0),
-       Vec3(6 * x * y, 3 * x * x - 3 * y * y, 0)};
-}
-
-/// Third of the area vectors of the triangles around each point: they sum to zero on a closed surface.
-std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  std::vector<Vec3> out(points.size(), Vec3::Zero());
-  for (const Triangle& t : triangles) {
-    const Vec3 area = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]) / 6.0;
-    for (int p : t) out[p] += area;
-  }
-  return out;
-}
-
-}  // namespace
 
 BodyMass::BodyMass(const ShellBody& body, const VecX& x, double wall_thickness, double bile_density)
     : body_(body), bile_density_(bile_density) {
@@ -71,25 +21,10 @@ BodyMass::BodyMass(const ShellBody& body, const VecX& x, double wall_thickness, 
     row_mass_.push_back(area * wall_thickness * wall_density);
     wall_ += row_mass_.back();
   }
-  const std::vector<Vec3> skin = body.skin_positions(x);
-  const std::vector<Vec3> areas = area_vectors(skin, body.skin().triangles);
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : skin) centre += p / static_cast<double>(skin.size());
-  const double scale = 2.0 / body.size();  // keeps the degrees comparable
-  flow_ = Eigen::MatrixXd::Zero(x.size(), harmonics);
-  Eigen::MatrixXd kinetic = Eigen::MatrixXd::Zero(harmonics, harmonics);
-  std::array<double, harmonics> h;
-  std::array<Vec3, harmonics> g;
-  const StencilTable& table = body.skin().stencils;
-  for (int p = 0; p < table.rows(); ++p) {
-    sample_harmonics(scale * (skin[p] - centre), h, g);
-    for (int k = 0; k < harmonics; ++k) {
-      for (int e = table.begin[p]; e < table.begin[p + 1]; ++e)
-        flow_.col(k).segment<3>(Eigen::Index{3} * table.node[e]) += table.value[e] * h[k] * areas[p];
-      for (int l = 0; l < harmonics; ++l) kinetic(k, l) += h[k] * scale * g[l].dot(areas[p]);
-    }
-  }
-  kinetic_ = 0.5 * (kinetic + kinetic.transpose());
+  const double half = 0.5 * body.size();
+  PotentialFlow flow = PotentialFlow::inside(body.skin().stencils, body.skin().triangles, x, half);
+  flow_ = std::move(flow.flow);
+  kinetic_ = flow.energy();
   // An energy: on a skin too coarse to tell, none is found, and no frequency either.
   if (!cholesky_in_place(kinetic_)) kinetic_.setConstant(std::numeric_limits<double>::quiet_NaN());
 }

@@ -14,11 +14,8 @@ inline constexpr double wall_density = 1050;
 
 /// Mass of an organ's wall and bile at a state, as it resists accelerations of the control nodes.
 ///
-/// The bile is ideal (incompressible, without friction): it answers the wall's normal velocity q by a potential
-/// flow, whose kinetic energy is 1/2 density b' A^-1 b with b_k = integral of h_k q and A_kl = integral of
-/// h_k dh_l/dn over the wall, for harmonic polynomials h_k of degree 1 to 3 (Trefftz's method). It moves
-/// as a rigid body with a wall that translates, and does not turn with one that turns; motions finer than degree
-/// 3 feel too little bile, so a frequency found with it is an upper bound, close where the motion is a sway.
+/// The bile is ideal (see PotentialFlow): as motions finer than its harmonics feel too little of it, a frequency found
+/// with it is an upper bound, close where the motion is a sway.
 class BodyMass {
  public:
   /// `bile_density` in kg/m^3; the wall has wall_density.
