@@ -138,6 +138,10 @@ void BlockMatrix::add(const std::vector<double>& values) {
   for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += values[k];
 }
 
+void BlockMatrix::scale(double factor) {
+  for (double& value : values_) value *= factor;
+}
+
 void BlockMatrix::add_to_diagonal(double shift) {
   for (int j = 0; j < nodes(); ++j) add_to_diagonal(j, shift);
 }

@@ -24,6 +24,7 @@ class BlockMatrix {
   int nodes() const { return static_cast<int>(pattern_->block_start.size()) - 1; }
   int size() const { return 3 * nodes(); }
   void set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+  void scale(double factor);
   /// Starts from a constant part: `values` as entries() returned them from a matrix of the same pattern.
   void assign(const std::vector<double>& values) { values_ = values; }
 
