@@ -10,24 +10,15 @@ namespace {
 
 constexpr int harmonics = PotentialFlow::harmonics, linear = PotentialFlow::linear;
 
+using Harmonics = Eigen::Matrix<double, harmonics, 1>;
+
 /// Values and gradients of the solid harmonics at p.
-void sample_harmonics(const Vec3& p, std::array<double, harmonics>& h, std::array<Vec3, harmonics>& g) {
+void sample_harmonics(const Vec3& p, Harmonics& h, std::array<Vec3, harmonics>& g) {
   const double x = p.x(), y = p.y(), z = p.z();
-  h = {x,
-       y,
-       z,
-       x * y,
-       y * z,
-       z * x,
-       x * x - y * y,
-       2 * z * z - x * x - y * y,
-       z * (2 * z * z - 3 * x * x - 3 * y * y),
-       x * (4 * z * z - x * x - y * y),
-       y * (4 * z * z - x * x - y * y),
-       z * (x * x - y * y),
-       x * y * z,
-       x * (x * x - 3 * y * y),
-       y * (3 * x * x - y * y)};
+  h << x, y, z, x * y, y * z, z * x, x * x - y * y, 2 * z * z - x * x - y * y,
+      z * (2 * z * z - 3 * x * x - 3 * y * y), x * (4 * z * z - x * x - y * y),
+      y * (4 * z * z - x * x - y * y), z * (x * x - y * y), x * y * z, x * (x * x - 3 * y * y),
+      y * (3 * x * x - y * y);
   g = {Vec3(1, 0, 0),
        Vec3(0, 1, 0),
        Vec3(0, 0, 1),
@@ -64,17 +55,21 @@ PotentialFlow PotentialFlow::inside(const StencilTable& points, const std::vecto
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : at) centre += p / static_cast<double>(at.size());
   const double scale = 1.0 / length;
-  PotentialFlow out{Eigen::MatrixXd::Zero(x.size(), harmonics), Eigen::MatrixXd::Zero(harmonics, harmonics)};
-  std::array<double, harmonics> h;
+  Eigen::Matrix<double, harmonics, Eigen::Dynamic> flow =
+      Eigen::Matrix<double, harmonics, Eigen::Dynamic>::Zero(harmonics, x.size());
+  PotentialFlow out{{}, Eigen::MatrixXd::Zero(harmonics, harmonics)};
+  Harmonics h;
   std::array<Vec3, harmonics> g;
   for (int p = 0; p < points.rows(); ++p) {
     sample_harmonics(scale * (at[p] - centre), h, g);
-    for (int k = 0; k < harmonics; ++k) {
-      for (int e = points.begin[p]; e < points.begin[p + 1]; ++e)
-        out.flow.col(k).segment<3>(Eigen::Index{3} * points.node[e]) += points.value[e] * h[k] * areas[p];
-      for (int l = 0; l < harmonics; ++l) out.kinetic(k, l) += h[k] * scale * g[l].dot(areas[p]);
+    for (int e = points.begin[p]; e < points.begin[p + 1]; ++e) {
+      const Harmonics here = points.value[e] * h;
+      flow.middleCols<3>(Eigen::Index{3} * points.node[e]) += here * areas[p].transpose();
     }
+    const Harmonics scaled = h * scale;
+    for (int l = 0; l < harmonics; ++l) out.kinetic.col(l) += scaled * g[l].dot(areas[p]);
   }
+  out.flow = flow.transpose();
   return out;
 }
 

@@ -355,6 +355,14 @@ TEST(LiquidMass, ConstraintsAndTheirWeightHaveTheirDerivatives) {
   const Eigen::MatrixXd expected = test::difference_hessian(
       [&](const VecX& y) { return VecX(-liquid.constraint_gradients(y) * multipliers); }, x, 1e-6);
   EXPECT_LT(test::relative_error(test::dense(matrix), expected), 1e-6);
+  // The flow beside the centroid's: where it would go by itself, and what it costs to go elsewhere.
+  const auto flow = [&](const VecX& y) { return VecX(liquid.constraint_values(y).tail<FlowModes::count>()); };
+  const VecX off = flow(x), step = x - start.x - h * start.velocity;
+  EXPECT_LT(flow(x - step).norm(), 1e-12 * off.norm());
+  const double cost =
+      (0.5 * off.cwiseAbs2().cwiseQuotient(liquid.compliances().tail<FlowModes::count>())).sum();
+  EXPECT_NEAR(cost, liquid.kinetic_energy(step / h, Vec3::Zero()), 1e-12 * cost);
+  EXPECT_GT(cost, 0);
   // Without forces it flies on as it began.
   const LiquidMass still = pear.liquid({pear.rest, VecX::Zero(n), Vec3(0.1, 0, 0)}, h);
   EXPECT_LT((still.constraint_values(pear.rest).head<3>() + Vec3(0.1 * h, 0, 0)).norm(), 1e-15);
