@@ -19,20 +19,21 @@ struct Parting {
   Vec3 normal = Vec3::Zero();
 };
 
-/// The largest share found (0 to 1) such that for every share s up to it distance(s) >= keep * distance(0).
+/// The largest share found (0 to 1) such that for every share s up to it distance(s) >= keep * distance(0); with a
+/// thickness between the two, m, such that what is left beside it keeps that share.
 /// `parting(share)` is what parts the two once they have gone that share. A plane across the line between the nearest
 /// places parts the two: how far they stay on their sides of it is linear in the share, and the distance is at least
 /// that (conservative advancement). A share below 1 is not needlessly small: unless all steps are used up, what is
-/// left of the distance is at most keep * distance(0) + 1e-9 of the longest motion of a corner against another; and
-/// each step goes at least as far as the room (distance - keep * distance(0)) takes at that longest motion.
+/// left of the distance is at most that + 1e-9 of the longest motion of a corner against another; and
+/// each step goes at least as far as the room (the distance less that) takes at that longest motion.
 template <class PartingAt>
 double safe_share_of(const MovingCorners& one, const MovingCorners& other, double keep, int max_steps,
-                     const PartingAt& parting) {
+                     const PartingAt& parting, double thickness = 0) {
   constexpr double negligible = 1e-9;  // of the whole motion
   double share = 0, target = 0;
   for (int step = 0; step < max_steps; ++step) {
     const Parting now = parting(share);
-    if (step == 0) target = keep * now.distance;
+    if (step == 0) target = thickness + keep * (now.distance - thickness);
     if (!(now.distance > target)) return share;
     double advance = 1.0 - share;
     for (std::size_t i = 0; i < one.at.size(); ++i) {

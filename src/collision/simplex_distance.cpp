@@ -99,18 +99,20 @@ Eigen::Matrix<double, 12, 12> flat_hessian(std::span<const Vec3> corners, const 
 }
 
 double safe_share(const Vec3& p, const Vec3& motion, std::span<const Vec3> corners,
-                  std::span<const Vec3> corner_motions, double keep) {
+                  std::span<const Vec3> corner_motions, double keep, double thickness) {
   constexpr int max_steps = 256;
   std::array<Vec3, 3> now;
   return safe_share_of(
-      {{&p, 1}, {&motion, 1}}, {corners, corner_motions}, keep, max_steps, [&](double share) -> Parting {
+      {{&p, 1}, {&motion, 1}}, {corners, corner_motions}, keep, max_steps,
+      [&](double share) -> Parting {
         const Vec3 at = p + share * motion;
         Vec3 arm = at;
         for (std::size_t k = 0; k < corners.size(); ++k) now[k] = corners[k] + share * corner_motions[k];
         const NearestPoint nearest = nearest_point(at, std::span<const Vec3>(now.data(), corners.size()));
         for (std::size_t k = 0; k < corners.size(); ++k) arm -= nearest.weight[k] * now[k];
         return {nearest.distance, arm / nearest.distance};
-      });
+      },
+      thickness);
 }
 
 }  // namespace calot

@@ -35,8 +35,9 @@ Eigen::Matrix<double, 12, 12> flat_hessian(std::span<const Vec3> corners, const 
 
 /// The largest share (0 to 1, to 1e-9 of the motion) of the straight motions of p and of the corners such that for
 /// every share s up to it distance(s) >= keep * distance(0), 0 < keep < 1: conservative advancement, as
-/// safe_share() of a shape. Touching at the start, or a value that is not finite, gives 0.
+/// safe_share() of a shape. Touching at the start, or a value that is not finite, gives 0. With a thickness, m, the sum
+/// of the radii of a ball about p and of one swept over the simplex, the gap keeps its share: the distance less that.
 double safe_share(const Vec3& p, const Vec3& motion, std::span<const Vec3> corners,
-                  std::span<const Vec3> corner_motions, double keep);
+                  std::span<const Vec3> corner_motions, double keep, double thickness = 0);
 
 }  // namespace calot

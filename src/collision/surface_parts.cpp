@@ -47,6 +47,17 @@ class Sum {
   std::vector<SurfacePart> parts_;
 };
 
+/// Counts each corner so that with what meets there it comes to one.
+void add_corners(std::vector<std::pair<int, int>>& corners, Sum& sum) {
+  std::sort(corners.begin(), corners.end());
+  for (std::size_t first = 0, last = 0; first < corners.size(); first = last) {
+    int met = 0;
+    for (; last < corners.size() && corners[last].first == corners[first].first; ++last)
+      met += corners[last].second;
+    sum.add(&corners[first].first, 1, 1 - met);
+  }
+}
+
 }  // namespace
 
 std::vector<SurfacePart> surface_parts(const Vec3& p, const std::vector<Triangle>& faces,
@@ -69,13 +80,19 @@ std::vector<SurfacePart> surface_parts(const Vec3& p, const std::vector<Triangle
     sum.add(edges[first].data(), 2, times);
     for (int corner : edges[first]) corners.emplace_back(corner, times);
   }
-  std::sort(corners.begin(), corners.end());
-  for (std::size_t first = 0, last = 0; first < corners.size(); first = last) {
-    int met = 0;
-    for (; last < corners.size() && corners[last].first == corners[first].first; ++last)
-      met += corners[last].second;
-    sum.add(&corners[first].first, 1, 1 - met);
+  add_corners(corners, sum);
+  return sum.merged();
+}
+
+std::vector<SurfacePart> line_parts(const Vec3& p, const std::vector<std::array<int, 2>>& segments,
+                                    const std::vector<Vec3>& points, double range) {
+  Sum sum(p, points, range);
+  std::vector<std::pair<int, int>> corners;
+  for (const std::array<int, 2>& segment : segments) {
+    sum.add(segment.data(), 2, 1);
+    for (int corner : segment) corners.emplace_back(corner, 1);
   }
+  add_corners(corners, sum);
   return sum.merged();
 }
 

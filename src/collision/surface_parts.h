@@ -1,6 +1,6 @@
 #pragma once
-// A triangulated surface near a point as corners, edges and faces, so that a potential of their distances neither
-// depends on how the surface is cut into triangles nor has a kink.
+// A triangulated surface or a line of segments near a point as corners, edges and faces, so that a potential of their
+// distances neither depends on how it is cut into triangles or segments nor has a kink.
 
 #include <vector>
 
@@ -23,5 +23,10 @@ struct SurfacePart {
 /// `faces`: all triangles nearer to p than `range`, corners increasing; `points`: the surface's, m. Ordered by corners.
 std::vector<SurfacePart> surface_parts(const Vec3& p, const std::vector<Triangle>& faces,
                                        const std::vector<Vec3>& points, double range);
+
+/// The same of lines: every segment counts once, every corner but the ends of lines so often less as segments meet at
+/// it. `segments`: all that are nearer to p than `range`, corners increasing.
+std::vector<SurfacePart> line_parts(const Vec3& p, const std::vector<std::array<int, 2>>& segments,
+                                    const std::vector<Vec3>& points, double range);
 
 }  // namespace calot
