@@ -8,6 +8,9 @@
 // one to the next. Both skins' points are kept off the other, each for half its area. A force and what answers it lie on
 // one line, and share out by the weights of the nearest point: they sum to no force and no torque.
 //
+// A line whose section gives way has for its radius what is left of it when it is pressed flat, and a potential that
+// begins as much further out: what it costs is the caller's, by the gap.
+//
 // What no point sees is how far two lines, or a line and a surface, can approach each other between a line's points.
 // There the nearest place lies across the segment, and its next point, half a spacing h along it, is as far off as
 // sqrt(distance^2 + h^2 / 4): so where the points keep their gaps
