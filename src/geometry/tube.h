@@ -18,8 +18,8 @@ struct TubeSection {
 };
 
 /// Directions across a line at each of its points: they turn with the tangent and not about it (rotation minimizing
-/// frames by double reflection, Wang et al. 2008, ACM Trans. Graph. 27(1):2, doi 10.1145/1330511.1330513);
-/// the tangents make it of second order. No curvature is asked for: straight lines and turns of the bend are as good as any.
+/// frames by double reflection, Wang et al. 2008, ACM Trans. Graph. 27(1):2, doi 10.1145/1330511.1330513); the tangents
+/// make it of second order. No curvature is asked for: straight lines and turns of the bend are as good as any.
 struct LineFrame {
   Vec3 tangent, side;  ///< unit, across each other
   Vec3 up() const { return tangent.cross(side); }
