@@ -58,8 +58,31 @@ const std::vector<Landmark>& landmark_rows() {
       {"free_side", "the middle of the body on its free (peritoneal) side", 0.5, -1},
       {"liver_side", "the middle of the body on the liver's side", 0.5, 1},
       {"body", "another name of free_side", 0.5, -1},
-      {"bed", "another name of liver_side", 0.5, 1}};
+      {"bed", "another name of liver_side", 0.5, 1},
+      {"start", "of a tube", 0, 0, Landmark::Of::tube},
+      {"middle", "of a tube", 0.5, 0, Landmark::Of::tube},
+      {"end", "of a tube", 1, 0, Landmark::Of::tube},
+      {"centre", "of a rigid thing", 0.5, 0, Landmark::Of::rigid}};
   return rows;
+}
+
+const std::vector<std::string>& shape_names() {
+  static const std::vector<std::string> names = {"pear", "sphere", "obj", "tube", "rigid"};
+  return names;
+}
+
+const std::string& shape_name(const OrganShape& shape) { return shape_names()[shape.index()]; }
+
+bool has_landmark(const OrganShape& shape, const Landmark& landmark) {
+  if (is_hollow(shape)) return landmark.of == Landmark::Of::hollow;
+  return landmark.of == (std::holds_alternative<TubeShape>(shape) ? Landmark::Of::tube : Landmark::Of::rigid);
+}
+
+std::vector<std::string> landmarks_of(const OrganShape& shape) {
+  std::vector<std::string> names;
+  for (const Landmark& landmark : landmark_rows())
+    if (has_landmark(shape, landmark)) names.emplace_back(landmark.name);
+  return names;
 }
 
 std::vector<std::string> organ_landmarks() {
@@ -71,7 +94,8 @@ std::vector<std::string> organ_landmarks() {
 std::vector<std::string> landmark_names(const std::vector<OrganDefinition>& organs) {
   std::vector<std::string> names;
   for (const OrganDefinition& organ : organs)
-    for (const Landmark& landmark : landmark_rows()) names.push_back(organ.name + "." + landmark.name);
+    for (const std::string& landmark : landmarks_of(organ.shape))
+      names.push_back(organ.name + "." + landmark);
   return names;
 }
 

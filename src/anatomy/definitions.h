@@ -36,7 +36,31 @@ struct MeshFile {
   bool operator==(const MeshFile&) const = default;
 };
 
-using OrganShape = std::variant<PearShape, SphereShape, MeshFile>;
+/// A duct or a vessel: a tube along a line; a solid thread where its wall is as thick as its radius.
+struct TubeShape {
+  std::vector<Vec3> points;  ///< m, of its middle at rest, from its start to its end
+  double radius = 2.5e-3;    ///< m, outer; a common duct has 2 to 3 mm (c)
+  double end_radius = 0;     ///< m, at its end; 0: as at its start
+  int nodes = 11;            ///< control nodes of the middle line
+  double pressure = 0;       ///< Pa, gauge, of what it carries
+  bool operator==(const TubeShape&) const = default;
+};
+
+/// A rigid thing: a box with round edges, a ball where it has no size.
+struct RigidShape {
+  Vec3 size = Vec3::Zero();    ///< m, edges of the box without its rounding, along x, y and z
+  double rounding = 5e-3;      ///< m, radius of the edges
+  Vec3 centre = Vec3::Zero();  ///< m
+  double density = 1500;       ///< kg/m^3; a gallstone sinks in bile (d)
+  bool operator==(const RigidShape&) const = default;
+};
+
+using OrganShape = std::variant<PearShape, SphereShape, MeshFile, TubeShape, RigidShape>;
+/// Of its own kind, "pear", "sphere", "obj", "tube", "rigid".
+const std::string& shape_name(const OrganShape& shape);
+const std::vector<std::string>& shape_names();
+/// A closed shell with bile; else it has neither neck nor fundus, and no filling that is kept.
+inline bool is_hollow(const OrganShape& shape) { return shape.index() <= 2; }
 
 /// Two families of fibres at `angle` to either side of the organ's axis (neck to fundus), tight only when
 /// stretched, fading towards the poles: fem/shell.h, FibreLayout. The defaults are the human gallbladder's: E
@@ -88,6 +112,28 @@ struct OrganDefinition {
   std::string compared_with;  ///< another organ of the same shape and posture, see session/skin_difference.h
 };
 
+/// What ties a place on one body to one on another, which follows it: where a duct grows out of an organ or enters
+/// another duct, its end keeps its place and direction there.
+struct JointDefinition {
+  std::string from, to;    ///< "organ.landmark"
+  double radius = 4e-3;    ///< m, of what of `to` the end holds on to, and of the end that is held
+  double stiffness = 2e3;  ///< N/m, of all of it (d)
+};
+
+enum class GroundType { plane, capsule, box };
+
+/// What stays, and is touched: the liver before there is one, a bone, a table.
+struct GroundDefinition {
+  std::string name = "ground";
+  GroundType type = GroundType::plane;
+  Vec3 point = Vec3::Zero();    ///< m, on the plane; a capsule's beginning; a box's centre
+  Vec3 normal = Vec3::UnitZ();  ///< unit, of the plane, out of what is solid
+  Vec3 to = Vec3::Zero();       ///< m, a capsule's end
+  Vec3 size = Vec3::Zero();     ///< m, of a box along x, y and z, without its rounding
+  double radius = 5e-3;         ///< m, of a capsule, and of a box' edges
+  double friction = 0;          ///< Coulomb's, of what touches it (d); the rest state is found without
+};
+
 struct SupportDefinition {
   Vec3 point = Vec3::Zero();    ///< m
   Vec3 normal = Vec3::UnitZ();  ///< unit
@@ -96,11 +142,13 @@ struct SupportDefinition {
 
 /// Control nodes of all organs together: more take over half a minute to come to rest.
 inline constexpr int most_nodes = 1000;
-inline constexpr std::size_t most_organs = 8;
+inline constexpr std::size_t most_organs = 24;
 inline constexpr std::size_t most_instruments = 16;
 
 struct AnatomyDefinition {
   std::vector<OrganDefinition> organs;
+  std::vector<JointDefinition> joints;
+  std::vector<GroundDefinition> ground;
   std::optional<SupportDefinition> support;
   double table_head_up = 0.2617993877991494;     ///< rad; reverse Trendelenburg 15 deg (c)
   double table_left_down = 0.17453292519943295;  ///< rad; left side down 10 deg (d)
@@ -197,14 +245,19 @@ struct SceneDefinition {
 /// umbilical, epigastric, right_subcostal, right_lateral, left_upper, right_flank, subcostal (d).
 std::vector<PortDefinition> default_ports();
 
-/// A place on every organ: on the skin next to a point of the box around it.
+/// A place on every organ of its kind: of hollow ones on the skin next to a point of the box around it, of tubes along
+/// their middle; rigid things have their centre.
 struct Landmark {
   const char* name;
   const char* doc;
-  double along;  ///< share of the way from the neck's end to the fundus' end
+  double along;  ///< share of the way from the neck's end to the fundus' end, or from start to end
   double side;   ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side
+  enum class Of { hollow, tube, rigid } of = Of::hollow;
 };
 const std::vector<Landmark>& landmark_rows();
+bool has_landmark(const OrganShape& shape, const Landmark& landmark);
+std::vector<std::string> landmarks_of(const OrganShape& shape);
+/// Of all kinds.
 std::vector<std::string> organ_landmarks();
 /// Every "organ.landmark" of a scene.
 std::vector<std::string> landmark_names(const std::vector<OrganDefinition>& organs);

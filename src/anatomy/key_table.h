@@ -38,8 +38,8 @@ struct EnumField {
 };
 
 /// The member that a key is kept in; none for keys that need more than an assignment.
-using KeyTarget = std::variant<std::monostate, double*, std::optional<double>*, int*, bool*, std::string*, Vec3*,
-                           EnumField>;
+using KeyTarget = std::variant<std::monostate, double*, std::optional<double>*, int*, bool*, std::string*,
+                               Vec3*, EnumField>;
 
 struct Key {
   std::string name;

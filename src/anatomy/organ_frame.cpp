@@ -3,6 +3,11 @@
 namespace calot {
 
 Pose organ_frame(const OrganDefinition& organ) {
+  // What has no axis is laid out in the patient's own directions.
+  if (const auto* tube = std::get_if<TubeShape>(&organ.shape))
+    return Pose(Eigen::Translation3d(tube->points.front()));
+  if (const auto* rigid = std::get_if<RigidShape>(&organ.shape))
+    return Pose(Eigen::Translation3d(rigid->centre));
   const Vec3 z = (organ.fundus - organ.neck).normalized();
   Vec3 x = organ.liver_side - z * z.dot(organ.liver_side);
   // A liver side along the axis says nothing: any direction across it will do.

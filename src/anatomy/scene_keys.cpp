@@ -34,6 +34,8 @@ std::vector<KeyTable> field_tables() {
           {choice("base", anatomy_names(), "", "named anatomy to start from; calot.anatomy(name) sets it"),
            list("organs", "organ",
                 "the organs; with a base, the first overrides the base's first, and so on"),
+           list("joints", "joint", "what ties organs to each other: where a duct grows out of a gallbladder"),
+           list("ground", "ground", "shapes that stay and are touched"),
            table("support", &Anatomy::support, "support", "a plane that carries the organs"),
            number("table_head_up", &Anatomy::table_head_up, quantity::angle, -60 * deg, 60 * deg,
                   "a tilt of an operating table", "reverse Trendelenburg tilt"),
@@ -47,6 +49,32 @@ std::vector<KeyTable> field_tables() {
            number("friction", &SupportDefinition::friction, quantity::number, 0, 1,
                   "a coefficient of friction of a support",
                   "coefficient of friction of the skin on it; 0 to 0.3 for wet tissue")}),
+      keys_of<JointDefinition>(
+          "joint",
+          "Ties a place on one organ to one on another: its end keeps its place and direction there.",
+          {required(text("from", &JointDefinition::from, "\"organ.landmark\", the end that is tied")),
+           required(text("to", &JointDefinition::to, "\"organ.landmark\", what it is tied to")),
+           number("radius", &JointDefinition::radius, quantity::length, 0.5 * mm, 50 * mm, "a joint's radius",
+                  "of what is held at either side"),
+           number("stiffness", &JointDefinition::stiffness, quantity::number, 1, 1e6, "a joint's stiffness",
+                  "of all of it, N/m")}),
+      keys_of<GroundDefinition>(
+          "ground", "A shape that stays and is touched.",
+          {text("name", &GroundDefinition::name, "its name, unique"),
+           choice(
+               "type", &GroundDefinition::type, {"plane", "capsule", "box"},
+               "a plane (point, normal), a capsule (point, to, radius), a box with round edges (point, size, "
+               "radius)"),
+           place("point", &GroundDefinition::point, abdomen_reach, "a place in the abdomen",
+                 "on the plane, a capsule's beginning, a box' centre"),
+           direction("normal", &GroundDefinition::normal, "the plane's unit normal, out of the solid"),
+           place("to", &GroundDefinition::to, abdomen_reach, "a place in the abdomen", "a capsule's end"),
+           place("size", &GroundDefinition::size, abdomen_reach, "a size in the abdomen",
+                 "a box' edges along x, y and z, without its rounding"),
+           number("radius", &GroundDefinition::radius, quantity::length, 0.5 * mm, 250 * mm,
+                  "a ground's radius", "of a capsule, and of a box' edges"),
+           number("friction", &GroundDefinition::friction, quantity::number, 0, 1,
+                  "a coefficient of friction of ground", "coefficient of friction of what touches it")}),
       keys_of<Instrument>(
           "instrument", "An instrument through a port.",
           {choice("type", &Instrument::type, instrument_type_names(),
@@ -108,9 +136,13 @@ std::vector<KeyTable> organ_tables() {
   using Bile = BileDefinition;
   return {
       keys_of<Organ>(
-          "organ", "A hollow organ. In calot.anatomy's overrides, only what differs.",
+          "organ",
+          "A hollow organ, a duct or vessel, or a rigid thing. In calot.anatomy's overrides, only what "
+          "differs.",
           {text("name", &Organ::name, "its name, unique; landmarks are written \"gallbladder.fundus\""),
-           table("shape", "shape", "its shape at rest: type \"pear\", \"sphere\" or \"obj\" with their keys"),
+           table("shape", "shape",
+                 "its shape at rest: type \"pear\", \"sphere\", \"obj\", \"tube\" or \"rigid\" with their "
+                 "keys"),
            count("nodes", &Organ::nodes, 12, most_nodes, "a number of control nodes",
                  "control nodes; more resolve finer folds and cost more"),
            place("neck", &Organ::neck, abdomen_reach, "a place in the abdomen",
@@ -175,7 +207,7 @@ std::vector<KeyTable> organ_tables() {
 
 std::vector<KeyTable> shape_tables() {
   const auto type = [](const std::string& name) {
-    return choice("type", {"pear", "sphere", "obj"}, "\"pear\"", "which shape: this one is \"" + name + "\"");
+    return choice("type", shape_names(), "\"pear\"", "which shape: this one is \"" + name + "\"");
   };
   return {
       keys_of<PearShape>("shape_pear", "A gallbladder: round fundus, tapering body, slim neck.",
@@ -197,6 +229,28 @@ std::vector<KeyTable> shape_tables() {
            required(text("path", "", "file below the scenario's folder or the project's assets folder")),
            number("scale", &MeshFile::scale, quantity::number, 1e-9, 1e3,
                   "a scale from a mesh file to metres", "the file's coordinates times this are metres")}),
+      keys_of<TubeShape>(
+          "shape_tube",
+          "A duct or a vessel: a tube along a line; solid where its wall is as thick as its radius.",
+          {type("tube"),
+           required(
+               list("points", "point", "its middle at rest, from its start to its end: two points or more")),
+           number("radius", &TubeShape::radius, quantity::length, 0.3 * mm, 20 * mm, "a duct's radius",
+                  "outer radius"),
+           number("end_radius", &TubeShape::end_radius, quantity::length, 0, 20 * mm, "a duct's radius",
+                  "outer radius at its end; 0: as at its start"),
+           count("nodes", &TubeShape::nodes, 5, 60, "a number of control nodes", "of its middle line"),
+           number("pressure", &TubeShape::pressure, quantity::pressure, -10 * kPa, 40 * kPa,
+                  "a pressure in a duct", "gauge pressure of what it carries")}),
+      keys_of<RigidShape>(
+          "shape_rigid", "A rigid thing, such as a stone: a box with round edges, or a ball.",
+          {type("rigid"),
+           place("size", &RigidShape::size, 200 * mm, "a size of a rigid thing",
+                 "edges of the box without its rounding; { 0, 0, 0 }: a ball"),
+           number("rounding", &RigidShape::rounding, quantity::length, 0.5 * mm, 50 * mm,
+                  "a rigid thing's rounding", "radius of its edges, or of the ball"),
+           place("centre", &RigidShape::centre, abdomen_reach, "a place in the abdomen", "where it is"),
+           number("density", &RigidShape::density, quantity::density, 100, 20000, "a density", "kg/m^3")}),
   };
 }
 

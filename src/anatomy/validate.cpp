@@ -45,11 +45,36 @@ void check_pear(FieldCheck& check, const std::string& path, const PearShape& pea
                   "make it narrower, or use a sphere");
 }
 
+void check_tube(FieldCheck& check, const std::string& path, const TubeShape& tube) {
+  check_limits(check, path, "shape_tube", tube);
+  double length = 0;
+  for (std::size_t i = 0; i < tube.points.size(); ++i) {
+    const std::string at = fmt::format("{}.points[{}]", path, i + 1);
+    if (!check.place_within(at, tube.points[i], abdomen_reach, "a place in the abdomen")) return;
+    if (i > 0) length += (tube.points[i] - tube.points[i - 1]).norm();
+  }
+  if (tube.points.size() < 2) {
+    check.problem(path + ".points", fmt::format("a tube along {} points", tube.points.size()),
+                  "give its start and its end at least");
+  } else if (check.is_fine(path + ".radius") && length < 2 * tube.radius) {
+    check.problem(path + ".points",
+                  fmt::format("a tube {:.3g} mm long is shorter than it is thick ({:.3g} mm)", length / mm,
+                              2 * tube.radius / mm),
+                  "make it longer or thinner");
+  }
+}
+
 void check_shape(FieldCheck& check, const std::string& path, const OrganShape& shape) {
   if (const auto* pear = std::get_if<PearShape>(&shape)) {
     check_pear(check, path, *pear);
   } else if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
     check_limits(check, path, "shape_sphere", *sphere);
+  } else if (const auto* tube = std::get_if<TubeShape>(&shape)) {
+    check_tube(check, path, *tube);
+  } else if (const auto* rigid = std::get_if<RigidShape>(&shape)) {
+    check_limits(check, path, "shape_rigid", *rigid);
+    if (rigid->size.minCoeff() < 0)
+      check.problem(path + ".size", "a box has an edge below zero", "give edges of zero or more");
   } else {
     const auto& file = std::get<MeshFile>(shape);
     if (file.path.empty())
@@ -97,10 +122,16 @@ void check_axis(FieldCheck& check, const std::string& path, const OrganDefinitio
 }
 
 void check_organ(FieldCheck& check, const std::string& path, const OrganDefinition& organ) {
-  const bool has_own_nodes = std::holds_alternative<MeshFile>(organ.shape);
+  const bool has_own_nodes = organ.shape.index() >= 2;
   check_limits(check, path, "organ", organ, has_own_nodes ? "nodes" : "");
   check_shape(check, path + ".shape", organ.shape);
-  check_axis(check, path, organ);
+  if (is_hollow(organ.shape)) check_axis(check, path, organ);
+  if (!is_hollow(organ.shape) && (organ.bile.fill_volume || organ.bile.fill_pressure))
+    check.problem(path + ".bile", fmt::format("a {} keeps no filling", shape_name(organ.shape)),
+                  "leave fill_volume and fill_pressure out; a tube has a pressure");
+  if (std::holds_alternative<RigidShape>(organ.shape) && !organ.held.empty())
+    check.problem(path + ".held", "a rigid thing is not held",
+                  "let something support it, or tie it by a joint");
   check_wall(check, path + ".wall", organ.wall, radius_of(organ.shape));
   check_bile(check, path + ".bile", organ.bile);
   UniqueNames names(check, "held region");
@@ -108,7 +139,7 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
     const HeldRegion& held = organ.held[i];
     const std::string at = fmt::format("{}.held[{}]", path, i + 1);
     names.add(at + ".name", held.name);
-    check.known(at + ".landmark", held.landmark, organ_landmarks(), "landmark");
+    check.known(at + ".landmark", held.landmark, landmarks_of(organ.shape), "landmark");
     check_limits(check, at, "held", held);
   }
 }
@@ -134,12 +165,45 @@ void check_compared(FieldCheck& check, const std::string& path, const OrganDefin
   }
 }
 
+/// As far as the definition tells.
+int nodes_of(const OrganDefinition& organ) {
+  if (const auto* tube = std::get_if<TubeShape>(&organ.shape)) return tube->nodes;
+  if (std::holds_alternative<RigidShape>(organ.shape)) return 4;
+  return std::holds_alternative<MeshFile>(organ.shape) || organ.nodes > most_nodes ? 0 : organ.nodes;
+}
+
+void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
+  const std::vector<std::string> places = landmark_names(anatomy.organs);
+  for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
+    const JointDefinition& joint = anatomy.joints[i];
+    const std::string at = fmt::format("scene.anatomy.joints[{}]", i + 1);
+    const bool known = check.known(at + ".from", joint.from, places, "place on an organ") &
+                       check.known(at + ".to", joint.to, places, "place on an organ");
+    check_limits(check, at, "joint", joint);
+    if (known && joint.from.substr(0, joint.from.find('.')) == joint.to.substr(0, joint.to.find('.')))
+      check.problem(at + ".to", "an organ is tied to itself", "name a place on another organ");
+  }
+}
+
+void check_ground(FieldCheck& check, const AnatomyDefinition& anatomy) {
+  UniqueNames names(check, "ground");
+  for (std::size_t i = 0; i < anatomy.ground.size(); ++i) {
+    const GroundDefinition& ground = anatomy.ground[i];
+    const std::string at = fmt::format("scene.anatomy.ground[{}]", i + 1);
+    names.add(at + ".name", ground.name);
+    check_limits(check, at, "ground", ground);
+    if (ground.type == GroundType::plane)
+      check.unit_direction(at + ".normal", ground.normal, "a unit normal");
+    if (ground.size.minCoeff() < 0)
+      check.problem(at + ".size", "a box has an edge below zero", "give edges of zero or more");
+  }
+}
+
 void check_size(FieldCheck& check, const std::string& path, const std::vector<OrganDefinition>& organs) {
   if (organs.size() > most_organs)
     check.problem(path, fmt::format("{} organs", organs.size()), fmt::format("give at most {}", most_organs));
   double nodes = 0;
-  for (const OrganDefinition& organ : organs)
-    if (!std::holds_alternative<MeshFile>(organ.shape) && organ.nodes <= most_nodes) nodes += organ.nodes;
+  for (const OrganDefinition& organ : organs) nodes += nodes_of(organ);
   if (nodes > most_nodes)
     check.problem(path, fmt::format("the organs have {:g} control nodes together", nodes),
                   fmt::format("give them at most {}", most_nodes));
@@ -159,6 +223,8 @@ void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
     check_organ(check, at, anatomy.organs[i]);
     check_compared(check, at + ".compared_with", anatomy.organs[i], anatomy.organs);
   }
+  check_joints(check, anatomy);
+  check_ground(check, anatomy);
   if (anatomy.support)
     check.unit_direction(path + ".support.normal", anatomy.support->normal, "a unit normal");
 }

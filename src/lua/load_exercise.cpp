@@ -13,7 +13,7 @@
 #include "lua/steps_script.h"
 #include "script/lua_headers.h"
 #include "script/source_map.h"
-#include "sim/organ.h"
+#include "sim/body_kinds.h"
 
 namespace calot {
 namespace {

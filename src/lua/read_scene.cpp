@@ -51,7 +51,21 @@ class SceneReader {
         read_organ(anatomy.organs[i], organs->items[i], indexed(path + ".organs", i));
       }
     }
+    read_list(reader, "joints", "joint", anatomy.joints);
+    read_list(reader, "ground", "ground", anatomy.ground);
     return anatomy;
+  }
+
+  /// Tables of one kind, which replace those that there are.
+  template <class T>
+  void read_list(const TableReader& reader, const std::string& key, const std::string& of,
+                 std::vector<T>& out) {
+    const Value* list = reader.take(key);
+    if (list == nullptr) return;
+    out.clear();
+    for (std::size_t i = 0; i < list->items.size(); ++i)
+      TableReader(check_, &list->items[i], indexed(reader.path_of(key), i), api_table(of))
+          .read(out.emplace_back());
   }
 
   void read_organ(OrganDefinition& organ, const Value& value, const std::string& path) {
@@ -84,9 +98,7 @@ class SceneReader {
 
   /// Keeps the shape there was where the type is the same or left out: an override gives only what differs.
   void read_shape(OrganShape& shape, const Value& value, const std::string& path) {
-    const std::string present = std::holds_alternative<PearShape>(shape)     ? "pear"
-                                : std::holds_alternative<SphereShape>(shape) ? "sphere"
-                                                                             : "obj";
+    const std::string present = shape_name(shape);
     const Value* type = value.field("type");
     std::string wanted = type != nullptr && type->is(Value::Kind::text) ? type->text : present;
     const std::vector<std::string>& types = api_table("shape_pear").find("type")->choices;
@@ -101,6 +113,12 @@ class SceneReader {
     } else if (wanted == "sphere") {
       if (wanted != present) shape = SphereShape{};
       reader.read(std::get<SphereShape>(shape));
+    } else if (wanted == "tube") {
+      if (wanted != present) shape = TubeShape{};
+      read_tube(reader, std::get<TubeShape>(shape));
+    } else if (wanted == "rigid") {
+      if (wanted != present) shape = RigidShape{};
+      reader.read(std::get<RigidShape>(shape));
     } else {
       if (wanted != present) shape = MeshFile{};
       MeshFile& mesh = std::get<MeshFile>(shape);
@@ -109,6 +127,17 @@ class SceneReader {
       reader.take("path", file);
       if (!file.empty()) mesh.path = find_mesh(file, path + ".path");
     }
+  }
+
+  void read_tube(const TableReader& reader, TubeShape& tube) {
+    reader.read(tube);
+    const Value* points = reader.take("points");
+    if (points == nullptr) return;
+    tube.points.clear();
+    for (std::size_t i = 0; i < points->items.size(); ++i)
+      if (const std::optional<Vec3> at =
+              read_point(check_, points->items[i], indexed(reader.path_of("points"), i)))
+        tube.points.push_back(*at);
   }
 
   std::string find_mesh(const std::string& file, const std::string& path) {

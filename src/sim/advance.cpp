@@ -51,7 +51,7 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
                  const std::vector<ContactPair>& pairs, const Poses& from, const Poses& to, bool& loaded) {
   VecX load = VecX::Zero(organ.state.x.size());
   ContactLoad pressed(organ.body->skin(), load);
-  std::vector<std::optional<Pose>> motions;  // of the shapes; the support stays
+  std::vector<std::optional<Pose>> motions;  // of the shapes; the ground stays
   for (std::size_t shape = 0; shape < now.shapes.size(); ++shape) {
     const std::size_t tool = shape / shapes_per_tool;
     motions.emplace_back();
@@ -85,7 +85,7 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
   return load;
 }
 
-/// How the shapes move with the tools, by a share of that. The support stays.
+/// How the shapes move with the tools, by a share of that. The ground stays.
 class ShapePaths {
  public:
   ShapePaths(const Field& field, const Poses& from, const Poses& to) : field_(field), from_(from), to_(to) {

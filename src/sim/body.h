@@ -114,6 +114,8 @@ class Body {
   /// Nodes that each patch of skin depends on. As the weights are not negative it lies in the box of the coarse ones
   /// among them, widened by half of each detail's length, whatever the state.
   virtual const std::vector<std::vector<int>>& face_nodes() const = 0;
+  /// How far the skin may be outside that box, m.
+  virtual double beyond_nodes() const { return 0; }
   /// Triangles of each patch, which follow each other: those of the first patch first.
   int triangles_each() const { return static_cast<int>(skin().triangles.size() / face_nodes().size()); }
   /// Bound on how far any surface point moves when the nodes move by `dx`, m.

@@ -25,10 +25,10 @@ std::vector<Eigen::AlignedBox3d> face_boxes(const Body& body, const VecX& x) {
   return boxes;
 }
 
-/// Largest radius of the surface around the skin, m.
+/// How far the surface may be outside the boxes of its faces' nodes, m.
 double thickest(const Body& body) {
   const std::vector<double>& radii = body.skin_radii();
-  return radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
+  return body.beyond_nodes() + (radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end()));
 }
 
 /// Adds the pairs with a shape that are nearer than `reach`.

@@ -8,6 +8,20 @@ std::vector<InstrumentPose> present_poses(const Field& field) {
   return poses;
 }
 
+std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
+  std::vector<Ground> out;
+  for (const GroundDefinition& g : anatomy.ground) {
+    Shape shape = Plane{g.point, g.normal.normalized()};
+    if (g.type == GroundType::capsule) shape = Capsule{g.point, g.to, g.radius};
+    if (g.type == GroundType::box)
+      shape = RoundedBox{Pose(Eigen::Translation3d(g.point)), 0.5 * g.size, g.radius};
+    out.push_back({g.name, shape, g.friction});
+  }
+  if (const std::optional<SupportDefinition>& support = anatomy.support)
+    out.push_back({"support", Plane{support->point, support->normal.normalized()}, support->friction});
+  return out;
+}
+
 void Field::add(RestedOrgan made) {
   organs.push_back(std::move(made.organ));
   group.forget_bodies();

@@ -40,12 +40,18 @@ struct Group {
   }
 };
 
+/// A shape that stays.
+struct Ground {
+  std::string name;
+  Shape shape;
+  double friction = 0;  ///< Coulomb's
+};
+
 struct Field {
   std::vector<Organ> organs;
   Group group;
   std::vector<Tool> tools;
-  std::optional<Plane> support;
-  double support_friction = 0;  ///< Coulomb's
+  std::vector<Ground> ground;
   Barrier barrier = contact_barrier;
   double tolerance = 1e-6;
   std::optional<ViewedPlace> viewed;
@@ -56,6 +62,8 @@ struct Field {
 };
 
 std::vector<InstrumentPose> present_poses(const Field& field);
+/// The anatomy's ground, its support last.
+std::vector<Ground> ground_of(const AnatomyDefinition& anatomy);
 
 /// All that moves of the organs, cheap to copy: what failed is undone by it.
 struct GroupSnapshot {

@@ -75,28 +75,11 @@ struct OrganSnapshot {
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);
 
-/// What bringing all organs of a scene to rest may take, used up as they are.
-struct FillingLimits {
-  const std::atomic<bool>* stop = nullptr;  ///< where it is true the filling ends; may be null
-  /// Newton iterations times nodes; the most that half a minute is sure to do.
-  std::int64_t node_iterations = 200'000;
-};
-
 /// An organ that has come to rest alone, and what was kept of its last solve.
 struct RestedOrgan {
   Organ organ;
   NewtonWorkspace work;
 };
-
-/// Builds the organ, which structural extensions of up to `levels` may refine, and brings it to rest under its
-/// bile (and on `field`). Failures: scenario (a mesh that
-/// cannot be used), simulation (no rest state found), resource or interrupted (`limits`, where there are any); see
-/// at_organ.
-Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
-                               double tolerance, int levels = 0, FillingLimits* limits = nullptr);
-
-/// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
-std::vector<Problem> mesh_problems(const SceneDefinition& scene);
 
 /// A failure of make_organ, whose problems' paths start at the organ (".bile"), as one of the scene's
 /// organ of that index.

@@ -66,7 +66,7 @@ Result<RodBody> RodBody::create(const Setup& setup) {
   std::vector<std::vector<int>> cliques = body.rod_.cliques();
   cliques.insert(cliques.end(), body.face_nodes_.begin(), body.face_nodes_.end());
   body.constant_ = BlockMatrix(nodes, cliques);
-  if (setup.foundation) body.lay_bed();
+  body.lay_bed(line.value());
   body.weigh();
   return body;
 }
@@ -107,12 +107,18 @@ void RodBody::lay_skin(const Centreline& line) {
   }
 }
 
-void RodBody::lay_bed() {
+void RodBody::lay_bed(const Centreline& line) {
+  std::vector<double> parameters;
+  for (const HeldPart& held : setup_.held) parameters.push_back(held.share * line.spans());
+  const StencilTable middles = line.stencils(parameters);
   const StencilTable& table = rod_.stencils();
   for (int row = 0; row < table.rows(); ++row) {
     const Vec3 at = blend(table, table.value, row, rest_);
     const double around = 2 * pi * radius_at(shares_[row]) * rod_.point_lengths()[row];
-    const double stiffness = setup_.foundation(at) * around;
+    double stiffness = 0;
+    for (std::size_t k = 0; k < setup_.held.size(); ++k)
+      if ((at - blend(middles, middles.value, static_cast<int>(k), rest_)).norm() < setup_.held[k].radius)
+        stiffness += setup_.held[k].stiffness * around;
     if (stiffness <= 0) continue;
     bed_.row.push_back(row);
     bed_.target.push_back(at);

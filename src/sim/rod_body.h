@@ -1,7 +1,6 @@
 #pragma once
 // A duct or a vessel as a body: a rod on its centreline, touched as the tube around it and drawn as one.
 
-#include <functional>
 #include <optional>
 
 #include "fem/links.h"
@@ -16,6 +15,12 @@ class Centreline;
 
 class RodBody : public Body {
  public:
+  /// An elastic foundation around a place on it.
+  struct HeldPart {
+    double share = 0;      ///< of the way, 0 to 1
+    double radius = 0;     ///< m, of what is held
+    double stiffness = 0;  ///< N/m per m^2 of skin
+  };
   struct Setup {
     std::string name = "duct";
     std::vector<Vec3> points;                ///< m, the centreline at rest, from its start to its end
@@ -26,8 +31,7 @@ class RodBody : public Body {
     double density = 0, liquid_density = 0;  ///< kg/m^3, of the wall and of what fills it
     int nodes = 11;
     Vec3 up = Vec3::UnitZ();
-    /// Elastic foundation at a place of the line at rest, N/m per m^2 of skin (0: none).
-    std::function<double(const Vec3& x)> foundation;
+    std::vector<HeldPart> held;
   };
   /// Fails (scenario) where the line cannot be one.
   static Result<RodBody> create(const Setup& setup);
@@ -68,7 +72,7 @@ class RodBody : public Body {
  private:
   double radius_at(double share) const;
   void lay_skin(const Centreline& line);
-  void lay_bed();
+  void lay_bed(const Centreline& line);
   void weigh();
 
   Setup setup_;

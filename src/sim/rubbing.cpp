@@ -5,7 +5,7 @@
 namespace calot {
 namespace {
 
-/// The frame that a shape's anchors are kept in; the support's is the world's.
+/// The frame that a shape's anchors are kept in; the ground's is the world's.
 Pose shape_frame(const Field& field, const std::vector<InstrumentPose>& poses, int shape) {
   const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
   if (tool >= field.tools.size()) return Pose::Identity();
@@ -14,25 +14,29 @@ Pose shape_frame(const Field& field, const std::vector<InstrumentPose>& poses, i
 
 std::vector<Pose> shape_frames(const Field& field, const std::vector<InstrumentPose>& poses) {
   std::vector<Pose> frames;
-  const int shapes = static_cast<int>(field.tools.size()) * shapes_per_tool + 1;
+  const int shapes =
+      static_cast<int>(field.tools.size()) * shapes_per_tool + static_cast<int>(field.ground.size());
   for (int shape = 0; shape < shapes; ++shape) frames.push_back(shape_frame(field, poses, shape));
   return frames;
 }
 
 double coefficient(const Field& field, int shape) {
   const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
-  return tool < field.tools.size() ? field.tools[tool].definition.friction : field.support_friction;
+  return tool < field.tools.size()
+             ? field.tools[tool].definition.friction
+             : field.ground[static_cast<std::size_t>(shape) - shapes_per_tool * field.tools.size()].friction;
 }
 
 /// Whether each tool's jaws hold a part of the organ.
 std::vector<bool> holding_tools(const Field& field, const Organ& organ) {
-  std::vector<bool> out(field.tools.size() + 1, false);  // the last is the support
+  std::vector<bool> out(field.tools.size(), false);
   for (const GripPoint& grip : organ.grips) out[grip.instrument] = true;
   return out;
 }
 
 bool is_holding_jaw(const std::vector<bool>& holding, int shape) {
-  return holding[shape / shapes_per_tool] && shape % shapes_per_tool > 0;
+  const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
+  return tool < holding.size() && holding[tool] && shape % shapes_per_tool > 0;
 }
 
 /// Sum of the changes of the points' limits along their normals, over the sum of the limits.
@@ -53,7 +57,9 @@ double change(const FrictionLoad& from, const FrictionLoad& to) {
 }  // namespace
 
 bool has_friction(const Field& field) {
-  if (field.support && field.support_friction > 0) return true;
+  if (std::any_of(field.ground.begin(), field.ground.end(),
+                  [](const Ground& ground) { return ground.friction > 0; }))
+    return true;
   return std::any_of(field.tools.begin(), field.tools.end(),
                      [](const Tool& tool) { return tool.definition.friction > 0; });
 }

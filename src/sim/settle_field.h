@@ -8,7 +8,7 @@
 namespace calot {
 
 /// What acts on an organ when the tools stand at `poses`: the tools' shapes first, three each, then the
-/// support; the springs of what they hold; and friction as it was at the last equilibrium.
+/// ground; the springs of what they hold; and friction as it was at the last equilibrium.
 ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
 
 /// Adds a solve's counts and times.

@@ -16,7 +16,7 @@ class LoadSum {
     for (const Tool& tool : field.tools) tips_.push_back(tip_position(tool.trocar, tool.pose, tool.geometry));
   }
 
-  /// False for the support's shape.
+  /// False for the ground's shapes.
   bool is_tool(int shape) const { return shape / shapes_per_tool < static_cast<int>(loads_.size()); }
   /// A force (N) at a point (m) of a tool's shape; `touches`: the point counts, with its organ.
   void add(int shape, const Vec3& at, const Vec3& force, bool touches, const std::string& organ) {

@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "sim/advance.h"
+#include "sim/body_kinds.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
 #include "sim/settle_field.h"
@@ -285,6 +286,29 @@ std::optional<Failure> check_action(const Tool& tool, InstrumentAction action) {
 
 }  // namespace
 
+namespace {
+
+/// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on.
+Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy) {
+  const bool alone = anatomy.joints.empty() &&
+                     std::all_of(field.organs.begin(), field.organs.end(),
+                                 [](const Organ& organ) { return is_hollow(organ.definition.shape); });
+  if (alone) return true;
+  SolveStatistics statistics;
+  Result<bool> rested = settle_field(field, "at rest", statistics);
+  if (!rested) return rested;
+  for (Organ& organ : field.organs) {
+    const ShellBody* shell = shell_of(organ);
+    if (shell == nullptr) continue;
+    ShellBody at_rest = *shell;
+    at_rest.keep_in_equilibrium(organ.state);
+    organ.body = std::make_shared<const ShellBody>(std::move(at_rest));
+  }
+  return true;
+}
+
+}  // namespace
+
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -299,12 +323,9 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   impl->up = up_direction(scene.anatomy);
   impl->field.tolerance = scene.solver.tolerance;
   impl->field.scheme = scene.solver.extension_scheme;
-  if (const std::optional<SupportDefinition>& support = scene.anatomy.support) {
-    impl->field.support = Plane{support->point, support->normal.normalized()};
-    impl->field.support_friction = support->friction;
-  }
+  impl->field.ground = ground_of(scene.anatomy);
   ContactLoads still;
-  if (impl->field.support) still.shapes.push_back(contact_shape(*impl->field.support));
+  for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
   FillingLimits limits{stop};
   for (const OrganDefinition& definition : scene.anatomy.organs) {
     Result<RestedOrgan> made = make_organ(definition, still, impl->up, scene.solver.tolerance,
@@ -312,6 +333,8 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     if (!made) return at_organ(made.failure(), impl->field.organs.size());
     impl->field.add(std::move(made).value());
   }
+  if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy); !rested)
+    return rested.failure();
   World world(std::move(impl));
   for (const InstrumentDefinition& definition : scene.instruments) {
     Tool tool;
@@ -418,7 +441,7 @@ Vec3 World::landmark(const std::string& name) const {
   const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
   if (skin_point < 0) unknown_name("landmark", name);
   const Organ& at = impl_->field.organs[organ];
-  return at.body->skin_point(skin_point, at.state.x);
+  return at.body->surface_point(skin_point, at.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
@@ -434,14 +457,24 @@ std::vector<Vec3> World::skin_positions(int organ) const {
 std::vector<Vec3> World::skin_normals(int organ) const {
   return impl_->field.organs[organ].body->skin_normals(impl_->field.organs[organ].state.x);
 }
-const std::vector<Vec3>& World::skin_rest_positions(int organ) const {
-  return impl_->field.organs[organ].body->skin_rest();
+const std::vector<Triangle>& World::drawn_triangles(int organ) const {
+  return impl_->field.organs[organ].body->drawn_triangles();
+}
+const std::vector<Vec3>& World::drawn_rest(int organ) const {
+  return impl_->field.organs[organ].body->drawn_rest();
+}
+DrawnSurface World::drawn(int organ) const {
+  return impl_->field.organs[organ].body->drawn(impl_->field.organs[organ].state.x);
 }
 
 Result<double> World::lowest_frequency(int index) const {
   const Organ& organ = impl_->field.organs[index];
-  const BodyMass mass(*shell_of(organ), organ.state.x, organ.definition.wall.thickness,
-                      organ.definition.bile.density);
+  const ShellBody* shell = shell_of(organ);
+  if (shell == nullptr)
+    return fail(
+        FailureKind::simulation,
+        fmt::format("'{}' is no hollow organ: its natural frequency is not known", organ.definition.name));
+  const BodyMass mass(*shell, organ.state.x, organ.definition.wall.thickness, organ.definition.bile.density);
   return calot::lowest_frequency(
       *shell_of(organ), contact_loads(impl_->field, organ, present_poses(impl_->field)), organ.state, mass);
 }

@@ -14,6 +14,7 @@
 
 namespace calot {
 
+struct DrawnSurface;
 struct Field;
 struct FieldState;
 
@@ -59,7 +60,10 @@ class World {
   const Tessellation& skin(int organ) const;
   std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
   std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
-  const std::vector<Vec3>& skin_rest_positions(int organ) const;
+  /// What is drawn of an organ: triangles fixed, places now, and at rest for texture.
+  const std::vector<Triangle>& drawn_triangles(int organ) const;
+  const std::vector<Vec3>& drawn_rest(int organ) const;
+  DrawnSurface drawn(int organ) const;
   /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
   /// equilibrium is not stable, its volume kept.

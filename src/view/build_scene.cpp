@@ -7,6 +7,16 @@
 #include "view/vessels.h"
 
 namespace calot {
+namespace {
+
+/// In the order of OrganShape.
+Material material_of(const OrganShape& shape) {
+  constexpr std::array materials = {Material::gallbladder, Material::membrane, Material::gallbladder,
+                                    Material::membrane, Material::steel};
+  return materials[shape.index()];
+}
+
+}  // namespace
 
 SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())), moulds_(world) {
   const SceneDefinition& scene = world.scene();
@@ -14,13 +24,13 @@ SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene
                                world.landmark(scene.laparoscope.look_at));
   for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i) {
     const Pose to_organ = organ_frame(scene.anatomy.organs[i]).inverse();
-    std::vector<Vec3> rest = world.skin_rest_positions(static_cast<int>(i));
+    std::vector<Vec3> rest = world.drawn_rest(static_cast<int>(i));
     for (Vec3& p : rest) p = to_organ * p;
     SceneMesh mesh;
-    const bool sphere = std::holds_alternative<SphereShape>(scene.anatomy.organs[i].shape);
-    mesh.material = sphere ? Material::membrane : Material::gallbladder;
-    mesh.triangles = world.skin(static_cast<int>(i)).triangles;
-    mesh.vessels = grow_vessels(rest, mesh.triangles);
+    const OrganShape& shape = scene.anatomy.organs[i].shape;
+    mesh.material = material_of(shape);
+    mesh.triangles = world.drawn_triangles(static_cast<int>(i));
+    if (is_hollow(shape)) mesh.vessels = grow_vessels(rest, mesh.triangles);
     mesh.rest_positions = std::move(rest);
     organs_.push_back(std::move(mesh));
   }
@@ -44,7 +54,7 @@ Scene SceneBuilder::build(const World& world) const {
     scene.meshes.push_back(std::move(mesh));
   }
   for (const Organ& organ : world.field().organs) {
-    if (!definition.laparoscope.show_structure) break;
+    if (!definition.laparoscope.show_structure || shell_of(organ) == nullptr) continue;
     for (SceneMesh& mesh : structure_meshes(draw_structure(*shell_of(organ), organ.state.x)))
       scene.meshes.push_back(std::move(mesh));
   }

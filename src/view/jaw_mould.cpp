@@ -41,7 +41,7 @@ double moulded_height(const InstrumentGeometry& g, double y, double z) {
 }
 
 Solids::Solids(const Field& field) {
-  if (field.support) parts_.push_back({*field.support, std::nullopt, Pose::Identity()});
+  for (const Ground& ground : field.ground) parts_.push_back({ground.shape, std::nullopt, Pose::Identity()});
   for (const Tool& tool : field.tools) {
     const std::vector<Shape> shapes = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
     const std::optional<JawWindow> window = jaw_window(tool.geometry);
@@ -158,7 +158,10 @@ void JawMoulds::follow(const World& world) {
 }
 
 DrawnSkin JawMoulds::skin(const World& world, int organ) const {
-  DrawnSkin skin{world.skin_positions(organ), world.skin_normals(organ)};
+  DrawnSurface surface = world.drawn(organ);
+  DrawnSkin skin{std::move(surface.positions), std::move(surface.normals)};
+  // What is drawn around a line has no skin points to be moulded by.
+  if (!world.field().organs[static_cast<std::size_t>(organ)].body->skin_radii().empty()) return skin;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
     moulds_[i].apply(world.field(), static_cast<int>(i), organ, skin.positions, skin.normals);
   return skin;

@@ -22,7 +22,7 @@ inline constexpr double pad_clearance =
 inline constexpr double window_bulge = 0.3e-3;  ///< m (d)
 inline constexpr double mould_ease = 0.2;       ///< s in which a mould comes and goes
 
-/// Instruments as they are made (jaws with their windows) and the support: what is drawn must keep out of them.
+/// Instruments as they are made (jaws with their windows) and the ground: what is drawn must keep out of them.
 class Solids {
  public:
   explicit Solids(const Field& field);

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "sim/instrument.h"
-#include "sim/organ.h"
+#include "sim/body_kinds.h"
 #include "sim/structural_extension.h"
 
 namespace {

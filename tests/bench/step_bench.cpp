@@ -7,7 +7,7 @@
 #include <chrono>
 #include <vector>
 
-#include "sim/organ.h"
+#include "sim/body_kinds.h"
 #include "sim/tool.h"
 #include "sim/world.h"
 

@@ -49,7 +49,7 @@ TEST(Balance, PlaneAndHeldPoleCarryTheWeightTogether) {
   const Field field = test::make_field(organ, tight, vertical, Plane{Vec3::Zero(), vertical});
   const Organ& placed = field.organs[0];
   ContactLoads now;
-  now.shapes = {contact_shape(*field.support)};
+  now.shapes = {contact_shape(field.ground[0].shape)};
   Vec3 push = Vec3::Zero();
   for (const ContactForce& contact : contact_forces(*placed.body, placed.state.x, now,
                                                     gather_pairs(*placed.body, placed.state.x, now, 0.0)))

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "rig.h"
 #include "sim/advance.h"
+#include "sim/body_kinds.h"
 #include "sim/grip.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
@@ -31,7 +32,7 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
                         const std::optional<Plane>& support = {}, int levels = 0) {
   Field field;
   field.tolerance = tolerance;
-  field.support = support;
+  if (support) field.ground.push_back({"support", *support, 0});
   ContactLoads still;
   if (support) still.shapes.push_back(contact_shape(*support));
   field.add(make_organ(definition, still, up, tolerance, levels).value());

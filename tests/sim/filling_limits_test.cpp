@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "rig.h"
+#include "sim/body_kinds.h"
 #include "sim/world.h"
 
 namespace calot {

@@ -166,7 +166,7 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
   Vec3 share[2];
   for (double friction : {0.0, 0.3}) {
     Field field = test::make_field(ball, 1e-9, up, Plane{Vec3::Zero(), up});
-    field.support_friction = friction;
+    field.ground[0].friction = friction;
     test::add_grasper(field, {0, -150e-3, 20e-3});
     const auto at = [&](double y) { return pose_reaching(field.tools[0].trocar, Vec3(0, y, 15e-3), 0, 0); };
     field.tools[0].pose = at(-30e-3);

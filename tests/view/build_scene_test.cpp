@@ -49,7 +49,7 @@ TEST(BuildScene, DrawsTheSkinThatTheWorldTouches) {
   EXPECT_EQ(skin->normals, world.skin_normals(0));
   const Pose frame = organ_frame(world.scene().anatomy.organs[0]);
   for (std::size_t i = 0; i < skin->rest_positions.size(); i += 97)
-    EXPECT_LT((frame * skin->rest_positions[i] - world.skin_rest_positions(0)[i]).norm(), 1e-14);  // rounding
+    EXPECT_LT((frame * skin->rest_positions[i] - world.drawn_rest(0)[i]).norm(), 1e-14);  // rounding
   EXPECT_NE(skin->vessels, nullptr);
 }
 

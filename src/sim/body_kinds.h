@@ -1,0 +1,48 @@
+#pragma once
+// The kinds of bodies: a row and a file each. Keys and limits of their definitions stand in anatomy/scene_keys.cpp.
+
+#include <atomic>
+#include <cstdint>
+
+#include "sim/organ.h"
+
+namespace calot {
+
+/// What bringing all organs of a scene to rest may take, used up as they are.
+struct FillingLimits {
+  const std::atomic<bool>* stop = nullptr;  ///< where it is true the filling ends; may be null
+  /// Newton iterations times nodes; the most that half a minute is sure to do.
+  std::int64_t node_iterations = 200'000;
+};
+
+/// Where an organ comes to rest.
+struct OrganSetting {
+  const ContactLoads& loads;  ///< the ground
+  Vec3 up = Vec3::UnitZ();
+  double tolerance = 1e-6;
+  int levels = 0;                   ///< of structural extensions that may refine it
+  FillingLimits* limits = nullptr;  ///< may be null
+};
+
+struct BodyKind {
+  const char* shape;  ///< its name in a scene, in the order of OrganShape
+  /// Builds the organ and, where it can be in equilibrium alone, brings it to rest. Failures: scenario (a definition that
+  /// cannot be built), simulation (no rest state found), resource or interrupted (`limits`); see at_organ.
+  Result<RestedOrgan> (*make)(const OrganDefinition& definition, const OrganSetting& setting);
+};
+const std::vector<BodyKind>& body_kinds();
+
+Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
+                               double tolerance, int levels = 0, FillingLimits* limits = nullptr);
+
+/// Fails (scenario) where an organ at rest is inside the ground.
+std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads);
+
+/// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
+std::vector<Problem> mesh_problems(const SceneDefinition& scene);
+
+Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting);
+Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting);
+Result<RestedOrgan> make_rigid_organ(const OrganDefinition& definition, const OrganSetting& setting);
+
+}  // namespace calot

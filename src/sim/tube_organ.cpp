@@ -1,0 +1,52 @@
+#include <cmath>
+
+#include "sim/body_kinds.h"
+#include "sim/rod_body.h"
+
+namespace calot {
+namespace {
+
+/// Where the landmarks lie on the line at rest: skin points.
+std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& body) {
+  std::map<std::string, int> out;
+  const int last = static_cast<int>(body.skin_rest().size()) - 1;
+  for (const Landmark& landmark : landmark_rows())
+    if (has_landmark(shape, landmark))
+      out[landmark.name] = static_cast<int>(std::lround(landmark.along * last));
+  return out;
+}
+
+}  // namespace
+
+Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting) {
+  const auto& shape = std::get<TubeShape>(definition.shape);
+  RodBody::Setup setup;
+  setup.name = definition.name;
+  setup.points = shape.points;
+  setup.radius = shape.radius;
+  setup.end_radius = shape.end_radius;
+  setup.wall = definition.wall.thickness;
+  setup.shear_modulus = definition.wall.shear_modulus;
+  setup.pressure = shape.pressure;
+  setup.nodes = shape.nodes;
+  setup.up = setting.up;
+  for (const HeldRegion& region : definition.held)
+    for (const Landmark& landmark : landmark_rows())
+      if (region.landmark == landmark.name && has_landmark(shape, landmark))
+        setup.held.push_back({landmark.along, region.radius, region.stiffness});
+  Result<RodBody> body = RodBody::create(setup);
+  if (!body) {
+    Failure failure = body.failure();
+    for (Problem& problem : failure.problems) problem.place = {"", 0, ".shape"};
+    return failure;
+  }
+  const auto rod = std::make_shared<const RodBody>(std::move(body).value());
+  if (std::optional<Failure> failure = check_clear_of_ground(*rod, setting.loads)) return *failure;
+  RestedOrgan made{Organ{definition, rod, {}, {}, {}, {}, {}, {}, {}, {}}, NewtonWorkspace(rod->pattern())};
+  made.organ.state.x = rod->rest();
+  made.organ.landmarks = tube_landmarks(definition.shape, *rod);
+  made.organ.search.own.active = false;  // its points stand for what is around them
+  return made;
+}
+
+}  // namespace calot
