@@ -13,34 +13,24 @@
 namespace calot {
 namespace {
 
-/// Which of the first `count` nodes each is coupled with: by the pattern, and in `groups`.
-std::vector<std::vector<int>> couplings(const BlockMatrix& pattern, int count,
-                                        const std::vector<std::vector<int>>& groups) {
-  std::vector<std::vector<int>> out(static_cast<std::size_t>(count));
-  const auto couple = [&](int a, int b) {
-    out[a].push_back(b);
-    out[b].push_back(a);
-  };
-  for (int column = 0; column < count; ++column)
-    for (int e = pattern.column_starts()[3 * column]; e < pattern.column_starts()[3 * column + 1]; e += 3)
-      if (const int row = pattern.rows()[e] / 3; row > column && row < count) couple(row, column);
-  for (const std::vector<int>& group : groups)
-    for (int a : group)
-      for (int b : group)
-        if (b < a) couple(a, b);
-  for (std::vector<int>& of_node : out) {
-    std::sort(of_node.begin(), of_node.end());
-    of_node.erase(std::unique(of_node.begin(), of_node.end()), of_node.end());
-  }
-  return out;
+FactorKind kind_for(const BlockMatrix& pattern, std::span<const char> kept) {
+  if (pattern.nodes() > dense_nodes) return FactorKind::sparse;
+  const bool all = std::find(kept.begin(), kept.end(), 0) == kept.end();
+  return all ? FactorKind::dense : FactorKind::condensed;
 }
 
 }  // namespace
 
+std::vector<char> first_kept(int nodes, int count) {
+  std::vector<char> out(static_cast<std::size_t>(nodes), 0);
+  std::fill_n(out.begin(), std::min(nodes, count), 1);
+  return out;
+}
+
 struct Cholesky::Impl {
   FactorKind kind = FactorKind::dense;
-  std::optional<Condensation> condensation;
-  EnvelopeFactor kept;  ///< of the whole matrix, or of what it is condensed to; empty where that is sparse
+  std::optional<Condensation> condensation;  ///< of nothing where the whole is dense; none where it is sparse
+  EnvelopeFactor kept;                       ///< of what the matrix is condensed to
   cholmod_common common;
   cholmod_factor* factor = nullptr;
   // Workspaces that cholmod_solve2 keeps between calls.
@@ -60,7 +50,7 @@ struct Cholesky::Impl {
   /// Room for another factor of the same pattern.
   explicit Impl(const Impl& like) : Impl() {
     kind = like.kind;
-    condensation = like.condensation;
+    if (like.condensation) condensation = like.condensation->blank();
     kept = like.kept.blank();
     if (like.factor != nullptr) factor = cholmod_copy_factor(like.factor, &common);
   }
@@ -74,7 +64,6 @@ struct Cholesky::Impl {
   }
 
   FactorStatus factorise_dense(const BlockMatrix& matrix);
-  FactorStatus factorise_condensed(const BlockMatrix& matrix);
   FactorStatus factorise_sparse(const BlockMatrix& matrix);
 
   // CHOLMOD reads through non-const pointers and does not write through them here.
@@ -95,18 +84,20 @@ struct Cholesky::Impl {
   }
 };
 
-Cholesky::Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind)
+Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept)
+    : Cholesky(pattern, kept, kind_for(pattern, kept)) {}
+
+Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept, FactorKind kind)
     : impl_(std::make_shared<Impl>()) {
   impl_->kind = kind;
-  if (kind == FactorKind::condensed) {
-    impl_->condensation.emplace(pattern, coarse);
-    impl_->kept = EnvelopeFactor(couplings(pattern, coarse, impl_->condensation->outer_nodes()));
-  } else if (kind == FactorKind::dense) {
-    impl_->kept = EnvelopeFactor(couplings(pattern, pattern.nodes(), {}));
-  } else {
+  if (kind == FactorKind::sparse) {
     cholmod_sparse sparse = Impl::view(pattern);
     impl_->factor = cholmod_analyze(&sparse, &impl_->common);
+    return;
   }
+  const std::vector<char> all(static_cast<std::size_t>(pattern.nodes()), 1);
+  impl_->condensation.emplace(pattern, kind == FactorKind::dense || kept.empty() ? all : kept);
+  impl_->kept = EnvelopeFactor(impl_->condensation->kept_couplings());
 }
 
 FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
@@ -114,19 +105,12 @@ FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
   if (!matrix.all_finite()) return FactorStatus::not_finite;
   if (impl_.use_count() > 1) impl_ = std::make_shared<Impl>(*impl_);
   if (impl_->kind == FactorKind::sparse) return impl_->factorise_sparse(matrix);
-  return impl_->kind == FactorKind::dense ? impl_->factorise_dense(matrix)
-                                          : impl_->factorise_condensed(matrix);
+  return impl_->factorise_dense(matrix);
 }
 
 FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix) {
-  kept.load(matrix);
-  return kept.factorise() ? FactorStatus::ok : FactorStatus::not_positive_definite;
-}
-
-FactorStatus Cholesky::Impl::factorise_condensed(const BlockMatrix& matrix) {
-  const FactorStatus status = condensation->eliminate(matrix);
+  const FactorStatus status = condensation->eliminate(matrix, kept);
   if (status != FactorStatus::ok) return status;
-  kept.load(condensation->condensed());
   return kept.factorise() ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
@@ -140,8 +124,7 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
 }
 
 VecX Cholesky::solve(const VecX& right) const {
-  if (impl_->kind == FactorKind::dense) return impl_->kept.solve(right);
-  if (impl_->kind == FactorKind::condensed)
+  if (impl_->condensation)
     return impl_->condensation->expand(right, impl_->kept.solve(impl_->condensation->reduce(right)));
   cholmod_dense b{};
   b.nrow = b.nzmax = b.d = static_cast<std::size_t>(right.size());
@@ -159,25 +142,20 @@ VecX Cholesky::solve(const VecX& right) const {
 }
 
 double Cholesky::reciprocal_condition() const {
-  if (impl_->kind == FactorKind::sparse) return cholmod_rcond(impl_->factor, &impl_->common);
-  double smallest = impl_->kept.smallest_pivot(), largest = impl_->kept.largest_pivot();
-  if (impl_->kind == FactorKind::condensed && impl_->condensation->groups() > 0) {
-    smallest = std::min(smallest, impl_->condensation->smallest_pivot());
-    largest = std::max(largest, impl_->condensation->largest_pivot());
-  }
+  if (!impl_->condensation) return cholmod_rcond(impl_->factor, &impl_->common);
+  const double smallest = std::min(impl_->kept.smallest_pivot(), impl_->condensation->smallest_pivot()),
+               largest = std::max(impl_->kept.largest_pivot(), impl_->condensation->largest_pivot());
   return smallest / largest * (smallest / largest);
 }
 
 double Cholesky::factor_flops() const {
-  if (impl_->kind == FactorKind::sparse) return impl_->common.fl;
-  const double inner = impl_->kind == FactorKind::condensed ? impl_->condensation->flops() : 0;
-  return impl_->kept.flops() + inner;
+  if (!impl_->condensation) return impl_->common.fl;
+  return impl_->kept.flops() + impl_->condensation->flops();
 }
 
 long Cholesky::factor_nonzeros() const {
-  if (impl_->kind == FactorKind::sparse) return static_cast<long>(impl_->common.lnz);
-  return impl_->kept.nonzeros() +
-         (impl_->kind == FactorKind::condensed ? impl_->condensation->nonzeros() : 0);
+  if (!impl_->condensation) return static_cast<long>(impl_->common.lnz);
+  return impl_->kept.nonzeros() + impl_->condensation->nonzeros();
 }
 
 }  // namespace calot

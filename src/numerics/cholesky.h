@@ -3,8 +3,9 @@
 // simplicial, symbolic factor reused) for larger ones; in the dense one the nodes of structural extensions are
 // condensed onto the others first. None calls BLAS, so the bits do not depend on the machine.
 
-#include <limits>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "numerics/block_matrix.h"
 
@@ -18,16 +19,19 @@ inline constexpr int dense_nodes = 600;
 
 enum class FactorKind { dense, sparse, condensed };
 
+/// The first `count` of `nodes` nodes are kept.
+std::vector<char> first_kept(int nodes, int count);
+
 class Cholesky {
  public:
-  /// Analyses the pattern (sparse: fill-reducing order AMD); values are not read. With `coarse` nodes before
-  /// those of extensions the latter are condensed, where the factor is dense.
-  explicit Cholesky(const BlockMatrix& pattern, int coarse = std::numeric_limits<int>::max())
-      : Cholesky(pattern, coarse,
-                 pattern.nodes() > dense_nodes ? FactorKind::sparse
-                 : coarse < pattern.nodes()    ? FactorKind::condensed
-                                               : FactorKind::dense) {}
-  Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind);
+  /// Analyses the pattern (sparse: fill-reducing order AMD); values are not read. `kept`, of each node: where it is 0
+  /// the node may be condensed onto those that stay. An empty `kept` keeps all.
+  explicit Cholesky(const BlockMatrix& pattern, std::span<const char> kept = {});
+  Cholesky(const BlockMatrix& pattern, std::span<const char> kept, FactorKind kind);
+  /// The first `coarse` nodes are kept.
+  Cholesky(const BlockMatrix& pattern, int coarse) : Cholesky(pattern, first_kept(pattern.nodes(), coarse)) {}
+  Cholesky(const BlockMatrix& pattern, int coarse, FactorKind kind)
+      : Cholesky(pattern, first_kept(pattern.nodes(), coarse), kind) {}
   /// A copy shares the factor until either factorises anew.
   Cholesky(const Cholesky&) = default;
   Cholesky& operator=(const Cholesky&) = default;

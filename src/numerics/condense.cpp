@@ -1,181 +1,327 @@
 #include "numerics/condense.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace calot {
-
-Condensation::Condensation(const BlockMatrix& pattern, int kept)
-    : kept_(3 * kept), condensed_(Eigen::MatrixXd::Zero(3 * kept, 3 * kept)) {
-  find_groups(pattern);
-}
-
-void Condensation::find_groups(const BlockMatrix& pattern) {
-  // By nodes: their three unknowns are in one group and meet the same others.
-  const int kept = kept_ / 3, count = pattern.nodes() - kept;
-  std::vector<int> leader(count);
-  for (int i = 0; i < count; ++i) leader[i] = i;
-  const auto find = [&](int i) {
-    while (leader[i] != i) i = leader[i] = leader[leader[i]];
-    return i;
-  };
-  std::vector<std::vector<int>> outer(count);  // kept nodes, increasing
-  for (int column = 0; column < pattern.nodes(); ++column) {
-    const int end = pattern.column_starts()[3 * column + 1];
-    for (int e = pattern.column_starts()[3 * column]; e < end; e += 3) {
-      const int row = pattern.rows()[e] / 3 - kept;
-      if (row < 0) continue;
-      if (column < kept) {
-        outer[row].push_back(column);
-      } else {
-        const int a = find(row), b = find(column - kept);
-        leader[std::max(a, b)] = std::min(a, b);
-      }
-    }
-  }
-  group_of_.assign(3 * count, -1);
-  place_in_.assign(3 * count, -1);
-  std::vector<std::vector<char>> meets;
-  for (int i = 0; i < count; ++i) {
-    const int first = find(i);
-    if (first == i) {
-      group_of_[3 * i] = static_cast<int>(groups_.size());
-      groups_.emplace_back();
-      meets.emplace_back(kept, 0);
-    }
-    const int number = group_of_[3 * first];
-    Group& group = groups_[number];
-    for (int unknown = 3 * i; unknown < 3 * i + 3; ++unknown) {
-      group_of_[unknown] = number;
-      place_in_[unknown] = static_cast<int>(group.inner.size());
-      group.inner.push_back(kept_ + unknown);
-    }
-    for (int node : outer[i]) meets[number][node] = 1;
-  }
-  for (std::size_t g = 0; g < groups_.size(); ++g)
-    for (int unknown = 0; unknown < kept_; ++unknown)
-      if (meets[g][unknown / 3]) groups_[g].outer.push_back(unknown);
-}
-
-void Condensation::gather(const BlockMatrix& matrix) {
-  condensed_.setZero();
-  for (Group& group : groups_) {
-    const Eigen::Index inner = static_cast<Eigen::Index>(group.inner.size());
-    group.stiffness.setZero(inner, inner);
-    group.coupling.setZero(inner, static_cast<Eigen::Index>(group.outer.size()));
-  }
-  for (int column = 0; column < matrix.size(); ++column) {
-    int place = -1, last = -1;  // of a kept column among its group's outer unknowns
-    for (int e = matrix.column_starts()[column]; e < matrix.column_starts()[column + 1]; ++e) {
-      const int row = matrix.rows()[e];
-      const double value = matrix.entries()[e];
-      if (row < kept_) {
-        condensed_(row, column) = value;
-        continue;
-      }
-      Group& group = groups_[group_of_[row - kept_]];
-      if (column >= kept_) {
-        group.stiffness(place_in_[row - kept_], place_in_[column - kept_]) = value;
-        continue;
-      }
-      if (last != group_of_[row - kept_]) {
-        last = group_of_[row - kept_];
-        place = static_cast<int>(std::lower_bound(group.outer.begin(), group.outer.end(), column) -
-                                 group.outer.begin());
-      }
-      group.coupling(place_in_[row - kept_], place) = value;
-    }
-  }
-}
-
-FactorStatus Condensation::eliminate(const BlockMatrix& matrix) {
-  gather(matrix);
-  Eigen::MatrixXd product;
-  for (Group& group : groups_) {
-    group.factor.compute(group.stiffness);
-    if (group.factor.info() != Eigen::Success) return FactorStatus::not_positive_definite;
-    if (group.outer.empty()) continue;
-    group.factor.matrixL().solveInPlace(group.coupling);
-    product.setZero(group.coupling.cols(), group.coupling.cols());
-    product.selfadjointView<Eigen::Lower>().rankUpdate(group.coupling.transpose());
-    for (std::size_t b = 0; b < group.outer.size(); ++b)
-      for (std::size_t a = b; a < group.outer.size(); ++a)
-        condensed_(group.outer[a], group.outer[b]) -=
-            product(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-  }
-  return FactorStatus::ok;
-}
-
 namespace {
 
-VecX pick(const VecX& from, const std::vector<int>& at) {
-  VecX out(static_cast<Eigen::Index>(at.size()));
-  for (std::size_t i = 0; i < at.size(); ++i) out[static_cast<Eigen::Index>(i)] = from[at[i]];
-  return out;
+using Block = Eigen::Map<Eigen::MatrixXd, Eigen::AlignedMax>;
+using ConstBlock = Eigen::Map<const Eigen::MatrixXd, Eigen::AlignedMax>;
+
+/// Calls see(row, column, offset of entry (0, 0)) for each block of the pattern.
+template <class See>
+void for_blocks(const BlockMatrix& pattern, See see) {
+  for (int column = 0; column < pattern.nodes(); ++column) {
+    const int begin = pattern.column_starts()[3 * column], end = pattern.column_starts()[3 * column + 1];
+    for (int e = begin; e < end; e += 3) see(pattern.rows()[e] / 3, column, e);
+  }
+}
+
+/// Sets that are joined one by one; the least of each leads it.
+class Sets {
+ public:
+  explicit Sets(int count) : leader_(static_cast<std::size_t>(count)) {
+    for (int i = 0; i < count; ++i) leader_[i] = i;
+  }
+  int leader(int i) {
+    while (leader_[i] != i) i = leader_[i] = leader_[leader_[i]];
+    return i;
+  }
+  void join(int i, int j) {
+    const int a = leader(i), b = leader(j);
+    leader_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> leader_;
+};
+
+void sort_once(std::vector<int>& nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
+Eigen::Index place_of(int node, const std::vector<int>& nodes) {
+  return 3 * (std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
 }
 
 }  // namespace
 
+Condensation::Condensation(const BlockMatrix& pattern, std::span<const char> kept) {
+  auto layout = std::make_shared<Layout>();
+  std::vector<int> number(kept.size(), -1);  // of kept nodes
+  for (int node = 0; node < pattern.nodes(); ++node)
+    if (kept[node]) {
+      number[node] = static_cast<int>(layout->kept.size());
+      layout->kept.push_back(node);
+    }
+  find_pieces(pattern, number, *layout);
+  lay_out(pattern, number, *layout);
+  layout_ = std::move(layout);
+}
+
+Condensation Condensation::blank() const { return Condensation(layout_); }
+
+void Condensation::find_pieces(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout) {
+  Sets sets(pattern.nodes());
+  for_blocks(pattern, [&](int row, int column, int) {
+    if (number[row] < 0 && number[column] < 0) sets.join(row, column);
+  });
+  std::vector<int> piece_of(number.size(), -1);  // of leaders
+  for (int node = 0; node < pattern.nodes(); ++node) {
+    if (number[node] >= 0) continue;
+    int& piece = piece_of[sets.leader(node)];
+    if (piece < 0) {
+      piece = static_cast<int>(layout.pieces.size());
+      layout.pieces.emplace_back();
+    }
+    layout.pieces[piece].inner.push_back(node);
+  }
+  for_blocks(pattern, [&](int row, int column, int) {
+    if (number[row] < 0 && number[column] >= 0)
+      layout.pieces[piece_of[sets.leader(row)]].outer.push_back(number[column]);
+    if (number[row] >= 0 && number[column] < 0)
+      layout.pieces[piece_of[sets.leader(column)]].outer.push_back(number[row]);
+  });
+  std::map<std::vector<int>, std::size_t> singles;  // by what they meet
+  std::vector<Piece> pieces;
+  for (Piece& piece : layout.pieces) {
+    sort_once(piece.outer);
+    piece.single = piece.inner.size() == 1;
+    if (piece.single) {
+      const auto [at, is_new] = singles.try_emplace(piece.outer, pieces.size());
+      if (!is_new) {
+        pieces[at->second].inner.push_back(piece.inner.front());
+        continue;
+      }
+    }
+    pieces.push_back(std::move(piece));
+  }
+  layout.pieces = std::move(pieces);
+}
+
+void Condensation::lay_out(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout) {
+  const auto room = [&](Eigen::Index size) {
+    const Eigen::Index at = layout.size;
+    layout.size += (size + 3) / 4 * 4;  // the next one is aligned too
+    return at;
+  };
+  std::vector<int> piece_of(number.size(), -1);
+  for (std::size_t p = 0; p < layout.pieces.size(); ++p) {
+    Piece& piece = layout.pieces[p];
+    for (int node : piece.inner) piece_of[node] = static_cast<int>(p);
+    piece.factor = room(piece.rows() * (piece.single ? 3 : piece.rows()));
+    piece.coupling = room(piece.rows() * piece.meets());
+    layout.widest = std::max(layout.widest, piece.meets());
+  }
+  for_blocks(pattern, [&](int row, int column, int from) {
+    const int stride = pattern.stride(column);
+    if (number[row] >= 0 && number[column] >= 0) {
+      layout.kept_blocks.push_back({from, stride, number[row], number[column]});
+      return;
+    }
+    const bool row_is_inner = number[row] < 0;
+    const Piece& piece = layout.pieces[piece_of[row_is_inner ? row : column]];
+    const Eigen::Index inner = place_of(row_is_inner ? row : column, piece.inner), rows = piece.rows();
+    if (row_is_inner && number[column] < 0) {
+      if (piece.single)
+        layout.moves.push_back({from, stride, piece.factor + 3 * inner, 1, 3});
+      else
+        layout.moves.push_back(
+            {from, stride, piece.factor + inner + place_of(column, piece.inner) * rows, 1, rows});
+      return;
+    }
+    const Eigen::Index outer = place_of(row_is_inner ? number[column] : number[row], piece.outer);
+    // Steps of a condensed unknown and of a kept one.
+    const Eigen::Index by_inner = piece.single ? piece.meets() : 1, by_outer = piece.single ? 1 : rows;
+    const Eigen::Index to = piece.coupling + inner * by_inner + outer * by_outer;
+    layout.moves.push_back(
+        {from, stride, to, row_is_inner ? by_inner : by_outer, row_is_inner ? by_outer : by_inner});
+  });
+}
+
+std::vector<std::vector<int>> Condensation::kept_couplings() const {
+  std::vector<std::vector<int>> out(layout_->kept.size());
+  const auto couple = [&](int a, int b) {
+    if (a == b) return;
+    out[a].push_back(b);
+    out[b].push_back(a);
+  };
+  for (const KeptBlock& block : layout_->kept_blocks) couple(block.i, block.j);
+  for (const Piece& piece : layout_->pieces)
+    for (int a : piece.outer)
+      for (int b : piece.outer)
+        if (b < a) couple(a, b);
+  for (std::vector<int>& of_node : out) sort_once(of_node);
+  return out;
+}
+
+void Condensation::gather(const BlockMatrix& matrix) {
+  values_.setZero(layout_->size);
+  for (const Move& move : layout_->moves)
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r)
+        values_[move.to + r * move.by_row + c * move.by_column] =
+            matrix.entries()[static_cast<std::size_t>(move.from + c * move.stride + r)];
+}
+
+FactorStatus Condensation::eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept) {
+  gather(matrix);
+  product_.resize(layout_->widest * layout_->widest);
+  kept.clear();
+  for (const KeptBlock& block : layout_->kept_blocks)
+    kept.set(block.i, block.j, matrix.entries().data() + block.from, block.stride);
+  for (const Piece& piece : layout_->pieces) {
+    if (!(piece.single ? eliminate_single(piece) : eliminate(piece)))
+      return FactorStatus::not_positive_definite;
+    if (!piece.outer.empty()) kept.subtract(piece.outer, product_.data());
+  }
+  return FactorStatus::ok;
+}
+
+bool Condensation::eliminate(const Piece& piece) {
+  Block factor(values_.data() + piece.factor, piece.rows(), piece.rows());
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(factor);
+  if (in_place.info() != Eigen::Success) return false;
+  if (piece.outer.empty()) return true;
+  Block coupling(values_.data() + piece.coupling, piece.rows(), piece.meets());
+  in_place.matrixL().solveInPlace(coupling);
+  Block product(product_.data(), piece.meets(), piece.meets());
+  product.setZero();
+  product.selfadjointView<Eigen::Lower>().rankUpdate(coupling.transpose());
+  return true;
+}
+
+bool Condensation::eliminate_single(const Piece& piece) {
+  Block coupling(values_.data() + piece.coupling, piece.meets(), piece.rows());
+  for (Eigen::Index i = 0; i < piece.rows(); i += 3) {
+    Eigen::Map<Mat3> factor(values_.data() + piece.factor + 3 * i);
+    const Eigen::LLT<Mat3> found(factor);
+    if (found.info() != Eigen::Success) return false;
+    factor = found.matrixLLT();
+    const Mat3& l = found.matrixLLT();
+    coupling.col(i) /= l(0, 0);
+    coupling.col(i + 1) = (coupling.col(i + 1) - l(1, 0) * coupling.col(i)) / l(1, 1);
+    coupling.col(i + 2) =
+        (coupling.col(i + 2) - l(2, 0) * coupling.col(i) - l(2, 1) * coupling.col(i + 1)) / l(2, 2);
+  }
+  Block product(product_.data(), piece.meets(), piece.meets());
+  product.setZero();
+  product.selfadjointView<Eigen::Lower>().rankUpdate(coupling);
+  return true;
+}
+
+namespace {
+
+/// Three unknowns of each node.
+void pick(const VecX& from, const std::vector<int>& nodes, VecX& out) {
+  out.resize(3 * static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    out.segment<3>(3 * static_cast<Eigen::Index>(i)) = from.segment<3>(3 * Eigen::Index{nodes[i]});
+}
+void put(const VecX& from, const std::vector<int>& nodes, VecX& out) {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    out.segment<3>(3 * Eigen::Index{nodes[i]}) = from.segment<3>(3 * static_cast<Eigen::Index>(i));
+}
+
+}  // namespace
+
+void Condensation::solve_lower(const Piece& piece, Eigen::Ref<VecX> x) const {
+  const double* factor = values_.data() + piece.factor;
+  if (!piece.single)
+    return ConstBlock(factor, piece.rows(), piece.rows()).triangularView<Eigen::Lower>().solveInPlace(x);
+  for (Eigen::Index i = 0; i < piece.rows(); i += 3) {
+    auto here = x.segment<3>(i);
+    Eigen::Map<const Mat3>(factor + 3 * i).triangularView<Eigen::Lower>().solveInPlace(here);
+  }
+}
+
+void Condensation::solve_upper(const Piece& piece, Eigen::Ref<VecX> x) const {
+  const double* factor = values_.data() + piece.factor;
+  if (!piece.single) {
+    const ConstBlock l(factor, piece.rows(), piece.rows());
+    return l.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+  }
+  for (Eigen::Index i = 0; i < piece.rows(); i += 3) {
+    const Eigen::Map<const Mat3> l(factor + 3 * i);
+    auto here = x.segment<3>(i);
+    l.transpose().triangularView<Eigen::Upper>().solveInPlace(here);
+  }
+}
+
 VecX Condensation::reduce(const VecX& right) const {
-  VecX out = right.head(kept_);
-  for (const Group& group : groups_) {
-    if (group.outer.empty()) continue;
-    const VecX passed = group.coupling.transpose() * group.factor.matrixL().solve(pick(right, group.inner));
-    for (std::size_t i = 0; i < group.outer.size(); ++i)
-      out[group.outer[i]] -= passed[static_cast<Eigen::Index>(i)];
+  VecX out, inner, passed;
+  pick(right, layout_->kept, out);
+  for (const Piece& piece : layout_->pieces) {
+    if (piece.outer.empty()) continue;
+    pick(right, piece.inner, inner);
+    solve_lower(piece, inner);
+    const double* coupling = values_.data() + piece.coupling;
+    if (piece.single)
+      passed.noalias() = ConstBlock(coupling, piece.meets(), piece.rows()) * inner;
+    else
+      passed.noalias() = ConstBlock(coupling, piece.rows(), piece.meets()).transpose() * inner;
+    for (std::size_t i = 0; i < piece.outer.size(); ++i)
+      out.segment<3>(3 * Eigen::Index{piece.outer[i]}) -= passed.segment<3>(3 * static_cast<Eigen::Index>(i));
   }
   return out;
 }
 
 VecX Condensation::expand(const VecX& right, const VecX& kept) const {
-  VecX out(right.size());
-  out.head(kept_) = kept;
-  for (const Group& group : groups_) {
-    VecX inner = group.factor.matrixL().solve(pick(right, group.inner));
-    if (!group.outer.empty()) inner -= group.coupling * pick(kept, group.outer);
-    group.factor.matrixU().solveInPlace(inner);
-    for (std::size_t i = 0; i < group.inner.size(); ++i)
-      out[group.inner[i]] = inner[static_cast<Eigen::Index>(i)];
-  }
-  return out;
-}
-
-std::vector<std::vector<int>> Condensation::outer_nodes() const {
-  std::vector<std::vector<int>> out;
-  for (const Group& group : groups_) {
-    out.emplace_back();
-    for (std::size_t i = 0; i < group.outer.size(); i += 3) out.back().push_back(group.outer[i] / 3);
+  VecX out(right.size()), inner, outer, passed;
+  put(kept, layout_->kept, out);
+  for (const Piece& piece : layout_->pieces) {
+    pick(right, piece.inner, inner);
+    solve_lower(piece, inner);
+    if (!piece.outer.empty()) {
+      pick(kept, piece.outer, outer);
+      const double* coupling = values_.data() + piece.coupling;
+      if (piece.single)
+        passed.noalias() = ConstBlock(coupling, piece.meets(), piece.rows()).transpose() * outer;
+      else
+        passed.noalias() = ConstBlock(coupling, piece.rows(), piece.meets()) * outer;
+      inner -= passed;
+    }
+    solve_upper(piece, inner);
+    put(inner, piece.inner, out);
   }
   return out;
 }
 
 double Condensation::flops() const {
   double sum = 0;
-  for (const Group& group : groups_) {
-    const double inner = static_cast<double>(group.inner.size()),
-                 outer = static_cast<double>(group.outer.size());
-    sum += inner * inner * inner / 3 + inner * inner * outer + inner * outer * outer;
+  for (const Piece& piece : layout_->pieces) {
+    const double inner = static_cast<double>(piece.rows()), outer = static_cast<double>(piece.meets()),
+                 coupled = piece.single ? 3 : inner;
+    sum += inner * coupled * coupled / 3 + inner * coupled * outer + inner * outer * outer;
   }
   return sum;
 }
 
 long Condensation::nonzeros() const {
   long sum = 0;
-  for (const Group& group : groups_) {
-    const long inner = static_cast<long>(group.inner.size());
-    sum += inner * (inner + 1) / 2 + inner * static_cast<long>(group.outer.size());
-  }
+  for (const Piece& piece : layout_->pieces)
+    sum += piece.rows() * ((piece.single ? 3 : piece.rows()) + 1) / 2 + piece.rows() * piece.meets();
   return sum;
 }
 
+double Condensation::pivot(const Piece& piece, Eigen::Index i) const {
+  return values_[piece.factor + (piece.single ? 3 * i + i % 3 : i * piece.rows() + i)];
+}
+
 double Condensation::smallest_pivot() const {
-  double out = groups_.empty() ? 1 : std::numeric_limits<double>::infinity();
-  for (const Group& group : groups_) out = std::min(out, group.factor.matrixLLT().diagonal().minCoeff());
+  double out = std::numeric_limits<double>::infinity();
+  for (const Piece& piece : layout_->pieces)
+    for (Eigen::Index i = 0; i < piece.rows(); ++i) out = std::min(out, pivot(piece, i));
   return out;
 }
 double Condensation::largest_pivot() const {
-  double out = groups_.empty() ? 1 : 0;
-  for (const Group& group : groups_) out = std::max(out, group.factor.matrixLLT().diagonal().maxCoeff());
+  double out = 0;
+  for (const Piece& piece : layout_->pieces)
+    for (Eigen::Index i = 0; i < piece.rows(); ++i) out = std::max(out, pivot(piece, i));
   return out;
 }
 

@@ -1,55 +1,89 @@
 #pragma once
 // Static condensation (Guyan 1965, doi 10.2514/3.2874): unknowns inside a substructure are eliminated, what stays is
-// the Schur complement on the kept ones. A structural extension is condensed onto the coarse nodes so, and a whole
-// organ onto its interface (the paper, section 7).
+// the Schur complement on the kept ones. A structural extension is condensed onto the coarse nodes so, a strand's
+// middle and a rod's inside onto what they are tied to, and a whole organ onto its interface (the paper, section 7).
 
-#include <Eigen/Cholesky>
+#include <span>
 #include <vector>
 
 #include "numerics/cholesky.h"
+#include "numerics/envelope.h"
 
 namespace calot {
 
-/// Nodes 0 .. kept - 1 of a block matrix are kept, the others condensed in groups that are not coupled with each
-/// other.
+/// Some nodes of a block matrix are kept, the others condensed in pieces that are not coupled with each other. Kept
+/// nodes are numbered among themselves, in the matrix' order.
 class Condensation {
  public:
-  Condensation(const BlockMatrix& pattern, int kept);
+  /// `kept`, of each node: 0 where it is condensed.
+  Condensation(const BlockMatrix& pattern, std::span<const char> kept);
 
-  /// Eliminates the condensed unknowns of a matrix of the analysed pattern, whose values must be finite.
-  /// Not positive definite: some group is not.
-  FactorStatus eliminate(const BlockMatrix& matrix);
-  /// The Schur complement, 3 kept x 3 kept, lower triangle.
-  const Eigen::MatrixXd& condensed() const { return condensed_; }
+  /// Room for another elimination of the same pattern.
+  Condensation blank() const;
+
+  /// Kept nodes that each kept node is coupled with once the others are condensed, increasing.
+  std::vector<std::vector<int>> kept_couplings() const;
+  /// Eliminates the condensed unknowns of a matrix of the analysed pattern, whose values must be finite, and loads the
+  /// Schur complement into `kept`, a factor of kept_couplings(). Not positive definite: some piece is not.
+  FactorStatus eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept);
 
   /// Loads on all unknowns (3 a node) as loads on the kept ones.
   VecX reduce(const VecX& right) const;
   /// All unknowns under loads `right`, from the kept ones.
   VecX expand(const VecX& right, const VecX& kept) const;
 
-  /// Kept nodes that each group is coupled with, increasing: afterwards these are coupled with each other.
-  std::vector<std::vector<int>> outer_nodes() const;
-
-  int groups() const { return static_cast<int>(groups_.size()); }
+  int pieces() const { return static_cast<int>(layout_->pieces.size()); }
   double flops() const;   ///< of one elimination
-  long nonzeros() const;  ///< of the groups' factors
-  /// Smallest and largest pivot of the groups' Cholesky factors; empty groups: 1, 1.
+  long nonzeros() const;  ///< of the pieces' factors
+  /// Smallest and largest pivot of the pieces' Cholesky factors; no pieces: infinity, 0.
   double smallest_pivot() const, largest_pivot() const;
 
  private:
-  struct Group {
-    std::vector<int> inner, outer;  ///< scalar unknowns, increasing: condensed, and the kept ones they meet
-    Eigen::MatrixXd stiffness;      ///< inner x inner, lower
-    Eigen::MatrixXd coupling;       ///< inner x outer; after elimination L^-1 times it
-    Eigen::LLT<Eigen::MatrixXd> factor;
-  };
-  void find_groups(const BlockMatrix& pattern);
-  void gather(const BlockMatrix& matrix);
+  /// Nodes that are eliminated at once. Most often they are coupled with each other; single ones that meet the same
+  /// kept nodes (strands between the same two faces) share their product too, but each has a 3 x 3 factor of its own.
+  struct Piece {
+    bool single = false;
+    std::vector<int> inner,
+        outer;  ///< increasing: condensed nodes, and the kept ones they meet, in their numbers
+    /// Offsets in values_. Factor: inner x inner, lower; single: 3 x inner, a block each. Coupling: inner x outer,
+    /// after elimination L^-1 times it; single: its transpose.
+    Eigen::Index factor = 0, coupling = 0;
 
-  int kept_ = 0;  ///< scalar unknowns
-  std::vector<Group> groups_;
-  std::vector<int> group_of_, place_in_;  ///< of each condensed scalar unknown
-  Eigen::MatrixXd condensed_;
+    Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(inner.size()); }
+    Eigen::Index meets() const { return 3 * static_cast<Eigen::Index>(outer.size()); }
+  };
+  /// A block of the matrix from entry `from` on, whose entry (r, c) goes to values_[to + r * by_row + c * by_column].
+  struct Move {
+    int from, stride;
+    Eigen::Index to, by_row, by_column;
+  };
+  /// A block between kept nodes i and j in their numbers.
+  struct KeptBlock {
+    int from, stride, i, j;
+  };
+  /// What does not change with the values: shared by copies.
+  struct Layout {
+    std::vector<int> kept;  ///< nodes, increasing
+    std::vector<Piece> pieces;
+    std::vector<Move> moves;
+    std::vector<KeptBlock> kept_blocks;
+    Eigen::Index size = 0;    ///< of values_
+    Eigen::Index widest = 0;  ///< most unknowns that a piece meets
+  };
+  explicit Condensation(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {}
+  static void find_pieces(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout);
+  static void lay_out(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout);
+  void gather(const BlockMatrix& matrix);
+  bool eliminate(const Piece& piece);
+  bool eliminate_single(const Piece& piece);
+  /// x := L^-1 x, L'^-1 x.
+  void solve_lower(const Piece& piece, Eigen::Ref<VecX> x) const;
+  void solve_upper(const Piece& piece, Eigen::Ref<VecX> x) const;
+  double pivot(const Piece& piece, Eigen::Index i) const;
+
+  std::shared_ptr<const Layout> layout_;
+  VecX values_;   ///< of the pieces; at the bounds that Eigen's sums go by
+  VecX product_;  ///< workspace of one piece: what it takes from the kept ones
 };
 
 }  // namespace calot

@@ -78,26 +78,33 @@ EnvelopeFactor EnvelopeFactor::blank() const {
   return out;
 }
 
-void EnvelopeFactor::load(const BlockMatrix& matrix) {
+void EnvelopeFactor::clear() {
   for (Eigen::Index column = 0; column < size(); ++column)
     l_.col(column).segment(column, end_of(column) - column).setZero();
-  for (int column = 0; column < matrix.size(); ++column)
-    for (int e = matrix.column_starts()[column]; e < matrix.column_starts()[column + 1]; ++e) {
-      const int row = matrix.rows()[e];
-      if (row < column) continue;  // a diagonal block's upper half
-      const auto [low, high] = std::minmax(place_[column], place_[row]);
-      l_(high, low) = matrix.entries()[e];
-    }
 }
 
-void EnvelopeFactor::load(const Eigen::MatrixXd& matrix) {
-  for (Eigen::Index column = 0; column < size(); ++column) {
-    const int from = unknown_[static_cast<std::size_t>(column)];
-    for (Eigen::Index row = column; row < end_of(column); ++row) {
-      const int to = unknown_[static_cast<std::size_t>(row)];
-      l_(row, column) = matrix(std::max(from, to), std::min(from, to));
+void EnvelopeFactor::set(int i, int j, const double* block, int stride) {
+  const Eigen::Index row = place_[3 * i], column = place_[3 * j];
+  const Eigen::Map<const Mat3, 0, Eigen::OuterStride<>> values(block, Eigen::OuterStride<>(stride));
+  if (row >= column)
+    l_.block<3, 3>(row, column) = values;
+  else
+    l_.block<3, 3>(column, row) = values.transpose();
+}
+
+void EnvelopeFactor::subtract(std::span<const int> nodes, const double* product) {
+  const auto stride = 3 * static_cast<Eigen::Index>(nodes.size());
+  for (std::size_t b = 0; b < nodes.size(); ++b)
+    for (std::size_t a = b; a < nodes.size(); ++a) {
+      const Eigen::Map<const Mat3, 0, Eigen::OuterStride<>> values(
+          product + 3 * static_cast<Eigen::Index>(a) + 3 * static_cast<Eigen::Index>(b) * stride,
+          Eigen::OuterStride<>(stride));
+      const Eigen::Index row = place_[3 * nodes[a]], column = place_[3 * nodes[b]];
+      if (row >= column)
+        l_.block<3, 3>(row, column) -= values;
+      else
+        l_.block<3, 3>(column, row) -= values.transpose();
     }
-  }
 }
 
 bool EnvelopeFactor::factorise() { return cholesky_in_place(l_, ends_); }

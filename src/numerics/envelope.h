@@ -3,6 +3,8 @@
 // nothing beyond the last coupled row of a block of columns is touched (the envelope method: George and Liu, Computer
 // Solution of Large Sparse Positive Definite Systems, 1981, chapter 4).
 
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "numerics/block_matrix.h"
@@ -25,15 +27,21 @@ class EnvelopeFactor {
   EnvelopeFactor blank() const;
 
   Eigen::Index size() const { return l_.rows(); }
-  /// Take over the lower triangle of a matrix of these nodes; what is not coupled is not read.
-  void load(const BlockMatrix& matrix);
-  void load(const Eigen::MatrixXd& matrix);
+  /// A matrix of these nodes is loaded by clear() and then set() for its blocks of coupled nodes (i, j), either half:
+  /// entry (r, c) at block[c * stride + r], of a diagonal one the lower half is read.
+  void clear();
+  void set(int i, int j, const double* block, int stride);
+  /// Takes the lower triangle of `product`, 3 x 3 blocks of all pairs of `nodes`, by columns, off what is loaded.
+  void subtract(std::span<const int> nodes, const double* product);
   /// False when the matrix that was loaded is not positive definite.
   bool factorise();
   /// With the last factor, which must have succeeded.
   VecX solve(const VecX& right) const;
-  double smallest_pivot() const { return l_.diagonal().minCoeff(); }
-  double largest_pivot() const { return l_.diagonal().maxCoeff(); }
+  /// Of no nodes: infinity, 0.
+  double smallest_pivot() const {
+    return size() > 0 ? l_.diagonal().minCoeff() : std::numeric_limits<double>::infinity();
+  }
+  double largest_pivot() const { return size() > 0 ? l_.diagonal().maxCoeff() : 0; }
   double flops() const;   ///< of one factorisation
   long nonzeros() const;  ///< within the envelope
 

@@ -1,16 +1,16 @@
 #pragma once
 // What Newton's method keeps from one solve to the next.
 
-#include <limits>
-
 #include "numerics/border.h"
 
 namespace calot {
 
 struct NewtonWorkspace {
+  /// Nodes whose `kept` is 0 may be condensed onto the others; an empty one keeps all.
+  explicit NewtonWorkspace(BlockMatrix pattern, std::span<const char> kept = {})
+      : matrix(std::move(pattern)), factor(matrix, kept) {}
   /// `coarse` nodes first, those of extensions after them.
-  explicit NewtonWorkspace(BlockMatrix pattern, int coarse = std::numeric_limits<int>::max())
-      : matrix(std::move(pattern)), factor(matrix, coarse) {}
+  NewtonWorkspace(BlockMatrix pattern, int coarse) : matrix(std::move(pattern)), factor(matrix, coarse) {}
   BlockMatrix matrix;
   Cholesky factor;
   Border border;  ///< of the factor
