@@ -13,11 +13,7 @@
 namespace calot {
 namespace {
 
-FactorKind kind_for(const BlockMatrix& pattern, std::span<const char> kept) {
-  if (pattern.nodes() > dense_nodes) return FactorKind::sparse;
-  const bool all = std::find(kept.begin(), kept.end(), 0) == kept.end();
-  return all ? FactorKind::dense : FactorKind::condensed;
-}
+constexpr double sparse_slowness = 10;  ///< time of an operation against a dense one's
 
 }  // namespace
 
@@ -53,6 +49,8 @@ struct Cholesky::Impl {
     if (like.condensation) condensation = like.condensation->blank();
     kept = like.kept.blank();
     if (like.factor != nullptr) factor = cholmod_copy_factor(like.factor, &common);
+    common.fl = like.common.fl;
+    common.lnz = like.common.lnz;
   }
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
@@ -84,21 +82,33 @@ struct Cholesky::Impl {
   }
 };
 
-Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept)
-    : Cholesky(pattern, kept, kind_for(pattern, kept)) {}
+Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept) {
+  const auto condensed = std::count(kept.begin(), kept.end(), 0);
+  const bool has_room = pattern.nodes() - condensed <= dense_nodes;
+  if (has_room) *this = Cholesky(pattern, kept, FactorKind::condensed);
+  if (has_room && factor_flops() < dense_flops) return;
+  const Cholesky sparse(pattern, kept, FactorKind::sparse);
+  const bool is_made = sparse.impl_->factor != nullptr;
+  if (!has_room || (is_made && sparse_slowness * sparse.factor_flops() < factor_flops())) *this = sparse;
+}
 
 Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept, FactorKind kind)
     : impl_(std::make_shared<Impl>()) {
-  impl_->kind = kind;
   if (kind == FactorKind::sparse) {
+    impl_->kind = kind;
     cholmod_sparse sparse = Impl::view(pattern);
     impl_->factor = cholmod_analyze(&sparse, &impl_->common);
     return;
   }
   const std::vector<char> all(static_cast<std::size_t>(pattern.nodes()), 1);
-  impl_->condensation.emplace(pattern, kind == FactorKind::dense || kept.empty() ? all : kept);
+  if (kept.empty() || kind == FactorKind::dense) kept = all;
+  const bool keeps_all = std::find(kept.begin(), kept.end(), 0) == kept.end();
+  impl_->kind = keeps_all ? FactorKind::dense : FactorKind::condensed;
+  impl_->condensation.emplace(pattern, kept);
   impl_->kept = EnvelopeFactor(impl_->condensation->kept_couplings());
 }
+
+FactorKind Cholesky::kind() const { return impl_->kind; }
 
 FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
   // Neither library minds a NaN (CHOLMOD 3.0.14 takes one on the diagonal for a success), so look before.

@@ -1,7 +1,6 @@
 #pragma once
-// LL^T of a block matrix: dense (Eigen) for small bodies, whose matrices are half full, and sparse (CHOLMOD,
-// simplicial, symbolic factor reused) for larger ones; in the dense one the nodes of structural extensions are
-// condensed onto the others first. None calls BLAS, so the bits do not depend on the machine.
+// LL^T of a block matrix: dense within an envelope (Eigen), where nodes that may be are condensed onto the others first,
+// or sparse (CHOLMOD, simplicial, symbolic factor reused). None calls BLAS, so the bits do not depend on the machine.
 
 #include <memory>
 #include <span>
@@ -13,10 +12,26 @@ namespace calot {
 
 enum class FactorStatus { ok, not_finite, not_positive_definite, out_of_memory };
 
-/// Up to this many nodes dense is the faster: 0.11 against 0.47 ms at 61 nodes, 1.4 against 5.0 at 180, 3.2
-/// against 12.7 at 238, even at 946 (see tests/bench).
-inline constexpr int dense_nodes = 600;
+/// What serves a matrix is chosen by counts alone. Dense sums run in the processor's wide registers, ten times as many
+/// a second as CHOLMOD's simplicial ones, and condensation keeps the count low: the envelope serves up to dense_nodes
+/// kept nodes, unless it takes more than dense_flops and ten times what the sparse factor takes. Factorisation, ms
+/// (tests/bench/factor_bench.cpp: shells, rods of 11 nodes between them, strands of one node from face to face):
+///
+///   nodes      rods strands | whole envelope | sparse | condensed
+///   180           0       0 |           0.37 |    3.1 |         -
+///   180           2       0 |           0.49 |    3.9 |      0.70  (rods tie far parts: their inside is better kept)
+///   180           0     300 |            5.9 |    4.1 |      0.60
+///   180 + 40      2     100 |            2.1 |    9.5 |       1.1
+///   180 + 40      2     600 |             45 |     12 |       1.7
+///   180 + 100     4     300 |             14 |     14 |       2.4
+///   238 + 238     6     300 |             18 |     49 |       5.7
+///   300 + 200     6     600 |             47 |     47 |       6.9
+///   946           0       0 |            9.2 |     90 |         -
+inline constexpr double dense_flops = 3e8;
+/// Beyond, room for the envelope's square (162 MB) is what counts.
+inline constexpr int dense_nodes = 1500;
 
+/// Dense: the envelope of everything.
 enum class FactorKind { dense, sparse, condensed };
 
 /// The first `count` of `nodes` nodes are kept.
@@ -25,7 +40,8 @@ std::vector<char> first_kept(int nodes, int count);
 class Cholesky {
  public:
   /// Analyses the pattern (sparse: fill-reducing order AMD); values are not read. `kept`, of each node: where it is 0
-  /// the node may be condensed onto those that stay. An empty `kept` keeps all.
+  /// the node may be condensed onto those that stay, which pays for pieces that meet few of them, close together. An
+  /// empty `kept` keeps all.
   explicit Cholesky(const BlockMatrix& pattern, std::span<const char> kept = {});
   Cholesky(const BlockMatrix& pattern, std::span<const char> kept, FactorKind kind);
   /// The first `coarse` nodes are kept.
@@ -43,6 +59,7 @@ class Cholesky {
   VecX solve(const VecX& right) const;
   /// Cheap estimate of the reciprocal condition number: (smallest / largest diagonal of L)^2.
   double reciprocal_condition() const;
+  FactorKind kind() const;
   double factor_flops() const;  ///< of one factorisation
   long factor_nonzeros() const;
 

@@ -115,6 +115,51 @@ TEST_P(CholeskyOf, FactorIsNeverSmallerThanTheMatrix) {
   EXPECT_GE(cholesky.factor_flops(), static_cast<double>(below));
 }
 
+TEST_P(CholeskyOf, ACopyThatFactorisesAnewCostsWhatTheFirstDid) {
+  Rng rng(8);
+  const BlockMatrix matrix = test::random_positive(rng, 20);
+  const Cholesky first = factor(matrix);
+  Cholesky second = first;
+  ASSERT_EQ(second.factorise(matrix), FactorStatus::ok);
+  EXPECT_FALSE(second.shares_factor_with(first));
+  EXPECT_GT(first.factor_flops(), 0);
+  EXPECT_EQ(second.factor_flops(), first.factor_flops());
+  EXPECT_EQ(second.factor_nonzeros(), first.factor_nonzeros());
+}
+
+/// A band of `places` nodes, and strands of one node each between faces of it that are far from each other.
+std::vector<std::vector<int>> tied_band(int places, int strands) {
+  constexpr int face = 12;
+  std::vector<std::vector<int>> out;
+  for (int i = 0; i + face <= places; ++i) {
+    out.emplace_back();
+    for (int k = 0; k < face; ++k) out.back().push_back(i + k);
+  }
+  const std::vector<std::vector<int>> faces = out;
+  for (int s = 0; s < strands; ++s) {
+    const std::size_t here = static_cast<std::size_t>(s) % (faces.size() / 2);
+    out.push_back(faces[here]);
+    out.back().insert(out.back().end(), faces[faces.size() - 1 - here].begin(),
+                      faces[faces.size() - 1 - here].end());
+    out.back().push_back(places + s);
+  }
+  return out;
+}
+
+TEST(Cholesky, StrandsAreCondensedAndWhereTheyMayNotBeASparseFactorServes) {
+  const BlockMatrix matrix(1000, tied_band(200, 800));
+  const Cholesky condensed(matrix, 200), whole(matrix, 1000), dense(matrix, 1000, FactorKind::dense);
+  EXPECT_EQ(condensed.kind(), FactorKind::condensed);
+  EXPECT_EQ(whole.kind(), FactorKind::sparse);
+  EXPECT_GT(dense.factor_flops(), 10 * whole.factor_flops());
+}
+
+TEST(Cholesky, OnlyKeptNodesCountForTheRoomADenseFactorTakes) {
+  const BlockMatrix matrix(dense_nodes + 1, tied_band(dense_nodes, 1));
+  EXPECT_EQ(Cholesky(matrix).kind(), FactorKind::sparse);
+  EXPECT_EQ(Cholesky(matrix, dense_nodes).kind(), FactorKind::condensed);
+}
+
 TEST(Cholesky, SmallBodiesAreDenseAndAllKindsAgree) {
   Rng rng(7);
   const BlockMatrix matrix = test::random_positive(rng, 30);
