@@ -1,0 +1,75 @@
+#pragma once
+// Threads that share one loop at a time. A loop is cut into chunks whose number does not depend on how many threads
+// there are; each chunk writes results of its own, which the caller puts together in the chunks' order: the bits are
+// the same whatever the number of threads.
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace calot {
+
+/// Items begin .. end - 1 of a loop.
+struct Chunk {
+  int begin = 0, end = 0;
+};
+/// The k-th of `chunks` parts of `items`, of sizes that differ by one at most.
+constexpr Chunk chunk_of(int items, int chunks, int k) {
+  const auto at = [&](int part) { return static_cast<int>(std::int64_t{items} * part / chunks); };
+  return {at(k), at(k + 1)};
+}
+
+class Workers {
+ public:
+  /// `threads` in all, the caller's among them: of one or less none is started. Where the system refuses some, those
+  /// that there are do the work.
+  explicit Workers(int threads);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  int threads() const { return static_cast<int>(threads_.size()) + 1; }
+
+  /// Calls work(chunk), which must be noexcept, once for each of 0 .. chunks - 1, on any thread and in any order, and
+  /// returns when all are done; what they wrote is then seen. A loop within a chunk, or begun while another thread's
+  /// is under way, is done by its caller alone.
+  template <class Work>
+  void for_each(int chunks, const Work& work) {
+    static_assert(std::is_nothrow_invocable_v<const Work&, int>, "no exception may leave a worker");
+    run(
+        chunks, [](const void* on, int chunk) noexcept { (*static_cast<const Work*>(on))(chunk); }, &work);
+  }
+
+ private:
+  using Call = void (*)(const void*, int) noexcept;
+  void run(int chunks, Call call, const void* on);
+  void work_on();
+  bool take_chunk();
+  bool wait_for_work();
+  bool has_work() const { return static_cast<std::uint32_t>(ticket_.load()) > 0; }
+
+  /// Number of the loop, and in the lower half how many of its chunks nobody has taken yet.
+  alignas(64) std::atomic<std::uint64_t> ticket_ = 0;
+  std::atomic<Call> call_ = nullptr;
+  std::atomic<const void*> on_ = nullptr;
+  alignas(64) std::atomic<int> left_ = 0;  ///< chunks that are not done
+  alignas(64) std::atomic<bool> busy_ = false;
+  std::atomic<bool> ends_ = false;
+  std::atomic<int> sleepers_ = 0;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::vector<std::thread> threads_;
+};
+
+/// With workers or without: then on the caller's thread.
+template <class Work>
+void for_each_chunk(Workers* workers, int chunks, const Work& work) {
+  if (workers != nullptr) return workers->for_each(chunks, work);
+  for (int k = 0; k < chunks; ++k) work(k);
+}
+
+}  // namespace calot
