@@ -41,6 +41,12 @@ void ElementMatrix::reset(int padded) {
   values_.assign(6 * static_cast<std::size_t>(padded) * padded, 0.0);
 }
 
+std::size_t ElementMatrix::reserve(int padded) {
+  const std::size_t entries = 6 * static_cast<std::size_t>(padded) * padded;
+  values_.reserve(entries);
+  return sizeof(double) * entries;
+}
+
 namespace {
 
 /// Rows b .. b + 3 and `Wide` lanes from column a of K += W' Q: as many sums as the processor has registers for.
@@ -77,13 +83,14 @@ void ElementMatrix::add(int pair, int rows, const double* weights, const double*
   }
 }
 
-void ElementMatrix::scatter(const FaceNodes& face, BlockMatrix& matrix) const {
+void ElementMatrix::scatter(const FaceNodes& face, BlockMatrix& matrix, int first, int last) const {
   const int n = padded_;
   const int count = face.count();
   const double* pairs[6];
   for (int p = 0; p < 6; ++p) pairs[p] = values_.data() + static_cast<std::size_t>(p) * n * n;
   int slots[max_face_nodes];
-  for (int b = 0; b < count; ++b) {
+  const auto begin = std::lower_bound(face.nodes.begin(), face.nodes.end(), first) - face.nodes.begin();
+  for (int b = static_cast<int>(begin); b < count && face.nodes[b] < last; ++b) {
     const int j = face.nodes[b];
     const int step = matrix.stride(j);
     matrix.slots(std::span(face.nodes).subspan(b), slots + b);

@@ -43,7 +43,11 @@ class ElementMatrix {
   /// K_cd += W' Q, c <= d the components of `pair`: W has `rows` rows of weights of length padded, Q the same of what
   /// they are coupled with. K must come out symmetric where c = d: of these the half a >= b is computed.
   void add(int pair, int rows, const double* weights, const double* products);
-  void scatter(const FaceNodes& face, BlockMatrix& matrix) const;
+  /// Takes memory for rows of `padded` weights: how many bytes they fill.
+  std::size_t reserve(int padded);
+  void scatter(const FaceNodes& face, BlockMatrix& matrix) const { scatter(face, matrix, 0, matrix.nodes()); }
+  /// The block columns first .. last - 1 only.
+  void scatter(const FaceNodes& face, BlockMatrix& matrix, int first, int last) const;
   int padded() const { return padded_; }
 
  private:

@@ -63,6 +63,7 @@ Result<Shell> Shell::create(const Quadrature& quadrature, const VecX& rest, cons
   for (int row = 0; row < rows;) {
     Points points;
     points.face = quadrature.element[row];
+    shell.first_points_.resize(static_cast<std::size_t>(points.face) + 1, shell.points_.size());
     points.first = row;
     while (points.used < lane_count && row < rows && quadrature.element[row] == points.face)
       ++points.used, ++row;
@@ -79,6 +80,7 @@ Result<Shell> Shell::create(const Quadrature& quadrature, const VecX& rest, cons
                   "check the control mesh for flat or repeated triangles");
     shell.points_.push_back(points);
   }
+  shell.first_points_.push_back(shell.points_.size());
   return shell;
 }
 
@@ -288,18 +290,22 @@ void Shell::add_hessian(const Points& points, const VecX& x, ElementMatrix& elem
   }
 }
 
-void Shell::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+void Shell::face_hessian(std::size_t face, const VecX& x, ElementMatrix& element) const {
+  element.reset(faces_[face].padded);
+  for (std::size_t k = first_points_[face]; k < first_points_[face + 1]; ++k)
+    material_.bends ? add_hessian<true>(points_[k], x, element) : add_hessian<false>(points_[k], x, element);
+}
+
+void Shell::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const {
+  if (assembly != nullptr)
+    return assembly->add(faces_, matrix, [&](std::size_t face, ElementMatrix& element) noexcept {
+      face_hessian(face, x, element);
+    });
   ElementMatrix element;
-  int current = -1;
-  for (const Points& points : points_) {
-    if (points.face != current) {
-      if (current >= 0) element.scatter(faces_[current], matrix);
-      current = points.face;
-      element.reset(faces_[current].padded);
-    }
-    material_.bends ? add_hessian<true>(points, x, element) : add_hessian<false>(points, x, element);
+  for (std::size_t face = 0; face < faces_.size(); ++face) {
+    face_hessian(face, x, element);
+    element.scatter(faces_[face], matrix);
   }
-  if (current >= 0) element.scatter(faces_[current], matrix);
 }
 
 std::vector<double> Shell::point_areas() const {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/status.h"
-#include "fem/element_layout.h"
+#include "fem/assembly.h"
 #include "fem/membrane_material.h"
 #include "fem/shell_point.h"
 
@@ -68,8 +68,8 @@ class Shell {
   double value(const VecX& x) const;
   /// Adds the gradient (N) to `gradient`, 3 * nodes.
   void add_gradient(const VecX& x, VecX& gradient) const;
-  /// Adds the exact Hessian (N/m).
-  void add_hessian(const VecX& x, BlockMatrix& matrix) const;
+  /// Adds the exact Hessian (N/m); with an assembly by its threads, to the same bits.
+  void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly = nullptr) const;
 
   std::vector<double> point_areas() const;  ///< rest area of each row of the table, m^2
   /// Largest principal stretch over the quadrature points.
@@ -111,11 +111,13 @@ class Shell {
   void add_gradient(const Points& points, const VecX& x, VecX& gradient) const;
   template <bool Bends>
   void add_hessian(const Points& points, const VecX& x, ElementMatrix& element) const;
+  void face_hessian(std::size_t face, const VecX& x, ElementMatrix& element) const;
 
   ShellMaterial material_;
   std::vector<FaceNodes> faces_;
   std::vector<Points> points_;
-  std::vector<Fibres> fibres_;  ///< of each point; none without
+  std::vector<std::size_t> first_points_;  ///< of each face, and their number
+  std::vector<Fibres> fibres_;             ///< of each point; none without
   std::vector<NodeWeights> weights_;
 };
 

@@ -24,6 +24,16 @@ void shell_hessian(benchmark::State& state) {
   }
 }
 
+void shared_shell_hessian(benchmark::State& state) {
+  auto [organ, work] = gallbladder(static_cast<int>(state.range(0)));
+  Workers workers(static_cast<int>(state.range(1)));
+  Assembly assembly(workers);
+  for (auto _ : state) {
+    work.matrix.set_zero();
+    shell_of(organ)->shell().add_hessian(organ.state.x, work.matrix, &assembly);
+  }
+}
+
 void bile_hessian(benchmark::State& state) {
   auto [organ, work] = gallbladder(static_cast<int>(state.range(0)));
   for (auto _ : state) {
@@ -88,6 +98,11 @@ void nodes(benchmark::internal::Benchmark* part) {
   part->ArgName("nodes")->Arg(61)->Arg(180)->Unit(benchmark::kMicrosecond);
 }
 BENCHMARK(shell_hessian)->Apply(nodes);
+BENCHMARK(shared_shell_hessian)
+    ->ArgNames({"nodes", "threads"})
+    ->ArgsProduct({{61, 180}, {1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(bile_hessian)->Apply(nodes);
 BENCHMARK(energy_and_gradient)->Apply(nodes);
 BENCHMARK(contact_search)->Apply(nodes);

@@ -97,6 +97,25 @@ TEST(Shell, HessianIsTheDerivativeOfTheGradientAndSymmetric) {
   }
 }
 
+TEST(Shell, HessianHasTheSameBitsWhateverTheThreads) {
+  Rng rng(3);
+  std::vector<Body> all = bodies();
+  all.push_back(
+      make_body(test::sphere(238), fibrous(true), three_point_rule()));  // more than one filling of the cache
+  for (int threads : {1, 2, 3}) {
+    Workers workers(threads);
+    Assembly assembly(workers);
+    for (Body& body : all) {
+      const VecX x = deformed(body, rng);
+      body.matrix.set_zero();
+      body.shell.add_hessian(x, body.matrix);
+      BlockMatrix shared = body.matrix.pattern_only().blank();
+      body.shell.add_hessian(x, shared, &assembly);
+      EXPECT_EQ(shared.entries(), body.matrix.entries()) << threads;
+    }
+  }
+}
+
 TEST(Shell, RigidMotionChangesNoEnergyAndTurnsTheForces) {
   Rng rng(3);
   for (const Body& body : bodies()) {
