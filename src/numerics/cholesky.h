@@ -28,7 +28,7 @@ enum class FactorStatus { ok, not_finite, not_positive_definite, out_of_memory }
 ///   300 + 200     6     600 |             47 |     47 |       6.9
 ///   946           0       0 |            9.2 |     90 |         -
 inline constexpr double dense_flops = 3e8;
-/// Beyond, room for the envelope's square (162 MB) is what counts.
+/// Beyond, the envelope's memory (162 MB where it is full) is what counts.
 inline constexpr int dense_nodes = 1500;
 
 /// Dense: the envelope of everything.

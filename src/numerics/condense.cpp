@@ -144,18 +144,17 @@ void Condensation::lay_out(const BlockMatrix& pattern, const std::vector<int>& n
 }
 
 std::vector<std::vector<int>> Condensation::kept_couplings() const {
-  std::vector<std::vector<int>> out(layout_->kept.size());
-  const auto couple = [&](int a, int b) {
-    if (a == b) return;
-    out[a].push_back(b);
-    out[b].push_back(a);
-  };
+  const std::size_t count = layout_->kept.size();
+  std::vector<char> coupled(count * count, 0);  // pieces that meet the same nodes say the same again
+  const auto couple = [&](int a, int b) { coupled[a * count + b] = coupled[b * count + a] = 1; };
   for (const KeptBlock& block : layout_->kept_blocks) couple(block.i, block.j);
   for (const Piece& piece : layout_->pieces)
     for (int a : piece.outer)
-      for (int b : piece.outer)
-        if (b < a) couple(a, b);
-  for (std::vector<int>& of_node : out) sort_once(of_node);
+      for (int b : piece.outer) couple(a, b);
+  std::vector<std::vector<int>> out(count);
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = 0; b < count; ++b)
+      if (a != b && coupled[a * count + b]) out[a].push_back(static_cast<int>(b));
   return out;
 }
 

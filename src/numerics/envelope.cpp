@@ -57,7 +57,7 @@ EnvelopeFactor::EnvelopeFactor(const Graph& neighbours) {
   place_.resize(unknown_.size());
   for (std::size_t k = 0; k < unknown_.size(); ++k) place_[unknown_[k]] = static_cast<int>(k);
   const auto size = static_cast<Eigen::Index>(unknown_.size());
-  l_ = Eigen::MatrixXd::Zero(size, size);
+  l_.resize(size, size);  // what lies outside the envelope is never touched and takes no memory
   Eigen::Index end = 0;
   for (Eigen::Index first = 0; first < size; first += cholesky_block) {
     for (Eigen::Index column = first; column < std::min(first + cholesky_block, size); ++column) {
