@@ -19,6 +19,7 @@ struct Barrier {
   /// Share of the range below which the barrier goes on as a parabola, C2: then it is finite everywhere, inside the
   /// shape too, and a solver may pass through places that no state may keep. 0: infinite at 0.
   double soft_share = 0;
+  bool operator==(const Barrier&) const = default;
   /// b(d) = -stiffness / range * (d - range)^2 ln(d / range): the pressure at d = range/2 is 1.2 stiffness.
   /// Without a soft share, at d <= 0 energy and second derivative are +infinity and the derivative is
   /// -infinity: not an error but a state no accepted step may reach; a line search sees it as a rejected trial.

@@ -126,6 +126,7 @@ class Session {
   void note_frequencies() {
     const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
     for (std::size_t i = 0; i < organs.size(); ++i) {
+      if (!is_hollow(organs[i].shape)) continue;
       const std::string name = organs[i].name + ".lowest_frequency_Hz";
       const Result<double> found = world_.lowest_frequency(static_cast<int>(i));
       if (found)

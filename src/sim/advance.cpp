@@ -139,7 +139,8 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
       way = std::max(way, path ? path->way(places.corners(pair.triangle).col(c), motion) : motion.norm());
     }
     if (way < (1.0 - contact_keep) * near.of_all()) continue;
-    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
+    for (int local : organ.body->contact_points()) {
+      const int point = pair.triangle * contacts_each + local;
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 at = places.at(point), motion = share * moves.at(point);
       path = paths.of(pair.shape, share);

@@ -1,6 +1,7 @@
 #include "sim/body.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "numerics/parts.h"
 
@@ -24,6 +25,15 @@ const std::vector<double>& Body::skin_radii() const {
 }
 
 const std::vector<double>& Body::core_radii() const { return skin_radii(); }
+
+std::span<const int> Body::contact_points() const {
+  static const std::array<int, contacts_each> all = [] {
+    std::array<int, contacts_each> out{};
+    std::iota(out.begin(), out.end(), 0);
+    return out;
+  }();
+  return all;
+}
 
 double Body::core_depth() const {
   double depth = contact_guard;

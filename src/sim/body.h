@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "collision/barrier.h"
@@ -102,7 +103,9 @@ class Body {
   double core_depth() const;
   /// Rest area that each skin point stands for, m^2.
   virtual const std::vector<double>& skin_areas() const = 0;
-  /// Rest area that a contact point (contact_points.h) stands for, m^2.
+  /// Which of a triangle's points (contact_points.h) are felt, increasing.
+  virtual std::span<const int> contact_points() const;
+  /// Rest area that one of these stands for, m^2.
   virtual double contact_area(int point) const = 0;
   /// What it answers, a unit of that area, to a shape at this distance from its surface, m.
   virtual BarrierSample contact_sample(int /*point*/, double distance, const Barrier& barrier) const {

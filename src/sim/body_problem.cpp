@@ -65,9 +65,7 @@ double BodyProblem::value(const VecX& x) const {
   }
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   if (loads_.load.size() > 0) sum -= loads_.load.dot(x);
-  for (const Touch& touch : touching(x))
-    sum += body_.contact_area(touch.point) *
-           body_.contact_sample(touch.point, touch.slope.distance, loads_.barrier).energy;
+  for (const Touch& touch : touching(x)) sum += body_.contact_area(touch.point) * touch.answer.energy;
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
   if (search_) sum += search_->own.value(body_, x);
@@ -84,9 +82,7 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
   ContactLoad pressed(body_.skin(), gradient);
   for (const Touch& touch : touching(x))
     pressed.add(touch.point,
-                body_.contact_area(touch.point) *
-                    body_.contact_sample(touch.point, touch.slope.distance, loads_.barrier).derivative *
-                    touch.slope.gradient);
+                body_.contact_area(touch.point) * touch.answer.derivative * touch.slope.gradient);
   pressed.finish();
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
@@ -164,7 +160,8 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     const Nearness near = places.nearness(pair.triangle, shape);
     const double way = share * std::sqrt(moves.corners(pair.triangle).colwise().squaredNorm().maxCoeff());
     if (way < (1.0 - contact_keep) * near.of_all()) continue;
-    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
+    for (int local : body_.contact_points()) {
+      const int point = pair.triangle * contacts_each + local;
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 motion = share * moves.at(point), at = places.at(point);
       const double radius = places.radius(point);
@@ -175,13 +172,11 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   return search_ ? search_->own.safe_share(body_, x, step, contact_keep, share) : share;
 }
 
-std::vector<ContactForce> contact_forces(const Body& body, const ContactLoads& loads,
-                                         const std::vector<Touch>& touches) {
+std::vector<ContactForce> contact_forces(const Body& body, const std::vector<Touch>& touches) {
   std::vector<ContactForce> out;
   for (const Touch& touch : touches) {
-    const double pressure = body.contact_sample(touch.point, touch.slope.distance, loads.barrier).derivative;
     out.push_back({touch.shape, touch.point, touch.at,
-                   body.contact_area(touch.point) * pressure * touch.slope.gradient});
+                   body.contact_area(touch.point) * touch.answer.derivative * touch.slope.gradient});
   }
   return out;
 }
@@ -189,12 +184,12 @@ std::vector<ContactForce> contact_forces(const Body& body, const ContactLoads& l
 std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const ContactLoads& loads,
                                          const std::vector<ContactPair>& pairs) {
   TouchMemory memory;
-  return contact_forces(body, loads, memory.at(body, x, loads, pairs, 0.0));
+  return contact_forces(body, memory.at(body, x, loads, pairs, 0.0));
 }
 
 Mat3 contact_hessian(const Body& body, const ContactLoads& loads, const Touch& touch) {
   const DistanceSlope& d = touch.slope;
-  const BarrierSample b = body.contact_sample(touch.point, d.distance, loads.barrier);
+  const BarrierSample& b = touch.answer;
   return body.contact_area(touch.point) *
          (b.second * d.gradient * d.gradient.transpose() +
           b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));

@@ -113,7 +113,7 @@ std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, c
 const std::vector<Touch>* TouchMemory::known(const Body& body, const VecX& x,
                                              const ContactLoads& loads) const {
   for (const State& state : states_)
-    if (state.range == loads.barrier.range && state.x.size() == x.size() && state.x == x &&
+    if (state.barrier == loads.barrier && state.x.size() == x.size() && state.x == x &&
         state.shapes == loads.shapes && state.details == body.details())
       return &state.touches;
   return nullptr;
@@ -130,11 +130,12 @@ const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const
   state.x = x;
   state.details = body.details();
   state.shapes = loads.shapes;
-  state.range = loads.barrier.range;
+  state.barrier = loads.barrier;
   state.touches.clear();
   for_touching(body, x, loads, pairs, approach,
                [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
-                 state.touches.push_back({point, shape, at, slope});
+                 state.touches.push_back(
+                     {point, shape, at, slope, body.contact_sample(point, slope.distance, loads.barrier)});
                });
   return state.touches;
 }

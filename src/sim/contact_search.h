@@ -62,7 +62,8 @@ void for_touching(const Body& body, const VecX& x, const ContactLoads& loads,
     const Shape& shape = loads.shapes[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);
     if (near.of_all() >= range) continue;
-    for (int point = pair.triangle * contacts_each; point < (pair.triangle + 1) * contacts_each; ++point) {
+    for (int local : body.contact_points()) {
+      const int point = pair.triangle * contacts_each + local;
       if (near.of(point) >= range) continue;
       const Vec3 at = places.at(point);
       DistanceSlope d = distance_slope(shape, at);
@@ -77,6 +78,7 @@ struct Touch {
   int point = 0, shape = 0;
   Vec3 at = Vec3::Zero();  ///< m
   DistanceSlope slope;     ///< of the surface there (Body::skin_radii)
+  BarrierSample answer;    ///< of the body to it there, a unit of area
 };
 
 /// What touches, found once for a state: a solve's energies and their derivatives, and after it pads, forces and report
@@ -95,7 +97,7 @@ class TouchMemory {
     VecX x;
     std::vector<int> details;
     std::vector<Shape> shapes;
-    double range = -1;  ///< m; below 0: nothing yet
+    std::optional<Barrier> barrier;  ///< none: nothing yet
     std::vector<Touch> touches;
   };
   std::array<State, 2> states_;  ///< where a step began and where it is tried

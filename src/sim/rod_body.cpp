@@ -162,7 +162,7 @@ double RodBody::max_stretch(const VecX& x) const {
 }
 
 double RodBody::contact_area(int point) const {
-  return 0.5 * segment_areas_[point / (2 * contacts_each)] / contacts_each;
+  return 0.5 * segment_areas_[point / (2 * contacts_each)] / felt_points.size();
 }
 
 BarrierSample RodBody::contact_sample(int point, double distance, const Barrier& barrier) const {

@@ -53,6 +53,8 @@ class RodBody : public Body {
   const std::vector<double>& skin_radii() const override { return radii_; }
   const std::vector<double>& core_radii() const override { return core_radii_; }
   const std::vector<double>& skin_areas() const override { return skin_areas_; }
+  /// Four of each triangle, eight a segment: a twelfth of it apart, as both its triangles are counted.
+  std::span<const int> contact_points() const override { return felt_points; }
   double contact_area(int point) const override;
   BarrierSample contact_sample(int point, double distance, const Barrier& barrier) const override;
   const std::vector<Vec3>& skin_rest() const override { return skin_rest_; }
@@ -70,6 +72,8 @@ class RodBody : public Body {
   double row_mass(int row) const;
 
  private:
+  /// Of the rule's points those whose weights of the first corner are 11/12, 8/12, 5/12 and 2/12.
+  static constexpr std::array<int, 4> felt_points = {0, 4, 8, 12};
   double radius_at(double share) const;
   void lay_skin(const Centreline& line);
   void lay_bed(const Centreline& line);

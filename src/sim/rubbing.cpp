@@ -82,13 +82,14 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));
   FrictionLoad now;
   ContactPlaces places_before(organ.body->skin(), before);
-  for (const auto& [point, shape, at, d] : organ.search.touching(*organ.body, organ.state.x, around)) {
+  for (const auto& [point, shape, at, d, answer] :
+       organ.search.touching(*organ.body, organ.state.x, around)) {
     const double mu = coefficient(field, shape);
     if (mu <= 0 || is_holding_jaw(holding, shape)) continue;
     const double area = organ.body->contact_area(point);
     StickSlip hold;
     hold.normal = d.gradient;
-    hold.limit = -mu * area * organ.body->contact_sample(point, d.distance, around.barrier).derivative;
+    hold.limit = -mu * area * answer.derivative;
     hold.stiffness = stick_stiffness * area;
     const RubbingPoint* old = organ.friction.find(shape, point);
     hold.anchor =

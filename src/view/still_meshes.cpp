@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "anatomy/organ_frame.h"
@@ -5,19 +6,39 @@
 #include "view/surroundings.h"
 
 namespace calot {
+namespace {
+
+/// The wall stands around the place below the organs where the ground is.
+Vec3 foot_of(const AnatomyDefinition& anatomy, const Vec3& about) {
+  const auto below = [&](const Vec3& point, const Vec3& normal) {
+    const Vec3 n = normal.normalized();
+    return Vec3(about - n * n.dot(about - point));
+  };
+  if (anatomy.support) return below(anatomy.support->point, anatomy.support->normal);
+  const GroundDefinition& ground = anatomy.ground.front();
+  return ground.type == GroundType::plane ? below(ground.point, ground.normal) : about;
+}
+
+}  // namespace
 
 std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
   std::vector<SceneMesh> meshes;
   const auto add = [&](std::vector<SceneMesh> more) {
     for (SceneMesh& mesh : more) meshes.push_back(std::move(mesh));
   };
-  if (scene.anatomy.organs.empty()) return meshes;
-  const OrganDefinition& organ = scene.anatomy.organs.front();
-  if (scene.anatomy.support) {
-    add(support_meshes(*scene.anatomy.support, organ.neck));
+  const AnatomyDefinition& anatomy = scene.anatomy;
+  if (anatomy.organs.empty()) return meshes;
+  const auto hollow = std::find_if(anatomy.organs.begin(), anatomy.organs.end(),
+                                   [](const OrganDefinition& organ) { return is_hollow(organ.shape); });
+  const Vec3 about =
+      organ_frame(hollow != anatomy.organs.end() ? *hollow : anatomy.organs.front()).translation();
+  for (const GroundDefinition& ground : anatomy.ground) meshes.push_back(ground_mesh(ground, about));
+  if (anatomy.support) meshes.push_back(plane_mesh(anatomy.support->point, anatomy.support->normal, about));
+  if (meshes.empty() && hollow != anatomy.organs.end()) {
+    meshes.push_back(liver_mesh(*hollow));
+    add(abdomen_meshes(*hollow));
   } else {
-    meshes.push_back(liver_mesh(organ));
-    add(abdomen_meshes(organ));
+    meshes.push_back(abdominal_wall(meshes.empty() ? about : foot_of(anatomy, about)));
   }
   return meshes;
 }

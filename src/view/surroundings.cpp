@@ -62,6 +62,8 @@ class LiverSection {
   std::vector<Sample> front_, visceral_;
 };
 
+}  // namespace
+
 SceneMesh abdominal_wall(const Vec3& centre) {
   const Vec3 half(210 * mm, 230 * mm, 135 * mm);
   SceneMesh wall = sheet(Material::peritoneum, 28, 20, [&](double u, double v) {
@@ -72,8 +74,6 @@ SceneMesh abdominal_wall(const Vec3& centre) {
   });
   return wall;
 }
-
-}  // namespace
 
 SceneMesh liver_mesh(const OrganDefinition& organ) {
   const OrganExtent extent = organ_extent(organ);
@@ -127,16 +127,32 @@ std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ) {
   return {duodenum, omentum, abdominal_wall(middle + Vec3(40 * mm, -20 * mm, -30 * mm))};
 }
 
-std::vector<SceneMesh> support_meshes(const SupportDefinition& support, const Vec3& about) {
-  const Vec3 n = support.normal.normalized(), a = n.unitOrthogonal(), b = n.cross(a);
-  const Vec3 foot = about - n * n.dot(about - support.point);
-  SceneMesh drape = sheet(Material::peritoneum, 36, 36, [&](double u, double v) {
+SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about) {
+  const Vec3 n = normal.normalized(), a = n.unitOrthogonal(), b = n.cross(a);
+  const Vec3 foot = about - n * n.dot(about - point);
+  return sheet(Material::peritoneum, 36, 36, [&](double u, double v) {
     const double x = (2 * u - 1) * 200 * mm, y = (2 * v - 1) * 200 * mm;
     // Flat where the organ lies, for contact must look like contact; wavy further out.
     const double wave = 4 * mm * lobes(x / (23 * mm), y / (20 * mm)) - 4 * mm;
     return Vec3(foot + x * a + y * b + n * wave * (1 - bump(std::hypot(x, y), 70 * mm)));
   });
-  return {drape, abdominal_wall(foot)};
+}
+
+SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about) {
+  if (ground.type == GroundType::plane) return plane_mesh(ground.point, ground.normal, about);
+  // A capsule is swept, a box grown along the same directions: of a sheet over the sphere around both.
+  const bool box = ground.type == GroundType::box;
+  const Vec3 along = ground.to - ground.point, axis = along.norm() > 0 ? along.normalized() : Vec3::UnitZ();
+  const Vec3 a = box ? Vec3::UnitX() : axis.unitOrthogonal(), b = box ? Vec3::UnitY() : axis.cross(a);
+  const Vec3 c = box ? Vec3::UnitZ() : axis;
+  return sheet(Material::liver, 64, 48, [&](double u, double v) {
+    const double lon = 2 * pi * u, lat = pi * v;  // runs so that its normals point outward
+    const Vec3 d(std::sin(lat) * std::cos(lon), -std::sin(lat) * std::sin(lon), std::cos(lat));
+    const Vec3 out = ground.radius * (d.x() * a + d.y() * b + d.z() * c);
+    if (!box) return Vec3((d.z() > 0 ? ground.to : ground.point) + out);
+    const Vec3 corner = 0.5 * ground.size.cwiseProduct(d.cwiseSign());
+    return Vec3(ground.point + corner + out);
+  });
 }
 
 }  // namespace calot

@@ -16,7 +16,11 @@ SceneMesh liver_mesh(const OrganDefinition& organ);
 /// Omentum and bowel below and behind the gallbladder, and the wall of the abdomen around all.
 std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ);
 
-/// A supporting plane as a moist drape of tissue, and a dark wall far around it.
-std::vector<SceneMesh> support_meshes(const SupportDefinition& support, const Vec3& about);
+/// A plane that carries organs as a moist drape of tissue around the foot of a place on it.
+SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about);
+/// What stays and is touched: planes as drapes, the rest as what it is.
+SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about);
+/// A dark wall far around a place.
+SceneMesh abdominal_wall(const Vec3& centre);
 
 }  // namespace calot

@@ -61,6 +61,10 @@ TEST(Surroundings, EverySurfaceFacesTheWayItsTrianglesTurn) {
   std::vector<SceneMesh> meshes = still_meshes(scene);
   scene.anatomy.support = SupportDefinition{};
   for (const SceneMesh& mesh : still_meshes(scene)) meshes.push_back(mesh);
+  GroundDefinition bar{.type = GroundType::capsule, .to = Vec3(0, 30e-3, 10e-3)};
+  GroundDefinition block{.type = GroundType::box, .size = Vec3(10e-3, 20e-3, 5e-3), .radius = 2e-3};
+  scene.anatomy.ground = {bar, block};
+  for (const SceneMesh& mesh : still_meshes(scene)) meshes.push_back(mesh);
   for (const SceneMesh& mesh : meshes)
     for (const Triangle& t : mesh.triangles) {
       const Vec3& a = mesh.positions[t[0]];
@@ -101,11 +105,9 @@ TEST(Surroundings, NoVoidIsSeenFromAnyUsualView) {
 }
 
 TEST(Surroundings, ASupportIsFlatUnderTheOrganAndNeverAboveItsPlane) {
-  OrganDefinition organ;
-  organ.shape = SphereShape{};
   const SupportDefinition support{Vec3(0.01, 0.02, -0.08), Vec3(0.1, 0.2, 1).normalized()};
   const Vec3 about = support.point + 20e-3 * support.normal;
-  const SceneMesh drape = support_meshes(support, about).front();
+  const SceneMesh drape = plane_mesh(support.point, support.normal, about);
   for (const Vec3& p : drape.positions) {
     const double height = support.normal.dot(p - support.point);
     EXPECT_LT(height, 1e-12);
