@@ -19,6 +19,7 @@ const Quantity density{"kg/m^3", {}};
 const Quantity force{"N", {{"N", units::N}, {"mN", units::mN}}};
 const Quantity foundation{"N/m^3", {}};
 const Quantity rate{"steps a second", {}};
+const Quantity time{"s", {{"s", units::s}, {"ms", units::ms}}};
 const Quantity number{"", {}};
 }  // namespace quantity
 

@@ -24,7 +24,7 @@ struct Quantity {
 };
 
 namespace quantity {
-extern const Quantity length, angle, pressure, volume, density, force, foundation, rate, number;
+extern const Quantity length, angle, pressure, volume, density, force, foundation, rate, time, number;
 }
 
 class FieldCheck {

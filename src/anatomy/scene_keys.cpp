@@ -109,6 +109,8 @@ std::vector<KeyTable> field_tables() {
       keys_of<Solver>(
           "solver", "How the simulation steps.",
           {number("rate", &Solver::rate, quantity::rate, 1, 2000, "a step rate", "steps a second"),
+           choice("motion", &Solver::motion, {"static", "dynamic"},
+                  "each step is a rest under its loads, or a time in which walls and bile move by their masses"),
            number("tolerance", &Solver::tolerance, quantity::number, 1e-12, 1e-2, "a solver tolerance",
                   "dimensionless residual of equilibrium"),
            flag("skip_still", &Solver::skip_still,
@@ -171,7 +173,11 @@ std::vector<KeyTable> organ_tables() {
                  "makes the wall anisotropic; {}: as measured in human gallbladders, whose shear_modulus is "
                  "85 * kPa"),
            number("overstretch", &Wall::overstretch, quantity::number, 1.01, 10, "a limit of stretch",
-                  "principal stretch above which the event overstretch is raised")}),
+                  "principal stretch above which the event overstretch is raised"),
+           number("density", &Wall::density, quantity::density, 0, 2000, "a wall's density",
+                  "kg/m^3; 1050 is usual; 0: without weight and inertia"),
+           number("retardation", &Wall::retardation, quantity::time, 0, 1, "a time of retardation",
+                  "how long stress lags behind a change of shape where motion is dynamic: it damps")}),
       keys_of<Fibres>(
           "fibres",
           "Two families of fibres (Holzapfel, Gasser, Ogden) on either side of the axis; they bear tension "

@@ -287,6 +287,12 @@ void check_look_at(FieldCheck& check, const std::string& look_at,
   check.known("scene.laparoscope.look_at", look_at, landmark_names(organs), "place to look at");
 }
 
+void check_solver(FieldCheck& check, const SolverDefinition& solver) {
+  if (solver.motion == SolverMotion::dynamics && solver.extension_scheme == ExtensionScheme::staged)
+    check.problem("scene.solver.extensions.scheme", "the staged scheme knows no masses",
+                  "give scheme = \"condensed\", or motion = \"static\"");
+}
+
 }  // namespace
 
 std::vector<Problem> validate(const SceneDefinition& scene) {
@@ -297,6 +303,7 @@ std::vector<Problem> validate(const SceneDefinition& scene) {
   ports.take("scene.laparoscope.port", scene.laparoscope.port, "the laparoscope");
   check_instruments(check, scene.instruments, ports);
   check_look_at(check, scene.laparoscope.look_at, scene.anatomy.organs);
+  check_solver(check, scene.solver);
   return check.take();
 }
 

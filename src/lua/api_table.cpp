@@ -8,7 +8,6 @@
 namespace calot {
 
 namespace quantity {
-const Quantity time{"s", {{"s", units::s}, {"ms", units::ms}}};
 const Quantity speed{"m/s", {{"mm / s", units::mm}, {"cm / s", units::cm}}};
 const Quantity points{"points", {}};
 }  // namespace quantity

@@ -31,7 +31,7 @@ struct ApiUnit {
 };
 
 namespace quantity {
-extern const Quantity time, speed, points;
+extern const Quantity speed, points;
 }
 
 const std::vector<KeyTable>& api_tables();

@@ -24,20 +24,20 @@ NewtonResult factorise_tangent(const BodyEnergy& body, NewtonWorkspace& work, co
   return factorise_tangent(problem, work, x, problem.multipliers(), fresh);
 }
 
-VecX linear_response(const NewtonWorkspace& work, const VecX& load, VecX& dmultipliers) {
+VecX linear_response(const NewtonWorkspace& work, const VecX& load, VecX& dmultipliers, const VecX& values) {
   VecX dx = work.factor.solve(load);
-  dmultipliers = work.border.keep(VecX::Zero(work.border.constraints()), dx);
+  dmultipliers = work.border.keep(values.size() > 0 ? values : VecX(VecX::Zero(work.border.constraints())), dx);
   return dx;
 }
 
 FirstOrderAnswer first_order_answer(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
                                     const VecX& multipliers, const VecX& load,
-                                    const std::vector<double>& edges, bool fresh) {
+                                    const std::vector<double>& edges, bool fresh, const VecX& values) {
   FirstOrderAnswer out;
   out.result = factorise_tangent(problem, work, x, multipliers, fresh);
   if (!out.result.converged()) return out;
   const Timed timed(out.result.solve_s);
-  out.dx = linear_response(work, load, out.dmultipliers);
+  out.dx = linear_response(work, load, out.dmultipliers, values);
   if (!out.dx.allFinite()) {
     out.result.status = NewtonStatus::not_finite;
     return out;

@@ -8,8 +8,10 @@
 namespace calot {
 
 /// First-order response to a change of load with the last factor: K dx = load, constraints kept to first
-/// order but for their compliances. `dmultipliers` receives their multipliers' changes. Needs workspace.factored.
-VecX linear_response(const NewtonWorkspace& workspace, const VecX& load, VecX& dmultipliers);
+/// order but for their compliances. `dmultipliers` receives their multipliers' changes. `values`: by how much the
+/// constraints are not met before; empty: they are. Needs workspace.factored.
+VecX linear_response(const NewtonWorkspace& workspace, const VecX& load, VecX& dmultipliers,
+                     const VecX& values = {});
 
 /// Factorises the tangent at (x, multipliers) into the workspace, for linear_response; unless `fresh`, a last
 /// factor that can serve is kept. Of the result only status, part, shifts and times have a meaning.
@@ -29,11 +31,11 @@ struct FirstOrderAnswer {
   /// Of a body alone; 0 where it is not constrained.
   double dmultiplier() const { return dmultipliers.size() > 0 ? dmultipliers[0] : 0; }
 };
-/// Of bodies at (x, multipliers) to a change of their load; `edges`: each node's shortest, m. `fresh` as above. Fails
-/// where there is no tangent, or no finite answer.
+/// Of bodies at (x, multipliers) to a change of their load; `edges`: each node's shortest, m; `fresh` and `values` as
+/// above. Fails where there is no tangent, or no finite answer.
 FirstOrderAnswer first_order_answer(const ConstrainedEnergy& problem, NewtonWorkspace& workspace,
                                     const VecX& x, const VecX& multipliers, const VecX& load,
-                                    const std::vector<double>& edges, bool fresh);
+                                    const std::vector<double>& edges, bool fresh, const VecX& values = {});
 FirstOrderAnswer first_order_answer(const BodyEnergy& body, NewtonWorkspace& workspace, const VecX& x,
                                     double multiplier, const VecX& load, const std::vector<double>& edges,
                                     bool fresh);

@@ -10,6 +10,7 @@
 #include "numerics/response.h"
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
+#include "sim/inertia.h"
 #include "sim/rubbing.h"
 #include "sim/settle_field.h"
 #include "sim/structural_extension.h"
@@ -39,7 +40,7 @@ struct Prediction {
   VecX first_order_pressures, dpressures;  ///< Pa, one an organ
   double travel = 0;                       ///< of the tool that travels most, m
   double share = 1;                        ///< that can be believed, and is safe
-  bool loaded = false;                     ///< whether the tools' motion loads any organ
+  bool loaded = false;                     ///< whether the tools' motion or its own moves any organ
 };
 
 /// Motion of `part` of a tool from one pose to another, at x.
@@ -153,6 +154,49 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
   return share;
 }
 
+/// The next part of each organ's motion, from where it is as it moves there; none where the field is static.
+Result<std::vector<MotionPart>> next_parts(const Field& field) {
+  std::vector<MotionPart> out;
+  for (const Organ& organ : field.organs) {
+    if (field.step_time == 0) break;
+    Result<MotionPart> part = motion_part(*organ.body, present_motion(*organ.body, organ.state), 0);
+    if (!part) return part.failure();
+    out.push_back(std::move(part).value());
+  }
+  return out;
+}
+
+void begin(const std::vector<MotionPart>& parts, double duration, Field& field) {
+  constexpr double alike = 0.1;  // another share than this of the time, and the factor is of another matrix
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    MotionPart& part = field.organs[k].state.motion;
+    if (!(std::abs(duration - part.duration) < alike * part.duration)) field.group.work.factored = false;
+    part = parts[k];
+    part.duration = duration;
+  }
+}
+
+bool all_stand_still(const Field& field) {
+  return std::all_of(field.organs.begin(), field.organs.end(), [](const Organ& organ) {
+    return organ.state.motion.duration == 0 || stands_still(organ.state.motion.begin);
+  });
+}
+
+/// What moves the organs beside the tools: adds to `load` what is not in balance yet at the beginning of the part.
+/// Returns by how much constraints are not met there.
+VecX add_inertia(const GroupProblem& problem, const VecX& multipliers, VecX& load) {
+  VecX gradient, internal, values;
+  if (problem.constraints() == 0) {
+    problem.gradient(problem.coordinates(), gradient, internal);
+    load -= gradient;
+    return {};
+  }
+  Eigen::MatrixXd gradients;
+  problem.gradient_and_constraint(problem.coordinates(), gradient, internal, values, gradients);
+  load -= gradient - gradients * multipliers;
+  return values + problem.compliances().cwiseProduct(multipliers);
+}
+
 /// Adds what the last answer missed, where it was to a motion like this one: by the square of the way.
 void add_missed(const MissedMotion& missed, Prediction& out) {
   constexpr double alike = 3.0;  // times as far
@@ -233,26 +277,31 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   Prediction out;
   out.dx = out.first_order = VecX::Zero(parts.total());
   out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
-  if (from == to) return out;
+  const bool moving = !all_stand_still(field);
+  if (from == to && !moving) return out;
   out.travel = largest_travel(field, to);
   std::vector<ContactLoads> loads;
   std::vector<std::vector<ContactPair>> pairs;
   VecX load(parts.total());
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     Organ& organ = field.organs[k];
-    loads.push_back(contact_loads(field, organ, from));
+    loads.push_back(solve_loads(field, organ, from));
     {
       const Timed timed(statistics.contact_s);
       pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel));
     }
     parts.of(k, load) = motion_load(field, organ, loads[k], pairs[k], from, to, out.loaded);
   }
+  out.loaded |= moving;
   if (out.loaded) {
     const std::vector<Member> members = members_of(field, loads);
     Group& group = field.group;
     const GroupProblem problem(members, group.joins, group.patterns);
-    FirstOrderAnswer answer = first_order_answer(problem, group.work, problem.coordinates(),
-                                                 problem.multipliers(), load, all_edge_lengths(field), fresh);
+    const VecX multipliers = problem.resting_multipliers();
+    VecX values;
+    if (field.step_time > 0) values = add_inertia(problem, multipliers, load);
+    FirstOrderAnswer answer = first_order_answer(problem, group.work, problem.coordinates(), multipliers,
+                                                 load, all_edge_lengths(field), fresh, values);
     count(answer.result, statistics);
     if (!answer.result.converged())
       return solve_failure(answer.result, field.organs[answer.result.part].definition.name,
@@ -262,7 +311,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
     out.share = answer.share;
     out.dx = out.first_order;
     out.dpressures = out.first_order_pressures;
-    add_missed(group.missed, out);
+    if (field.step_time == 0) add_missed(group.missed, out);
   }
   const Timed timed(statistics.contact_s);
   keep_apart(field, loads, pairs, from, to, out);
@@ -323,20 +372,25 @@ void move_by(double share, const Prediction& prediction, Field& field) {
 }
 
 /// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
-/// of each part.
-Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slipped_before,
+/// of each part, in `duration` s where masses count.
+Result<bool> follow(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
                     std::vector<WorldEvent>& events, SolveStatistics& statistics) {
   int iterations_before = statistics.newton_iterations;
   double done = 0;
   NewtonResult last;  // of the solve that failed last, if any did in this part
   for (int part = 0; done < 1.0; ++part) {
     const Poses from = present_poses(field);
+    const Result<std::vector<MotionPart>> parts = next_parts(field);
+    if (!parts) return parts.failure();
+    const double time_left = (1.0 - done) * duration;
+    begin(parts.value(), time_left, field);
     const bool fresh = !factor_serves(field.group);
     Result<Prediction> answer = predict(field, from, to, fresh, statistics);
     if (answer && answer->share < 1.0 && !fresh) answer = predict(field, from, to, true, statistics);
     if (!answer) return answer.failure();
     const Prediction& prediction = answer.value();
-    double share = prediction.share;
+    // Organs that move by themselves have all the time there is: no tool stands where they begin to be looked for.
+    double share = from == to ? 1.0 : prediction.share;
     const double left = 1.0 - done;
     bool accepted = false;
     while (!accepted) {
@@ -354,7 +408,8 @@ Result<bool> follow(Field& field, const Poses& to, const std::vector<char>& slip
       const Poses poses = next >= 1.0 ? to : between(from, to, share);
       const GroupSnapshot before = snapshot(field);
       const std::vector<VecX> places = present_places(field);
-      move_by(share, prediction, field);
+      begin(parts.value(), share * time_left, field);
+      move_by(std::min(share, prediction.share), prediction, field);
       last = settle_group(field, poses, places, part_iterations, statistics);
       accepted = last.converged();
       if (accepted) {
@@ -419,13 +474,15 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   std::vector<std::vector<double>> holding_stops;
   for (std::size_t i = 0; i < to.size(); ++i)
     holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
+  double reached = 0;
   for (double stop : all_stops(holding_stops)) {
+    const double duration = (stop - std::exchange(reached, stop)) * field.step_time;
     Poses here = between(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (field.tools[i].jaw_stopped) here[i].jaw = field.tools[i].pose.jaw;
     for (std::size_t i = 0; i < here.size(); ++i)
       if (here[i].jaw < field.tools[i].pose.jaw) make_room(field, static_cast<int>(i), here[i].jaw);
-    Result<bool> moved = follow(field, here, slipped_before, events, statistics);
+    Result<bool> moved = follow(field, here, duration, slipped_before, events, statistics);
     if (!moved) return moved.failure();
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
       Tool& tool = field.tools[i];

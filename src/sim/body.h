@@ -8,6 +8,7 @@
 #include <string>
 
 #include "collision/barrier.h"
+#include "fem/liquid_mass.h"
 #include "geometry/stencil.h"
 #include "numerics/block_matrix.h"
 #include "sim/contact_points.h"
@@ -21,6 +22,15 @@ struct DetailShare {
   bool operator==(const DetailShare&) const = default;
 };
 
+/// The part of a motion that a body has come to the end of, or is being brought to: a step of implicit Euler
+/// (inertia.h).
+struct MotionPart {
+  LiquidMotion begin;   ///< places and velocities
+  double duration = 0;  ///< s; 0: none has begun, or the field is static
+  /// The liquid's flow at the beginning, made of that; null without a liquid.
+  std::shared_ptr<const FlowModes> flow = {};
+};
+
 struct BodyState {
   VecX x;                     ///< 3 a node, m: places of the control nodes, then displacements of the details
   double datum_pressure = 0;  ///< pressure at the datum's height, Pa
@@ -28,6 +38,7 @@ struct BodyState {
   std::vector<DetailShare> shares = {};  ///< one a detail; none: all are free
   /// N, 3 a node: what a change of the details altered and is still made good; empty: nothing.
   VecX fading_load = {};
+  MotionPart motion = {};  ///< that ends here
 };
 
 /// What a closed body is filled with: its weight, and a volume that is kept.
@@ -46,6 +57,13 @@ class Liquid {
   virtual void add_load(const VecX& x, double datum_pressure, VecX& gradient) const = 0;
   /// Adds its Hessian, N/m.
   virtual void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const = 0;
+  /// The same with a weight (N/m^3, the way it pulls) beside its own.
+  virtual void add_hessian(const VecX& x, double datum_pressure, const Vec3& weight,
+                           BlockMatrix& matrix) const = 0;
+  /// Of `kept` m^3 that it keeps, for a part of h seconds that begins so; the liquid must outlive it.
+  virtual LiquidMass mass(const FlowModes& flow, double kept, const LiquidMotion& begin, double h) const = 0;
+  /// Its centroid, m, from a point of its own.
+  virtual Vec3 centroid(const VecX& x, double kept) const = 0;
   /// Gauge pressure at the surface's highest point, Pa.
   virtual double pressure_at_top(const VecX& x, double datum_pressure) const = 0;
 };
@@ -86,6 +104,8 @@ class Body {
   virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
   /// A constant load, N, 3 a node, on top of that; empty: none.
   virtual const VecX& kept_load() const;
+  /// Of the solid: kg, by the nodes, with the pattern of pattern(). Null: it is weightless.
+  virtual const BlockMatrix* mass() const { return nullptr; }
   /// Null: it is not filled.
   virtual const Liquid* liquid() const { return nullptr; }
   /// Energy of the deformed body alone, J, and the largest principal stretch in it: for reports.

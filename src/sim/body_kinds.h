@@ -13,6 +13,7 @@ struct FillingLimits {
   const std::atomic<bool>* stop = nullptr;  ///< where it is true the filling ends; may be null
   /// Newton iterations times nodes; the most that half a minute is sure to do.
   std::int64_t node_iterations = 200'000;
+  bool sinks = false;  ///< what has no rest otherwise sinks until something holds it (equilibrium.h)
 };
 
 /// Where an organ comes to rest.

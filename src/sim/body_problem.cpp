@@ -35,6 +35,12 @@ const std::vector<Touch>& BodyProblem::touching(const VecX& x) const {
   return touches.at(body_, x, loads_, known ? none : pairs(), moved(x));
 }
 
+VecX BodyProblem::multipliers() const {
+  VecX out = VecX::Constant(constraints(), multiplier_);
+  if (liquid_mass()) out.tail(constraints() - volumes()) = loads_.inertia->multipliers(start_);
+  return out;
+}
+
 std::optional<BlockMatrix> BodyProblem::new_pattern(const BlockMatrix& present) const {
   return search_ ? search_->own.new_pattern(body_, start_, present) : std::nullopt;
 }
@@ -55,7 +61,7 @@ void BodyProblem::for_held_details(const Use& use) const {
 }
 
 double BodyProblem::value(const VecX& x) const {
-  double sum = body_.value(x);
+  double sum = loads_.inertia ? loads_.inertia->value(x) : body_.value(x);
   if (!std::isfinite(sum)) return sum;
   sum += loads_.grip.value(body_.skin().stencils, x);
   sum += loads_.friction.value(body_.skin(), x);
@@ -68,13 +74,17 @@ double BodyProblem::value(const VecX& x) const {
   for (const Touch& touch : touching(x)) sum += body_.contact_area(touch.point) * touch.answer.energy;
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
+  if (loads_.drag) sum += 0.5 * loads_.drag->stiffness * (x - loads_.drag->from).squaredNorm();
   if (search_) sum += search_->own.value(body_, x);
   return sum;
 }
 
 double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
   double largest_internal = 0;
-  body_.add_gradient(x, gradient, largest_internal);
+  if (loads_.inertia)
+    largest_internal = loads_.inertia->add_gradient(x, gradient);
+  else
+    body_.add_gradient(x, gradient, largest_internal);
   loads_.grip.add_gradient(body_.skin().stencils, x, gradient);
   loads_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
@@ -86,6 +96,7 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
   pressed.finish();
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
+  if (loads_.drag) gradient += loads_.drag->stiffness * (x - loads_.drag->from);
   if (search_) search_->own.add_gradient(body_, x, gradient);
   return largest_internal;
 }
@@ -103,18 +114,24 @@ void BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& 
   of_energy.setZero(x.size());
   VecX of_volume = VecX::Zero(x.size());
   const double internal = add_dry_gradient(x, of_energy);
-  values =
-      VecX::Constant(1, body_.liquid()->add_weight_and_volume_gradient(x, of_energy, of_volume) - volume_);
-  of_constraints = of_volume;
+  const double volume = body_.liquid()->add_weight_and_volume_gradient(x, of_energy, of_volume);
+  fill_constraints(x, volume, of_volume, values, of_constraints);
   largest_internal = VecX::Constant(1, force_scale(internal, of_energy));
 }
 
 void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const {
-  matrix.assign(body_.pattern());
-  body_.add_hessian(x, matrix);
+  if (loads_.inertia) {
+    loads_.inertia->hessian(x, matrix);
+  } else {
+    matrix.assign(body_.pattern());
+    body_.add_hessian(x, matrix);
+  }
   loads_.grip.add_hessian(body_.skin().stencils, matrix);
   loads_.friction.add_hessian(body_.skin(), x, matrix);
-  if (const Liquid* liquid = body_.liquid())
+  if (const LiquidMass* mass = liquid_mass())
+    body_.liquid()->add_hessian(x, multipliers[0], mass->weight(multipliers.tail(LiquidMass::constraints)),
+                                matrix);
+  else if (const Liquid* liquid = body_.liquid())
     liquid->add_hessian(x, fixed_pressure_ ? multiplier_ : multipliers[0], matrix);
   ContactStiffness pressed(body_.skin(), matrix);
   for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(body_, loads_, touch));
@@ -123,17 +140,44 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
     const int node = static_cast<int>(at / 3);
     matrix.add(node, node, stiffness * Mat3::Identity());
   });
+  if (loads_.drag) matrix.add_to_diagonal(loads_.drag->stiffness);
   if (search_) search_->own.add_hessian(body_, x, matrix);
 }
 
 void BodyProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
   VecX of_volume = VecX::Zero(x.size());
-  values = VecX::Constant(1, body_.liquid()->add_volume_gradient(x, of_volume) - volume_);
-  gradients = of_volume;
+  const double volume = body_.liquid()->add_volume_gradient(x, of_volume);
+  fill_constraints(x, volume, of_volume, values, gradients);
+}
+
+void BodyProblem::fill_constraints(const VecX& x, double volume, const VecX& of_volume, VecX& values,
+                                   Eigen::MatrixXd& gradients) const {
+  values.resize(constraints());
+  gradients.resize(x.size(), constraints());
+  values[0] = volume - volume_;
+  gradients.col(0) = of_volume;
+  const LiquidMass* mass = liquid_mass();
+  if (mass == nullptr) return;
+  values.tail(LiquidMass::constraints) = mass->constraint_values(x);
+  gradients.rightCols(LiquidMass::constraints) = mass->constraint_gradients(x);
 }
 
 VecX BodyProblem::constraint_values(const VecX& x) const {
-  return VecX::Constant(1, body_.liquid()->volume(x) - volume_);
+  VecX out = VecX::Constant(constraints(), body_.liquid()->volume(x) - volume_);
+  if (const LiquidMass* mass = liquid_mass()) out.tail(LiquidMass::constraints) = mass->constraint_values(x);
+  return out;
+}
+
+VecX BodyProblem::constraint_scales() const {
+  VecX out = VecX::Constant(constraints(), volume_);
+  if (const LiquidMass* mass = liquid_mass()) out.tail(LiquidMass::constraints) = mass->constraint_scales();
+  return out;
+}
+
+VecX BodyProblem::compliances() const {
+  VecX out = VecX::Zero(constraints());
+  if (const LiquidMass* mass = liquid_mass()) out.tail(LiquidMass::constraints) = mass->compliances();
+  return out;
 }
 
 double BodyProblem::safe_share(const VecX& x, const VecX& step) const {

@@ -6,6 +6,7 @@
 
 #include "numerics/constrained_energy.h"
 #include "sim/contact_search.h"
+#include "sim/inertia.h"
 
 namespace calot {
 
@@ -13,10 +14,11 @@ namespace calot {
 /// before it.
 inline constexpr double contact_keep = 0.2;
 
-/// A group of one. Its constraint is its liquid's volume, where it has one that is kept.
+/// A group of one. Its constraints are its liquid's volume, where it has one that is kept, and then its inertia's.
 class BodyProblem : public ConstrainedEnergy {
  public:
-  /// `fixed_pressure`: the multiplier is prescribed and the volume free. Without contact of the skin with itself.
+  /// `fixed_pressure`: the multiplier is prescribed and the volume free; not with inertia. Without contact of the skin
+  /// with itself.
   BodyProblem(const Body& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
               const BodyState& start, bool fixed_pressure = false);
   /// With it. `search` finds the pairs, where they are asked for, and remembers what touches; it must outlive the
@@ -25,11 +27,11 @@ class BodyProblem : public ConstrainedEnergy {
               bool fixed_pressure = false);
 
   const Body& body() const { return body_; }
-  /// One, or none: where a solve begins.
-  VecX multipliers() const { return VecX::Constant(constraints(), multiplier_); }
+  /// Where a solve begins.
+  VecX multipliers() const;
 
   std::vector<Part> parts() const override;
-  int constraints() const override { return body_.liquid() != nullptr && !fixed_pressure_ ? 1 : 0; }
+  int constraints() const override { return volumes() + (loads_.inertia ? loads_.inertia->constraints() : 0); }
   double value(const VecX& x) const override;
   double cancelling() const override;
   void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
@@ -38,18 +40,25 @@ class BodyProblem : public ConstrainedEnergy {
   VecX constraint_values(const VecX& x) const override;
   void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
                                Eigen::MatrixXd& of_constraints) const override;
-  VecX constraint_scales() const override { return VecX::Constant(constraints(), volume_); }
+  VecX constraint_scales() const override;
+  VecX compliances() const override;
   /// The pattern that the body's matrix needs beside `present`, which it has; none: that serves.
   std::optional<BlockMatrix> new_pattern(const BlockMatrix& present) const;
   double safe_share(const VecX& x, const VecX& step) const override;
 
  private:
+  int volumes() const { return body_.liquid() != nullptr && !fixed_pressure_ ? 1 : 0; }
+  /// Of the liquid, where masses count; else null.
+  const LiquidMass* liquid_mass() const { return loads_.inertia ? loads_.inertia->liquid() : nullptr; }
   /// How far any node, and so any skin point, is from where the solve began, m.
   double moved(const VecX& x) const;
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;
   /// Gradient but for the liquid's part; its largest internal force.
   double add_dry_gradient(const VecX& x, VecX& gradient) const;
+  /// Of a kept volume with its gradient, and of the inertia.
+  void fill_constraints(const VecX& x, double volume, const VecX& of_volume, VecX& values,
+                        Eigen::MatrixXd& gradients) const;
   /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
   template <class Use>
   void for_held_details(const Use& use) const;

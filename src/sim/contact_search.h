@@ -29,6 +29,14 @@ inline Shape contact_shape(const Shape& made) { return offset(made, -contact_ins
 /// What no trial may reach, of a contact shape.
 inline Shape core_of(const Shape& contact_shape) { return offset(contact_shape, -contact_guard); }
 
+class Inertia;
+
+/// Springs of one stiffness, N/m, from every node to where it was.
+struct Drag {
+  VecX from;  ///< m, 3 a node
+  double stiffness = 0;
+};
+
 /// What acts on an organ during one solve; shapes do not move within it.
 struct ContactLoads {
   std::vector<Shape> shapes;  ///< contact shapes: what they are in truth, inset
@@ -38,6 +46,8 @@ struct ContactLoads {
   /// N/m, springs that hold the details at rest, one each; none: all are free.
   std::vector<double> detail_holds = {};
   VecX load = {};  ///< N, 3 a node; empty: none
+  std::shared_ptr<const Inertia> inertia = {};  ///< null: masses do not count
+  std::optional<Drag> drag = {};
 };
 
 /// A triangle of the skin near enough to a shape to meet it within a solve.

@@ -49,6 +49,32 @@ NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer
   return total;
 }
 
+NewtonResult sink(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
+                  const SettleOptions& options) {
+  constexpr int most_steps = 100;
+  // Of the mean stiffness at a node: the first step is a small one, the last spring is felt no more.
+  constexpr double first = 1e-2, last = 1e-7, weaken = 0.25;
+  BlockMatrix matrix = member.body.pattern();
+  member.body.add_hessian(member.state.x, matrix);
+  const double stiffness = matrix.diagonal_mean();
+  ContactLoads loads = member.loads;
+  const Member held{member.body, loads, member.search, member.state};
+  NewtonResult total;
+  double share = first;
+  for (int step = 0; step < most_steps && total.iterations < settle_iterations; ++step) {
+    loads.drag = Drag{member.state.x, share * stiffness};
+    work.factored = false;
+    const NewtonResult result = settle(held, settings, work, options);
+    total.add(result);
+    if (!result.converged()) break;
+    const double way = member.body.largest_motion(member.state.x - loads.drag->from);
+    if (share <= last && way <= settings.tolerance * member.body.size()) return total;
+    share = std::max(last, weaken * share);
+  }
+  if (total.converged()) total.status = NewtonStatus::iteration_limit;
+  return total;
+}
+
 NewtonResult settle(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
                     const SettleOptions& options) {
   GroupPatterns none;

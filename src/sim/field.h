@@ -54,6 +54,7 @@ struct Field {
   std::vector<Ground> ground;
   Barrier barrier = contact_barrier;
   double tolerance = 1e-6;
+  double step_time = 0;  ///< s that a step takes where masses count; 0: statics
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
 

@@ -31,6 +31,14 @@ VecX GroupProblem::multipliers() const {
   return out;
 }
 
+VecX GroupProblem::resting_multipliers() const {
+  const VecX given = compliances();
+  VecX out = multipliers();
+  for (Eigen::Index k = 0; k < out.size(); ++k)
+    if (given[k] > 0) out[k] = 0;
+  return out;
+}
+
 void GroupProblem::keep(const VecX& x, const VecX& multipliers) const {
   for (std::size_t k = 0; k < members_.size(); ++k) {
     members_[k].state.x = part_of(k, x);
@@ -162,6 +170,13 @@ VecX GroupProblem::constraint_scales() const {
   VecX out(constraints_);
   for (std::size_t k = 0; k < problems_.size(); ++k)
     out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].constraint_scales();
+  return out;
+}
+
+VecX GroupProblem::compliances() const {
+  VecX out(constraints_);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].compliances();
   return out;
 }
 

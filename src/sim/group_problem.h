@@ -48,6 +48,8 @@ class GroupProblem : public ConstrainedEnergy {
 
   VecX coordinates() const;  ///< of all states
   VecX multipliers() const;  ///< likewise
+  /// The same where nothing is accelerated: those of compliant constraints are 0.
+  VecX resting_multipliers() const;
   /// Of each member, Pa; 0 where it has none among the multipliers.
   VecX pressures(const VecX& multipliers) const;
   /// Writes a solution into the members' states.
@@ -64,6 +66,7 @@ class GroupProblem : public ConstrainedEnergy {
   void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
                                Eigen::MatrixXd& of_constraints) const override;
   VecX constraint_scales() const override;
+  VecX compliances() const override;
   void prepare(NewtonWorkspace& work) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
 

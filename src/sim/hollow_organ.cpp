@@ -145,10 +145,24 @@ Failure fill_failure(const NewtonResult& result, const std::string& organ, const
         "give it fewer nodes, or a volume or pressure nearer to what it holds unstressed", {"", 0, ".bile"});
   Failure failure = solve_failure(result, organ, "while it was filled");
   Problem& problem = failure.problems.front();
-  if (result.status != NewtonStatus::mechanism)
+  if (limits != nullptr && limits->sinks)
+    problem.hint = "let something hold or support it so that it neither falls nor slides for good, fill it less (bile), "
+                   "or give it a thicker or stiffer wall, or more nodes";
+  else if (result.status != NewtonStatus::mechanism)
     problem.hint = "fill it less (bile), or give it a thicker or stiffer wall, or more nodes";
   problem.place.path = ".bile";
   return failure;
+}
+
+/// A rest of the organ as it is filled now.
+NewtonResult rest(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
+                  const SettleOptions& options, const FillingLimits* limits) {
+  const BodyState before = member.state;
+  const NewtonResult result = settle(member, settings, work, options);
+  if (result.converged() || result.status == NewtonStatus::stopped || limits == nullptr || !limits->sinks)
+    return result;
+  member.state = before;
+  return sink(member, settings, work, options);
 }
 
 /// Volume and pressure that the author asked for, by small steps from the unstressed shape.
@@ -168,7 +182,7 @@ Result<bool> fill(RestedOrgan& filled, const ContactLoads& loads, const NewtonSe
       const double offset = liquid.pressure_at_top(organ.state.x, 0.0);
       const double next = ramp * *bile.fill_pressure - offset;
       organ.state.datum_pressure = next;
-      const NewtonResult result = settle(member, settings, filled.work, {.fixed_pressures = true});
+      const NewtonResult result = rest(member, settings, filled.work, {.fixed_pressures = true}, limits);
       if (!result.converged()) return fill_failure(result, organ.definition.name, limits);
       settled = ramp == 1.0 && std::abs(next - aim) <= 1e-9 * std::abs(next);
       aim = next;
@@ -189,7 +203,7 @@ Result<bool> fill(RestedOrgan& filled, const ContactLoads& loads, const NewtonSe
     const int steps = 1 + static_cast<int>(std::ceil(std::abs(target - unstressed) / (0.05 * unstressed)));
     for (int k = 1; k <= steps; ++k) {
       organ.state.volume = unstressed + (target - unstressed) * k / steps;
-      const NewtonResult result = settle(member, settings, filled.work);
+      const NewtonResult result = rest(member, settings, filled.work, {}, limits);
       if (!result.converged()) return fill_failure(result, organ.definition.name, limits);
     }
   }
@@ -265,6 +279,7 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   setup.bile = definition.bile;
   setup.up = setting.up;
   setup.levels = setting.levels;
+  setup.wall_density = definition.wall.density;
   Result<LoopSurface> surface = LoopSurface::create(control.value());
   if (!surface) return of_organ(surface.failure(), definition);
   const Tessellation corners = surface->tessellate(1);

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "fem/centreline.h"
+#include "fem/point_mass.h"
 #include "numerics/parts.h"
 
 namespace calot {
@@ -132,6 +133,11 @@ void RodBody::weigh() {
   const StencilTable& table = rod_.stencils();
   for (int row = 0; row < table.rows(); ++row)
     spread(table, row, -units::standard_gravity * row_mass(row) * setup_.up, weight_);
+  PointMass mass;
+  for (int row = 0; row < table.rows(); ++row) mass.mass.push_back(row_mass(row));
+  if (!(mass.total() > 0)) return;
+  mass_ = constant_.blank();
+  mass.add_hessian(table, 1, *mass_);
 }
 
 double RodBody::row_mass(int row) const {

@@ -46,6 +46,7 @@ class RodBody : public Body {
   void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
   const VecX& kept_load() const override { return weight_; }
+  const BlockMatrix* mass() const override { return mass_ ? &*mass_ : nullptr; }
   double strain_energy(const VecX& x) const override { return rod_.value(x, setup_.pressure); }
   double max_stretch(const VecX& x) const override;
 
@@ -85,6 +86,7 @@ class RodBody : public Body {
   double size_ = 0, length_ = 0;
   std::vector<double> edge_lengths_;
   BlockMatrix constant_{0, {}};
+  std::optional<BlockMatrix> mass_;
   std::vector<double> shares_;  ///< of the way, at the rows of the rod's quadrature
   Links bed_;                   ///< rows of the rod's quadrature
   Tessellation skin_;

@@ -20,6 +20,14 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
   return out;
 }
 
+ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
+  ContactLoads out = contact_loads(field, organ, poses);
+  if (organ.state.motion.duration > 0)
+    out.inertia =
+        std::make_shared<const Inertia>(*organ.body, organ.state, organ.definition.wall.retardation);
+  return out;
+}
+
 void count(const NewtonResult& result, SolveStatistics& statistics) {
   statistics.newton_iterations += result.iterations;
   statistics.assembly_s += result.assembly_s;
@@ -72,7 +80,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   std::vector<ContactLoads> loads;
   for (Organ& organ : field.organs) {
     fade_details(largest_travel(field, poses), organ.state);
-    loads.push_back(contact_loads(field, organ, poses));
+    loads.push_back(solve_loads(field, organ, poses));
   }
   const std::vector<Member> members = members_of(field, loads);
   Group& group = field.group;

@@ -11,6 +11,9 @@ namespace calot {
 /// ground; the springs of what they hold; and friction as it was at the last equilibrium.
 ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
 
+/// The same for a solve: with the organ's inertia in the part of a motion that it is in, if any.
+ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
+
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);
 
@@ -23,7 +26,7 @@ std::vector<VecX> present_places(const Field& field);
 /// The way of the tool that travels most from where it stands, m.
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to);
 
-/// Brings the organs to rest with the tools at `poses`; on failure they are left at the last iterate. `before`, one an
+/// Brings the organs to rest, or to the end of the part of a motion that they are in, with the tools at `poses`; on failure they are left at the last iterate. `before`, one an
 /// organ, is where they were at their last equilibrium, tools as field.tools stand: friction resists what moved since,
 /// and details fade as far as the tools travel from there.
 NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,

@@ -6,6 +6,7 @@
 
 #include "base/index_of.h"
 #include "base/units.h"
+#include "fem/point_mass.h"
 #include "numerics/parts.h"
 #include "skin/subdivision.h"
 
@@ -201,7 +202,7 @@ VecX ShellBody::forces(const VecX& x, double datum_pressure) const {
 }
 
 void ShellBody::keep_in_equilibrium(const BodyState& rest) {
-  kept_ = std::make_shared<const Kept>(Kept{rest, own_forces(rest.x, rest.datum_pressure)});
+  kept_ = std::make_shared<const Kept>(Kept{rest, forces(rest.x, rest.datum_pressure)});
 }
 
 void ShellBody::make_good() {
@@ -210,7 +211,7 @@ void ShellBody::make_good() {
   VecX x = VecX::Zero(refined_->rest.size());
   x.head(state.x.size()) = state.x;
   refined_->kept_load = own_forces(x, state.datum_pressure);
-  refined_->kept_load.head(state.x.size()) -= kept_->own_forces;
+  refined_->kept_load.head(state.x.size()) -= kept_->forces;
   if (refined_->bile) refined_->bile->kept_volume = refined_->bile->bile.volume(x) - state.volume;
 }
 
@@ -242,8 +243,19 @@ std::optional<Failure> ShellBody::build(const ShellBody* before) {
   cliques.insert(cliques.end(), refined_->face_nodes.begin(), refined_->face_nodes.end());
   build_bed(before, rows);
   refined_->constant = BlockMatrix(nodes(), cliques);
+  if (base_->setup.wall_density > 0) build_mass();
   foundation().add_hessian(refined_->bed_points, refined_->constant);
   return std::nullopt;
+}
+
+void ShellBody::build_mass() {
+  PointMass wall;
+  for (double area : refined_->shell.point_areas())
+    wall.mass.push_back(area * base_->setup.material.membrane.thickness * base_->setup.wall_density);
+  refined_->mass = refined_->constant.blank();
+  wall.add_hessian(refined_->quadrature, 1, *refined_->mass);
+  refined_->kept_load = VecX::Zero(refined_->rest.size());
+  wall.add_weight(refined_->quadrature, -units::standard_gravity * base_->setup.up, refined_->kept_load);
 }
 
 std::optional<Failure> ShellBody::build_shell(const ShellBody* before, const SharedRows* shared) {

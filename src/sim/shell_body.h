@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "anatomy/definitions.h"
+#include "base/units.h"
 #include "fem/bile.h"
 #include "fem/links.h"
 #include "fem/shell.h"
@@ -37,6 +38,17 @@ struct ShellBile : Liquid {
   void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const override {
     bile.add_hessian(x, datum_pressure, matrix);
   }
+  void add_hessian(const VecX& x, double datum_pressure, const Vec3& weight,
+                   BlockMatrix& matrix) const override {
+    bile.add_hessian(x, datum_pressure, LiquidWeight::pulling(bile.weight().vector() + weight), matrix);
+  }
+  LiquidMass mass(const FlowModes& flow, double kept, const LiquidMotion& begin, double h) const override {
+    return LiquidMass(bile, flow, bile.specific_weight() / units::standard_gravity, kept + kept_volume, begin,
+                      h);
+  }
+  Vec3 centroid(const VecX& x, double kept) const override {
+    return bile.moments(x).first / (kept + kept_volume);
+  }
   double pressure_at_top(const VecX& x, double datum_pressure) const override {
     return bile.pressure_at_top(x, datum_pressure);
   }
@@ -53,6 +65,7 @@ class ShellBody : public Body {
     TriMesh control;
     ShellMaterial material;
     std::optional<BileDefinition> bile;  ///< closed surfaces only
+    double wall_density = 0;  ///< kg/m^3; 0: weightless
     Vec3 up = Vec3::UnitZ();
     /// Elastic foundation at a quadrature point at rest position x, N/m per m^2 (0: none).
     std::function<double(const Vec3& x)> foundation;
@@ -70,7 +83,7 @@ class ShellBody : public Body {
   /// that make good what the finer rules see differently there. So nothing moves where an extension is laid or
   /// taken away unloaded (the defect correction of the full approximation scheme: Brandt 1977).
   void keep_in_equilibrium(const BodyState& rest);
-  /// That load, N, 3 a node; empty without details or before keep_in_equilibrium.
+  /// That load with the wall's weight, N, 3 a node; empty where there is neither.
   const VecX& kept_load() const override { return refined_->kept_load; }
   /// Gradient of the energies of wall, bed and bile less that load, N.
   VecX forces(const VecX& x, double datum_pressure) const;
@@ -107,6 +120,7 @@ class ShellBody : public Body {
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  const BlockMatrix* mass() const override { return refined_->mass ? &*refined_->mass : nullptr; }
   const Liquid* liquid() const override { return refined_->bile ? &*refined_->bile : nullptr; }
   double strain_energy(const VecX& x) const override { return refined_->shell.value(x); }
   double max_stretch(const VecX& x) const override { return refined_->shell.max_stretch(x); }
@@ -157,11 +171,12 @@ class ShellBody : public Body {
   std::optional<Failure> build_shell(const ShellBody* before, const SharedRows* shared);
   void build_skin();
   Result<bool> build_bile(const ShellBody* before, const SharedRows* shared);
+  void build_mass();
   void build_bed(const ShellBody* before, const SharedRows* shared);
 
   struct Kept {
     BodyState state;
-    VecX own_forces;  ///< of wall, bed and bile
+    VecX forces;  ///< of wall, bed and bile, less the weight
   };
   /// Gradient of the energies of wall, bed and bile, N.
   VecX own_forces(const VecX& x, double datum_pressure) const;
@@ -178,6 +193,7 @@ class ShellBody : public Body {
     Tessellation skin;
     std::vector<double> edge_lengths;
     BlockMatrix constant{0, {}};
+    std::optional<BlockMatrix> mass;
     StencilTable quadrature, bed_points;
     std::vector<int> first_rows;  ///< of quadrature: each coarse face's first, and their number
     std::vector<int> bile_nodes;  ///< of all levels, where the bile's points are: increasing

@@ -8,6 +8,7 @@
 
 #include "base/timed.h"
 #include "sim/detail_fading.h"
+#include "sim/inertia.h"
 #include "sim/settle_field.h"
 
 namespace calot {
@@ -114,6 +115,17 @@ std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
   return out;
 }
 
+/// The same part of a motion with other details; whether it can be.
+bool motion_in(const ShellBody& next, const ShellBody& before, MotionPart& motion) {
+  if (motion.duration == 0) return true;
+  const auto there = [&](const VecX& x) { return before.coordinates_in(next, x); };
+  Result<MotionPart> part =
+      motion_part(next, {there(motion.begin.x), there(motion.begin.velocity), motion.begin.centroid},
+                  motion.duration);
+  if (part) motion = std::move(part).value();
+  return static_cast<bool>(part);
+}
+
 /// The extensions that the organ needs with the tools where they stand: one for each part of a tool that is near
 /// or holds on, two for a part that lies along the organ. Those that still serve stay as they are.
 std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ, const ShellBody& body,
@@ -209,6 +221,10 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
   }
   const GroupSnapshot before = snapshot(field);
   const BodyState was = organ.state;
+  if (!motion_in(next.value(), *shell, organ.state.motion)) {
+    ++statistics.extensions_refused;
+    return;
+  }
   organ.state.x = shell->coordinates_in(next.value(), was.x);
   organ.state.shares = shares_of(next->details(), wanted, *shell, was.shares);
   organ.state.fading_load = made_good(*shell, was, next.value(), organ.state.x);

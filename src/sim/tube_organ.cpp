@@ -28,6 +28,8 @@ Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSett
   setup.wall = definition.wall.thickness;
   setup.shear_modulus = definition.wall.shear_modulus;
   setup.pressure = shape.pressure;
+  setup.density = definition.wall.density;
+  if (setup.density > 0) setup.liquid_density = definition.bile.density;  // without weight neither has any
   setup.nodes = shape.nodes;
   setup.up = setting.up;
   for (const HeldRegion& region : definition.held)

@@ -76,6 +76,13 @@ void add_vector(Hash& hash, const Numbers& v) {
 
 void add_point(Hash& hash, const Vec3& p) { hash.add(std::span<const double>(p.data(), 3)); }
 
+void add_motion(Hash& hash, const MotionPart& motion) {
+  add_vector(hash, motion.begin.x);
+  add_vector(hash, motion.begin.velocity);
+  add_point(hash, motion.begin.centroid);
+  hash.add(motion.duration);
+}
+
 void add_body_state(Hash& hash, const Organ& organ) {
   const BodyState& state = organ.state;
   add_vector(hash, state.x);
@@ -87,6 +94,7 @@ void add_body_state(Hash& hash, const Organ& organ) {
     hash.add(detail.leaving);
   }
   add_vector(hash, state.fading_load);
+  if (state.motion.duration > 0) add_motion(hash, state.motion);
   for (const Extension& extension : organ.extensions) {
     hash.add(extension.shape);
     hash.add(extension.centre);
@@ -322,11 +330,13 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
   impl->up = up_direction(scene.anatomy);
   impl->field.tolerance = scene.solver.tolerance;
+  if (scene.solver.motion == SolverMotion::dynamics) impl->field.step_time = 1 / scene.solver.rate;
   impl->field.scheme = scene.solver.extension_scheme;
   impl->field.ground = ground_of(scene.anatomy);
   ContactLoads still;
   for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
   FillingLimits limits{stop};
+  limits.sinks = scene.solver.motion == SolverMotion::dynamics;
   for (const OrganDefinition& definition : scene.anatomy.organs) {
     Result<RestedOrgan> made = make_organ(definition, still, impl->up, scene.solver.tolerance,
                                           definition.extensions ? scene.solver.extension_levels : 0, &limits);
