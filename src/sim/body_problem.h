@@ -31,7 +31,9 @@ class BodyProblem : public ConstrainedEnergy {
   VecX multipliers() const;
 
   std::vector<Part> parts() const override;
-  int constraints() const override { return volumes() + (loads_.inertia ? loads_.inertia->constraints() : 0); }
+  int constraints() const override {
+    return volumes() + (loads_.inertia ? loads_.inertia->constraints() : 0);
+  }
   double value(const VecX& x) const override;
   double cancelling() const override;
   void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;

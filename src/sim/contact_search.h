@@ -45,7 +45,7 @@ struct ContactLoads {
   FrictionLoad friction;
   /// N/m, springs that hold the details at rest, one each; none: all are free.
   std::vector<double> detail_holds = {};
-  VecX load = {};  ///< N, 3 a node; empty: none
+  VecX load = {};                               ///< N, 3 a node; empty: none
   std::shared_ptr<const Inertia> inertia = {};  ///< null: masses do not count
   std::optional<Drag> drag = {};
 };

@@ -49,30 +49,57 @@ NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer
   return total;
 }
 
-NewtonResult sink(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
-                  const SettleOptions& options) {
-  constexpr int most_steps = 100;
-  // Of the mean stiffness at a node: the first step is a small one, the last spring is felt no more.
-  constexpr double first = 1e-2, last = 1e-7, weaken = 0.25;
+namespace {
+
+/// Mean stiffness at a node, N/m; of what has a mass that which lets it fall for 20 ms where `first` of it holds it back.
+double sinking_stiffness(const Member& member, double first) {
+  constexpr double time = 0.02;  // s
+  if (const BlockMatrix* mass = member.body.mass()) return mass->diagonal_mean() / (time * time) / first;
   BlockMatrix matrix = member.body.pattern();
   member.body.add_hessian(member.state.x, matrix);
-  const double stiffness = matrix.diagonal_mean();
-  ContactLoads loads = member.loads;
-  const Member held{member.body, loads, member.search, member.state};
+  return matrix.diagonal_mean();
+}
+
+}  // namespace
+
+NewtonResult sink(std::span<const Member> members, std::span<const JoinPointer> joins,
+                  GroupPatterns& patterns, const NewtonSettings& settings, NewtonWorkspace& work,
+                  const SettleOptions& options) {
+  constexpr int most_steps = 100;
+  // Of the stiffness: the first step is a small one, the last spring is felt no more.
+  constexpr double first = 1e-2, last = 1e-7, weaken = 0.25;
+  std::vector<double> stiffness;
+  std::vector<ContactLoads> loads;
+  for (const Member& member : members) {
+    stiffness.push_back(sinking_stiffness(member, first));
+    loads.push_back(member.loads);
+  }
+  std::vector<Member> held;
+  for (std::size_t k = 0; k < members.size(); ++k)
+    held.push_back({members[k].body, loads[k], members[k].search, members[k].state});
   NewtonResult total;
   double share = first;
   for (int step = 0; step < most_steps && total.iterations < settle_iterations; ++step) {
-    loads.drag = Drag{member.state.x, share * stiffness};
+    for (std::size_t k = 0; k < held.size(); ++k) loads[k].drag = Drag{held[k].state.x, share * stiffness[k]};
     work.factored = false;
-    const NewtonResult result = settle(held, settings, work, options);
+    const NewtonResult result = settle(held, joins, patterns, settings, work, options);
     total.add(result);
     if (!result.converged()) break;
-    const double way = member.body.largest_motion(member.state.x - loads.drag->from);
-    if (share <= last && way <= settings.tolerance * member.body.size()) return total;
+    bool stays = share <= last;
+    for (const Member& member : held)
+      stays &= member.body.largest_motion(member.state.x - member.loads.drag->from) <=
+               settings.tolerance * member.body.size();
+    if (stays) return total;
     share = std::max(last, weaken * share);
   }
   if (total.converged()) total.status = NewtonStatus::iteration_limit;
   return total;
+}
+
+NewtonResult sink(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
+                  const SettleOptions& options) {
+  GroupPatterns none;
+  return sink({&member, 1}, {}, none, settings, work, options);
 }
 
 NewtonResult settle(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,

@@ -29,9 +29,12 @@ struct SettleOptions {
 NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer> joins,
                     GroupPatterns& patterns, const NewtonSettings& settings, NewtonWorkspace& work,
                     const SettleOptions& options = {});
-/// The same of a body alone that nothing holds, or not in every direction: it is let sink, each step held back by springs
+/// The same of bodies that nothing holds, or not in every direction: they are let sink, each step held back by springs
 /// from where it was, which weaken, until it moves no more (the proximal point method). On failure the state holds the
 /// last iterate.
+NewtonResult sink(std::span<const Member> members, std::span<const JoinPointer> joins,
+                  GroupPatterns& patterns, const NewtonSettings& settings, NewtonWorkspace& work,
+                  const SettleOptions& options = {});
 NewtonResult sink(const Member& member, const NewtonSettings& settings, NewtonWorkspace& work,
                   const SettleOptions& options = {});
 /// Of a body alone.

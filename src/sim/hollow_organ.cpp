@@ -146,8 +146,9 @@ Failure fill_failure(const NewtonResult& result, const std::string& organ, const
   Failure failure = solve_failure(result, organ, "while it was filled");
   Problem& problem = failure.problems.front();
   if (limits != nullptr && limits->sinks)
-    problem.hint = "let something hold or support it so that it neither falls nor slides for good, fill it less (bile), "
-                   "or give it a thicker or stiffer wall, or more nodes";
+    problem.hint =
+        "let something hold or support it so that it neither falls nor slides for good, fill it less (bile), "
+        "or give it a thicker or stiffer wall, or more nodes";
   else if (result.status != NewtonStatus::mechanism)
     problem.hint = "fill it less (bile), or give it a thicker or stiffer wall, or more nodes";
   problem.place.path = ".bile";

@@ -21,9 +21,8 @@ LiquidMotion present_motion(const Body& body, const BodyState& state) {
   LiquidMotion out = still;
   out.velocity = (state.x - part.begin.x) / part.duration;
   if (const Liquid* liquid = body.liquid())
-    out.centroid =
-        (liquid->centroid(state.x, state.volume) - liquid->centroid(part.begin.x, state.volume)) /
-        part.duration;
+    out.centroid = (liquid->centroid(state.x, state.volume) - liquid->centroid(part.begin.x, state.volume)) /
+                   part.duration;
   return slow(body, out, part.duration) && slow(body, part.begin, part.duration) ? still : out;
 }
 

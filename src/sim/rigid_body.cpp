@@ -37,8 +37,12 @@ Result<RigidBody> RigidBody::create(const Setup& setup) {
     for (int corner : t) body.skin_areas_[corner] += body.areas_.back() / 3;
   }
   body.weight_.resize(3 * AffineBody::nodes);
-  for (int node = 0; node < AffineBody::nodes; ++node)
-    body.weight_.segment<3>(3 * node) = -0.25 * body.mass() * units::standard_gravity * setup.up;
+  // The nodes have the body's own moments: a quarter of its mass each.
+  const double quarter = 0.25 * setup.density * body.affine_->volume();
+  for (int node = 0; node < AffineBody::nodes; ++node) {
+    body.weight_.segment<3>(3 * node) = -quarter * units::standard_gravity * setup.up;
+    body.mass_.add_to_diagonal(node, quarter);
+  }
   return body;
 }
 

@@ -40,7 +40,7 @@ class RigidBody : public Body {
   double largest_motion(const VecX& dx) const override;
   std::vector<Vec3> skin_normals(const VecX& x) const override;
 
-  double mass() const { return setup_.density * affine_->volume(); }  ///< kg, a quarter of it at each node
+  const BlockMatrix* mass() const override { return &mass_; }
   const AffineBody& affine() const { return *affine_; }
 
  private:
@@ -50,6 +50,7 @@ class RigidBody : public Body {
   double size_ = 0, farthest_weights_ = 1;  ///< the largest sum of a skin point's weights without their signs
   std::vector<double> edge_lengths_, areas_, skin_areas_;
   std::vector<std::vector<int>> face_nodes_{{0, 1, 2, 3}};
+  BlockMatrix mass_{4, {{std::vector<int>{0, 1, 2, 3}}}};
   BlockMatrix pattern_{4, {{std::vector<int>{0, 1, 2, 3}}}};
   Tessellation skin_;
 };

@@ -111,4 +111,18 @@ Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics
   return true;
 }
 
+Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
+  NewtonSettings settings;
+  settings.tolerance = field.tolerance;
+  std::vector<ContactLoads> loads;
+  for (const Organ& organ : field.organs) loads.push_back(contact_loads(field, organ, present_poses(field)));
+  Group& group = field.group;
+  const NewtonResult result =
+      sink(members_of(field, loads), group.joins, group.patterns, settings, group.work);
+  count(result, statistics);
+  if (!result.converged())
+    return solve_failure(result, field.organs[result.part].definition.name, "as it sank to rest");
+  return true;
+}
+
 }  // namespace calot

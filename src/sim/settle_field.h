@@ -32,6 +32,9 @@ double largest_travel(const Field& field, const std::vector<InstrumentPose>& to)
 NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
                           const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics);
 
+/// Lets organs that nothing holds sink to rest with no tool near (equilibrium.h); they rest without friction.
+Result<bool> sink_field(Field& field, SolveStatistics& statistics);
+
 /// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);

@@ -65,7 +65,7 @@ class ShellBody : public Body {
     TriMesh control;
     ShellMaterial material;
     std::optional<BileDefinition> bile;  ///< closed surfaces only
-    double wall_density = 0;  ///< kg/m^3; 0: weightless
+    double wall_density = 0;             ///< kg/m^3; 0: weightless
     Vec3 up = Vec3::UnitZ();
     /// Elastic foundation at a quadrature point at rest position x, N/m per m^2 (0: none).
     std::function<double(const Vec3& x)> foundation;

@@ -119,9 +119,8 @@ std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
 bool motion_in(const ShellBody& next, const ShellBody& before, MotionPart& motion) {
   if (motion.duration == 0) return true;
   const auto there = [&](const VecX& x) { return before.coordinates_in(next, x); };
-  Result<MotionPart> part =
-      motion_part(next, {there(motion.begin.x), there(motion.begin.velocity), motion.begin.centroid},
-                  motion.duration);
+  Result<MotionPart> part = motion_part(
+      next, {there(motion.begin.x), there(motion.begin.velocity), motion.begin.centroid}, motion.duration);
   if (part) motion = std::move(part).value();
   return static_cast<bool>(part);
 }

@@ -297,13 +297,18 @@ std::optional<Failure> check_action(const Tool& tool, InstrumentAction action) {
 namespace {
 
 /// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on.
-Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy) {
+Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy, bool dynamic) {
   const bool alone = anatomy.joints.empty() &&
                      std::all_of(field.organs.begin(), field.organs.end(),
                                  [](const Organ& organ) { return is_hollow(organ.definition.shape); });
   if (alone) return true;
   SolveStatistics statistics;
+  const GroupSnapshot before = snapshot(field);
   Result<bool> rested = settle_field(field, "at rest", statistics);
+  if (!rested && dynamic) {
+    restore(field, before);
+    rested = sink_field(field, statistics);
+  }
   if (!rested) return rested;
   for (Organ& organ : field.organs) {
     const ShellBody* shell = shell_of(organ);
@@ -343,7 +348,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     if (!made) return at_organ(made.failure(), impl->field.organs.size());
     impl->field.add(std::move(made).value());
   }
-  if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy); !rested)
+  if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
     return rested.failure();
   World world(std::move(impl));
   for (const InstrumentDefinition& definition : scene.instruments) {
