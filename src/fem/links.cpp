@@ -27,18 +27,27 @@ void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMat
 
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
                         const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix) {
+  std::array<StencilPoint, 4> points;
+  for (int k = 0; k < 4; ++k)
+    if (rows[k] >= 0) points[k] = {&table, rows[k], 0};
+  return add_points_hessian(points, hessian, matrix);
+}
+
+bool add_points_hessian(const std::array<StencilPoint, 4>& points,
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix) {
   struct Node {
     int node;
     Eigen::Vector4d weight = Eigen::Vector4d::Zero();
   };
   std::vector<Node> nodes;
   for (int k = 0; k < 4; ++k) {
-    if (rows[k] < 0) continue;
-    for (int e = table.begin[rows[k]]; e < table.begin[rows[k] + 1]; ++e) {
-      const auto at = std::lower_bound(nodes.begin(), nodes.end(), table.node[e],
-                                       [](const Node& n, int node) { return n.node < node; });
-      const auto place =
-          at != nodes.end() && at->node == table.node[e] ? at : nodes.insert(at, {table.node[e]});
+    if (points[k].table == nullptr) continue;
+    const StencilTable& table = *points[k].table;
+    for (int e = table.begin[points[k].row]; e < table.begin[points[k].row + 1]; ++e) {
+      const int node = points[k].first_node + table.node[e];
+      const auto at = std::lower_bound(nodes.begin(), nodes.end(), node,
+                                       [](const Node& n, int other) { return n.node < other; });
+      const auto place = at != nodes.end() && at->node == node ? at : nodes.insert(at, {node});
       place->weight[k] = table.value[e];
     }
   }

@@ -21,8 +21,17 @@ struct Links {
 /// Adds weight_a weight_b h to every node pair of row r.
 void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMatrix& matrix);
 
-/// Adds a Hessian by up to four points (`rows`, unused ones negative) to their nodes' pairs by all their weights.
-/// Couplings that the pattern does not hold are left out: then false.
+/// A point by its row of a table whose first node is the matrix' `first_node`.
+struct StencilPoint {
+  const StencilTable* table = nullptr;  ///< null: none
+  int row = 0, first_node = 0;
+};
+
+/// Adds a Hessian by up to four points to their nodes' pairs by all their weights. Couplings that the pattern does not
+/// hold are left out: then false.
+bool add_points_hessian(const std::array<StencilPoint, 4>& points,
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix);
+/// The same with points of one table (`rows`, unused ones negative).
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
                         const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix);
 

@@ -239,6 +239,11 @@ class OrganParts {
   Eigen::Index total() const { return total_; }
   auto of(std::size_t organ, VecX& dx) const { return dx.segment(first_[organ], sizes_[organ]); }
   auto of(std::size_t organ, const VecX& dx) const { return dx.segment(first_[organ], sizes_[organ]); }
+  VecX joined(const std::vector<VecX>& organs) const {
+    VecX out(total_);
+    for (std::size_t k = 0; k < organs.size(); ++k) of(k, out) = organs[k];
+    return out;
+  }
 
  private:
   std::vector<Eigen::Index> first_, sizes_;
@@ -261,6 +266,11 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
     const Organ& organ = field.organs[k];
     out.share = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),
                                             contact_keep, out.share);
+  }
+  // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
+  if (out.loaded && !field.group.joins.empty()) {
+    const VecX x = parts.joined(present_places(field));
+    for (const JoinPointer& join : field.group.joins) out.share = join->safe_share(x, out.dx, out.share);
   }
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Poses partly = between(from, to, out.share);

@@ -42,6 +42,7 @@ NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer
       // Walls that met without couplings in the matrix have them in the next round.
       moved |= member.search.own.lacking();
     }
+    for (const JoinPointer& join : joins) moved |= join->lacking();
     const bool cut_short =
         result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
     if (!cut_short || !moved) break;

@@ -15,6 +15,11 @@ GroupProblem::GroupProblem(std::span<const Member> members, std::span<const Join
     size_ += size;
     constraints_ += static_cast<int>(constraints);
   }
+  if (joins.empty()) return;
+  std::vector<GroupPlace> bodies;
+  for (std::size_t k = 0; k < members.size(); ++k)
+    bodies.push_back({&members[k].body, static_cast<int>(ranges_[k].first) / 3});
+  for (const JoinPointer& join : joins) join->begin(bodies);
 }
 
 VecX GroupProblem::coordinates() const {
@@ -194,6 +199,19 @@ void GroupProblem::prepare_alone(NewtonWorkspace& work) const {
     work = NewtonWorkspace(std::move(*pattern), body.coarse_nodes());
 }
 
+namespace {
+
+/// Whether all nodes of each group are coupled.
+bool holds(const BlockMatrix& matrix, const std::vector<std::vector<int>>& cliques) {
+  for (const std::vector<int>& clique : cliques)
+    for (int j : clique)
+      for (int i : clique)
+        if (i > j && matrix.slot(i, j) < 0) return false;
+  return true;
+}
+
+}  // namespace
+
 void GroupProblem::prepare(NewtonWorkspace& work) const {
   if (alone()) return prepare_alone(work);
   bool changed = work.matrix.size() != size_;
@@ -206,11 +224,21 @@ void GroupProblem::prepare(NewtonWorkspace& work) const {
     if (pattern) own = std::move(*pattern);
     changed |= other_body || pattern.has_value();
   }
-  std::vector<std::vector<int>> joined;
-  for (const JoinPointer& join : joins_) join->add_cliques(joined);
-  if (!changed && joined == patterns_.joined) return;
+  // What had to be coupled and is apart again costs room in the factor, but a new one costs more.
+  constexpr std::size_t most_idle = 2;  // times as many groups as are near
+  std::vector<std::vector<int>> joined = cliques(false);
+  if (!changed && patterns_.joined.size() <= most_idle * joined.size() && holds(work.matrix, cliques(true)))
+    return;
   patterns_.joined = std::move(joined);
   work = NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined));
+}
+
+std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
+  std::vector<std::vector<int>> out;
+  if (joins_.empty()) return out;
+  const VecX x = coordinates();
+  for (const JoinPointer& join : joins_) join->add_cliques(x, close, out);
+  return out;
 }
 
 double GroupProblem::safe_share(const VecX& x, const VecX& step) const {

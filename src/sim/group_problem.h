@@ -18,16 +18,29 @@ struct Member {
   BodyState& state;
 };
 
-/// What joins bodies: an energy over nodes of several of them, in the group's numbering.
+/// Where a body stands in a group.
+struct GroupPlace {
+  const Body* body = nullptr;
+  int first_node = 0;
+};
+
+/// What joins bodies: an energy over nodes of several of them, in the group's numbering. What it remembers is no part of
+/// any result.
 class Join {
  public:
   virtual ~Join() = default;
+  /// A solve begins, of these bodies: they stay what they are until the next. Asked before anything else.
+  virtual void begin(std::span<const GroupPlace> /*bodies*/) const {}
   virtual double value(const VecX& x) const = 0;  ///< J
   virtual void add_gradient(const VecX& x, VecX& gradient) const = 0;
+  /// Couplings that the pattern does not hold are left out: Newton then converges more slowly.
   virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
-  /// Adds the groups of nodes that add_hessian() may couple in a solve from here on. Not asked for where there is but one
-  /// body: it is joined to nothing but itself, by nodes that its own pattern couples.
-  virtual void add_cliques(std::vector<std::vector<int>>& cliques) const = 0;
+  /// Whether the last add_hessian() left some out.
+  virtual bool lacking() const { return false; }
+  /// Adds the groups of nodes that add_hessian() couples near x: with `close` those that a solve from here on may well
+  /// couple, else those that some later one may, too, so that a matrix made for these serves for long. Not asked for
+  /// where there is but one body: it is joined to nothing but itself, by nodes that its own pattern couples.
+  virtual void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const = 0;
   /// The largest part of `share` of the step that is safe.
   virtual double safe_share(const VecX& /*x*/, const VecX& /*step*/, double share) const { return share; }
 };
@@ -81,6 +94,7 @@ class GroupProblem : public ConstrainedEnergy {
     return x.segment(ranges_[member].first, ranges_[member].size);
   }
   void prepare_alone(NewtonWorkspace& work) const;
+  std::vector<std::vector<int>> cliques(bool close) const;
   void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
   /// Adds what joins the bodies; residuals are judged beside these forces, too.
   void add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const;

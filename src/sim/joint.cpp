@@ -1,0 +1,218 @@
+#include "sim/joint.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "fem/links.h"
+#include "sim/rod_body.h"
+
+namespace calot {
+namespace {
+
+constexpr int fewest_points = 3;
+
+/// The skin points of a body by their distance from a place at rest.
+std::vector<std::pair<double, int>> by_distance(const Body& body, const Vec3& place) {
+  std::vector<std::pair<double, int>> out;
+  for (std::size_t i = 0; i < body.skin_rest().size(); ++i)
+    out.emplace_back((body.skin_rest()[i] - place).norm(), static_cast<int>(i));
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// The least weights of the points within `reach` that sum to 1 and give the place; none where these do not span it.
+std::optional<CarriedPlace> weights_within(const Body& body, const Vec3& place,
+                                           const std::vector<std::pair<double, int>>& points, double reach) {
+  constexpr double exact = 1e-9;  // of the reach
+  CarriedPlace out;
+  std::vector<double> nearness;
+  for (const auto& [distance, point] : points) {
+    if (distance >= reach) break;
+    out.points.push_back(point);
+    const double share = distance / reach;
+    nearness.push_back((1 - share * share) * (1 - share * share));
+  }
+  if (out.points.empty()) return {};
+  const auto count = static_cast<Eigen::Index>(out.points.size());
+  Eigen::Matrix4Xd places(4, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    places.col(i) << 1, (body.skin_rest()[out.points[i]] - place) / reach;
+  const Eigen::Map<const VecX> near(nearness.data(), count);
+  const Eigen::Matrix4d products = places * near.asDiagonal() * places.transpose();
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
+  solver.setThreshold(1e-10);
+  solver.compute(products);
+  const Eigen::Vector4d wanted = Eigen::Vector4d::UnitX();
+  const VecX weights = near.asDiagonal() * (places.transpose() * solver.solve(wanted));
+  if (!((places * weights - wanted).norm() < exact)) return {};
+  out.weights.assign(weights.data(), weights.data() + count);
+  return out;
+}
+
+double total(const CarriedPlace& place) {
+  double sum = 0;
+  for (double weight : place.weights) sum += std::abs(weight);
+  return sum;
+}
+
+/// A place as the points around it carry it, from near ones if their weights are small, else from as many as it takes:
+/// a place far above a flat patch would be thrown about by what is small on the patch. None where that takes weights
+/// beyond `wildest`: of a line that is not quite straight.
+std::optional<CarriedPlace> carried(const Body& body, const Vec3& place, double radius) {
+  constexpr double calm = 3, wildest = 8, wider = 1.25;
+  const std::vector<std::pair<double, int>> points = by_distance(body, place);
+  std::optional<CarriedPlace> best;
+  for (double reach = points.front().first + radius;; reach *= wider) {
+    std::optional<CarriedPlace> found = weights_within(body, place, points, reach);
+    if (found && (!best || total(*found) < total(*best))) best = std::move(found);
+    if (best && total(*best) <= calm) return best;
+    if (reach > points.back().first) break;
+  }
+  return best && total(*best) <= wildest ? best : std::nullopt;
+}
+
+}  // namespace
+
+Result<JointLinks> joint_links(const Body& one, const Body& other, std::array<int, 2> bodies,
+                               const Vec3& place, double radius, double stiffness) {
+  if (!(radius > 0) || !(stiffness > 0) || bodies[0] == bodies[1])
+    return fail(FailureKind::scenario,
+                "the joint of '" + one.name() + "' and '" + other.name() +
+                    "' needs two bodies, a radius and a stiffness above 0",
+                "join two different bodies and give the joint a size and a stiffness");
+  JointLinks out;
+  out.bodies = bodies;
+  int held = 0;
+  std::vector<std::pair<double, int>> on_other = by_distance(other, place);
+  for (const auto& [distance, point] : by_distance(one, place)) {
+    if (held >= fewest_points && distance > radius) break;
+    ++held;
+    const CarriedPlace end{{point}, {1.0}};
+    if (std::optional<CarriedPlace> there = carried(other, one.skin_rest()[point], radius)) {
+      out.links.push_back({end, std::move(*there), 0});
+      continue;
+    }
+    // A line: to its nearest point, and as far as a radius or more along it on both sides.
+    const Vec3 middle = other.skin_rest()[on_other[0].second];
+    std::array<int, 3> feet{on_other[0].second, -1, -1};
+    for (const auto& [unused, foot] : on_other) {
+      const Vec3 arm = other.skin_rest()[foot] - middle;
+      if (arm.norm() < radius) continue;
+      if (feet[1] < 0) feet[1] = foot;
+      if (arm.dot(other.skin_rest()[feet[1]] - middle) < 0) {
+        feet[2] = foot;
+        break;
+      }
+    }
+    for (int foot : feet)
+      if (foot >= 0)
+        out.links.push_back(
+            {end, {{foot}, {1.0}}, (other.skin_rest()[foot] - one.skin_rest()[point]).norm()});
+  }
+  out.stiffness = stiffness / held;
+  return out;
+}
+
+double end_stiffness(const RodBody& rod, bool last) {
+  const RodBody::Setup& setup = rod.setup();
+  const double outer = last && setup.end_radius > 0 ? setup.end_radius : setup.radius;
+  const double inner = std::max(0.0, outer - setup.wall);
+  const double section = std::numbers::pi * (outer * outer - inner * inner);
+  return 3 * setup.shear_modulus * section / (2 * outer);
+}
+
+void Joint::begin(std::span<const GroupPlace> bodies) const {
+  if (std::max(links_.bodies[0], links_.bodies[1]) >= static_cast<int>(bodies.size())) {
+    rows_ = {};
+    nodes_.clear();
+    first_ = {-1, -1};
+    return;
+  }
+  bool same = true;
+  for (int k = 0; k < 2; ++k) {
+    const GroupPlace& place = bodies[links_.bodies[k]];
+    same &= first_[k] == place.first_node && details_[k] == place.body->details();
+    first_[k] = place.first_node;
+    details_[k] = place.body->details();
+  }
+  if (same) return;
+  rows_ = {};
+  for (const JointLinks::Link& link : links_.links) {
+    for (int k = 0; k < 2; ++k) {
+      const CarriedPlace& place = k == 0 ? link.one : link.other;
+      const StencilTable& skin = bodies[links_.bodies[k]].body->skin().stencils;
+      std::map<int, double> weights;
+      for (std::size_t i = 0; i < place.points.size(); ++i)
+        for (int e = skin.begin[place.points[i]]; e < skin.begin[place.points[i] + 1]; ++e)
+          weights[first_[k] + skin.node[e]] += place.weights[i] * skin.value[e];
+      for (const auto& [node, weight] : weights) {
+        rows_.node.push_back(node);
+        rows_.value.push_back(weight);
+      }
+      rows_.begin.push_back(static_cast<int>(rows_.node.size()));
+    }
+  }
+  nodes_ = rows_.node;
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+}
+
+Joint::Pull Joint::pull(std::size_t link, const VecX& x) const {
+  const int row = 2 * static_cast<int>(link);
+  const Vec3 arm = blend(rows_, rows_.value, row, x) - blend(rows_, rows_.value, row + 1, x);
+  return {arm, arm.norm()};
+}
+
+double Joint::value(const VecX& x) const {
+  double sum = 0;
+  for (std::size_t i = 0; 2 * i < static_cast<std::size_t>(rows_.rows()); ++i) {
+    const double longer = pull(i, x).distance - links_.links[i].length;
+    sum += 0.5 * links_.stiffness * longer * longer;
+  }
+  return sum;
+}
+
+Vec3 Joint::slope(std::size_t link, const VecX& x) const {
+  const Pull at = pull(link, x);
+  const JointLinks::Link& of = links_.links[link];
+  if (of.length == 0) return links_.stiffness * at.arm;
+  return at.tension(of, links_.stiffness) * at.arm / at.distance;
+}
+
+void Joint::add_gradient(const VecX& x, VecX& gradient) const {
+  for (int row = 0; row < rows_.rows(); row += 2) {
+    const Vec3 by_one = slope(static_cast<std::size_t>(row) / 2, x);
+    spread(rows_, row, by_one, gradient);
+    spread(rows_, row + 1, -by_one, gradient);
+  }
+}
+
+Vec3 Joint::force(const VecX& x) const {
+  Vec3 sum = Vec3::Zero();
+  for (int row = 0; row < rows_.rows(); row += 2) sum += slope(static_cast<std::size_t>(row) / 2, x);
+  return sum;
+}
+
+void Joint::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  for (int row = 0; row < rows_.rows(); row += 2) {
+    const auto link = static_cast<std::size_t>(row) / 2;
+    Mat3 h = links_.stiffness * Mat3::Identity();
+    if (const double length = links_.links[link].length; length > 0) {
+      const Pull at = pull(link, x);
+      const Vec3 along = at.arm / at.distance;
+      h -= links_.stiffness * length / at.distance * (Mat3::Identity() - along * along.transpose());
+    }
+    Eigen::Matrix<double, 12, 12> both = Eigen::Matrix<double, 12, 12>::Zero();
+    both.block<3, 3>(0, 0) = both.block<3, 3>(3, 3) = h;
+    both.block<3, 3>(0, 3) = both.block<3, 3>(3, 0) = -h;
+    add_points_hessian(rows_, {row, row + 1, -1, -1}, both, matrix);
+  }
+}
+
+void Joint::add_cliques(const VecX&, bool, std::vector<std::vector<int>>& cliques) const {
+  if (!nodes_.empty()) cliques.push_back(nodes_);
+}
+
+}  // namespace calot

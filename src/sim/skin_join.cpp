@@ -1,0 +1,356 @@
+#include "sim/skin_join.h"
+
+#include <algorithm>
+#include <set>
+
+#include "fem/links.h"
+#include "sim/self_contact.h"
+
+namespace calot {
+namespace {
+
+/// How far pairs are remembered, and patches of skin, m: as of a skin with itself.
+constexpr double close_reach = 0.8e-3, patch_reach = 3e-3;
+constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
+
+using Box = Eigen::AlignedBox3d;
+
+/// Of what hangs on some nodes.
+Box box_of(const Body& body, const std::vector<int>& nodes, const VecX& x, double wider) {
+  Box box;
+  for (int node : nodes) {
+    const Vec3 at = x.segment<3>(Eigen::Index{3} * node);
+    if (node < body.coarse_nodes())
+      box.extend(at);
+    else
+      wider += 0.5 * at.norm();
+  }
+  return {box.min() - Vec3::Constant(wider), box.max() + Vec3::Constant(wider)};
+}
+
+}  // namespace
+
+SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> joined) const {
+  Side side;
+  const std::vector<double>& radii = body.skin_radii();
+  if (!radii.empty()) side.radius = *std::max_element(radii.begin(), radii.end());
+  const std::vector<Vec3>& rest = body.skin_rest();
+  const auto left_out = [&](int point) {
+    return std::any_of(joined.begin(), joined.end(), [&](const JoinedPlace& joint) {
+      return (rest[point] - joint.place).norm() <= joint.within;
+    });
+  };
+  for (std::size_t p = 0; p < rest.size(); ++p)
+    side.areas.push_back(left_out(static_cast<int>(p)) ? 0.0 : 0.5 * body.skin_areas()[p]);
+  for (const Triangle& t : body.skin().triangles)
+    side.counts.push_back(std::none_of(t.begin(), t.end(), left_out));
+  side.at.assign(rest.size(), Vec3::Zero());
+  side.way.assign(rest.size(), Vec3::Zero());
+  return side;
+}
+
+SkinJoin::SkinJoin(const Body& one, const Body& other, std::array<int, 2> bodies,
+                   std::span<const JoinedPlace> joined)
+    : bodies_(bodies), sides_{side_of(one, joined), side_of(other, joined)} {}
+
+void SkinJoin::begin(std::span<const GroupPlace> bodies) const {
+  const bool present = std::max(bodies_[0], bodies_[1]) < static_cast<int>(bodies.size());
+  for (int k = 0; k < 2; ++k) {
+    Side& side = sides_[k];
+    if (!present) {
+      side.body = nullptr;
+      continue;
+    }
+    const GroupPlace& place = bodies[bodies_[k]];
+    const Eigen::Index first = Eigen::Index{3} * place.first_node;
+    if (side.body == nullptr || side.first != first || side.details != place.body->details()) {
+      patches_known_ = pairs_known_ = false;
+      found_ = {};
+    }
+    side.body = place.body;
+    side.first = first;
+    side.details = place.body->details();
+  }
+}
+
+double SkinJoin::approach(const VecX& dx, bool near) const {
+  Box coarse;
+  double sum = 0;
+  for (const Side& side : sides_) {
+    std::vector<double> of_level(side.body->levels_used() + 1, 0.0);
+    const auto take = [&](int node) {
+      const Vec3 move = dx.segment<3>(side.first + Eigen::Index{3} * node);
+      if (node < side.body->coarse_nodes()) {
+        coarse.extend(move);
+      } else {
+        double& largest = of_level[side.body->level_of_detail(node - side.body->coarse_nodes())];
+        largest = std::max(largest, move.norm());
+      }
+    };
+    if (near)
+      for (int node : side.nodes) take(node);
+    else
+      for (int node = 0; node < side.body->nodes(); ++node) take(node);
+    for (double largest : of_level) sum += largest;
+  }
+  return sum + (coarse.isEmpty() ? 0.0 : coarse.sizes().norm());
+}
+
+void SkinJoin::refresh_patches(const VecX& x, double need) const {
+  if (patches_known_ && need + approach(x - patches_x_, false) <= patches_reach_) return;
+  patches_known_ = true;
+  pairs_known_ = false;
+  patches_x_ = x;
+  patches_reach_ = std::max(patch_reach, need);
+  gather_patches(x);
+}
+
+/// Patches of either skin that are near any of the other, by the boxes of their nodes.
+void SkinJoin::gather_patches(const VecX& x) const {
+  std::array<std::vector<Box>, 2> boxes;
+  std::array<Box, 2> whole;
+  for (int k = 0; k < 2; ++k) {
+    const Side& side = sides_[k];
+    const VecX part = side.part(x);
+    for (const std::vector<int>& nodes : side.body->face_nodes()) {
+      boxes[k].push_back(box_of(*side.body, nodes, part, side.radius));
+      whole[k].extend(boxes[k].back());
+    }
+  }
+  for (Side& side : sides_) {
+    side.patches.clear();
+    side.skin.reset();
+  }
+  const double between = whole[0].exteriorDistance(whole[1]);
+  if (between >= patches_reach_) {
+    patches_reach_ = between;
+    return;
+  }
+  const double reach_squared = patches_reach_ * patches_reach_;
+  std::array<std::vector<int>, 2> candidates;
+  for (int k = 0; k < 2; ++k)
+    for (std::size_t f = 0; f < boxes[k].size(); ++f)
+      if (boxes[k][f].squaredExteriorDistance(whole[1 - k]) < reach_squared)
+        candidates[k].push_back(static_cast<int>(f));
+  for (int k = 0; k < 2; ++k)
+    for (int f : candidates[k])
+      if (std::any_of(candidates[1 - k].begin(), candidates[1 - k].end(), [&](int g) {
+            return boxes[k][f].squaredExteriorDistance(boxes[1 - k][g]) < reach_squared;
+          }))
+        sides_[k].patches.push_back(f);
+  if (sides_[0].patches.empty() || sides_[1].patches.empty()) return;
+  for (Side& side : sides_) {
+    const Body& body = *side.body;
+    std::vector<char> used(side.areas.size(), 0), hangs(body.nodes(), 0);
+    std::vector<Triangle> faces;
+    std::vector<Segment> segments;
+    side.triangles.clear();
+    for (int patch : side.patches) {
+      for (int node : body.face_nodes()[patch]) hangs[node] = 1;
+      for (int t = patch * body.triangles_each(); t < (patch + 1) * body.triangles_each(); ++t) {
+        const Triangle& corners = body.skin().triangles[t];
+        for (int corner : corners) used[corner] = 1;
+        if (!side.counts[t]) continue;
+        if (corners[1] != corners[2]) {
+          faces.push_back(corners);
+        } else if (corners[0] < corners[1]) {  // of the two triangles that a segment is
+          segments.push_back({corners[0], corners[1]});
+        } else {
+          continue;
+        }
+        side.triangles.push_back(t);
+      }
+    }
+    side.rows.clear();
+    side.nodes.clear();
+    std::vector<double> areas(side.areas.size(), 0.0);
+    for (std::size_t p = 0; p < used.size(); ++p)
+      if (used[p]) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
+    for (int node = 0; node < body.nodes(); ++node)
+      if (hangs[node]) side.nodes.push_back(node);
+    side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
+  }
+}
+
+void SkinJoin::look_up(const VecX& x, bool motions) const {
+  for (Side& side : sides_) {
+    const VecX part = side.part(x);
+    for (int row : side.rows) (motions ? side.way : side.at)[row] = side.body->skin_point(row, part);
+  }
+}
+
+std::array<PlacedSkin, 2> SkinJoin::placed(bool motions) const {
+  std::array<PlacedSkin, 2> out;
+  for (int k = 0; k < 2; ++k) out[k] = {&*sides_[k].skin, &sides_[k].at, motions ? &sides_[k].way : nullptr};
+  return out;
+}
+
+void SkinJoin::refresh_pairs(const VecX& x, double need) const {
+  refresh_patches(x, need);
+  if (!anything_near()) return pairs_.clear();
+  if (pairs_known_ && need + approach(x - pairs_x_, true) <= close_reach) return;
+  refresh_patches(x, close_reach);
+  if (!anything_near()) return pairs_.clear();
+  look_up(x, false);
+  pairs_ = skin_pairs(placed(false), {close_reach, 1});
+  pairs_x_ = x;
+  pairs_known_ = true;
+  ++searches_;
+}
+
+const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
+  static const std::vector<SkinTouch> none;
+  if (!active() || !x.allFinite()) return none;
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    if (found_[k].x.size() != x.size() || found_[k].x != x) continue;
+    newest_ = k;
+    return found_[k].touches;
+  }
+  newest_ = 1 - newest_;
+  Touching& found = found_[newest_];
+  refresh_pairs(x, self_barrier.range);
+  found.x = x;
+  found.touches.clear();
+  if (!pairs_.empty()) {
+    look_up(x, false);
+    found.touches = skin_touches(placed(false), pairs_, self_barrier.range);
+  }
+  return found.touches;
+}
+
+double SkinJoin::gap(const VecX& x) const {
+  double least = close_reach;
+  if (!active()) return least;
+  refresh_pairs(x, close_reach);
+  if (pairs_.empty()) return least;
+  look_up(x, false);
+  for (const SkinTouch& touch : skin_touches(placed(false), pairs_, close_reach))
+    least = std::min(least, touch.gap);
+  return least;
+}
+
+double SkinJoin::value(const VecX& x) const {
+  double sum = 0;
+  for (const SkinTouch& touch : touching(x)) {
+    // Parts that count negatively must not hide that skins are in each other.
+    const double energy = self_barrier.sample(touch.gap).energy;
+    if (!std::isfinite(energy)) return energy;
+    sum += touch.area * energy;
+  }
+  return sum;
+}
+
+std::array<StencilPoint, 4> SkinJoin::points_of(const SkinTouch& touch) const {
+  const auto point = [&](int skin, int row) -> StencilPoint {
+    const Side& side = sides_[skin];
+    return {&side.body->skin().stencils, row, static_cast<int>(side.first / 3)};
+  };
+  std::array<StencilPoint, 4> out{point(touch.skin, touch.point)};
+  for (int k = 0; k < touch.part.corners; ++k) out[k + 1] = point(touch.other, touch.part.corner[k]);
+  return out;
+}
+
+void SkinJoin::add_gradient(const VecX& x, VecX& gradient) const {
+  for (const SkinTouch& touch : touching(x)) {
+    const Eigen::Matrix<double, 12, 1> slope = touch_gradient(touch, self_barrier.sample(touch.gap));
+    const std::array<StencilPoint, 4> points = points_of(touch);
+    for (int k = 0; k <= touch.part.corners; ++k) {
+      const StencilTable& table = *points[k].table;
+      for (int e = table.begin[points[k].row]; e < table.begin[points[k].row + 1]; ++e)
+        gradient.segment<3>(Eigen::Index{3} * (points[k].first_node + table.node[e])) +=
+            table.value[e] * slope.segment<3>(3 * k);
+    }
+  }
+}
+
+Vec3 SkinJoin::force(const VecX& x) const {
+  Vec3 sum = Vec3::Zero();
+  for (const SkinTouch& touch : touching(x)) {
+    const Vec3 on_point = -touch_gradient(touch, self_barrier.sample(touch.gap)).head<3>();
+    sum += touch.skin == 0 ? Vec3(-on_point) : on_point;
+  }
+  return sum;
+}
+
+void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  lacking_ = false;
+  for (const SkinTouch& touch : touching(x)) {
+    const Side& other = sides_[touch.other];
+    const VecX& part = x;
+    std::array<Vec3, 3> corners;
+    for (int k = 0; k < touch.part.corners; ++k)
+      corners[k] = other.body->skin_point(touch.part.corner[k], other.part(part));
+    const bool complete = add_points_hessian(
+        points_of(touch),
+        touch_hessian(touch, {corners.data(), static_cast<std::size_t>(touch.part.corners)},
+                      self_barrier.sample(touch.gap)),
+        matrix);
+    lacking_ |= !complete;
+  }
+}
+
+void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const {
+  if (!active()) return;
+  const double below = close ? couple_below : uncouple_above;
+  refresh_pairs(x, below);
+  if (pairs_.empty()) return;
+  look_up(x, false);
+  std::set<std::array<int, 2>> patches;  // of the first body and of the other
+  for (const SkinPair& pair : pairs_) {
+    const Side &one = sides_[pair.skin], &other = sides_[pair.other];
+    std::array<Vec3, 3> corners;
+    const std::span<const int> ids = other.skin->corners(pair.simplex);
+    for (std::size_t k = 0; k < ids.size(); ++k) corners[k] = other.at[ids[k]];
+    if (nearest_point(one.at[pair.point], {corners.data(), ids.size()}).distance - one.radius -
+            other.radius >=
+        below)
+      continue;
+    std::array<int, 2> both{one.body->skin().at[pair.point].face,
+                            other.triangles[pair.simplex] / other.body->triangles_each()};
+    if (pair.skin == 1) std::swap(both[0], both[1]);
+    patches.insert(both);
+  }
+  for (const std::array<int, 2>& both : patches) {
+    std::vector<int> clique;
+    for (int k = 0; k < 2; ++k)
+      for (int node : sides_[k].body->face_nodes()[both[k]])
+        clique.push_back(static_cast<int>(sides_[k].first / 3) + node);
+    std::sort(clique.begin(), clique.end());
+    cliques.push_back(std::move(clique));
+  }
+}
+
+double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const {
+  if (!active() || !step.allFinite() || !x.allFinite() || step.isZero(0)) return share;
+  // A pair that loses more than 1 - contact_keep of its gap had no more than this. What could meet on a longer way would
+  // be everything: that is gone in parts.
+  const double far = share * approach(step, false) / (1.0 - contact_keep);
+  if (patches_known_ && far + approach(x - patches_x_, false) <= patches_reach_ && !anything_near())
+    return share;
+  const int parts = 1 + static_cast<int>(far / (0.5 * patch_reach));
+  const double part = share / parts;
+  for (int k = 0; k < parts; ++k) {
+    const double safe = safe_part(x + k * part * step, part * step);
+    if (safe < 1.0) return (k + safe) * part;
+  }
+  return share;
+}
+
+double SkinJoin::safe_part(const VecX& x, const VecX& step) const {
+  constexpr double lost = 1.0 - contact_keep;
+  refresh_patches(x, approach(step, false) / lost);
+  if (!anything_near()) return 1.0;
+  const double far = approach(step, true) / lost;
+  if (far <= close_reach) {
+    refresh_pairs(x, far);
+    if (pairs_.empty()) return 1.0;
+    look_up(x, false);
+    look_up(step, true);
+    return calot::safe_share(placed(true), pairs_, contact_keep);
+  }
+  look_up(x, false);
+  look_up(step, true);
+  return calot::safe_share(placed(true), skin_pairs(placed(true), {0, lost}), contact_keep);
+}
+
+}  // namespace calot

@@ -1,0 +1,96 @@
+#pragma once
+// Contact between the skins of two bodies of a group (collision/skin_contact.h), so that organs, ducts and what lies
+// around them press on each other and never pass.
+//
+// Points of both skins are kept off the other, each for half its area, by a barrier of the gap. It is the one that keeps
+// an organ's own walls apart: skin points stand 1 mm apart, so a range as short as that of contact with shapes (0.09 mm,
+// where contact points lie eight times as close) would leave places between the points to which nothing answers. Nor is
+// it soft at the end: no state has skins in each other, and no step takes them there.
+//
+// A rod is met by its centreline, as thick all along as where it is thickest; its section does not give way here.
+
+#include "collision/skin_contact.h"
+#include "sim/group_problem.h"
+
+namespace calot {
+
+/// Near a joint two bodies do not press on each other: nothing of either skin counts that was as near to `place` at rest
+/// as `within`, m.
+struct JoinedPlace {
+  Vec3 place = Vec3::Zero();
+  double within = 0;
+};
+
+class SkinJoin : public Join {
+ public:
+  /// `bodies`: their places in the group.
+  SkinJoin(const Body& one, const Body& other, std::array<int, 2> bodies,
+           std::span<const JoinedPlace> joined = {});
+
+  void begin(std::span<const GroupPlace> bodies) const override;
+  double value(const VecX& x) const override;
+  void add_gradient(const VecX& x, VecX& gradient) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  bool lacking() const override { return lacking_; }
+  void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
+  double safe_share(const VecX& x, const VecX& step, double share) const override;
+
+  const std::array<int, 2>& bodies() const { return bodies_; }
+  /// All that presses at x, in the group's numbering; found once for a state. Valid until the next call.
+  const std::vector<SkinTouch>& touching(const VecX& x) const;
+  /// The smallest gap of the two skins at x, m, or as far as is looked (0.8 mm): 0 or less where they are in each other.
+  double gap(const VecX& x) const;
+  /// N, of the first body on the other.
+  Vec3 force(const VecX& x) const;
+  /// Searches done so far: what that costs is no part of any result.
+  int searches() const { return searches_; }
+
+ private:
+  /// One of the two.
+  struct Side {
+    const Body* body = nullptr;
+    Eigen::Index first = 0;    ///< coordinate
+    std::vector<int> details;  ///< that it had
+    double radius = 0;         ///< m, about its skin
+    std::vector<double> areas;
+    std::vector<char> counts;  ///< triangles of its skin that are met
+    // Near the other, at patches_x_:
+    std::vector<int> patches, rows, nodes;
+    std::optional<ContactSkin> skin;
+    std::vector<int> triangles;  ///< of the body's skin, one a simplex
+    std::vector<Vec3> at, way;   ///< of rows; room
+
+    VecX part(const VecX& x) const { return x.segment(first, body->rest().size()); }
+  };
+  Side side_of(const Body& body, std::span<const JoinedPlace> joined) const;
+  /// Bound on how much any two of the skins' points move against each other by dx, m: those that hang on the nodes near
+  /// the other body, or on any.
+  double approach(const VecX& dx, bool near) const;
+  void gather_patches(const VecX& x) const;
+  /// Sees to it that the patches hold all that has gaps below `need`.
+  void refresh_patches(const VecX& x, double need) const;
+  /// And pairs_ all pairs, at most close_reach.
+  void refresh_pairs(const VecX& x, double need) const;
+  void look_up(const VecX& x, bool motions) const;
+  std::array<PlacedSkin, 2> placed(bool motions) const;
+  double safe_part(const VecX& x, const VecX& step) const;
+  bool active() const { return sides_[0].body != nullptr; }
+  bool anything_near() const { return sides_[0].skin.has_value(); }
+  std::array<StencilPoint, 4> points_of(const SkinTouch& touch) const;
+
+  std::array<int, 2> bodies_;
+  mutable std::array<Side, 2> sides_;
+  mutable bool patches_known_ = false, pairs_known_ = false, lacking_ = false;
+  mutable VecX patches_x_, pairs_x_;
+  mutable double patches_reach_ = 0;
+  mutable std::vector<SkinPair> pairs_;
+  mutable int searches_ = 0;
+  struct Touching {
+    VecX x;
+    std::vector<SkinTouch> touches;
+  };
+  mutable std::array<Touching, 2> found_;  ///< where a step began and where it is tried
+  mutable std::size_t newest_ = 0;
+};
+
+}  // namespace calot

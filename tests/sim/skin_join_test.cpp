@@ -1,0 +1,298 @@
+// Skins of two bodies against each other: energy, forces, what it keeps from passing, and what it remembers.
+
+#include "sim/skin_join.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/self_touch.h"
+#include "group_rig.h"
+#include "sim/joint.h"
+#include "sim/self_contact.h"
+
+namespace calot {
+namespace skin_join_test {
+namespace {
+
+using test::GroupRig;
+
+constexpr double radius = 20e-3, thin = 2.5e-3;  // m, of balls and ducts
+
+/// Pairs of drawn triangles of two bodies that cross each other.
+std::size_t crossings(const GroupRig& rig) {
+  TriMesh both;
+  std::size_t own = 0;
+  for (const GroupRig::One& one : rig.bodies) {
+    TriMesh mesh{one.body->drawn(one.state.x).positions, one.body->drawn_triangles()};
+    own += touching_pairs(mesh, 0.0).size();
+    const int first = static_cast<int>(both.points.size());
+    both.points.insert(both.points.end(), mesh.points.begin(), mesh.points.end());
+    for (const Triangle& t : mesh.triangles)
+      both.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return touching_pairs(both, 0.0).size() - own;
+}
+
+/// Two bodies with a gap of 0.2 mm, shaken.
+struct Near {
+  GroupRig rig;
+  std::shared_ptr<SkinJoin> join;
+  VecX x;
+
+  explicit Near(std::vector<BodyPointer> bodies, double shake = 2e-5) : rig(bodies) {
+    join = std::make_shared<SkinJoin>(*bodies[0], *bodies[1], std::array{0, 1});
+    rig.joins.push_back(join);
+    join->begin(rig.places());
+    Rng rng(3);
+    x = rig.x();
+    x += test::random_coordinates(rng, static_cast<int>(x.size()), shake);
+  }
+};
+
+constexpr double apart = 0.2e-3;
+BodyPointer ball(double z) { return test::soft_ball(Vec3(0.3e-3, -0.4e-3, z)); }
+BodyPointer duct_along_x(double z) {
+  return test::straight_duct(Vec3(-20e-3, 0, z), Vec3(20e-3, 0, z), thin);
+}
+BodyPointer duct_along_y(double z) {
+  return test::straight_duct(Vec3(1e-3, -15e-3, z), Vec3(-2e-3, 20e-3, z), thin);
+}
+
+/// Ball on ball, duct on ball, duct across duct.
+std::vector<std::vector<BodyPointer>> near_bodies() {
+  return {{ball(0), ball(2 * radius + apart)},
+          {ball(0), duct_along_x(radius + thin + apart)},
+          {duct_along_y(0), duct_along_x(2 * thin + apart)}};
+}
+
+TEST(SkinJoin, SlopesAreRightAndForcesBalanceInEitherOrder) {
+  for (std::vector<BodyPointer> bodies : near_bodies()) {
+    double energy = 0;
+    for (int order = 0; order < 2; ++order) {
+      const Near near(bodies, 0);
+      if (order == 0) energy = near.join->value(near.x);
+      EXPECT_NEAR(near.join->value(near.x), energy, 1e-12 * energy);
+      const Near shaken(bodies);
+      const VecX g = test::gradient_of(*shaken.join, shaken.x);
+      EXPECT_LT(test::net_force(g).norm(), 1e-12 * g.lpNorm<1>());
+      EXPECT_LT(test::net_torque(shaken.x, g, Vec3::Zero()).norm(), 1e-13 * g.lpNorm<1>());
+      // A step of a hundred-thousandth of the gaps, so that few parts change within it.
+      test::expect_derivatives(shaken.rig, *shaken.join, shaken.x, 1e-9, 1e-4);
+      // The first pushes the other up, or is pushed down by it.
+      EXPECT_GT((order == 0 ? 1 : -1) * shaken.join->force(shaken.x).z(), 1e-3);
+      std::swap(bodies[0], bodies[1]);
+    }
+  }
+}
+
+TEST(SkinJoin, ReachesAsFarAsItsRange) {
+  for (const double gap : {0.9, 1.1}) {
+    const Near near({duct_along_y(0), duct_along_x(2 * thin + gap * self_barrier.range)}, 0);
+    EXPECT_EQ(near.join->value(near.x) > 0, gap < 1) << gap;
+  }
+  const Near in_each_other({duct_along_y(0), duct_along_x(1.9 * thin)}, 0);
+  EXPECT_TRUE(std::isinf(in_each_other.join->value(in_each_other.x)));
+  EXPECT_LT(in_each_other.join->gap(in_each_other.x), 0);
+}
+
+TEST(SkinJoin, NothingPressesNearAJoint) {
+  const Vec3 top(0, 0, radius);
+  const BodyPointer below = test::soft_ball(Vec3::Zero()),
+                    duct = test::straight_duct(top, top + Vec3(0, 5e-3, 30e-3), thin);
+  GroupRig rig({below, duct});
+  const VecX x = rig.x();
+  const SkinJoin all(*below, *duct, {0, 1});
+  all.begin(rig.places());
+  EXPECT_TRUE(std::isinf(all.value(x)));
+  const std::vector<JoinedPlace> joined{{top, 2 * thin}};
+  const SkinJoin rest(*below, *duct, {0, 1}, joined);
+  rest.begin(rig.places());
+  EXPECT_EQ(rest.value(x), 0);
+  EXPECT_GT(rest.gap(x), self_barrier.range);
+}
+
+/// Two balls, held by springs on their far caps.
+GroupRig held_balls(double apart_by) {
+  GroupRig rig({test::soft_ball(Vec3::Zero()), test::soft_ball(Vec3(0, 0, 2 * radius + apart_by))});
+  for (int k = 0; k < 2; ++k) {
+    const std::vector<Vec3>& skin = rig.bodies[k].body->skin_rest();
+    const double away = k == 0 ? -1 : 1, middle = k == 0 ? 0 : 2 * radius + apart_by;
+    for (int row = 0; row < static_cast<int>(skin.size()); row += 3)
+      if (away * (skin[row].z() - middle) > 8e-3) rig.hold(k, row, skin[row], 5);
+  }
+  rig.joins.push_back(std::make_shared<SkinJoin>(*rig.bodies[0].body, *rig.bodies[1].body, std::array{0, 1}));
+  return rig;
+}
+
+TEST(SkinJoin, BallsPressedTogetherMeetAndDoNotOverlap) {
+  GroupRig rig = held_balls(0.3e-3);
+  const auto& join = dynamic_cast<const SkinJoin&>(*rig.joins[0]);
+  for (int step = 0; step < 8; ++step) {
+    for (Vec3& target : rig.bodies[1].loads.grip.target) target.z() -= 1.5e-3;
+    ASSERT_TRUE(rig.settle().converged()) << step;
+    EXPECT_EQ(crossings(rig), 0U) << step;
+  }
+  const VecX x = rig.x();
+  EXPECT_GT(join.gap(x), 0);
+  // What presses is what the springs hold against.
+  Vec3 held = Vec3::Zero();
+  const GroupRig::One& upper = rig.bodies[1];
+  for (std::size_t i = 0; i < upper.loads.grip.row.size(); ++i)
+    held += upper.loads.grip.stiffness[i] *
+            (upper.loads.grip.target[i] - upper.body->skin_point(upper.loads.grip.row[i], upper.state.x));
+  EXPECT_LT(held.z(), -0.2);
+  EXPECT_LT((join.force(x) + held).norm(), 1e-5 * held.norm());
+}
+
+TEST(SkinJoin, NoMotionTakesBodiesThroughEachOther) {
+  for (const std::vector<BodyPointer>& bodies : near_bodies()) {
+    const Near near(bodies, 0);
+    for (const double start : {0.0, 15e-3, 60e-3}) {
+      // From `start` above its place the other goes down by 100 mm, turning a little.
+      VecX x = near.x, step = VecX::Zero(x.size());
+      const Eigen::Index first = bodies[0]->rest().size(), size = bodies[1]->rest().size();
+      for (Eigen::Index i = first; i < first + size; i += 3) {
+        x[i + 2] += start;
+        step.segment<3>(i) = Vec3(2e-3, 0.1 * x[i], -100e-3);
+      }
+      const SkinJoin join(*bodies[0], *bodies[1], {0, 1});
+      join.begin(near.rig.places());
+      const double share = join.safe_share(x, step, 1.0);
+      EXPECT_LT(share, (start + 1.5 * apart) / 95e-3);  // drawn balls are a little smaller than they are
+      // At least what a gap of `apart` or half the way down leaves room for.
+      EXPECT_GT(share, 0.4 * (start + apart) / 100e-3);
+      for (int k = 1; k <= 20; ++k) EXPECT_GT(join.gap(x + k * 0.05 * share * step), 0);
+    }
+  }
+}
+
+TEST(SkinJoin, MotionsAsideAreFree) {
+  const Near near(near_bodies()[0], 0);
+  VecX step = VecX::Zero(near.x.size());
+  for (Eigen::Index i = near.x.size() / 2; i < near.x.size(); i += 3) step[i + 2] = 100e-3;
+  EXPECT_EQ(near.join->safe_share(near.x, step, 1.0), 1.0);
+  EXPECT_EQ(near.join->safe_share(near.x, step, 0.7), 0.7);
+}
+
+/// A duct held by springs at its ends is drawn by 10 mm a step: half a metre a second at 50 steps a second.
+void draw_across(GroupRig& rig, int duct, const Vec3& by, int steps) {
+  for (int step = 0; step < steps; ++step) {
+    for (Vec3& target : rig.bodies[duct].loads.grip.target) target += by;
+    ASSERT_TRUE(rig.settle(1e-6).converged()) << step;
+    ASSERT_EQ(crossings(rig), 0U) << step;
+    ASSERT_GT(dynamic_cast<const SkinJoin&>(*rig.joins[0]).gap(rig.x()), 0) << step;
+  }
+}
+void hold_ends(GroupRig& rig, int body, double stiffness) {
+  const std::vector<Vec3>& skin = rig.bodies[body].body->skin_rest();
+  for (std::size_t row : {std::size_t{0}, skin.size() - 1})
+    rig.hold(body, static_cast<int>(row), skin[row], stiffness);
+}
+
+TEST(SkinJoin, ADuctDrawnAcrossABallStaysOutside) {
+  GroupRig rig({test::straight_duct(Vec3(-30e-3, -30e-3, 4e-3), Vec3(30e-3, -30e-3, 4e-3), thin),
+                test::soft_ball(Vec3::Zero())});
+  hold_ends(rig, 0, 10);
+  const std::vector<Vec3>& skin = rig.bodies[1].body->skin_rest();
+  for (int row = 0; row < static_cast<int>(skin.size()); row += 3)
+    if (skin[row].z() < -5e-3) rig.hold(1, row, skin[row], 20);
+  rig.joins.push_back(std::make_shared<SkinJoin>(*rig.bodies[0].body, *rig.bodies[1].body, std::array{0, 1}));
+  draw_across(rig, 0, Vec3(0, 10e-3, 0), 4);
+}
+
+TEST(SkinJoin, ADuctDrawnAcrossADuctStaysOnItsSide) {
+  GroupRig rig({test::straight_duct(Vec3(0, 0, -25e-3), Vec3(0, 0, 25e-3), thin),
+                test::straight_duct(Vec3(-25e-3, -12e-3, 3e-3), Vec3(25e-3, -12e-3, 3e-3), thin)});
+  hold_ends(rig, 0, 100);
+  hold_ends(rig, 1, 20);
+  rig.joins.push_back(std::make_shared<SkinJoin>(*rig.bodies[0].body, *rig.bodies[1].body, std::array{0, 1}));
+  draw_across(rig, 1, Vec3(0, 10e-3, 0), 4);
+  const VecX &still = rig.bodies[0].state.x, &drawn = rig.bodies[1].state.x;
+  EXPECT_GT(still[3 * (still.size() / 6) + 1], drawn[3 * (drawn.size() / 6) + 1]);
+}
+
+bool same(const std::vector<SkinTouch>& a, const std::vector<SkinTouch>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SkinTouch& s, const SkinTouch& t) {
+    return s.skin == t.skin && s.point == t.point && s.other == t.other && s.part.corner == t.part.corner &&
+           s.part.times == t.part.times && s.gap == t.gap && s.area == t.area;
+  });
+}
+
+TEST(SkinJoin, MemoryLeavesNoTrace) {
+  for (const std::vector<BodyPointer>& bodies : near_bodies()) {
+    const Near near(bodies);
+    Rng rng(7);
+    VecX x = near.x;
+    int touched = 0;
+    const int before = near.join->searches();
+    constexpr int steps = 60;
+    for (int k = 0; k < steps; ++k) {
+      const Vec3 drift(0.05e-3, 0.02e-3, 0.02e-3 * std::sin(0.5 * k));
+      VecX step = test::random_coordinates(rng, static_cast<int>(x.size()), 1e-6);
+      for (Eigen::Index i = bodies[0]->rest().size(); i < x.size(); i += 3) step.segment<3>(i) += drift;
+      // A look elsewhere between.
+      if (k % 20 == 7) near.join->value(x + 200 * step);
+      const SkinJoin fresh(*bodies[0], *bodies[1], {0, 1});
+      fresh.begin(near.rig.places());
+      ASSERT_TRUE(same(near.join->touching(x), fresh.touching(x))) << k;
+      ASSERT_EQ(near.join->safe_share(x, 3 * step, 1.0), fresh.safe_share(x, 3 * step, 1.0));
+      std::vector<std::vector<int>> remembered, found;
+      near.join->add_cliques(x, true, remembered);
+      fresh.add_cliques(x, true, found);
+      ASSERT_EQ(remembered, found);
+      touched += fresh.touching(x).empty() ? 0 : 1;
+      x += step;
+    }
+    EXPECT_GT(touched, 10);
+    EXPECT_LT(near.join->searches() - before, steps / 2);
+  }
+}
+
+TEST(SkinJoin, DetailsTakePart) {
+  const BodyPointer plain = test::soft_ball(Vec3::Zero(), radius, 61, 1),
+                    duct = duct_along_x(radius + thin + apart);
+  const auto& shell = dynamic_cast<const ShellBody&>(*plain);
+  const Vec3 top(0, 0, radius);
+  const auto distance = [&](int node) { return (shell.node_rest()[node] - top).norm(); };
+  int nearest = shell.levels().nodes(0);
+  for (int node = nearest; node < shell.levels().nodes(1); ++node)
+    if (distance(node) < distance(nearest)) nearest = node;
+  const auto extended = std::make_shared<const ShellBody>(shell.with_details({nearest}).value());
+  const SkinJoin join(*plain, *duct, {0, 1});
+  GroupRig before({plain, duct}), after({extended, duct});
+  join.begin(before.places());
+  const double energy = join.value(before.x());
+  ASSERT_GT(energy, 0);
+  join.begin(after.places());
+  VecX x = after.x();
+  EXPECT_NEAR(join.value(x), energy, 1e-9 * energy);
+  x[extended->rest().size() - 1] = 0.1e-3;
+  EXPECT_GT(join.value(x), 1.01 * energy);
+  after.joins.push_back(std::make_shared<SkinJoin>(*plain, *duct, std::array{0, 1}));
+  after.joins[0]->begin(after.places());
+  test::expect_derivatives(after, *after.joins[0], x, 1e-9, 1e-4);
+}
+
+TEST(SkinJoin, AMatrixServesForManySteps) {
+  GroupRig rig = held_balls(0.1e-3);
+  rig.joins.push_back(std::make_shared<Joint>(
+      joint_links(*rig.bodies[0].body, *rig.bodies[1].body, {0, 1}, Vec3(radius, 0, 0), 3e-3, 1.0).value()));
+  int made = 0;
+  for (int step = 0; step < 20; ++step) {
+    const std::vector<std::vector<int>> before = rig.patterns.joined;
+    for (Vec3& target : rig.bodies[1].loads.grip.target) target += Vec3(0.1e-3, 0, -0.1e-3);
+    ASSERT_TRUE(rig.settle().converged()) << step;
+    made += rig.patterns.joined != before ? 1 : 0;
+  }
+  EXPECT_GE(made, 1);
+  EXPECT_LE(made, 8);
+  // Far apart again, their couplings go.
+  for (const double up : {30e-3, 0.1e-3}) {
+    for (Vec3& target : rig.bodies[1].loads.grip.target) target.z() += up;
+    ASSERT_TRUE(rig.settle().converged());
+  }
+  EXPECT_EQ(rig.patterns.joined.size(), 1U) << "the joint's";
+}
+
+}  // namespace
+}  // namespace skin_join_test
+}  // namespace calot
