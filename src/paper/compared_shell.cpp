@@ -32,7 +32,8 @@ class SpringJoin : public Join {
     springs_.links.add_gradient(points_, x, gradient);
   }
   void add_hessian(const VecX& /*x*/, BlockMatrix& matrix) const override { matrix.add(springs_.hessian); }
-  void add_cliques(std::vector<std::vector<int>>& /*cliques*/) const override {}
+  void add_cliques(const VecX& /*x*/, bool /*close*/,
+                   std::vector<std::vector<int>>& /*cliques*/) const override {}
 
  private:
   const StencilTable& points_;

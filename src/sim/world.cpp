@@ -11,6 +11,7 @@
 #include "sim/body_kinds.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
+#include "sim/join_bodies.h"
 #include "sim/settle_field.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
@@ -348,6 +349,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     if (!made) return at_organ(made.failure(), impl->field.organs.size());
     impl->field.add(std::move(made).value());
   }
+  if (Result<bool> joined = join_bodies(scene.anatomy, impl->field); !joined) return joined.failure();
   if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
     return rested.failure();
   World world(std::move(impl));

@@ -1,0 +1,12 @@
+#pragma once
+// What joins the bodies of a field: the anatomy's joints, and contact of each body with each other one.
+
+#include "sim/field.h"
+
+namespace calot {
+
+/// Makes the field's joins from its organs at rest. Fails (scenario) where a joint cannot be made and where two bodies
+/// that are not tied there are in each other at rest.
+Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field);
+
+}  // namespace calot
