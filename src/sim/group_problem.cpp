@@ -230,7 +230,16 @@ void GroupProblem::prepare(NewtonWorkspace& work) const {
   if (!changed && patterns_.joined.size() <= most_idle * joined.size() && holds(work.matrix, cliques(true)))
     return;
   patterns_.joined = std::move(joined);
-  work = NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined));
+  work = NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined), kept_nodes());
+}
+
+std::vector<char> GroupProblem::kept_nodes() const {
+  std::vector<char> kept;
+  for (const Member& member : members_) {
+    kept.insert(kept.end(), member.body.coarse_nodes(), 1);
+    kept.insert(kept.end(), member.body.nodes() - member.body.coarse_nodes(), 0);
+  }
+  return kept;
 }
 
 std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {

@@ -95,6 +95,8 @@ class GroupProblem : public ConstrainedEnergy {
   }
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
+  /// One a node: details are condensed onto their bodies' places.
+  std::vector<char> kept_nodes() const;
   void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
   /// Adds what joins the bodies; residuals are judged beside these forces, too.
   void add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const;
