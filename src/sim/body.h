@@ -97,8 +97,8 @@ class Body {
 
   /// Energy of the body and of what it lies bedded in, J; not finite where x is not admissible.
   virtual double value(const VecX& x) const = 0;
-  /// Adds the gradient, N; `largest_internal` receives the largest nodal force of the body itself, of which its
-  /// residual is judged.
+  /// Adds the gradient, N, to zero; `largest_internal` receives the largest nodal force of the body itself, or of its
+  /// weight where it may float or fall unstrained: the scale of its residual.
   virtual void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const = 0;
   /// Adds the Hessian but for its constant part, N/m.
   virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;

@@ -57,7 +57,7 @@ double RigidBody::value(const VecX& x) const { return affine_->value(x); }
 
 void RigidBody::add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   gradient += affine_->sample(x).gradient;
-  largest_internal = largest_node(gradient);
+  largest_internal = std::max(largest_node(gradient), largest_node(weight_));
 }
 
 void RigidBody::add_hessian(const VecX& x, BlockMatrix& matrix) const {

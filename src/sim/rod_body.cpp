@@ -152,7 +152,7 @@ double RodBody::value(const VecX& x) const {
 
 void RodBody::add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   rod_.add_gradient(x, setup_.pressure, gradient);
-  largest_internal = largest_node(gradient);
+  largest_internal = std::max(largest_node(gradient), largest_node(weight_));
   bed_.add_gradient(rod_.stencils(), x, gradient);
 }
 

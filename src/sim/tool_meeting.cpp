@@ -173,7 +173,8 @@ void ToolMeeting::add_hessian(const VecX& x, BlockMatrix& matrix) const {
       add(sides_[0].first_node + i, sides_[1].first_node + j, mixed.block<3, 3>(3 * i, 3 * j));
 }
 
-void ToolMeeting::add_cliques(std::vector<std::vector<int>>& cliques) const {
+void ToolMeeting::add_cliques(const VecX& /*x*/, bool /*close*/,
+                              std::vector<std::vector<int>>& cliques) const {
   std::vector<int> nodes;
   for (const Side& side : sides_)
     for (int k = 0; k < tool_nodes; ++k) nodes.push_back(side.first_node + k);

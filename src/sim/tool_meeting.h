@@ -36,7 +36,7 @@ class ToolMeeting : public Join {
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
-  void add_cliques(std::vector<std::vector<int>>& cliques) const override;
+  void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
   double safe_share(const VecX& x, const VecX& step, double share) const override;
 
   /// N, of the first tool on the other.
