@@ -28,6 +28,26 @@ Box box_of(const Body& body, const std::vector<int>& nodes, const VecX& x, doubl
   return {box.min() - Vec3::Constant(wider), box.max() + Vec3::Constant(wider)};
 }
 
+/// Of the skin's points where these lie beyond the nodes: as one piece, and what that leaves.
+Box motion_beyond(const Body& body, const VecX& dx) {
+  const Eigen::Map<const Eigen::Matrix3Xd> moves(dx.data(), 3, body.nodes());
+  const Vec3 mean = moves.rowwise().mean();
+  const Eigen::Matrix3Xd rest = moves.colwise() - mean;
+  const Vec3 further = Vec3::Constant(body.largest_motion(Eigen::Map<const VecX>(rest.data(), rest.size())));
+  return {mean - further, mean + further};
+}
+
+/// Nodes of patches, increasing.
+std::vector<int> nodes_of(const Body& body, const std::vector<int>& patches) {
+  std::vector<char> hangs(body.nodes(), 0);
+  for (int patch : patches)
+    for (int node : body.face_nodes()[patch]) hangs[node] = 1;
+  std::vector<int> out;
+  for (int node = 0; node < body.nodes(); ++node)
+    if (hangs[node]) out.push_back(node);
+  return out;
+}
+
 }  // namespace
 
 SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> joined) const {
@@ -77,20 +97,25 @@ double SkinJoin::approach(const VecX& dx, bool near) const {
   Box coarse;
   double sum = 0;
   for (const Side& side : sides_) {
-    std::vector<double> of_level(side.body->levels_used() + 1, 0.0);
+    const Body& body = *side.body;
+    if (body.beyond_nodes() > 0) {
+      coarse.extend(motion_beyond(body, side.part(dx)));
+      continue;
+    }
+    std::vector<double> of_level(body.levels_used() + 1, 0.0);
     const auto take = [&](int node) {
       const Vec3 move = dx.segment<3>(side.first + Eigen::Index{3} * node);
-      if (node < side.body->coarse_nodes()) {
+      if (node < body.coarse_nodes()) {
         coarse.extend(move);
       } else {
-        double& largest = of_level[side.body->level_of_detail(node - side.body->coarse_nodes())];
+        double& largest = of_level[body.level_of_detail(node - body.coarse_nodes())];
         largest = std::max(largest, move.norm());
       }
     };
     if (near)
       for (int node : side.nodes) take(node);
     else
-      for (int node = 0; node < side.body->nodes(); ++node) take(node);
+      for (int node = 0; node < body.nodes(); ++node) take(node);
     for (double largest : of_level) sum += largest;
   }
   return sum + (coarse.isEmpty() ? 0.0 : coarse.sizes().norm());
@@ -113,14 +138,11 @@ void SkinJoin::gather_patches(const VecX& x) const {
     const Side& side = sides_[k];
     const VecX part = side.part(x);
     for (const std::vector<int>& nodes : side.body->face_nodes()) {
-      boxes[k].push_back(box_of(*side.body, nodes, part, side.radius));
+      boxes[k].push_back(box_of(*side.body, nodes, part, side.radius + side.body->beyond_nodes()));
       whole[k].extend(boxes[k].back());
     }
   }
-  for (Side& side : sides_) {
-    side.patches.clear();
-    side.skin.reset();
-  }
+  near_ = false;
   const double between = whole[0].exteriorDistance(whole[1]);
   if (between >= patches_reach_) {
     patches_reach_ = between;
@@ -132,44 +154,50 @@ void SkinJoin::gather_patches(const VecX& x) const {
     for (std::size_t f = 0; f < boxes[k].size(); ++f)
       if (boxes[k][f].squaredExteriorDistance(whole[1 - k]) < reach_squared)
         candidates[k].push_back(static_cast<int>(f));
+  std::array<std::vector<int>, 2> patches;
   for (int k = 0; k < 2; ++k)
     for (int f : candidates[k])
       if (std::any_of(candidates[1 - k].begin(), candidates[1 - k].end(), [&](int g) {
             return boxes[k][f].squaredExteriorDistance(boxes[1 - k][g]) < reach_squared;
           }))
-        sides_[k].patches.push_back(f);
-  if (sides_[0].patches.empty() || sides_[1].patches.empty()) return;
-  for (Side& side : sides_) {
-    const Body& body = *side.body;
-    std::vector<char> used(side.areas.size(), 0), hangs(body.nodes(), 0);
-    std::vector<Triangle> faces;
-    std::vector<Segment> segments;
-    side.triangles.clear();
-    for (int patch : side.patches) {
-      for (int node : body.face_nodes()[patch]) hangs[node] = 1;
-      for (int t = patch * body.triangles_each(); t < (patch + 1) * body.triangles_each(); ++t) {
-        const Triangle& corners = body.skin().triangles[t];
-        for (int corner : corners) used[corner] = 1;
-        if (!side.counts[t]) continue;
-        if (corners[1] != corners[2]) {
-          faces.push_back(corners);
-        } else if (corners[0] < corners[1]) {  // of the two triangles that a segment is
-          segments.push_back({corners[0], corners[1]});
-        } else {
-          continue;
-        }
-        side.triangles.push_back(t);
-      }
-    }
-    side.rows.clear();
-    side.nodes.clear();
-    std::vector<double> areas(side.areas.size(), 0.0);
-    for (std::size_t p = 0; p < used.size(); ++p)
-      if (used[p]) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
-    for (int node = 0; node < body.nodes(); ++node)
-      if (hangs[node]) side.nodes.push_back(node);
-    side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
+        patches[k].push_back(f);
+  near_ = !patches[0].empty();  // then the other's are not either
+  if (!near_) return;
+  for (int k = 0; k < 2; ++k) {
+    Side& side = sides_[k];
+    side.nodes = nodes_of(*side.body, patches[k]);
+    if (side.patches == patches[k]) continue;
+    side.patches = std::move(patches[k]);
+    take_patches(side);
   }
+}
+
+/// The part of a skin that lies on its patches, as others meet it.
+void SkinJoin::take_patches(Side& side) {
+  const Body& body = *side.body;
+  std::vector<char> used(side.areas.size(), 0);
+  std::vector<Triangle> faces;
+  std::vector<Segment> segments;
+  side.triangles.clear();
+  for (int patch : side.patches) {
+    for (int t = patch * body.triangles_each(); t < (patch + 1) * body.triangles_each(); ++t) {
+      const Triangle& corners = body.skin().triangles[t];
+      for (int corner : corners) used[corner] = 1;
+      if (!side.counts[t]) continue;
+      if (corners[1] != corners[2])
+        faces.push_back(corners);
+      else if (corners[0] < corners[1])  // of the two triangles that a segment is
+        segments.push_back({corners[0], corners[1]});
+      else
+        continue;
+      side.triangles.push_back(t);
+    }
+  }
+  side.rows.clear();
+  std::vector<double> areas(side.areas.size(), 0.0);
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (used[p]) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
+  side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
 }
 
 void SkinJoin::look_up(const VecX& x, bool motions) const {
@@ -187,10 +215,10 @@ std::array<PlacedSkin, 2> SkinJoin::placed(bool motions) const {
 
 void SkinJoin::refresh_pairs(const VecX& x, double need) const {
   refresh_patches(x, need);
-  if (!anything_near()) return pairs_.clear();
+  if (!near_) return pairs_.clear();
   if (pairs_known_ && need + approach(x - pairs_x_, true) <= close_reach) return;
   refresh_patches(x, close_reach);
-  if (!anything_near()) return pairs_.clear();
+  if (!near_) return pairs_.clear();
   look_up(x, false);
   pairs_ = skin_pairs(placed(false), {close_reach, 1});
   pairs_x_ = x;
@@ -325,8 +353,7 @@ double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const
   // A pair that loses more than 1 - contact_keep of its gap had no more than this. What could meet on a longer way would
   // be everything: that is gone in parts.
   const double far = share * approach(step, false) / (1.0 - contact_keep);
-  if (patches_known_ && far + approach(x - patches_x_, false) <= patches_reach_ && !anything_near())
-    return share;
+  if (patches_known_ && far + approach(x - patches_x_, false) <= patches_reach_ && !near_) return share;
   const int parts = 1 + static_cast<int>(far / (0.5 * patch_reach));
   const double part = share / parts;
   for (int k = 0; k < parts; ++k) {
@@ -339,7 +366,7 @@ double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const
 double SkinJoin::safe_part(const VecX& x, const VecX& step) const {
   constexpr double lost = 1.0 - contact_keep;
   refresh_patches(x, approach(step, false) / lost);
-  if (!anything_near()) return 1.0;
+  if (!near_) return 1.0;
   const double far = approach(step, true) / lost;
   if (far <= close_reach) {
     refresh_pairs(x, far);

@@ -75,12 +75,13 @@ class SkinJoin : public Join {
   std::array<PlacedSkin, 2> placed(bool motions) const;
   double safe_part(const VecX& x, const VecX& step) const;
   bool active() const { return sides_[0].body != nullptr; }
-  bool anything_near() const { return sides_[0].skin.has_value(); }
+  static void take_patches(Side& side);
   std::array<StencilPoint, 4> points_of(const SkinTouch& touch) const;
 
   std::array<int, 2> bodies_;
   mutable std::array<Side, 2> sides_;
-  mutable bool patches_known_ = false, pairs_known_ = false, lacking_ = false;
+  mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
+  mutable bool pairs_known_ = false, lacking_ = false;
   mutable VecX patches_x_, pairs_x_;
   mutable double patches_reach_ = 0;
   mutable std::vector<SkinPair> pairs_;

@@ -7,6 +7,7 @@
 #include "geometry/self_touch.h"
 #include "group_rig.h"
 #include "sim/joint.h"
+#include "sim/rigid_body.h"
 #include "sim/self_contact.h"
 
 namespace calot {
@@ -57,11 +58,17 @@ BodyPointer duct_along_y(double z) {
   return test::straight_duct(Vec3(1e-3, -15e-3, z), Vec3(-2e-3, 20e-3, z), thin);
 }
 
-/// Ball on ball, duct on ball, duct across duct.
+BodyPointer stone(double z) {
+  return std::make_shared<const RigidBody>(
+      RigidBody::create({"stone", rounded_box(Vec3::Zero(), 6e-3, Vec3(0, 0, z), 1.5e-3), 1000}).value());
+}
+
+/// Ball on ball, duct on ball, duct across duct, a stone on a duct.
 std::vector<std::vector<BodyPointer>> near_bodies() {
   return {{ball(0), ball(2 * radius + apart)},
           {ball(0), duct_along_x(radius + thin + apart)},
-          {duct_along_y(0), duct_along_x(2 * thin + apart)}};
+          {duct_along_y(0), duct_along_x(2 * thin + apart)},
+          {duct_along_x(0), stone(thin + 6e-3 + apart)}};
 }
 
 TEST(SkinJoin, SlopesAreRightAndForcesBalanceInEitherOrder) {
