@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "fem/links.h"
 #include "sim/self_contact.h"
@@ -66,6 +67,7 @@ SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> 
     side.counts.push_back(std::none_of(t.begin(), t.end(), left_out));
   side.at.assign(rest.size(), Vec3::Zero());
   side.way.assign(rest.size(), Vec3::Zero());
+  side.looked.assign(rest.size(), 0);
   return side;
 }
 
@@ -207,6 +209,20 @@ void SkinJoin::look_up(const VecX& x, bool motions) const {
   }
 }
 
+void SkinJoin::look_up(const VecX& x, bool motions, std::span<const SkinPair> pairs) const {
+  ++looks_;
+  const std::array<VecX, 2> parts{sides_[0].part(x), sides_[1].part(x)};
+  const auto look = [&](int skin, int point) {
+    Side& side = sides_[skin];
+    if (std::exchange(side.looked[point], looks_) != looks_)
+      (motions ? side.way : side.at)[point] = side.body->skin_point(point, parts[skin]);
+  };
+  for (const SkinPair& pair : pairs) {
+    look(pair.skin, pair.point);
+    for (int corner : sides_[pair.other].skin->corners(pair.simplex)) look(pair.other, corner);
+  }
+}
+
 std::array<PlacedSkin, 2> SkinJoin::placed(bool motions) const {
   std::array<PlacedSkin, 2> out;
   for (int k = 0; k < 2; ++k) out[k] = {&*sides_[k].skin, &sides_[k].at, motions ? &sides_[k].way : nullptr};
@@ -221,9 +237,30 @@ void SkinJoin::refresh_pairs(const VecX& x, double need) const {
   if (!near_) return pairs_.clear();
   look_up(x, false);
   pairs_ = skin_pairs(placed(false), {close_reach, 1});
+  gaps_.clear();
+  for (const SkinPair& pair : pairs_) gaps_.push_back(gap_of(pair));
   pairs_x_ = x;
   pairs_known_ = true;
   ++searches_;
+}
+
+const std::vector<SkinPair>& SkinJoin::pairs_below(const VecX& x, double need) const {
+  refresh_pairs(x, need);
+  chosen_.clear();
+  if (pairs_.empty()) return chosen_;
+  const double below = need + approach(x - pairs_x_, true);
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    if (gaps_[k] < below) chosen_.push_back(pairs_[k]);
+  look_up(x, false, chosen_);
+  return chosen_;
+}
+
+double SkinJoin::gap_of(const SkinPair& pair) const {
+  const Side &one = sides_[pair.skin], &other = sides_[pair.other];
+  std::array<Vec3, 3> corners;
+  const std::span<const int> ids = other.skin->corners(pair.simplex);
+  for (std::size_t k = 0; k < ids.size(); ++k) corners[k] = other.at[ids[k]];
+  return nearest_point(one.at[pair.point], {corners.data(), ids.size()}).distance - one.radius - other.radius;
 }
 
 const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
@@ -236,24 +273,17 @@ const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
   }
   newest_ = 1 - newest_;
   Touching& found = found_[newest_];
-  refresh_pairs(x, self_barrier.range);
+  const std::vector<SkinPair>& pairs = pairs_below(x, self_barrier.range);
   found.x = x;
   found.touches.clear();
-  if (!pairs_.empty()) {
-    look_up(x, false);
-    found.touches = skin_touches(placed(false), pairs_, self_barrier.range);
-  }
+  if (!pairs.empty()) found.touches = skin_touches(placed(false), pairs, self_barrier.range);
   return found.touches;
 }
 
 double SkinJoin::gap(const VecX& x) const {
   double least = close_reach;
   if (!active()) return least;
-  refresh_pairs(x, close_reach);
-  if (pairs_.empty()) return least;
-  look_up(x, false);
-  for (const SkinTouch& touch : skin_touches(placed(false), pairs_, close_reach))
-    least = std::min(least, touch.gap);
+  for (const SkinPair& pair : pairs_below(x, close_reach)) least = std::min(least, gap_of(pair));
   return least;
 }
 
@@ -320,19 +350,10 @@ void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
 void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const {
   if (!active()) return;
   const double below = close ? couple_below : uncouple_above;
-  refresh_pairs(x, below);
-  if (pairs_.empty()) return;
-  look_up(x, false);
   std::set<std::array<int, 2>> patches;  // of the first body and of the other
-  for (const SkinPair& pair : pairs_) {
+  for (const SkinPair& pair : pairs_below(x, below)) {
+    if (gap_of(pair) >= below) continue;
     const Side &one = sides_[pair.skin], &other = sides_[pair.other];
-    std::array<Vec3, 3> corners;
-    const std::span<const int> ids = other.skin->corners(pair.simplex);
-    for (std::size_t k = 0; k < ids.size(); ++k) corners[k] = other.at[ids[k]];
-    if (nearest_point(one.at[pair.point], {corners.data(), ids.size()}).distance - one.radius -
-            other.radius >=
-        below)
-      continue;
     std::array<int, 2> both{one.body->skin().at[pair.point].face,
                             other.triangles[pair.simplex] / other.body->triangles_each()};
     if (pair.skin == 1) std::swap(both[0], both[1]);
@@ -369,11 +390,10 @@ double SkinJoin::safe_part(const VecX& x, const VecX& step) const {
   if (!near_) return 1.0;
   const double far = approach(step, true) / lost;
   if (far <= close_reach) {
-    refresh_pairs(x, far);
-    if (pairs_.empty()) return 1.0;
-    look_up(x, false);
-    look_up(step, true);
-    return calot::safe_share(placed(true), pairs_, contact_keep);
+    const std::vector<SkinPair>& pairs = pairs_below(x, far);
+    if (pairs.empty()) return 1.0;
+    look_up(step, true, pairs);
+    return calot::safe_share(placed(true), pairs, contact_keep);
   }
   look_up(x, false);
   look_up(step, true);

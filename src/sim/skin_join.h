@@ -58,7 +58,8 @@ class SkinJoin : public Join {
     std::vector<int> patches, rows, nodes;
     std::optional<ContactSkin> skin;
     std::vector<int> triangles;  ///< of the body's skin, one a simplex
-    std::vector<Vec3> at, way;   ///< of rows; room
+    std::vector<Vec3> at, way;   ///< m, of the points that were looked up last; room
+    std::vector<int> looked;     ///< when each was, by looks_
 
     VecX part(const VecX& x) const { return x.segment(first, body->rest().size()); }
   };
@@ -71,8 +72,14 @@ class SkinJoin : public Join {
   void refresh_patches(const VecX& x, double need) const;
   /// And pairs_ all pairs, at most close_reach.
   void refresh_pairs(const VecX& x, double need) const;
+  /// Pairs that may have gaps below `need` at x, at most close_reach; their points are looked up. Valid until the next
+  /// call.
+  const std::vector<SkinPair>& pairs_below(const VecX& x, double need) const;
+  /// Places, or motions, of all points near the other body, or of those of some pairs.
   void look_up(const VecX& x, bool motions) const;
+  void look_up(const VecX& x, bool motions, std::span<const SkinPair> pairs) const;
   std::array<PlacedSkin, 2> placed(bool motions) const;
+  double gap_of(const SkinPair& pair) const;  ///< where its points were looked up last
   double safe_part(const VecX& x, const VecX& step) const;
   bool active() const { return sides_[0].body != nullptr; }
   static void take_patches(Side& side);
@@ -84,7 +91,9 @@ class SkinJoin : public Join {
   mutable bool pairs_known_ = false, lacking_ = false;
   mutable VecX patches_x_, pairs_x_;
   mutable double patches_reach_ = 0;
-  mutable std::vector<SkinPair> pairs_;
+  mutable std::vector<SkinPair> pairs_, chosen_;
+  mutable std::vector<double> gaps_;  ///< m, of pairs_ at pairs_x_
+  mutable int looks_ = 0;
   mutable int searches_ = 0;
   struct Touching {
     VecX x;
