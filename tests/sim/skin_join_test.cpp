@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field_rig.h"
 #include "geometry/self_touch.h"
 #include "group_rig.h"
 #include "sim/joint.h"
@@ -18,19 +19,27 @@ using test::GroupRig;
 
 constexpr double radius = 20e-3, thin = 2.5e-3;  // m, of balls and ducts
 
-/// Pairs of drawn triangles of two bodies that cross each other.
+/// Pairs of drawn triangles of two bodies that touch each other; only where both may be.
 std::size_t crossings(const GroupRig& rig) {
-  TriMesh both;
-  std::size_t own = 0;
-  for (const GroupRig::One& one : rig.bodies) {
-    TriMesh mesh{one.body->drawn(one.state.x).positions, one.body->drawn_triangles()};
-    own += touching_pairs(mesh, 0.0).size();
-    const int first = static_cast<int>(both.points.size());
-    both.points.insert(both.points.end(), mesh.points.begin(), mesh.points.end());
-    for (const Triangle& t : mesh.triangles)
-      both.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  std::vector<std::vector<Vec3>> drawn;
+  std::vector<Eigen::AlignedBox3d> boxes(2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    drawn.push_back(rig.bodies[k].body->drawn(rig.bodies[k].state.x).positions);
+    for (const Vec3& p : drawn[k]) boxes[k].extend(p);
   }
-  return touching_pairs(both, 0.0).size() - own;
+  const Eigen::AlignedBox3d shared = boxes[0].intersection(boxes[1]);
+  if (shared.isEmpty()) return 0;
+  TriMesh both;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int first = static_cast<int>(both.points.size());
+    both.points.insert(both.points.end(), drawn[k].begin(), drawn[k].end());
+    for (const Triangle& t : rig.bodies[k].body->drawn_triangles()) {
+      Eigen::AlignedBox3d box;
+      for (int corner : t) box.extend(drawn[k][corner]);
+      if (box.intersects(shared)) both.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  return touching_pairs(both, 0.0).size();
 }
 
 /// Two bodies with a gap of 0.2 mm, shaken.
@@ -133,8 +142,8 @@ GroupRig held_balls(double apart_by) {
 TEST(SkinJoin, BallsPressedTogetherMeetAndDoNotOverlap) {
   GroupRig rig = held_balls(0.3e-3);
   const auto& join = dynamic_cast<const SkinJoin&>(*rig.joins[0]);
-  for (int step = 0; step < 8; ++step) {
-    for (Vec3& target : rig.bodies[1].loads.grip.target) target.z() -= 1.5e-3;
+  for (int step = 0; step < 5; ++step) {
+    for (Vec3& target : rig.bodies[1].loads.grip.target) target.z() -= 2.4e-3;
     ASSERT_TRUE(rig.settle().converged()) << step;
     EXPECT_EQ(crossings(rig), 0U) << step;
   }
@@ -298,6 +307,34 @@ TEST(SkinJoin, AMatrixServesForManySteps) {
     ASSERT_TRUE(rig.settle().converged());
   }
   EXPECT_EQ(rig.patterns.joined.size(), 1U) << "the joint's";
+}
+
+TEST(SkinJoin, AnOrganPushedByAToolPushesAnother) {
+  const Vec3 up = -Vec3::UnitZ();  // they hang
+  Field field = test::make_field(test::held_ball(), 1e-6, up);
+  OrganDefinition beside = test::ball(Vec3(40.5e-3, 0, 0));
+  beside.held = {{"base", "neck", 10e-3, 1e6}};
+  field.add(make_organ(beside, {}, up, field.tolerance).value());
+  const auto join =
+      std::make_shared<SkinJoin>(*field.organs[0].body, *field.organs[1].body, std::array{0, 1});
+  field.group.joins.push_back(join);
+  const auto x = [&] {
+    VecX out(field.organs[0].state.x.size() + field.organs[1].state.x.size());
+    out << field.organs[0].state.x, field.organs[1].state.x;
+    return out;
+  };
+  test::add_grasper(field, Vec3(-150e-3, 0, 24e-3));
+  ASSERT_EQ(test::move_tip(field, Vec3(-30e-3, 0, 22e-3), 0, 1), "");
+  for (const double to : {-20e-3, -10e-3}) {  // each a step at half a metre a second
+    ASSERT_EQ(test::move_tip(field, Vec3(to, 0, 22e-3), 0, 1), "");
+    EXPECT_GT(join->gap(x()), 0);
+  }
+  EXPECT_GT(join->force(x()).x(), 0.02);
+  int far = 0;
+  const Organ& pushed = field.organs[1];
+  for (std::size_t i = 0; i < pushed.body->skin_rest().size(); ++i)
+    if (pushed.body->skin_rest()[i].x() > pushed.body->skin_rest()[far].x()) far = static_cast<int>(i);
+  EXPECT_GT(pushed.body->skin_point(far, pushed.state.x).x(), 60.6e-3);
 }
 
 }  // namespace
