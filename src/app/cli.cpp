@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "base/suggest.h"
+#include "base/workers.h"
 #include "session/build_info.h"
 #include "session/json_fields.h"
 
@@ -30,7 +31,16 @@ struct Program {
   std::function<ExitCode()> chosen;
 };
 
+void add_threads(CLI::App& command, int& threads) {
+  command
+      .add_option("--threads", threads, "threads that share the work of a step; results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, most_threads))
+      ->capture_default_str();
+}
+
 void add_session_options(CLI::App& command, SessionCommand& options) {
+  add_threads(command, options.threads);
   command.add_flag("--json", options.json, "print the report as JSON, and nothing else, to stdout");
   command.add_flag("--no-render", options.no_render, "draw no frames");
   command.add_option("--size", options.size, "size of the frames, px")
@@ -128,6 +138,7 @@ void add_golden(Program& program) {
     command.add_option("names", program.golden.names, "scenarios, or single frames as scenario/frame");
     command.add_option("--folder", program.golden.folder, "folder of the goldens (default: golden/)")
         ->type_name("DIR");
+    add_threads(command, program.golden.threads);
     command.callback(
         [&program, action] { program.chosen = [&program, action] { return action(program.golden); }; });
     return command;

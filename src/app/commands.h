@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "app/exit_code.h"
+#include "base/workers.h"
 
 namespace calot {
 
 /// Shared by run and replay.
 struct SessionCommand {
+  int threads = usual_threads();
   std::string output;  ///< folder
   bool json = false, no_render = false;
   std::string size = "960x540";      ///< "WxH", px
@@ -56,6 +58,7 @@ struct GoldenCommand {
   std::string folder;              ///< of the goldens; empty: the project's golden/
   std::string output;              ///< report: the HTML file; test: the folder for what differs
   bool json = false;
+  int threads = usual_threads();
 };
 /// Where a golden command's pictures are stored.
 std::filesystem::path golden_folder(const GoldenCommand& command);

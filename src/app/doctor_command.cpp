@@ -27,6 +27,13 @@ Finding processor() {
 /// What else decides the bits of a state: where this differs, so do hashes.
 Finding mathematics() { return {true, "mathematics", this_make().mathematics, ""}; }
 
+Finding threads() {
+  return {true, "threads",
+          fmt::format("{} unless told by --threads, of {} cores", usual_threads(),
+                      std::thread::hardware_concurrency()),
+          ""};
+}
+
 Finding folder(const std::string& name, const std::string& use) {
   std::error_code ignored;
   const fs::path path = project_part(name);
@@ -80,8 +87,8 @@ Finding scenarios() {
 ExitCode doctor_command() {
   bool ok = true;
   for (const Finding& finding :
-       {processor(), mathematics(), folder("scripts/lua", "Lua modules"), folder("assets", "assets"),
-        folder("golden", "goldens"), scenarios(), renderer(), output()}) {
+       {processor(), mathematics(), threads(), folder("scripts/lua", "Lua modules"),
+        folder("assets", "assets"), folder("golden", "goldens"), scenarios(), renderer(), output()}) {
     print(fmt::format("{}  {}: {}", finding.ok ? green("ok    ") : red("FAILED"), finding.what,
                       finding.detail));
     if (finding.ok) continue;

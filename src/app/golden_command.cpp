@@ -49,7 +49,8 @@ Compared compare_selected(const GoldenCommand& command, const GoldenSink& sink) 
   };
   for (const SelectedGolden& scenario : selected.value()) {
     const ComparedScenario done =
-        stop ? ComparedScenario{{}, true} : compare_scenario(scenario, golden_folder(command), counted);
+        stop ? ComparedScenario{{}, true}
+             : compare_scenario(scenario, golden_folder(command), command.threads, counted);
     if (done.interrupted)
       compared.unplayed.push_back(scenario.name);
     else if (done.failure)

@@ -77,7 +77,7 @@ void use_stored_size(const fs::path& folder, PlayRequest& request) {
   }
 }
 
-ComparedScenario compare_scenario(const SelectedGolden& selected, const fs::path& goldens,
+ComparedScenario compare_scenario(const SelectedGolden& selected, const fs::path& goldens, int threads,
                                   const GoldenSink& sink) {
   ComparedScenario compared;
   const fs::path folder = goldens / selected.name;
@@ -94,6 +94,7 @@ ComparedScenario compare_scenario(const SelectedGolden& selected, const fs::path
 
   PlayRequest request;
   request.scenario = selected.file;
+  request.threads = threads;
   request.end_frame = false;
   use_stored_size(folder, request);
   request.on_picture = [&](const Frame& frame) -> std::optional<Failure> {

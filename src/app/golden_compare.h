@@ -27,7 +27,7 @@ struct ComparedScenario {
 
 /// Plays the scenario and compares the frames that it declares, those stored, and of them those selected.
 ComparedScenario compare_scenario(const SelectedGolden& selected, const std::filesystem::path& goldens,
-                                  const GoldenSink& sink);
+                                  int threads, const GoldenSink& sink);
 
 /// Goldens below a folder whose scenario does not exist, as failed comparisons.
 std::vector<GoldenResult> goldens_without_scenario(const std::filesystem::path& goldens);

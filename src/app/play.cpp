@@ -251,7 +251,7 @@ Result<Played> play(const PlayRequest& request) {
     renderer = std::move(created).value();
     capture.emplace(*renderer, exercise, request, played.output);
   }
-  Result<World> world = World::create(exercise.scene, &interrupt_flag());
+  Result<World> world = World::create(exercise.scene, &interrupt_flag(), request.threads);
   if (!world) return script.value()->located(world.failure());
   Result<Outputs> outputs = open_outputs(request, exercise, world.value());
   if (!outputs) return outputs.failure();

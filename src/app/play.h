@@ -29,6 +29,7 @@ struct PlayRequest {
   std::filesystem::path scenario;
   std::map<std::string, std::string> params;
   std::uint64_t seed = 1;
+  int threads = 1;  ///< that share the work of a step: no bit depends on it
   bool render = true, end_frame = true;
   int width = 960, height = 540;  ///< px
   std::vector<double> at;         ///< s, of pictures besides the golden ones

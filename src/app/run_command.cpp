@@ -98,6 +98,7 @@ ExitCode conclude(const Played& played, const SessionCommand& command, const Con
 ExitCode run_command(const RunCommand& command) {
   PlayRequest request;
   request.scenario = command.scenario;
+  request.threads = command.threads;
   request.render = !command.no_render;
   request.at = command.at;
   if (command.seed) request.seed = *command.seed;
@@ -131,6 +132,7 @@ ExitCode replay_command(const ReplayCommand& command) {
   if (!wrong && !scenario) wrong = scenario.failure();
   if (wrong) return print_failure(*wrong, "calot replay --help", command.json);
   request.scenario = scenario.value();
+  request.threads = command.threads;
   request.params = recording->header.params;
   request.seed = recording->header.seed;
   request.replay = &recording.value();

@@ -37,6 +37,8 @@ class Patience {
 
 }  // namespace
 
+int usual_threads() { return std::thread::hardware_concurrency() > 1 ? 2 : 1; }
+
 Workers::Workers(int threads) {
   for (int k = 1; k < threads; ++k) {
     try {

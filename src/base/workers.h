@@ -65,6 +65,11 @@ class Workers {
   std::vector<std::thread> threads_;
 };
 
+/// What a run takes unless told: two, of which the second one is worth some tenths of a step, where there are cores for
+/// them; more have not been measured.
+int usual_threads();
+inline constexpr int most_threads = 64;
+
 /// With workers or without: then on the caller's thread.
 template <class Work>
 void for_each_chunk(Workers* workers, int chunks, const Work& work) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "fem/assembly.h"
 #include "fem/lanes.h"
 
 namespace calot {
@@ -29,18 +30,18 @@ Result<Bile> Bile::create(const BileSurface& surface, double specific_weight, co
     if (points.size() > most_points)
       return fail(FailureKind::internal, fmt::format("cell {} of the bile has {} points", c, points.size()));
     cell.points = static_cast<int>(points.size());
-    for (int p : points) cell.nodes.add_row(table, p);
-    if (cell.nodes.count() > max_face_nodes)
+    FaceNodes nodes;
+    for (int p : points) nodes.add_row(table, p);
+    if (nodes.count() > max_face_nodes)
       return fail(FailureKind::scenario,
-                  fmt::format("cell {} of the bile depends on {} nodes", c, cell.nodes.nodes.size()),
+                  fmt::format("cell {} of the bile depends on {} nodes", c, nodes.nodes.size()),
                   "remesh: a vertex has too many neighbours");
     cell.weights = static_cast<int>(bile.weights_.size());
-    bile.weights_.resize(bile.weights_.size() + static_cast<std::size_t>(cell.points) * cell.nodes.padded,
-                         0.0);
+    bile.weights_.resize(bile.weights_.size() + static_cast<std::size_t>(cell.points) * nodes.padded, 0.0);
     for (std::size_t k = 0; k < points.size(); ++k)
-      dense_weights(table, table.value, points[k], cell.nodes,
-                    &bile.weights_[cell.weights + k * cell.nodes.padded]);
-    bile.cells_.push_back(std::move(cell));
+      dense_weights(table, table.value, points[k], nodes, &bile.weights_[cell.weights + k * nodes.padded]);
+    bile.cells_.push_back(cell);
+    bile.cell_nodes_.push_back(std::move(nodes));
   }
   return bile;
 }
@@ -250,36 +251,39 @@ void Bile::assemble(std::size_t cell, const std::vector<Vec3>& at, double datum_
   }
 }
 
-void Bile::add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight,
-                       BlockMatrix& matrix) const {
-  const std::vector<Vec3> at = positions(x);
-  ElementMatrix element;
+void Bile::cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure,
+                        const LiquidWeight& weight, ElementMatrix& element) const {
   CellHessian h;
   double products[most_points * max_face_nodes];
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const int points = cells_[c].points, n = cells_[c].nodes.padded;
-    const double* weights = weights_.data() + cells_[c].weights;
-    assemble(c, at, datum_pressure, weight, h);
-    int others[most_points][most_points], count[most_points] = {};  // that each point is coupled with
-    for (int i = 0; i < points; ++i)
-      for (int j = 0; j < points; ++j)
-        if (h.coupled[i * points + j]) others[i][count[i]++] = j;
-    element.reset(n);
-    for (int pair = 0; pair < 6; ++pair) {
-      for (int i = 0; i < points; ++i) {
-        for (int a = 0; a < n; a += lane_count) {
-          Lanes sum = {};
-          for (int k = 0; k < count[i]; ++k) {
-            const int j = others[i][k];
-            sum = fused(all_lanes(h.at[pair][i * points + j]), load_lanes(weights + j * n + a), sum);
-          }
-          store_lanes(sum, products + i * n + a);
+  const int points = cells_[cell].points, n = cell_nodes_[cell].padded;
+  const double* weights = weights_.data() + cells_[cell].weights;
+  assemble(cell, at, datum_pressure, weight, h);
+  int others[most_points][most_points], count[most_points] = {};  // that each point is coupled with
+  for (int i = 0; i < points; ++i)
+    for (int j = 0; j < points; ++j)
+      if (h.coupled[i * points + j]) others[i][count[i]++] = j;
+  element.reset(n);
+  for (int pair = 0; pair < 6; ++pair) {
+    for (int i = 0; i < points; ++i) {
+      for (int a = 0; a < n; a += lane_count) {
+        Lanes sum = {};
+        for (int k = 0; k < count[i]; ++k) {
+          const int j = others[i][k];
+          sum = fused(all_lanes(h.at[pair][i * points + j]), load_lanes(weights + j * n + a), sum);
         }
+        store_lanes(sum, products + i * n + a);
       }
-      element.add(pair, points, weights, products);
     }
-    element.scatter(cells_[c].nodes, matrix);
+    element.add(pair, points, weights, products);
   }
+}
+
+void Bile::add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight, BlockMatrix& matrix,
+                       Assembly* assembly) const {
+  const std::vector<Vec3> at = positions(x);
+  add_elements(cell_nodes_, matrix, assembly, [&](std::size_t cell, ElementMatrix& element) noexcept {
+    cell_hessian(cell, at, datum_pressure, weight, element);
+  });
 }
 
 double Bile::pressure_at(const Vec3& position, double datum_pressure) const {
@@ -298,7 +302,7 @@ double Bile::pressure_at_top(const VecX& x, double datum_pressure) const {
 
 std::vector<std::vector<int>> Bile::cliques() const {
   std::vector<std::vector<int>> out;
-  for (const Cell& cell : cells_) out.push_back(cell.nodes.nodes);
+  for (const FaceNodes& cell : cell_nodes_) out.push_back(cell.nodes);
   return out;
 }
 

@@ -8,6 +8,8 @@
 
 namespace calot {
 
+class Assembly;
+
 /// Closed triangulations of one surface, summed with weights. Inscribed triangulations lose volume with the square
 /// of their edges, so 4/3 of one with four triangles a face less 1/3 of the one with the faces' corners is a
 /// fourth-order rule (Richardson's extrapolation), and as a sum of closed surfaces still exactly balanced: 0.05%
@@ -70,11 +72,13 @@ class Bile {
   double add_load_and_volume_gradient(const VecX& x, double datum_pressure, const LiquidWeight& weight,
                                       VecX& load, VecX& by_volume) const;
   /// Adds the exact Hessian of weight - datum_pressure * volume (N/m).
-  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const {
-    add_hessian(x, datum_pressure, weight_, matrix);
+  /// By several threads where there is an `assembly`, to the same bits.
+  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix,
+                   Assembly* assembly = nullptr) const {
+    add_hessian(x, datum_pressure, weight_, matrix, assembly);
   }
-  void add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight,
-                   BlockMatrix& matrix) const;
+  void add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight, BlockMatrix& matrix,
+                   Assembly* assembly = nullptr) const;
 
   LiquidMoments moments(const VecX& x) const;
   /// The first moment's gradients, m^3: a column each for its x, y and z, 3 rows a node.
@@ -101,6 +105,9 @@ class Bile {
   std::vector<std::vector<int>> cliques() const;
 
  private:
+  /// `at`: the surface's points.
+  void cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double datum_pressure,
+                    const LiquidWeight& weight, ElementMatrix& element) const;
   std::vector<Vec3> positions(const VecX& x) const;
   struct Triangles;
   struct TriangleDerivatives;
@@ -121,12 +128,12 @@ class Bile {
   LiquidWeight weight_;
   Vec3 datum_ = Vec3::Zero();
   struct Cell {
-    FaceNodes nodes;
     int points = 0;      ///< rows of weights
     int first_part = 0;  ///< in parts_, up to that of the next cell
     int weights = 0;     ///< offset in weights_ of the rows of padded weights
   };
   std::vector<Cell> cells_;
+  std::vector<FaceNodes> cell_nodes_;  ///< of each
   std::vector<Part> parts_;
   std::vector<double> weights_;
 };

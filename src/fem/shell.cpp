@@ -297,15 +297,8 @@ void Shell::face_hessian(std::size_t face, const VecX& x, ElementMatrix& element
 }
 
 void Shell::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const {
-  if (assembly != nullptr)
-    return assembly->add(faces_, matrix, [&](std::size_t face, ElementMatrix& element) noexcept {
-      face_hessian(face, x, element);
-    });
-  ElementMatrix element;
-  for (std::size_t face = 0; face < faces_.size(); ++face) {
-    face_hessian(face, x, element);
-    element.scatter(faces_[face], matrix);
-  }
+  add_elements(faces_, matrix, assembly,
+               [&](std::size_t face, ElementMatrix& element) noexcept { face_hessian(face, x, element); });
 }
 
 std::vector<double> Shell::point_areas() const {

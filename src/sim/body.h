@@ -15,6 +15,8 @@
 
 namespace calot {
 
+class Assembly;
+
 /// How freely a detail moves (detail_fading.h).
 struct DetailShare {
   double share = 1;      ///< 0: held at rest, 1: free
@@ -55,11 +57,12 @@ class Liquid {
   virtual double weight_value(const VecX& x) const = 0;
   /// Adds the gradient of weight - datum_pressure * volume, N.
   virtual void add_load(const VecX& x, double datum_pressure, VecX& gradient) const = 0;
-  /// Adds its Hessian, N/m.
-  virtual void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const = 0;
+  /// Adds its Hessian, N/m; `assembly` as below.
+  virtual void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix,
+                           Assembly* assembly) const = 0;
   /// The same with a weight (N/m^3, the way it pulls) beside its own.
-  virtual void add_hessian(const VecX& x, double datum_pressure, const Vec3& weight,
-                           BlockMatrix& matrix) const = 0;
+  virtual void add_hessian(const VecX& x, double datum_pressure, const Vec3& weight, BlockMatrix& matrix,
+                           Assembly* assembly) const = 0;
   /// Of `kept` m^3 that it keeps, for a part of h seconds that begins so; the liquid must outlive it.
   virtual LiquidMass mass(const FlowModes& flow, double kept, const LiquidMotion& begin, double h) const = 0;
   /// Its centroid, m, from a point of its own.
@@ -100,8 +103,9 @@ class Body {
   /// Adds the gradient, N, to zero; `largest_internal` receives the largest nodal force of the body itself, or of its
   /// weight where it may float or fall unstrained: the scale of its residual.
   virtual void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const = 0;
-  /// Adds the Hessian but for its constant part, N/m.
-  virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
+  /// Adds the Hessian but for its constant part, N/m. `assembly`: by several threads, to the same bits, where it pays;
+  /// null: by this one.
+  virtual void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const = 0;
   /// A constant load, N, 3 a node, on top of that; empty: none.
   virtual const VecX& kept_load() const;
   /// Of the solid: kg, by the nodes, with the pattern of pattern(). Null: it is weightless.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "fem/assembly.h"
+
 namespace calot {
 BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
                          const BodyState& start, bool fixed_pressure)
@@ -17,9 +19,10 @@ BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, std::vecto
 }
 
 BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, ContactSearch& search,
-                         const BodyState& start, bool fixed_pressure)
+                         const BodyState& start, bool fixed_pressure, Assembly* assembly)
     : BodyProblem(body, loads, std::vector<ContactPair>(), start, fixed_pressure) {
   search_ = &search;
+  assembly_ = assembly;
   pairs_.reset();
 }
 
@@ -60,8 +63,18 @@ void BodyProblem::for_held_details(const Use& use) const {
     use(first + 3 * static_cast<Eigen::Index>(i), loads_.detail_holds[i]);
 }
 
+template <class Wall>
+void BodyProblem::beside_touches(const VecX& x, const Wall& wall) const {
+  for_each_chunk(assembly_ ? &assembly_->workers() : nullptr, 3, [&](int task) noexcept {
+    if (task == 0) wall();
+    if (task == 1) touching(x);
+    if (task == 2 && search_) search_->own.touching(body_, x);
+  });
+}
+
 double BodyProblem::value(const VecX& x) const {
-  double sum = loads_.inertia ? loads_.inertia->value(x) : body_.value(x);
+  double sum = 0;
+  beside_touches(x, [&]() noexcept { sum = loads_.inertia ? loads_.inertia->value(x) : body_.value(x); });
   if (!std::isfinite(sum)) return sum;
   sum += loads_.grip.value(body_.skin().stencils, x);
   sum += loads_.friction.value(body_.skin(), x);
@@ -81,10 +94,12 @@ double BodyProblem::value(const VecX& x) const {
 
 double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
   double largest_internal = 0;
-  if (loads_.inertia)
-    largest_internal = loads_.inertia->add_gradient(x, gradient);
-  else
-    body_.add_gradient(x, gradient, largest_internal);
+  beside_touches(x, [&]() noexcept {
+    if (loads_.inertia)
+      largest_internal = loads_.inertia->add_gradient(x, gradient);
+    else
+      body_.add_gradient(x, gradient, largest_internal);
+  });
   loads_.grip.add_gradient(body_.skin().stencils, x, gradient);
   loads_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
@@ -121,18 +136,18 @@ void BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& 
 
 void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const {
   if (loads_.inertia) {
-    loads_.inertia->hessian(x, matrix);
+    loads_.inertia->hessian(x, matrix, assembly_);
   } else {
     matrix.assign(body_.pattern());
-    body_.add_hessian(x, matrix);
+    body_.add_hessian(x, matrix, assembly_);
   }
   loads_.grip.add_hessian(body_.skin().stencils, matrix);
   loads_.friction.add_hessian(body_.skin(), x, matrix);
   if (const LiquidMass* mass = liquid_mass())
     body_.liquid()->add_hessian(x, multipliers[0], mass->weight(multipliers.tail(LiquidMass::constraints)),
-                                matrix);
+                                matrix, assembly_);
   else if (const Liquid* liquid = body_.liquid())
-    liquid->add_hessian(x, fixed_pressure_ ? multiplier_ : multipliers[0], matrix);
+    liquid->add_hessian(x, fixed_pressure_ ? multiplier_ : multipliers[0], matrix, assembly_);
   ContactStiffness pressed(body_.skin(), matrix);
   for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(body_, loads_, touch));
   pressed.finish();

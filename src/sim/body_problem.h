@@ -22,9 +22,9 @@ class BodyProblem : public ConstrainedEnergy {
   BodyProblem(const Body& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
               const BodyState& start, bool fixed_pressure = false);
   /// With it. `search` finds the pairs, where they are asked for, and remembers what touches; it must outlive the
-  /// problem.
+  /// problem. `assembly`: several threads do the work, to the same bits.
   BodyProblem(const Body& body, const ContactLoads& loads, ContactSearch& search, const BodyState& start,
-              bool fixed_pressure = false);
+              bool fixed_pressure = false, Assembly* assembly = nullptr);
 
   const Body& body() const { return body_; }
   /// Where a solve begins.
@@ -56,6 +56,10 @@ class BodyProblem : public ConstrainedEnergy {
   double moved(const VecX& x) const;
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;
+  /// Does `wall`, which must be noexcept, and finds what touches at x, for which no memory is shared: what touches is known
+  /// then.
+  template <class Wall>
+  void beside_touches(const VecX& x, const Wall& wall) const;
   /// Gradient but for the liquid's part; its largest internal force.
   double add_dry_gradient(const VecX& x, VecX& gradient) const;
   /// Of a kept volume with its gradient, and of the inertia.
@@ -72,6 +76,7 @@ class BodyProblem : public ConstrainedEnergy {
   double volume_, multiplier_;
   bool fixed_pressure_;
   ContactSearch* search_;
+  Assembly* assembly_ = nullptr;
   mutable TouchMemory touches_;  ///< where no search remembers
 };
 

@@ -57,7 +57,7 @@ double sinking_stiffness(const Member& member, double first) {
   constexpr double time = 0.02;  // s
   if (const BlockMatrix* mass = member.body.mass()) return mass->diagonal_mean() / (time * time) / first;
   BlockMatrix matrix = member.body.pattern();
-  member.body.add_hessian(member.state.x, matrix);
+  member.body.add_hessian(member.state.x, matrix, member.assembly);
   return matrix.diagonal_mean();
 }
 

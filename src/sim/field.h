@@ -57,6 +57,7 @@ struct Field {
   double step_time = 0;  ///< s that a step takes where masses count; 0: statics
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
+  Assembly* assembly = nullptr;  ///< the world's threads; null: one does all
 
   /// The first one's last factor serves on.
   void add(RestedOrgan made);

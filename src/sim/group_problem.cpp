@@ -2,14 +2,25 @@
 
 #include <cmath>
 
+#include "fem/assembly.h"
+
 namespace calot {
+namespace {
+
+/// Bodies of fewer nodes are too little to share.
+constexpr int large_body = 32;
+
+}  // namespace
 
 GroupProblem::GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins,
                            GroupPatterns& patterns, bool fixed_pressures)
     : members_(members), joins_(joins), patterns_(patterns) {
   problems_.reserve(members.size());
   for (const Member& member : members) {
-    problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures);
+    const bool large = member.body.nodes() >= large_body;
+    (large ? large_ : small_).push_back(problems_.size());
+    problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures,
+                           large ? members[0].assembly : nullptr);
     const Eigen::Index size = member.state.x.size(), constraints = problems_.back().constraints();
     ranges_.push_back({size_, size, constraints_, constraints});
     size_ += size;
@@ -64,10 +75,19 @@ std::vector<Part> GroupProblem::parts() const {
   return out;
 }
 
+template <class Work>
+void GroupProblem::for_each_member(const Work& work) const {
+  for (std::size_t k : large_) work(k);
+  Assembly* assembly = members_[0].assembly;
+  for_each_chunk(assembly ? &assembly->workers() : nullptr, static_cast<int>(small_.size()),
+                 [&](int i) noexcept { work(small_[static_cast<std::size_t>(i)]); });
+}
+
 double GroupProblem::value(const VecX& x) const {
+  std::vector<double> values(problems_.size());
+  for_each_member([&](std::size_t k) noexcept { values[k] = problems_[k].value(part_of(k, x)); });
   double sum = 0;
-  for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k)
-    sum += problems_[k].value(part_of(k, x));
+  for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k) sum += values[k];
   for (std::size_t j = 0; j < joins_.size() && std::isfinite(sum); ++j) sum += joins_[j]->value(x);
   return sum;
 }
@@ -93,12 +113,12 @@ void GroupProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_interna
   }
   gradient.resize(size_);
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
-  VecX own, internal;
-  for (std::size_t k = 0; k < problems_.size(); ++k) {
+  for_each_member([&](std::size_t k) noexcept {
+    VecX own, internal;
     problems_[k].gradient(part_of(k, x), own, internal);
     gradient.segment(ranges_[k].first, ranges_[k].size) = own;
     largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
-  }
+  });
   add_joins(x, gradient, largest_internal);
 }
 
@@ -107,7 +127,7 @@ void GroupProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& 
     problems_[0].hessian(x, multipliers, matrix);
   } else {
     matrix.set_zero();
-    for (std::size_t k = 0; k < problems_.size(); ++k) add_own_hessian(k, x, multipliers, matrix);
+    for_each_member([&](std::size_t k) noexcept { add_own_hessian(k, x, multipliers, matrix); });
   }
   for (const JoinPointer& join : joins_) join->add_hessian(x, matrix);
 }
@@ -154,9 +174,9 @@ void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX&
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
   values.resize(constraints_);
   of_constraints.setZero(size_, constraints_);
-  VecX own, internal, own_values;
-  Eigen::MatrixXd own_constraints;
-  for (std::size_t k = 0; k < problems_.size(); ++k) {
+  for_each_member([&](std::size_t k) noexcept {
+    VecX own, internal, own_values;
+    Eigen::MatrixXd own_constraints;
     const Range& range = ranges_[k];
     if (range.constraints == 0) {
       problems_[k].gradient(part_of(k, x), own, internal);
@@ -167,7 +187,7 @@ void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX&
     }
     of_energy.segment(range.first, range.size) = own;
     largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
-  }
+  });
   add_joins(x, of_energy, largest_internal);
 }
 
@@ -251,9 +271,11 @@ std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
 }
 
 double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
+  std::vector<double> shares(problems_.size());
+  for_each_member(
+      [&](std::size_t k) noexcept { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
   double share = 1;
-  for (std::size_t k = 0; k < problems_.size(); ++k)
-    share = std::min(share, problems_[k].safe_share(part_of(k, x), part_of(k, step)));
+  for (double own : shares) share = std::min(share, own);
   for (const JoinPointer& join : joins_) share = join->safe_share(x, step, share);
   return share;
 }

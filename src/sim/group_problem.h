@@ -16,6 +16,8 @@ struct Member {
   const ContactLoads& loads;
   ContactSearch& search;
   BodyState& state;
+  Assembly* assembly =
+      nullptr;  ///< several threads do the work, to the same bits; of a group the first one's
 };
 
 /// Where a body stands in a group.
@@ -93,6 +95,10 @@ class GroupProblem : public ConstrainedEnergy {
   VecX part_of(std::size_t member, const VecX& x) const {
     return x.segment(ranges_[member].first, ranges_[member].size);
   }
+  /// Calls work(member), which must be noexcept and write nothing that another's does, for each: large bodies one after
+  /// the other, each shared by all threads, then small ones whole.
+  template <class Work>
+  void for_each_member(const Work& work) const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
   /// One a node: details are condensed onto their bodies' places.
@@ -106,7 +112,8 @@ class GroupProblem : public ConstrainedEnergy {
   GroupPatterns& patterns_;
   std::vector<BodyProblem> problems_;
   std::vector<Range> ranges_;
-  Eigen::Index size_ = 0;  ///< coordinates
+  std::vector<std::size_t> large_, small_;  ///< members
+  Eigen::Index size_ = 0;                   ///< coordinates
   int constraints_ = 0;
 };
 

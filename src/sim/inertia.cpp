@@ -73,9 +73,9 @@ double Inertia::add_gradient(const VecX& x, VecX& gradient) const {
   return std::max(largest, largest_node(force));
 }
 
-void Inertia::hessian(const VecX& x, BlockMatrix& matrix) const {
+void Inertia::hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const {
   matrix.assign(constant_);
-  body_.add_hessian(retarded_.lead(x), matrix);
+  body_.add_hessian(retarded_.lead(x), matrix, assembly);
   matrix.scale(retarded_.hessian_factor());
 }
 

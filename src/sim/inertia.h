@@ -33,7 +33,7 @@ class Inertia {
   /// Adds the gradient, N; returns the largest nodal force of the body or of the wall's inertia.
   double add_gradient(const VecX& x, VecX& gradient) const;
   /// The Hessian but for the liquid's, N/m; the matrix' values are overwritten.
-  void hessian(const VecX& x, BlockMatrix& matrix) const;
+  void hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const;
   /// Null: the body is not filled.
   const LiquidMass* liquid() const { return liquid_ ? &*liquid_ : nullptr; }
   /// Of its compliant constraints.

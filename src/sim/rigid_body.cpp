@@ -60,7 +60,7 @@ void RigidBody::add_gradient(const VecX& x, VecX& gradient, double& largest_inte
   largest_internal = std::max(largest_node(gradient), largest_node(weight_));
 }
 
-void RigidBody::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+void RigidBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* /*assembly*/) const {
   const AffineBody::Hessian h = affine_->sample(x).hessian;
   for (int j = 0; j < AffineBody::nodes; ++j)
     for (int i = j; i < AffineBody::nodes; ++i) matrix.add(i, j, h.block<3, 3>(3 * i, 3 * j));

@@ -26,7 +26,7 @@ class RigidBody : public Body {
 
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
-  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const override;
   const VecX& kept_load() const override { return weight_; }
   double strain_energy(const VecX& x) const override { return value(x); }
   double max_stretch(const VecX& x) const override { return 1 + affine_->distortion(x); }

@@ -156,7 +156,7 @@ void RodBody::add_gradient(const VecX& x, VecX& gradient, double& largest_intern
   bed_.add_gradient(rod_.stencils(), x, gradient);
 }
 
-void RodBody::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+void RodBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* /*assembly*/) const {
   rod_.add_hessian(x, setup_.pressure, matrix);
 }
 

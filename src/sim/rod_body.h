@@ -44,7 +44,7 @@ class RodBody : public Body {
 
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
-  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const override;
   const VecX& kept_load() const override { return weight_; }
   const BlockMatrix* mass() const override { return mass_ ? &*mass_ : nullptr; }
   double strain_energy(const VecX& x) const override { return rod_.value(x, setup_.pressure); }

@@ -40,7 +40,7 @@ std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& lo
   std::vector<Member> out;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     Organ& organ = field.organs[k];
-    out.push_back({*organ.body, loads[k], organ.search, organ.state});
+    out.push_back({*organ.body, loads[k], organ.search, organ.state, field.assembly});
   }
   return out;
 }

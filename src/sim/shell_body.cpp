@@ -183,8 +183,8 @@ void ShellBody::add_gradient(const VecX& x, VecX& gradient, double& largest_inte
   foundation().add_gradient(refined_->bed_points, x, gradient);
 }
 
-void ShellBody::add_hessian(const VecX& x, BlockMatrix& matrix) const {
-  refined_->shell.add_hessian(x, matrix);
+void ShellBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const {
+  refined_->shell.add_hessian(x, matrix, assembly);
 }
 
 VecX ShellBody::own_forces(const VecX& x, double datum_pressure) const {

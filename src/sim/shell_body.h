@@ -35,12 +35,14 @@ struct ShellBile : Liquid {
   void add_load(const VecX& x, double datum_pressure, VecX& gradient) const override {
     bile.add_load(x, datum_pressure, gradient);
   }
-  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix) const override {
-    bile.add_hessian(x, datum_pressure, matrix);
+  void add_hessian(const VecX& x, double datum_pressure, BlockMatrix& matrix,
+                   Assembly* assembly) const override {
+    bile.add_hessian(x, datum_pressure, matrix, assembly);
   }
-  void add_hessian(const VecX& x, double datum_pressure, const Vec3& weight,
-                   BlockMatrix& matrix) const override {
-    bile.add_hessian(x, datum_pressure, LiquidWeight::pulling(bile.weight().vector() + weight), matrix);
+  void add_hessian(const VecX& x, double datum_pressure, const Vec3& weight, BlockMatrix& matrix,
+                   Assembly* assembly) const override {
+    bile.add_hessian(x, datum_pressure, LiquidWeight::pulling(bile.weight().vector() + weight), matrix,
+                     assembly);
   }
   LiquidMass mass(const FlowModes& flow, double kept, const LiquidMotion& begin, double h) const override {
     return LiquidMass(bile, flow, bile.specific_weight() / units::standard_gravity, kept + kept_volume, begin,
@@ -119,7 +121,7 @@ class ShellBody : public Body {
 
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
-  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const override;
   const BlockMatrix* mass() const override { return refined_->mass ? &*refined_->mass : nullptr; }
   const Liquid* liquid() const override { return refined_->bile ? &*refined_->bile : nullptr; }
   double strain_energy(const VecX& x) const override { return refined_->shell.value(x); }

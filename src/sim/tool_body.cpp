@@ -26,7 +26,7 @@ void ToolBody::add_gradient(const VecX& x, VecX& gradient, double& largest_inter
   largest_internal = std::max(least_force, largest_node(pull));
 }
 
-void ToolBody::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+void ToolBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* /*assembly*/) const {
   const ToolMatrix hessian = hand_.sample(x).hessian;
   matrix.add(0, 0, hessian.topLeftCorner<3, 3>());
   matrix.add(1, 0, hessian.bottomLeftCorner<3, 3>());

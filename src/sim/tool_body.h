@@ -27,7 +27,7 @@ class ToolBody : public Body {
   const BlockMatrix& pattern() const override { return pattern_; }
   double value(const VecX& x) const override { return hand_.sample(x).energy; }
   void add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const override;
-  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const override;
   double strain_energy(const VecX& x) const override { return value(x); }
   double max_stretch(const VecX&) const override { return 1; }
 

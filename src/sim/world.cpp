@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/hash.h"
+#include "fem/assembly.h"
 #include "sim/advance.h"
 #include "sim/body_kinds.h"
 #include "sim/field_state.h"
@@ -47,6 +48,11 @@ std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::s
 }  // namespace
 
 struct World::Impl {
+  explicit Impl(int threads) : workers(threads), assembly(workers) {
+    if (workers.threads() > 1) field.assembly = &assembly;
+  }
+  Workers workers;
+  Assembly assembly;
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
   Field field;
@@ -328,10 +334,10 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop) {
+Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads) {
   std::vector<Problem> problems = validate(scene);
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
-  auto impl = std::make_unique<Impl>();
+  auto impl = std::make_unique<Impl>(threads);
   impl->scene = scene;
   if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
   impl->up = up_direction(scene.anatomy);

@@ -22,8 +22,10 @@ class World {
  public:
   /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
   /// (validation), simulation (the rest state could not be found), resource (it would take too long) or interrupted
-  /// (`stop` became true).
-  static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr);
+  /// (`stop` became true). Of `threads`, at most as many share the work of a step for the world's life: its bits are the
+  /// same whatever their number.
+  static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr,
+                              int threads = 1);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();
