@@ -23,6 +23,7 @@ BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, ContactSea
     : BodyProblem(body, loads, std::vector<ContactPair>(), start, fixed_pressure) {
   search_ = &search;
   assembly_ = assembly;
+  search.own.workers = assembly ? &assembly->workers() : nullptr;
   pairs_.reset();
 }
 

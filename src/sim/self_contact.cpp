@@ -91,7 +91,7 @@ void SelfContact::refresh_groups(const Body& body, const VecX& x, double need) {
   groups_x_ = x;
   groups_details_ = body.details();
   const std::vector<Vec3> points = body.skin_positions(x);
-  groups_ = near_groups(net(body), points, group_reach);
+  groups_ = near_groups(net(body), points, group_reach, workers);
   std::vector<char> used(points.size(), 0), on_face(body.face_nodes().size(), 0), hangs(body.nodes(), 0);
   for (const auto& [a, b] : groups_)
     for (int group : {a, b})
@@ -137,7 +137,7 @@ double SelfContact::refresh(const Body& body, const VecX& x, double need) {
   near_.clear();
   nearest_ = close_reach;
   look_up(body, x, at_);
-  near_ = near_pairs(*net_, {at_, nullptr, close_reach, 1}, groups_);
+  near_ = near_pairs(*net_, {at_, nullptr, close_reach, 1}, groups_, workers);
   for (const SelfPair& pair : near_) nearest_ = std::min(nearest_, pair.distance);
   return 0;
 }
@@ -256,7 +256,7 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   }
   look_up(body, x, at_);
   look_up(body, step, way_);
-  for (const SelfPair& pair : near_pairs(*net_, {at_, &way_, 0, lost}, groups_))
+  for (const SelfPair& pair : near_pairs(*net_, {at_, &way_, 0, lost}, groups_, workers))
     share = cut_by(*net_, pair, at_, way_, keep, share);
   return share;
 }

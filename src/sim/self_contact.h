@@ -37,6 +37,8 @@ class SelfContact {
  public:
   /// Without contact where false: to show what it does.
   bool active = true;
+  /// Threads that search, while there are some; null: the caller's alone.
+  Workers* workers = nullptr;
 
   /// All that touches at x, ordered by skin point, then part; found once for a state. Valid until the next call.
   const std::vector<SelfTouch>& touching(const Body& body, const VecX& x);

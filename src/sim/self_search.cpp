@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/workers.h"
 #include "collision/simplex_distance.h"
 #include "geometry/turn.h"
 
 namespace calot {
 namespace {
+
+constexpr int chunks_of_skin = 8;
 
 /// What a triangle's corners differ by, m^2: their places at most and their motions.
 struct Differences {
@@ -81,40 +84,91 @@ class Reaches {
 /// The nodes' boxes as the skin is now.
 class Boxes {
  public:
-  Boxes(const SkinNet& net, const SkinMotion& skin)
+  Boxes(const SkinNet& net, const SkinMotion& skin, Workers* workers)
       : net_(net),
         skin_(skin),
         reach_(net.rest.size(), 0.0),
         now_(net.nodes.size()),
         shift_(net.nodes.size()),
         near_(net.nodes.size(), 0.0) {
-    for (const Triangle& t : net.triangles) {
-      const double reach = Differences(t, skin).reach(skin);
-      for (int p : t) reach_[p] = std::max(reach_[p], reach);
-    }
+    find_reaches(workers);
     const auto columns = [](const std::vector<Vec3>& points) {
       return Eigen::Map<const Eigen::Matrix3Xd>(points[0].data(), 3,
                                                 static_cast<Eigen::Index>(points.size()));
     };
     const Mat3 turn = best_turn(columns(net.rest), columns(skin.points));
     scale_ = spread_of(columns(skin.points)) / spread_of(columns(net.rest));
-    for (int n = static_cast<int>(net.nodes.size()) - 1; n >= 0; --n) {
-      const SkinNet::Node& node = net.nodes[n];
-      if (node.left >= 0) {
-        now_[n] = now_[node.left].merged(now_[node.right]);
-        shift_[n] = shift_[node.left].merged(shift_[node.right]);
-        near_[n] = std::max(near_[node.left], near_[node.right]);
-        continue;
+    find_boxes(turn, workers);
+  }
+
+  /// All groups that are near each other.
+  std::vector<GroupPair> near(Workers* workers) const {
+    // Pairs of nodes high up, in the order in which they would be visited one by one; each is visited by itself.
+    std::vector<GroupPair> high = {{0, 0}};
+    for (int round = 0; round < 8; ++round) {
+      std::vector<GroupPair> next;
+      for (const auto& [a, b] : high)
+        descend(
+            a, b, [&](int p, int q) { next.emplace_back(p, q); }, next);
+      high = std::move(next);
+    }
+    const int size = static_cast<int>(high.size()), chunks = std::min(size, 16);
+    std::vector<std::vector<GroupPair>> found(static_cast<std::size_t>(chunks));
+    for_each_chunk(workers, chunks, [&](int k) noexcept {
+      const Chunk chunk = chunk_of(size, chunks, k);
+      for (int i = chunk.begin; i < chunk.end; ++i) visit(high[i].first, high[i].second, found[k]);
+    });
+    std::vector<GroupPair> out;
+    for (const std::vector<GroupPair>& of_chunk : found)
+      out.insert(out.end(), of_chunk.begin(), of_chunk.end());
+    return out;
+  }
+
+ private:
+  void find_reaches(Workers* workers) {
+    const int size = static_cast<int>(net_.triangles.size());
+    std::vector<double> of_triangle(net_.triangles.size());
+    for_each_chunk(workers, chunks_of_skin, [&](int k) noexcept {
+      const Chunk chunk = chunk_of(size, chunks_of_skin, k);
+      for (int t = chunk.begin; t < chunk.end; ++t)
+        of_triangle[t] = Differences(net_.triangles[t], skin_).reach(skin_);
+    });
+    for (int t = 0; t < size; ++t)
+      for (int p : net_.triangles[t]) reach_[p] = std::max(reach_[p], of_triangle[t]);
+  }
+
+  void find_boxes(const Mat3& turn, Workers* workers) {
+    const int size = static_cast<int>(net_.nodes.size());
+    for_each_chunk(workers, chunks_of_skin, [&](int chunk_index) noexcept {
+      const Chunk chunk = chunk_of(size, chunks_of_skin, chunk_index);
+      for (int n = chunk.begin; n < chunk.end; ++n) {
+        const SkinNet::Node& node = net_.nodes[n];
+        if (node.left >= 0) continue;
+        for (int k = node.first; k < node.last; ++k) {
+          const int p = net_.order[k];
+          now_[n].extend(skin_.points[p]);
+          shift_[n].extend(skin_.points[p] - scale_ * (turn * net_.rest[p]));
+          near_[n] = std::max(near_[n], reach_[p]);
+        }
       }
-      for (int k = node.first; k < node.last; ++k) {
-        now_[n].extend(skin.points[net.order[k]]);
-        shift_[n].extend(skin.points[net.order[k]] - scale_ * (turn * net.rest[net.order[k]]));
-        near_[n] = std::max(near_[n], reach_[net.order[k]]);
-      }
+    });
+    for (int n = size - 1; n >= 0; --n) {
+      const SkinNet::Node& node = net_.nodes[n];
+      if (node.left < 0) continue;
+      now_[n] = now_[node.left].merged(now_[node.right]);
+      shift_[n] = shift_[node.left].merged(shift_[node.right]);
+      near_[n] = std::max(near_[node.left], near_[node.right]);
     }
   }
 
   void visit(int a, int b, std::vector<GroupPair>& out) const {
+    descend(
+        a, b, [&](int p, int q) { visit(p, q, out); }, out);
+  }
+
+  /// Adds the pair to `out` where it is near and has no children, else calls below(p, q) for the pairs of their children.
+  template <class Below>
+  void descend(int a, int b, const Below& below, std::vector<GroupPair>& out) const {
     const SkinNet::Node &p = net_.nodes[a], &q = net_.nodes[b];
     if (p.rest.merged(q.rest).sizes().squaredNorm() < net_.apart * net_.apart) return;
     const double near = std::max(near_[a], near_[b]);
@@ -124,19 +178,18 @@ class Boxes {
     if (p.left < 0 && q.left < 0) {
       if (any_near(p, q)) out.emplace_back(a, b);
     } else if (a == b) {
-      visit(p.left, p.left, out);
-      visit(p.left, p.right, out);
-      visit(p.right, p.right, out);
+      below(p.left, p.left);
+      below(p.left, p.right);
+      below(p.right, p.right);
     } else if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first)) {
-      visit(p.left, b, out);
-      visit(p.right, b, out);
+      below(p.left, b);
+      below(p.right, b);
     } else {
-      visit(a, q.left, out);
-      visit(a, q.right, out);
+      below(a, q.left);
+      below(a, q.right);
     }
   }
 
- private:
   bool any_near(const SkinNet::Node& a, const SkinNet::Node& b) const {
     for (int i = a.first; i < a.last; ++i) {
       for (int j = b.first; j < b.last; ++j) {
@@ -205,16 +258,17 @@ bool SkinNet::neighbours(int row, int triangle) const {
                      [&](int p) { return (rest[row] - rest[p]).squaredNorm() < apart * apart; });
 }
 
-std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach) {
-  std::vector<GroupPair> out;
+std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach,
+                                   Workers* workers) {
   const SkinMotion still{points, nullptr, reach, 1};
-  Boxes(net, still).visit(0, 0, out);
-  return out;
+  return Boxes(net, still, workers).near(workers);
 }
 
-std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
-                                 std::span<const GroupPair> groups) {
-  std::vector<std::pair<int, int>> found;
+namespace {
+
+/// Points of some of the groups, and triangles around the points that are near them.
+void meet(const SkinNet& net, const SkinMotion& skin, std::span<const GroupPair> groups,
+          std::vector<std::pair<int, int>>& found) {
   Reaches reaches(net, skin);
   const auto meet = [&](int row, int corner, double distance) {
     if (distance >= reaches.of_point(corner)) return;
@@ -232,9 +286,11 @@ std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
       }
     }
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::vector<SelfPair> pairs;
+}
+
+/// Those that are looked for.
+void measure(const SkinNet& net, const SkinMotion& skin, std::span<const std::pair<int, int>> found,
+             std::vector<SelfPair>& pairs) {
   for (const auto& [row, triangle] : found) {
     if (net.neighbours(row, triangle)) continue;
     if (skin.motion) {
@@ -246,7 +302,36 @@ std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
     const double distance = nearest_point(skin.points[row], corners).distance;
     if (distance < skin.reach) pairs.push_back({row, triangle, distance});
   }
-  return pairs;
+}
+
+/// What find(some of the items, its results) adds to the results for all items, in their order.
+template <class Found, class Item, class Find>
+std::vector<Found> in_chunks(std::span<const Item> items, Workers* workers, const Find& find) {
+  constexpr int few = 64;  // not worth another chunk
+  const int size = static_cast<int>(items.size()), chunks = std::clamp(size / few, 1, 8);
+  std::vector<std::vector<Found>> of_chunk(static_cast<std::size_t>(chunks));
+  for_each_chunk(workers, chunks, [&](int k) noexcept {
+    const Chunk chunk = chunk_of(size, chunks, k);
+    find(items.subspan(chunk.begin, chunk.end - chunk.begin), of_chunk[k]);
+  });
+  std::vector<Found> out = std::move(of_chunk[0]);
+  for (int k = 1; k < chunks; ++k) out.insert(out.end(), of_chunk[k].begin(), of_chunk[k].end());
+  return out;
+}
+
+}  // namespace
+
+std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
+                                 std::span<const GroupPair> groups, Workers* workers) {
+  using Met = std::pair<int, int>;
+  std::vector<Met> found = in_chunks<Met>(
+      groups, workers,
+      [&](std::span<const GroupPair> some, std::vector<Met>& out) { meet(net, skin, some, out); });
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return in_chunks<SelfPair>(
+      std::span<const Met>(found), workers,
+      [&](std::span<const Met> some, std::vector<SelfPair>& out) { measure(net, skin, some, out); });
 }
 
 }  // namespace calot

@@ -8,6 +8,8 @@
 
 namespace calot {
 
+class Workers;
+
 /// What does not change of a skin that may meet itself.
 struct SkinNet {
   std::vector<Vec3> rest;           ///< m, of each skin point
@@ -53,10 +55,12 @@ struct SelfPair {
 using GroupPair = std::pair<int, int>;  ///< two of SkinNet::nodes without children, or one twice
 
 /// Groups with points that are nearer than `reach` (m) to a triangle around a point of the other, but for neighbours.
-std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach);
+/// Of these two: several threads find the same as one.
+std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach,
+                                   Workers* workers = nullptr);
 /// All pairs looked for among these groups, and some more; ordered by skin point, then triangle. Only points of the groups and
 /// of the triangles around them are read.
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
-                                 std::span<const GroupPair> groups);
+                                 std::span<const GroupPair> groups, Workers* workers = nullptr);
 
 }  // namespace calot

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "fem/assembly.h"
 #include "support/bodies.h"
 #include "support/derivatives.h"
 
@@ -160,6 +161,20 @@ TEST(Bile, HessianIsTheDerivativeOfTheLoadAndSymmetric) {
         const Mat3 block = kept.block<3, 3>(i, i);
         EXPECT_LT((block - block.transpose()).norm(), 1e-13 * kept.norm());
       }
+    }
+  }
+}
+
+TEST(Bile, HessianHasTheSameBitsWhateverTheThreads) {
+  for (int threads : {1, 2, 3}) {
+    Workers workers(threads);
+    Assembly assembly(workers);
+    for (Body& body : bodies()) {
+      body.matrix.set_zero();
+      body.bile.add_hessian(body.rest, 800, body.matrix);
+      BlockMatrix shared = body.matrix.pattern_only().blank();
+      body.bile.add_hessian(body.rest, 800, shared, &assembly);
+      EXPECT_EQ(shared.entries(), body.matrix.entries()) << threads;
     }
   }
 }

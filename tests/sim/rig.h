@@ -125,8 +125,8 @@ struct FundusPath {
   Driver driver;
   Vec3 fundus, out;
 
-  explicit FundusPath(const SceneDefinition& scene)
-      : world(World::create(scene).value()),
+  explicit FundusPath(const SceneDefinition& scene, int threads = 1)
+      : world(World::create(scene, nullptr, threads).value()),
         driver(world),
         fundus(world.landmark(scene.anatomy.organs[0].name + ".fundus")),
         out((driver.trocar() - fundus).normalized()) {}
