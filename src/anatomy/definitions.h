@@ -81,7 +81,7 @@ struct WallDefinition {
   double stiffening = 0;
   std::optional<FibreDefinition> fibres;  ///< none: isotropic
   double overstretch = 2.2;               ///< principal stretch above which `overstretch` is raised (d)
-  double density = 0;         ///< kg/m^3; soft tissue 1050 (c); 0: neither weight nor inertia, as in the paper
+  double density = 0;  ///< kg/m^3; soft tissue 1050 (c); 0: neither weight nor inertia, as in the paper
   double retardation = 5e-3;  ///< s; its stress is that at x + this dx/dt, where it moves (d, uncalibrated)
 };
 
@@ -228,7 +228,7 @@ inline constexpr std::size_t most_finest_nodes = 64'000;
 inline constexpr int most_extension_levels = 4;  ///< a 61-node ball's nodes then stand 0.6 mm apart
 
 struct SolverDefinition {
-  double rate = 50;         ///< steps a second
+  double rate = 50;  ///< steps a second
   SolverMotion motion = SolverMotion::statics;
   double tolerance = 1e-6;  ///< dimensionless, see sim/equilibrium.h
   int extension_levels =

@@ -109,8 +109,9 @@ std::vector<KeyTable> field_tables() {
       keys_of<Solver>(
           "solver", "How the simulation steps.",
           {number("rate", &Solver::rate, quantity::rate, 1, 2000, "a step rate", "steps a second"),
-           choice("motion", &Solver::motion, {"static", "dynamic"},
-                  "each step is a rest under its loads, or a time in which walls and bile move by their masses"),
+           choice(
+               "motion", &Solver::motion, {"static", "dynamic"},
+               "each step is a rest under its loads, or a time in which walls and bile move by their masses"),
            number("tolerance", &Solver::tolerance, quantity::number, 1e-12, 1e-2, "a solver tolerance",
                   "dimensionless residual of equilibrium"),
            flag("skip_still", &Solver::skip_still,

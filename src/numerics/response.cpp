@@ -26,7 +26,8 @@ NewtonResult factorise_tangent(const BodyEnergy& body, NewtonWorkspace& work, co
 
 VecX linear_response(const NewtonWorkspace& work, const VecX& load, VecX& dmultipliers, const VecX& values) {
   VecX dx = work.factor.solve(load);
-  dmultipliers = work.border.keep(values.size() > 0 ? values : VecX(VecX::Zero(work.border.constraints())), dx);
+  dmultipliers =
+      work.border.keep(values.size() > 0 ? values : VecX(VecX::Zero(work.border.constraints())), dx);
   return dx;
 }
 

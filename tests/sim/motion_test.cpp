@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+
+#include "motion_rig.h"
+#include "sim/field_state.h"
+#include "sim/settle_field.h"
+#include "sim/vibration.h"
+#include "support/bodies.h"
+#include "support/long_run.h"
+
+namespace calot {
+namespace {
+
+using units::standard_gravity;
+
+TEST(Motion, AFilledBallFallsWithGravityAndKeepsItsShape) {
+  const double h = 0.02;
+  Field field = test::free_ball(0, h);
+  const VecX rest = field.organs[0].state.x;
+  double speed = 0, fallen = 0;
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_EQ(test::wait(field), "");
+    speed += h * standard_gravity;
+    fallen += h * speed;
+    const VecX expected = rest - test::velocities(rest, [&](const Vec3&) { return Vec3(0, 0, fallen); });
+    // The tolerance is that of the solver, beside the ball's size.
+    EXPECT_LT((field.organs[0].state.x - expected).lpNorm<Eigen::Infinity>(), 1e-6 * 40e-3) << k;
+  }
+  EXPECT_GT(fallen, 50e-3);
+}
+
+TEST(Motion, AFreeBallsMomentumGrowsByItsWeightAlone) {
+  const double h = 0.01;
+  Field field = test::free_ball(0, h);
+  Organ& organ = field.organs[0];
+  // It flies, turns and is drawn out.
+  test::set_moving(organ,
+                   test::velocities(organ.state.x,
+                                    [](const Vec3& x) {
+                                      return Vec3(0.05 + 2 * x.y() + 3 * x.x(), 0.02 - 2 * x.x() - 3 * x.y(),
+                                                  0.1);
+                                    }),
+                   h);
+  const double mass = test::mass_of(organ);
+  EXPECT_NEAR(mass, 1020 * organ.state.volume + 1050 * 2e-3 * 4 * std::numbers::pi * 20e-3 * 20e-3,
+              0.01 * mass);
+  Vec3 expected = test::momentum(organ);
+  const double scale = expected.norm();
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_EQ(test::wait(field), "");
+    expected.z() -= h * mass * standard_gravity;
+    EXPECT_LT((test::momentum(organ) - expected).norm(), 1e-5 * scale) << k;
+  }
+}
+
+/// Period, s, of what `height` (m) tells of a field that swings about 0 in steps of `h`: between its upward passages
+/// after the first.
+double period(Field& field, double h, const std::function<double()>& height) {
+  std::vector<double> passages;
+  double before = height();
+  for (int k = 1; passages.size() < 3 && k < 2000; ++k) {
+    if (const std::string why = test::wait(field); !why.empty()) {
+      ADD_FAILURE() << why;
+      return 0;
+    }
+    const double now = height();
+    if (before < 0 && now >= 0) passages.push_back(h * (k - now / (now - before)));
+    before = now;
+  }
+  return passages.size() < 3 ? 0 : passages[2] - passages[1];
+}
+
+/// A stiff rod that hangs from a point.
+struct Pendulum {
+  Field field;
+  double arm_squared = 0, arm = 0;  ///< means of the distance from the pivot by mass, m^2 and m
+
+  explicit Pendulum(double h) {
+    RodBody::Setup setup;
+    setup.points = {Vec3::Zero(), Vec3(0, 0, -100e-3)};
+    setup.shear_modulus = 100e6;
+    setup.density = 1050;
+    setup.liquid_density = 1000;
+    setup.nodes = 6;
+    const auto loose = RodBody::create(setup).value();
+    const StencilTable& table = loose.rod().stencils();
+    const Vec3 pivot = blend(table, table.value, 0, loose.rest());
+    setup.foundation = [pivot](const Vec3& x) { return (x - pivot).norm() < 1e-6 ? 1e9 : 0.0; };
+    const auto body = std::make_shared<const RodBody>(RodBody::create(setup).value());
+    double mass = 0;
+    for (int row = 0; row < table.rows(); ++row) {
+      const double away = pivot.z() - blend(table, table.value, row, loose.rest()).z();
+      mass += body->row_mass(row);
+      arm += body->row_mass(row) * away;
+      arm_squared += body->row_mass(row) * away * away;
+    }
+    arm /= mass, arm_squared /= mass;
+    field.step_time = h;
+    BodyState state{body->rest()};
+    const Eigen::AngleAxisd turn(0.05, Vec3::UnitY());
+    for (Eigen::Index i = 0; i < state.x.size(); i += 3)
+      state.x.segment<3>(i) = pivot + turn * Vec3(Vec3(state.x.segment<3>(i)) - pivot);
+    OrganDefinition definition;
+    definition.name = "rod";
+    definition.wall.retardation = 0;  // the theory knows none
+    field.add({Organ{definition, body, state, {}, {}, {}, {}, {}, {}, {}}, NewtonWorkspace(body->pattern())});
+  }
+  double aside() const { return field.organs[0].state.x[field.organs[0].state.x.size() - 3]; }
+};
+
+TEST(Motion, AHangingRodSwingsWithThePeriodOfACompoundPendulum) {
+  const auto found = [](double h) {
+    Pendulum pendulum(h);
+    return period(pendulum.field, h, [&] { return pendulum.aside(); });
+  };
+  const Pendulum of(0.01);
+  const double a = 0.05, small = 1 + a * a / 16;  // a swing of this angle, before it decays
+  const double expected = 2 * std::numbers::pi * std::sqrt(of.arm_squared / (of.arm * standard_gravity));
+  const double coarse = found(0.02), fine = found(0.01);
+  // Implicit Euler's frequency is atan(w h) / h: of the second order in h.
+  const auto theory = [&](double h) {
+    const double wh = 2 * std::numbers::pi / expected * h;
+    return expected * wh / std::atan(wh);
+  };
+  EXPECT_NEAR(coarse / theory(0.02), 1, 2e-3);
+  EXPECT_NEAR(fine / theory(0.01), 1, 2e-3);
+  EXPECT_NEAR((4 * fine - coarse) / 3, expected * small, 2e-3 * expected);
+}
+
+TEST(Motion, AFilledBallThatHangsFromItsBaseSwaysWithItsLowestNaturalFrequency) {
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
+  OrganDefinition definition = test::heavy(test::held_ball());
+  definition.nodes = 32;
+  definition.wall.retardation = 0;
+  definition.bile.fill_pressure = 1000;
+  const Field rest = test::make_field(definition, 1e-8, -Vec3::UnitZ());
+  const Organ& at = rest.organs[0];
+  const BodyMass mass(*shell_of(at), at.state.x, definition.wall.thickness, definition.bile.density);
+  const double lowest = lowest_frequency(*shell_of(at), {}, at.state, mass).value();
+  // The few points of its bed are no even round: it sways more slowly this way than across, by 3 %.
+  const Vec3 softest(std::cos(1.97), std::sin(1.97), 0);
+  const auto found = [&](double h) {
+    Field field = rest;
+    field.step_time = h;
+    Organ& organ = field.organs[0];
+    test::set_moving(
+        organ, test::velocities(organ.state.x, [&](const Vec3& x) -> Vec3 { return 0.25 * x.z() * softest; }),
+        h);
+    const Vec3 still = organ.body->liquid()->centroid(organ.state.x, organ.state.volume);
+    return 1 / period(field, h, [&] {
+             return (organ.body->liquid()->centroid(organ.state.x, organ.state.volume) - still).dot(softest);
+           });
+  };
+  const double coarse = found(1 / (40 * lowest)), fine = found(1 / (80 * lowest));
+  EXPECT_NEAR(fine / lowest, 1, 0.01);
+  EXPECT_NEAR((4 * fine - coarse) / 3 / lowest, 1, 0.005);
+  RecordProperty("lowest_mHz", static_cast<int>(1e3 * lowest));
+}
+
+/// Waits until nothing moves; how many steps it took, or -1.
+int wait_for_rest(Field& field, int most) {
+  for (int k = 0; k < most; ++k) {
+    if (const std::string why = test::wait(field); !why.empty()) {
+      ADD_FAILURE() << why;
+      return -1;
+    }
+    const Organ& organ = field.organs[0];
+    if (stands_still(present_motion(*organ.body, organ.state))) return k + 1;
+  }
+  return -1;
+}
+
+TEST(Motion, ABallDroppedOnTheSupportComesToTheRestThatItSinksTo) {
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
+  const Plane floor{Vec3::Zero(), Vec3::UnitZ()};
+  Field field = test::free_ball(5e-3, 0.02, floor);
+  ASSERT_GT(wait_for_rest(field, 500), 10);
+  ContactLoads still;
+  still.shapes = {contact_shape(floor)};
+  FillingLimits limits;
+  limits.sinks = true;
+  const Result<RestedOrgan> sunk =
+      make_organ(test::heavy(test::ball(Vec3(0, 0, 5e-3))), still, Vec3::UnitZ(), 1e-6, 0, &limits);
+  ASSERT_TRUE(sunk) << to_text(sunk.failure());
+  const Organ &fallen = field.organs[0], &other = sunk->organ;
+  // It may have gone anywhere on the plane, and turned.
+  const auto heights = [](const Organ& organ) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : organ.body->skin_positions(organ.state.x)) box.extend(p);
+    return box;
+  };
+  EXPECT_LT(heights(fallen).min().z(), 0.1e-3);
+  EXPECT_NEAR(heights(fallen).max().z(), heights(other).max().z(), 2e-6);
+  EXPECT_NEAR(fallen.state.datum_pressure, other.state.datum_pressure, 1e-2 * other.state.datum_pressure);
+  // And it stays.
+  const VecX x = field.organs[0].state.x;
+  SolveStatistics statistics;
+  for (int k = 0; k < 3; ++k) ASSERT_EQ(test::wait(field, statistics), "");
+  EXPECT_EQ(field.organs[0].state.x, x);
+  EXPECT_EQ(statistics.newton_iterations, 0);
+}
+
+}  // namespace
+}  // namespace calot
