@@ -112,6 +112,10 @@ class Body {
   virtual const BlockMatrix* mass() const { return nullptr; }
   /// Null: it is not filled.
   virtual const Liquid* liquid() const { return nullptr; }
+  /// How the liquid flows when the nodes are at x. Fails (simulation) where the surface is too coarse to tell.
+  virtual Result<FlowModes> flow(const VecX& x) const {
+    return FlowModes::inside(skin().stencils, skin().triangles, x, 0.5 * size());
+  }
   /// Energy of the deformed body alone, J, and the largest principal stretch in it: for reports.
   virtual double strain_energy(const VecX& x) const = 0;
   virtual double max_stretch(const VecX& x) const = 0;

@@ -33,8 +33,7 @@ bool stands_still(const LiquidMotion& motion) {
 Result<MotionPart> motion_part(const Body& body, const LiquidMotion& begin, double duration) {
   MotionPart out{begin, duration};
   if (body.liquid() == nullptr) return out;
-  Result<FlowModes> flow =
-      FlowModes::inside(body.skin().stencils, body.skin().triangles, begin.x, 0.5 * body.size());
+  Result<FlowModes> flow = body.flow(begin.x);
   if (!flow) return flow.failure();
   out.flow = std::make_shared<const FlowModes>(std::move(flow).value());
   return out;

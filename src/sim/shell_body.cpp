@@ -88,6 +88,9 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
   }
 }
 
+/// Of each edge: flows cost 1 % less than by the skin, which has a point each mm and takes fifteen times as long.
+constexpr int flow_parts = 3;
+
 /// Adds the nodes from `first` on that skin points depend on to `nodes`, which has those before.
 void add_nodes(const StencilTable& skin, const std::vector<int>& points, int first, std::vector<char>& seen,
                std::vector<int>& nodes) {
@@ -122,6 +125,7 @@ Result<ShellBody> ShellBody::create(const Setup& setup) {
   const VecX rest = to_coordinates(setup.control.points);
   Base base{setup, std::move(levels).value()};
   base.skin = close_skin(base.levels.surface(), rest);
+  if (setup.bile) base.flow_skin = base.levels.surface().tessellate(flow_parts);
   base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
   base.triangle_areas = areas_of(base.skin_rest, base.skin.triangles);
   base.skin_areas = lumped(base.triangle_areas, base.skin.triangles, base.skin_rest.size());
@@ -185,6 +189,16 @@ void ShellBody::add_gradient(const VecX& x, VecX& gradient, double& largest_inte
 
 void ShellBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const {
   refined_->shell.add_hessian(x, matrix, assembly);
+}
+
+Result<FlowModes> ShellBody::flow(const VecX& x) const {
+  const VecX coarse = x.head(3 * Eigen::Index{coarse_nodes()});
+  Result<FlowModes> out =
+      FlowModes::inside(base_->flow_skin.stencils, base_->flow_skin.triangles, coarse, 0.5 * base_->size);
+  if (!out) return out;
+  FlowModes with_details{Eigen::MatrixXd::Zero(x.size(), FlowModes::count)};
+  with_details.columns.topRows(coarse.size()) = out->columns;
+  return with_details;
 }
 
 VecX ShellBody::own_forces(const VecX& x, double datum_pressure) const {

@@ -124,6 +124,8 @@ class ShellBody : public Body {
   void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const override;
   const BlockMatrix* mass() const override { return refined_->mass ? &*refined_->mass : nullptr; }
   const Liquid* liquid() const override { return refined_->bile ? &*refined_->bile : nullptr; }
+  /// Of the coarse nodes' motions: what details move is too little.
+  Result<FlowModes> flow(const VecX& x) const override;
   double strain_energy(const VecX& x) const override { return refined_->shell.value(x); }
   double max_stretch(const VecX& x) const override { return refined_->shell.max_stretch(x); }
 
@@ -149,6 +151,7 @@ class ShellBody : public Body {
     Setup setup;
     SurfaceLevels levels;
     Tessellation skin{};
+    Tessellation flow_skin{};                   ///< closed, of coarse nodes
     std::vector<StencilTable> skin_by_level{};  ///< of levels 1, 2, ...
     /// The same places without derivatives, which only drawing asks for.
     StencilTable skin_places{};

@@ -221,6 +221,16 @@ const std::vector<Refusal>& refusals() {
        "scene.laparoscope.look_at", "\"gallbladder.fundsu\"", "did you mean \"gallbladder.fundus\"?"},
       {"ScopeLooksAtOrgan", [](auto& s) { s.laparoscope.look_at = "liver"; }, "scene.laparoscope.look_at",
        "\"liver\"", "known: gallbladder.neck"},
+      {"StagedWithMasses",
+       [](auto& s) {
+         s.solver.motion = SolverMotion::dynamics;
+         s.solver.extension_scheme = ExtensionScheme::staged;
+       },
+       "scene.solver.extensions.scheme", "knows no masses", "condensed"},
+      {"RetardationTooLong", [](auto& s) { organ(s).wall.retardation = 5; }, organ_path + ".wall.retardation",
+       "5 s", "0 to 1 s"},
+      {"WallDensityInGrams", [](auto& s) { organ(s).wall.density = 1.05e6; }, organ_path + ".wall.density",
+       "1.05e+06 kg/m^3", "0 to 2000"},
       {"RateTooHigh", [](auto& s) { s.solver.rate = 2001; }, "scene.solver.rate", "2001 steps a second",
        "1 to 2000"},
       {"RateZero", [](auto& s) { s.solver.rate = 0; }, "scene.solver.rate", "0 steps a second", "1 to 2000"},

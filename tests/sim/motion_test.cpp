@@ -3,6 +3,7 @@
 #include <functional>
 #include <numbers>
 
+#include "milestone.h"
 #include "motion_rig.h"
 #include "sim/field_state.h"
 #include "sim/settle_field.h"
@@ -200,6 +201,132 @@ TEST(Motion, ABallDroppedOnTheSupportComesToTheRestThatItSinksTo) {
   for (int k = 0; k < 3; ++k) ASSERT_EQ(test::wait(field, statistics), "");
   EXPECT_EQ(field.organs[0].state.x, x);
   EXPECT_EQ(statistics.newton_iterations, 0);
+}
+
+SceneDefinition moving_scene(int levels = 0) {
+  SceneDefinition scene = test::ball_scene(test::heavy(test::bedded_ball()));
+  scene.solver.motion = SolverMotion::dynamics;
+  scene.solver.extension_levels = levels;
+  return scene;
+}
+
+bool stands_still(const World& world) {
+  const Organ& organ = world.field().organs[0];
+  return stands_still(present_motion(*organ.body, organ.state));
+}
+
+TEST(Motion, WhereAGrasperPullsAndWaitsItEndsInTheRestOfStatics) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole grasp");
+  test::FundusPath path(moving_scene(1));
+  ASSERT_TRUE(path.grasp() && path.lift()) << path.driver.why();
+  ASSERT_EQ(path.world.report().instruments[0].holds, "ball");
+  ASSERT_FALSE(stands_still(path.world));
+  for (int k = 0; k < 100 && !stands_still(path.world); ++k)
+    ASSERT_TRUE(path.driver.stay(1)) << path.driver.why();
+  ASSERT_TRUE(stands_still(path.world));
+  // Then nothing is computed any more.
+  ASSERT_TRUE(path.driver.stay(2));
+  EXPECT_EQ(path.world.report().statistics.newton_iterations, 0);
+  Field field = path.world.field();
+  const VecX ended = field.organs[0].state.x;
+  field.step_time = 0;
+  field.organs[0].state.motion = {};
+  SolveStatistics statistics;
+  ASSERT_TRUE(settle_field(field, "here", statistics));
+  // Both are found to the solver's tolerance.
+  EXPECT_LT((field.organs[0].state.x - ended).lpNorm<Eigen::Infinity>(), 1e-6 * field.organs[0].body->size());
+  // Let go, it springs back to where it began.
+  path.driver.stay(1);
+  ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
+  EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);
+  ASSERT_TRUE(path.driver.stay(60)) << path.driver.why();
+  const Organ& organ = path.world.field().organs[0];
+  EXPECT_TRUE(organ.body->details().empty());
+  const World fresh = World::create(moving_scene(1)).value();
+  EXPECT_LT((organ.state.x - fresh.field().organs[0].state.x).lpNorm<Eigen::Infinity>(),
+            1e-6 * organ.body->size());
+}
+
+TEST(Motion, RestoredWhileItSwingsTheSameStepsHaveTheSameBits) {
+  CALOT_SLOW_WHEN_SANITIZED("two grasps");
+  test::FundusPath path(moving_scene(1));
+  ASSERT_TRUE(path.grasp() && path.lift(3)) << path.driver.why();
+  const test::Milestone swinging(path);
+  const auto hashes = [&] {
+    std::vector<std::uint64_t> out;
+    path.driver.watch = [&](const StepReport& report) { out.push_back(report.state_hash); };
+    EXPECT_TRUE(path.lower(4) && path.release(3)) << path.driver.why();
+    return out;
+  };
+  const std::vector<std::uint64_t> first = hashes();
+  ASSERT_EQ(first.size(), 7u);
+  swinging.go_back();
+  EXPECT_EQ(hashes(), first);
+  // All that says how it moves is part of the state.
+  const FieldState& state = swinging.state();
+  ASSERT_TRUE(path.world.restore(state));
+  const std::uint64_t hash = path.world.state_hash();
+  const auto differs = [&](const char* what, const std::function<void(MotionPart&)>& change) {
+    FieldState other = state;
+    change(other.group.organs[0].state.motion);
+    ASSERT_TRUE(path.world.restore(other));
+    EXPECT_NE(path.world.state_hash(), hash) << what;
+  };
+  differs("begin", [](MotionPart& part) { part.begin.x[0] += 1e-15; });
+  differs("velocity", [](MotionPart& part) { part.begin.velocity[0] += 1e-9; });
+  differs("centroid", [](MotionPart& part) { part.begin.centroid.x() += 1e-9; });
+  differs("duration", [](MotionPart& part) { part.duration *= 1.0000001; });
+}
+
+TEST(Motion, StaticFieldsKnowNoVelocity) {
+  SceneDefinition scene = moving_scene();
+  scene.solver.motion = SolverMotion::statics;
+  test::FundusPath path(scene);
+  ASSERT_TRUE(path.driver.go(path.fundus - 2e-3 * path.out, 0, 2)) << path.driver.why();
+  ASSERT_TRUE(path.world.report().instruments[0].touching);
+  EXPECT_EQ(path.world.field().organs[0].state.motion.duration, 0);
+}
+
+TEST(Motion, TheBedCarriesAHeavyWallToo) {
+  OrganDefinition definition = test::held_ball();
+  const double without = test::bed_force(test::make_field(definition, 1e-8, Vec3::UnitZ()).organs[0]).z();
+  definition.wall.density = 1050;
+  const Field field = test::make_field(definition, 1e-8, Vec3::UnitZ());
+  const Organ& organ = field.organs[0];
+  const double wall = test::mass_of(organ) - definition.bile.density * organ.state.volume;
+  EXPECT_GT(wall, 5e-3);
+  EXPECT_NEAR(test::bed_force(organ).z(), without + wall * standard_gravity, 1e-6);
+}
+
+TEST(Motion, AScenesLooseOrganSinksOntoItsSupportAndStaysThere) {
+  SceneDefinition scene = moving_scene();
+  OrganDefinition& organ = scene.anatomy.organs[0];
+  organ.held.clear();
+  organ.bile = {};
+  scene.anatomy.support = SupportDefinition{organ.neck - Vec3(0, 0, 3e-3)};
+  Result<World> world = World::create(scene);
+  ASSERT_TRUE(world) << to_text(world.failure());
+  const std::vector<Vec3> sunk = world->skin_positions(0);
+  const auto lowest = [](const std::vector<Vec3>& skin) {
+    double z = skin[0].z();
+    for (const Vec3& p : skin) z = std::min(z, p.z());
+    return z;
+  };
+  EXPECT_NEAR(lowest(sunk), scene.anatomy.support->point.z(), contact_gap);
+  StepInput input;
+  input.instruments = {world->report().instruments[0].pose};
+  for (int k = 0; k < 5; ++k) ASSERT_TRUE(world->step(input));
+  double moved = 0;
+  for (std::size_t i = 0; i < sunk.size(); ++i)
+    moved = std::max(moved, (world->skin_positions(0)[i] - sunk[i]).norm());
+  EXPECT_LT(moved, 1e-6 * 40e-3);  // the solver's tolerance
+  // On a slope it would slide for good.
+  scene.anatomy.table_head_up = 0.2;
+  const Result<World> sliding = World::create(scene);
+  ASSERT_FALSE(sliding);
+  const std::string why = to_text(sliding.failure());
+  EXPECT_NE(why.find("'ball'"), std::string::npos) << why;
+  EXPECT_NE(why.find("slides"), std::string::npos) << why;
 }
 
 }  // namespace
