@@ -65,12 +65,24 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    t:step("lift", "Lift the gallbladder off its ground", { limit = 20 * s })
-    t:wait(8 * s)
+    t:step("grasp", "Take the gallbladder by its fundus", { limit = 15 * s })
+    t:wait_until(function() return t.left:holds("gallbladder") end)
+
+    t:step("lift", "Lift it off its ground and shift it across", { limit = 30 * s })
+    t:wait_until(function() return not t.left:holds() end)
+    t:wait(2 * s) -- it comes to rest
   end,
 
   demo = function(t)
-    t:wait(8 * s)
+    t.left:approach("gallbladder.fundus", { speed = 60 * mm / s })
+    t.left:close()
+    t.left:move_by({ 0, 0, 35 * mm }, { speed = 25 * mm / s }) -- off the ground
+    t.left:move_by({ -15 * mm, -40 * mm, 0 }, { speed = 25 * mm / s }) -- across, until the duct holds it back
+    t.left:wait(1 * s)
+    t.left:move_by({ 0, 0, -33 * mm }, { speed = 25 * mm / s })
+    t.left:open()
+    t.left:move_by({ 0, 0, 30 * mm })
+    t.left:wait(2 * s)
   end,
 
   score = calot.score.weighted {

@@ -63,7 +63,7 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
   for (const Touch& touch : organ.search.touches.at(*organ.body, organ.state.x, now, pairs, 0.0)) {
     if (!motions[touch.shape]) continue;
     pressed.add(touch.point,
-                contact_hessian(*organ.body, now, touch) * carried(*motions[touch.shape], touch.at));
+                contact_hessian(now, touch) * carried(*motions[touch.shape], touch.at));
     loaded = true;
   }
   const Links target = grip_links(organ, field.tools, to);
@@ -140,7 +140,7 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
       way = std::max(way, path ? path->way(places.corners(pair.triangle).col(c), motion) : motion.norm());
     }
     if (way < (1.0 - contact_keep) * near.of_all()) continue;
-    for (int local : organ.body->contact_points()) {
+    for (int local : organ.body->contact_points(now.is_broad(pair.shape))) {
       const int point = pair.triangle * contacts_each + local;
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 at = places.at(point), motion = share * moves.at(point);

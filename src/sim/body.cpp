@@ -26,7 +26,8 @@ const std::vector<double>& Body::skin_radii() const {
 
 const std::vector<double>& Body::core_radii() const { return skin_radii(); }
 
-std::span<const int> Body::contact_points() const {
+std::span<const int> Body::contact_points(bool broad) const {
+  if (broad) return broad_points;
   static const std::array<int, contacts_each> all = [] {
     std::array<int, contacts_each> out{};
     std::iota(out.begin(), out.end(), 0);

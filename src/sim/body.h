@@ -131,8 +131,9 @@ class Body {
   double core_depth() const;
   /// Rest area that each skin point stands for, m^2.
   virtual const std::vector<double>& skin_areas() const = 0;
-  /// Which of a triangle's points (contact_points.h) are felt, increasing.
-  virtual std::span<const int> contact_points() const;
+  /// Which of a triangle's points (contact_points.h) are felt, increasing: by instruments, or by what is `broad` beside a
+  /// triangle, such as the ground, where few do as well.
+  virtual std::span<const int> contact_points(bool broad) const;
   /// Rest area that one of these stands for, m^2.
   virtual double contact_area(int point) const = 0;
   /// What it answers, a unit of that area, to a shape at this distance from its surface, m.

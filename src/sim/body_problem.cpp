@@ -85,7 +85,7 @@ double BodyProblem::value(const VecX& x) const {
   }
   if (body_.kept_load().size() > 0) sum -= body_.kept_load().dot(x);
   if (loads_.load.size() > 0) sum -= loads_.load.dot(x);
-  for (const Touch& touch : touching(x)) sum += body_.contact_area(touch.point) * touch.answer.energy;
+  for (const Touch& touch : touching(x)) sum += touch.area * touch.answer.energy;
   for_held_details(
       [&](Eigen::Index at, double stiffness) { sum += 0.5 * stiffness * x.segment<3>(at).squaredNorm(); });
   if (loads_.drag) sum += 0.5 * loads_.drag->stiffness * (x - loads_.drag->from).squaredNorm();
@@ -107,8 +107,7 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
   if (loads_.load.size() > 0) gradient -= loads_.load;
   ContactLoad pressed(body_.skin(), gradient);
   for (const Touch& touch : touching(x))
-    pressed.add(touch.point,
-                body_.contact_area(touch.point) * touch.answer.derivative * touch.slope.gradient);
+    pressed.add(touch.point, touch.area * touch.answer.derivative * touch.slope.gradient);
   pressed.finish();
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
@@ -150,7 +149,7 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
   else if (const Liquid* liquid = body_.liquid())
     liquid->add_hessian(x, fixed_pressure_ ? multiplier_ : multipliers[0], matrix, assembly_);
   ContactStiffness pressed(body_.skin(), matrix);
-  for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(body_, loads_, touch));
+  for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(loads_, touch));
   pressed.finish();
   for_held_details([&](Eigen::Index at, double stiffness) {
     const int node = static_cast<int>(at / 3);
@@ -220,7 +219,7 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
     const Nearness near = places.nearness(pair.triangle, shape);
     const double way = share * std::sqrt(moves.corners(pair.triangle).colwise().squaredNorm().maxCoeff());
     if (way < (1.0 - contact_keep) * near.of_all()) continue;
-    for (int local : body_.contact_points()) {
+    for (int local : body_.contact_points(loads_.is_broad(pair.shape))) {
       const int point = pair.triangle * contacts_each + local;
       if (way < (1.0 - contact_keep) * near.of(point)) continue;
       const Vec3 motion = share * moves.at(point), at = places.at(point);
@@ -232,11 +231,11 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
   return search_ ? search_->own.safe_share(body_, x, step, contact_keep, share) : share;
 }
 
-std::vector<ContactForce> contact_forces(const Body& body, const std::vector<Touch>& touches) {
+std::vector<ContactForce> contact_forces(const std::vector<Touch>& touches) {
   std::vector<ContactForce> out;
   for (const Touch& touch : touches) {
-    out.push_back({touch.shape, touch.point, touch.at,
-                   body.contact_area(touch.point) * touch.answer.derivative * touch.slope.gradient});
+    out.push_back(
+        {touch.shape, touch.point, touch.at, touch.area * touch.answer.derivative * touch.slope.gradient});
   }
   return out;
 }
@@ -244,15 +243,14 @@ std::vector<ContactForce> contact_forces(const Body& body, const std::vector<Tou
 std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const ContactLoads& loads,
                                          const std::vector<ContactPair>& pairs) {
   TouchMemory memory;
-  return contact_forces(body, memory.at(body, x, loads, pairs, 0.0));
+  return contact_forces(memory.at(body, x, loads, pairs, 0.0));
 }
 
-Mat3 contact_hessian(const Body& body, const ContactLoads& loads, const Touch& touch) {
+Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
   const DistanceSlope& d = touch.slope;
   const BarrierSample& b = touch.answer;
-  return body.contact_area(touch.point) *
-         (b.second * d.gradient * d.gradient.transpose() +
-          b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));
+  return touch.area * (b.second * d.gradient * d.gradient.transpose() +
+                       b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));
 }
 
 }  // namespace calot

@@ -87,10 +87,10 @@ struct ContactForce {
   Vec3 on_shape = Vec3::Zero();  ///< N, of the skin on the shape
 };
 /// One for each contact point in range.
-std::vector<ContactForce> contact_forces(const Body& body, const std::vector<Touch>& touches);
+std::vector<ContactForce> contact_forces(const std::vector<Touch>& touches);
 std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const ContactLoads& loads,
                                          const std::vector<ContactPair>& pairs);
 /// Hessian of a contact point's energy by its place, N/m.
-Mat3 contact_hessian(const Body& body, const ContactLoads& loads, const Touch& touch);
+Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch);
 
 }  // namespace calot

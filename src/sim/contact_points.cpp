@@ -1,5 +1,7 @@
 #include "sim/contact_points.h"
 
+#include <algorithm>
+
 #include "fem/links.h"
 
 namespace calot {
@@ -22,6 +24,16 @@ std::array<Vec3, contacts_each> middles_of_parts() {
 }  // namespace
 
 const std::array<Vec3, contacts_each> contact_rule = middles_of_parts();
+
+const std::array<int, 4> broad_points = [] {
+  std::array<int, 4> out{};
+  const Vec3 middles[4] = {Vec3(4, 1, 1) / 6, Vec3(1, 4, 1) / 6, Vec3(1, 1, 4) / 6, Vec3::Constant(1.0 / 3)};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (int point = 0; point < contacts_each; ++point)
+      if ((contact_weights(point) - middles[k]).norm() < 1e-12) out[k] = point;
+  std::sort(out.begin(), out.end());
+  return out;
+}();
 
 const Vec3& ContactPlaces::corner(int row) {
   Corner& known = known_[static_cast<std::size_t>(row) % known_.size()];

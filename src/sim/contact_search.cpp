@@ -119,6 +119,17 @@ const std::vector<Touch>* TouchMemory::known(const Body& body, const VecX& x,
   return nullptr;
 }
 
+namespace {
+
+double touched_area(const Body& body, const ContactLoads& loads, int shape, int point) {
+  const double area = body.contact_area(point);
+  if (!loads.is_broad(shape)) return area;
+  const auto all = static_cast<double>(body.contact_points(false).size());
+  return area * all / static_cast<double>(body.contact_points(true).size());
+}
+
+}  // namespace
+
 const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const ContactLoads& loads,
                                           const std::vector<ContactPair>& pairs, double approach) {
   if (const std::vector<Touch>* touches = known(body, x, loads)) {
@@ -134,8 +145,9 @@ const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const
   state.touches.clear();
   for_touching(body, x, loads, pairs, approach,
                [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
-                 state.touches.push_back(
-                     {point, shape, at, slope, body.contact_sample(point, slope.distance, loads.barrier)});
+                 state.touches.push_back({point, shape, at, slope,
+                                          body.contact_sample(point, slope.distance, loads.barrier),
+                                          touched_area(body, loads, shape, point)});
                });
   return state.touches;
 }

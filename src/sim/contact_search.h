@@ -39,7 +39,8 @@ struct Drag {
 
 /// What acts on an organ during one solve; shapes do not move within it.
 struct ContactLoads {
-  std::vector<Shape> shapes;  ///< contact shapes: what they are in truth, inset
+  std::vector<Shape> shapes;     ///< contact shapes: what they are in truth, inset
+  std::vector<char> broad = {};  ///< one a shape, or none: whether it is felt by few points (broad_points)
   Barrier barrier = contact_barrier;
   Links grip;  ///< rows of the skin's stencils
   FrictionLoad friction;
@@ -48,6 +49,8 @@ struct ContactLoads {
   VecX load = {};                               ///< N, 3 a node; empty: none
   std::shared_ptr<const Inertia> inertia = {};  ///< null: masses do not count
   std::optional<Drag> drag = {};
+
+  bool is_broad(int shape) const { return !broad.empty() && broad[static_cast<std::size_t>(shape)] != 0; }
 };
 
 /// A triangle of the skin near enough to a shape to meet it within a solve.
@@ -72,7 +75,7 @@ void for_touching(const Body& body, const VecX& x, const ContactLoads& loads,
     const Shape& shape = loads.shapes[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);
     if (near.of_all() >= range) continue;
-    for (int local : body.contact_points()) {
+    for (int local : body.contact_points(loads.is_broad(pair.shape))) {
       const int point = pair.triangle * contacts_each + local;
       if (near.of(point) >= range) continue;
       const Vec3 at = places.at(point);
@@ -89,6 +92,7 @@ struct Touch {
   Vec3 at = Vec3::Zero();  ///< m
   DistanceSlope slope;     ///< of the surface there (Body::skin_radii)
   BarrierSample answer;    ///< of the body to it there, a unit of area
+  double area = 0;         ///< m^2 that it stands for
 };
 
 /// What touches, found once for a state: a solve's energies and their derivatives, and after it pads, forces and report

@@ -77,8 +77,7 @@ NewtonResult sink(std::span<const Member> members, std::span<const JoinPointer> 
   }
   std::vector<Member> held;
   for (std::size_t k = 0; k < members.size(); ++k)
-    held.push_back(
-        {members[k].body, loads[k], members[k].search, members[k].state, members[k].assembly});
+    held.push_back({members[k].body, loads[k], members[k].search, members[k].state, members[k].assembly});
   NewtonResult total;
   double share = first;
   for (int step = 0; step < most_steps && total.iterations < settle_iterations; ++step) {

@@ -18,7 +18,7 @@ std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
     out.push_back({g.name, shape, g.friction});
   }
   if (const std::optional<SupportDefinition>& support = anatomy.support)
-    out.push_back({"support", Plane{support->point, support->normal.normalized()}, support->friction});
+    out.push_back({"support", Plane{support->point, support->normal.normalized()}, support->friction, false});
   return out;
 }
 

@@ -45,6 +45,7 @@ struct Ground {
   std::string name;
   Shape shape;
   double friction = 0;  ///< Coulomb's
+  bool broad = true;    ///< felt by few points; by all as instruments are where it is false
 };
 
 struct Field {

@@ -87,7 +87,7 @@ Vec3 pad_pull(const Field& field, int instrument) {
         pull += now.grip.stiffness[g] *
                 (organ.body->skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
     const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
-    for (const ContactForce& contact : contact_forces(*organ.body, touching))
+    for (const ContactForce& contact : contact_forces(touching))
       if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
         pull += contact.on_shape;
   }

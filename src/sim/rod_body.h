@@ -55,7 +55,7 @@ class RodBody : public Body {
   const std::vector<double>& core_radii() const override { return core_radii_; }
   const std::vector<double>& skin_areas() const override { return skin_areas_; }
   /// Four of each triangle, eight a segment: a twelfth of it apart, as both its triangles are counted.
-  std::span<const int> contact_points() const override { return felt_points; }
+  std::span<const int> contact_points(bool /*broad*/) const override { return felt_points; }
   double contact_area(int point) const override;
   BarrierSample contact_sample(int point, double distance, const Barrier& barrier) const override;
   const std::vector<Vec3>& skin_rest() const override { return skin_rest_; }

@@ -82,11 +82,10 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));
   FrictionLoad now;
   ContactPlaces places_before(organ.body->skin(), before);
-  for (const auto& [point, shape, at, d, answer] :
+  for (const auto& [point, shape, at, d, answer, area] :
        organ.search.touching(*organ.body, organ.state.x, around)) {
     const double mu = coefficient(field, shape);
     if (mu <= 0 || is_holding_jaw(holding, shape)) continue;
-    const double area = organ.body->contact_area(point);
     StickSlip hold;
     hold.normal = d.gradient;
     hold.limit = -mu * area * answer.derivative;

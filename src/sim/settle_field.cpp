@@ -12,7 +12,11 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
       out.shapes.push_back(contact_shape(shape));
-  for (const Ground& ground : field.ground) out.shapes.push_back(contact_shape(ground.shape));
+  out.broad.assign(out.shapes.size(), 0);
+  for (const Ground& ground : field.ground) {
+    out.shapes.push_back(contact_shape(ground.shape));
+    out.broad.push_back(ground.broad);
+  }
   out.grip = grip_links(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
   if (const ShellBody* shell = shell_of(organ)) out.detail_holds = detail_holds(*shell, organ.state.shares);

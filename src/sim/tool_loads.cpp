@@ -59,7 +59,7 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     const std::string& name = organ.definition.name;
     const ContactLoads now = contact_loads(field, organ, poses);
     const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
-    for (const ContactForce& contact : contact_forces(*organ.body, touching))
+    for (const ContactForce& contact : contact_forces(touching))
       if (sum.is_tool(contact.shape)) sum.add(contact.shape, contact.at, contact.on_shape, true, name);
     ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points) {

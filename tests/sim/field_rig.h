@@ -32,7 +32,7 @@ inline Field make_field(const OrganDefinition& definition, double tolerance, con
                         const std::optional<Plane>& support = {}, int levels = 0) {
   Field field;
   field.tolerance = tolerance;
-  if (support) field.ground.push_back({"support", *support, 0});
+  if (support) field.ground.push_back({"support", *support, 0, false});
   ContactLoads still;
   if (support) still.shapes.push_back(contact_shape(*support));
   field.add(make_organ(definition, still, up, tolerance, levels).value());
