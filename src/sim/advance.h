@@ -1,11 +1,16 @@
 #pragma once
-// Quasi-static motion of the field: instruments go to their targets, organs stay in equilibrium.
+// Motion of the field: instruments go to their targets, organs stay in equilibrium, or, where masses count
+// (Field::step_time), move by them.
 //
 // Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
 // wall moves along), is cut where a skin point would come too near a shape or a node would move further than
 // a set share of its local edge, and ends in equilibrium; then folds slip that are pulled harder than they are
 // held. How the motion was cut into steps matters nowhere but to what slides, a little, as friction follows
 // the way in straight pieces; jaws take hold at fixed angles.
+//
+// Where masses count each part is a step of implicit Euler (inertia.h) in its share of the step's time, begins from the
+// first Newton step from where the organs are, and is cut in time too. What is solved again at the end of a part, as
+// folds slip, grips are let go and details change, is solved again for that part: no time passes, and none is lost.
 
 #include <string>
 #include <vector>

@@ -298,21 +298,28 @@ TEST(Motion, TheBedCarriesAHeavyWallToo) {
   EXPECT_NEAR(test::bed_force(organ).z(), without + wall * standard_gravity, 1e-6);
 }
 
-TEST(Motion, AScenesLooseOrganSinksOntoItsSupportAndStaysThere) {
+/// A ball that nothing holds above a level support.
+SceneDefinition loose_scene() {
   SceneDefinition scene = moving_scene();
   OrganDefinition& organ = scene.anatomy.organs[0];
   organ.held.clear();
   organ.bile = {};
   scene.anatomy.support = SupportDefinition{organ.neck - Vec3(0, 0, 3e-3)};
+  return scene;
+}
+
+double lowest(const World& world) {
+  double z = 1;
+  for (const Vec3& p : world.skin_positions(0)) z = std::min(z, p.z());
+  return z;
+}
+
+TEST(Motion, AScenesLooseOrganSinksOntoItsSupportAndStaysThere) {
+  SceneDefinition scene = loose_scene();
   Result<World> world = World::create(scene);
   ASSERT_TRUE(world) << to_text(world.failure());
   const std::vector<Vec3> sunk = world->skin_positions(0);
-  const auto lowest = [](const std::vector<Vec3>& skin) {
-    double z = skin[0].z();
-    for (const Vec3& p : skin) z = std::min(z, p.z());
-    return z;
-  };
-  EXPECT_NEAR(lowest(sunk), scene.anatomy.support->point.z(), contact_gap);
+  EXPECT_NEAR(lowest(world.value()), scene.anatomy.support->point.z(), contact_gap);
   StepInput input;
   input.instruments = {world->report().instruments[0].pose};
   for (int k = 0; k < 5; ++k) ASSERT_TRUE(world->step(input));
@@ -327,6 +334,26 @@ TEST(Motion, AScenesLooseOrganSinksOntoItsSupportAndStaysThere) {
   const std::string why = to_text(sliding.failure());
   EXPECT_NE(why.find("'ball'"), std::string::npos) << why;
   EXPECT_NE(why.find("slides"), std::string::npos) << why;
+}
+
+TEST(Motion, ALooseBallIsPickedUpSwingsAndFallsBack) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole grasp");
+  SceneDefinition scene = loose_scene();
+  scene.anatomy.support->friction = 0.2;
+  test::FundusPath path(scene);
+  const double floor = scene.anatomy.support->point.z();
+  ASSERT_TRUE(path.grasp(4)) << path.driver.why();
+  ASSERT_EQ(path.world.report().instruments[0].holds, "ball");
+  ASSERT_TRUE(path.driver.go(path.fundus + Vec3(10e-3, 0, 15e-3), 0.0, 10)) << path.driver.why();
+  EXPECT_GT(lowest(path.world), floor + 10e-3);
+  // The grasper carries all of it.
+  ASSERT_TRUE(path.driver.stay(25)) << path.driver.why();
+  const double weight = test::mass_of(path.world.field().organs[0]) * standard_gravity;
+  EXPECT_NEAR(path.world.report().instruments[0].tip_force.z(), -weight, 0.02 * weight);
+  ASSERT_TRUE(path.driver.go(path.fundus + Vec3(10e-3, 0, 15e-3), test::open_jaw, 4)) << path.driver.why();
+  ASSERT_TRUE(path.driver.stay(40)) << path.driver.why();
+  EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);
+  EXPECT_NEAR(lowest(path.world), floor, contact_gap);
 }
 
 }  // namespace
