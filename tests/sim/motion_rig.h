@@ -26,7 +26,7 @@ inline Field free_ball(double height, double step_time, const std::optional<Plan
   setup.wall_density = definition.wall.density;
   const auto body = std::make_shared<const ShellBody>(ShellBody::create(setup).value());
   Field field;
-  field.support = support;
+  if (support) field.ground.push_back({"support", *support, 0, false});
   field.step_time = step_time;
   BodyState state{body->rest(), 0, body->bile()->volume(body->rest())};
   field.add({Organ{definition, body, state, {}, {}, {}, {}, {}, {}, {}}, NewtonWorkspace(body->pattern())});
