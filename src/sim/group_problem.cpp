@@ -78,9 +78,18 @@ std::vector<Part> GroupProblem::parts() const {
 template <class Work>
 void GroupProblem::for_each_member(const Work& work) const {
   for (std::size_t k : large_) work(k);
-  Assembly* assembly = members_[0].assembly;
-  for_each_chunk(assembly ? &assembly->workers() : nullptr, static_cast<int>(small_.size()),
+  for_each_chunk(workers(), static_cast<int>(small_.size()),
                  [&](int i) noexcept { work(small_[static_cast<std::size_t>(i)]); });
+}
+
+Workers* GroupProblem::workers() const {
+  Assembly* assembly = members_.empty() ? nullptr : members_[0].assembly;
+  return assembly ? &assembly->workers() : nullptr;
+}
+
+void GroupProblem::find_joins(const VecX& x) const {
+  for_each_chunk(workers(), static_cast<int>(joins_.size()),
+                 [&](int j) noexcept { joins_[static_cast<std::size_t>(j)]->find(x); });
 }
 
 double GroupProblem::value(const VecX& x) const {
@@ -88,6 +97,8 @@ double GroupProblem::value(const VecX& x) const {
   for_each_member([&](std::size_t k) noexcept { values[k] = problems_[k].value(part_of(k, x)); });
   double sum = 0;
   for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k) sum += values[k];
+  if (!std::isfinite(sum)) return sum;
+  find_joins(x);
   for (std::size_t j = 0; j < joins_.size() && std::isfinite(sum); ++j) sum += joins_[j]->value(x);
   return sum;
 }
@@ -100,6 +111,7 @@ double GroupProblem::cancelling() const {
 
 void GroupProblem::add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const {
   if (joins_.empty()) return;
+  find_joins(x);
   for (const JoinPointer& join : joins_) join->add_gradient(x, gradient);
   for (std::size_t k = 0; k < problems_.size(); ++k)
     largest_internal[static_cast<Eigen::Index>(k)] =

@@ -10,6 +10,8 @@
 
 namespace calot {
 
+class Workers;
+
 /// A body, what acts on it and where it is. All must outlive the problem that is made of it.
 struct Member {
   const Body& body;
@@ -33,6 +35,8 @@ class Join {
   virtual ~Join() = default;
   /// A solve begins, of these bodies: they stay what they are until the next. Asked before anything else.
   virtual void begin(std::span<const GroupPlace> /*bodies*/) const {}
+  /// Finds what acts at x, which is then asked for; threads call it for several joins at a time.
+  virtual void find(const VecX& /*x*/) const {}
   virtual double value(const VecX& x) const = 0;  ///< J
   virtual void add_gradient(const VecX& x, VecX& gradient) const = 0;
   /// Couplings that the pattern does not hold are left out: Newton then converges more slowly.
@@ -99,6 +103,8 @@ class GroupProblem : public ConstrainedEnergy {
   /// the other, each shared by all threads, then small ones whole.
   template <class Work>
   void for_each_member(const Work& work) const;
+  void find_joins(const VecX& x) const;
+  Workers* workers() const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
   /// One a node: details are condensed onto their bodies' places.

@@ -28,6 +28,7 @@ class SkinJoin : public Join {
            std::span<const JoinedPlace> joined = {});
 
   void begin(std::span<const GroupPlace> bodies) const override;
+  void find(const VecX& x) const override { touching(x); }
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;

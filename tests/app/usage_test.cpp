@@ -55,6 +55,8 @@ TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
       {"run", "small.lua", "--param", "height=tall"},
       {"run", "small.lua", "--seed", "one"},
       {"run", "small.lua", "--seed=-1"},
+      {"run", "small.lua", "--threads", "0"},
+      {"golden", "test", "--threads", "two"},
       {"run", "small.lua", "--seed=1.5"},
       {"run", "small.lua", "--seed=18446744073709551616"},
       {"run", "small.lua", "--fail-below", "nan"},
