@@ -126,6 +126,7 @@
 ---How the simulation steps.
 ---@class calot.solver
 ---@field rate? number steps a second; default 50; 1 to 2000 steps a second
+---@field motion? "static"|"dynamic" each step is a rest under its loads, or a time in which walls and bile move by their masses; default "static"
 ---@field tolerance? number dimensionless residual of equilibrium; default 1e-06; 1e-12 to 0.01
 ---@field skip_still? boolean do not compute again steps that change nothing; off only to measure what they cost; default true
 ---@field extensions? calot.extensions structural extensions at contacts
@@ -157,6 +158,8 @@
 ---@field stiffening? number b of the exponential Fung (Demiray) law; 0: neo-Hookean; default 0; 0 to 100
 ---@field fibres? calot.fibres makes the wall anisotropic; {}: as measured in human gallbladders, whose shear_modulus is 85 * kPa
 ---@field overstretch? number principal stretch above which the event overstretch is raised; default 2.2; 1.01 to 10
+---@field density? number kg/m^3; 1050 is usual; 0: without weight and inertia; default 0; 0 to 2000 kg/m^3
+---@field retardation? number how long stress lags behind a change of shape where motion is dynamic: it damps; default 0.005 * s; 0 to 1 s
 
 ---Two families of fibres (Holzapfel, Gasser, Ogden) on either side of the axis; they bear tension only.
 ---@class calot.fibres

@@ -324,6 +324,12 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
     if (field.step_time == 0) add_missed(group.missed, out);
   }
   const Timed timed(statistics.contact_s);
+  // What moves by itself may meet shapes that no tool brings near.
+  for (std::size_t k = 0; moving && k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    const double own = organ.body->largest_motion(parts.of(k, std::as_const(out.dx)));
+    pairs[k] = organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel + own);
+  }
   keep_apart(field, loads, pairs, from, to, out);
   return out;
 }

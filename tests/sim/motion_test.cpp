@@ -56,6 +56,34 @@ TEST(Motion, AFreeBallsMomentumGrowsByItsWeightAlone) {
   }
 }
 
+TEST(Motion, APartThatIsCutIsCutInTime) {
+  const double h = 0.02;
+  Field field = test::free_ball(0, h);
+  test::add_grasper(field, Vec3(0, 0, 300e-3));
+  Organ& organ = field.organs[0];
+  test::set_moving(organ, test::velocities(organ.state.x, [](const Vec3&) { return Vec3(1, 0, 0); }), h);
+  const Vec3 before = test::momentum(organ), weight(0, 0, -standard_gravity * test::mass_of(organ));
+  const double from = organ.state.x[0];
+  InstrumentPose pose = field.tools[0].pose;
+  pose.insertion += 1e-3;  // far from the ball, which moves further than its nodes are apart
+  SolveStatistics statistics;
+  const auto events = advance(field, {pose}, statistics);
+  ASSERT_TRUE(events) << to_text(events.failure());
+  EXPECT_GT(statistics.substeps, 1);
+  EXPECT_LT((test::momentum(organ) - before - h * weight).norm(), 1e-5 * before.norm());
+  EXPECT_NEAR(organ.state.x[0] - from, h * 1, 1e-6 * 40e-3);
+}
+
+TEST(Motion, ABallThatComesDownFastIsStoppedByTheSupport) {
+  const double h = 0.02;
+  const Plane floor{Vec3::Zero(), Vec3::UnitZ()};
+  Field field = test::free_ball(5e-3, h, floor);
+  Organ& organ = field.organs[0];
+  test::set_moving(organ, test::velocities(organ.state.x, [](const Vec3&) { return Vec3(0, 0, -2); }), h);
+  for (int k = 0; k < 3; ++k) ASSERT_EQ(test::wait(field), "");
+  for (const Vec3& p : organ.body->skin_positions(organ.state.x)) EXPECT_GT(p.z(), -contact_gap);
+}
+
 /// Period, s, of what `height` (m) tells of a field that swings about 0 in steps of `h`: between its upward passages
 /// after the first.
 double period(Field& field, double h, const std::function<double()>& height) {
