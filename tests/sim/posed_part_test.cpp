@@ -57,8 +57,9 @@ TEST_P(PosedPartOfType, APlaceOnAPartHasTheDerivativesOfTheFrames) {
         return other.slopes(other.frame() * local).transpose() * force;
       };
       EXPECT_LT(test::relative_error(slope(q), test::difference_gradient(work, q, pose_step)), 1e-8);
-      EXPECT_LT(test::relative_error(posed.curvature(at, force), test::difference_hessian(slope, q, pose_step)),
-                1e-7);
+      EXPECT_LT(
+          test::relative_error(posed.curvature(at, force), test::difference_hessian(slope, q, pose_step)),
+          1e-7);
       EXPECT_GT(std::abs(slope(q)[3]), 1e-3);  // it does turn with the roll
       EXPECT_EQ(std::abs(slope(q)[4]) > 1e-3, part > 0 && tool.geometry.has_jaws());
     }
@@ -81,8 +82,8 @@ TEST_P(PosedPartOfType, TheDistanceFromAPartHasItsDerivativesByPlaceAndPose) {
           1e-15);
       const VecX gradient =
           test::difference_gradient([&](const VecX& near) { return at(near).distance; }, both, pose_step);
-      const Eigen::MatrixXd hessian =
-          test::difference_hessian([&](const VecX& near) -> VecX { return at(near).gradient; }, both, pose_step);
+      const Eigen::MatrixXd hessian = test::difference_hessian(
+          [&](const VecX& near) -> VecX { return at(near).gradient; }, both, pose_step);
       EXPECT_LT(test::relative_error(d.gradient, gradient), 1e-7) << part << " " << k;
       EXPECT_LT((d.hessian - hessian).cwiseAbs().maxCoeff(), 1e-5 * (hessian.norm() + 1)) << part << " " << k;
       EXPECT_GT(d.gradient.tail<6>().norm(), 0.1);
