@@ -62,8 +62,7 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
   }
   for (const Touch& touch : organ.search.touches.at(*organ.body, organ.state.x, now, pairs, 0.0)) {
     if (!motions[touch.shape]) continue;
-    pressed.add(touch.point,
-                contact_hessian(now, touch) * carried(*motions[touch.shape], touch.at));
+    pressed.add(touch.point, contact_hessian(now, touch) * carried(*motions[touch.shape], touch.at));
     loaded = true;
   }
   const Links target = grip_links(organ, field.tools, to);

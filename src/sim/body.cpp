@@ -36,6 +36,15 @@ std::span<const int> Body::contact_points(bool broad) const {
   return all;
 }
 
+double Body::radius_at(int point) const {
+  if (skin_radii().empty()) return 0;
+  double sum = 0;
+  for (int c = 0; c < 3; ++c)
+    sum += contact_weights(point)[c] *
+           skin_radii()[static_cast<std::size_t>(skin().triangles[point / contacts_each][c])];
+  return sum;
+}
+
 double Body::core_depth() const {
   double depth = contact_guard;
   for (std::size_t row = 0; row < skin_radii().size(); ++row)

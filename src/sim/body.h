@@ -125,6 +125,8 @@ class Body {
   /// Of what the skin's points are the middles of, one a point, m: a rod's are on its centreline, and its triangles flat
   /// as lines. Empty: the skin itself is touched.
   virtual const std::vector<double>& skin_radii() const;
+  /// Of the surface around a contact point, m.
+  double radius_at(int point) const;
   /// As skin_radii(), of what no trial of a solver may reach (contact_search.h, contact_guard below the shapes).
   virtual const std::vector<double>& core_radii() const;
   /// How deep a shape may be in the surface before a trial reaches what it may not, at least, m.

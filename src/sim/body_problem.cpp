@@ -247,7 +247,8 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
 }
 
 Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
-  const DistanceSlope& d = touch.slope;
+  DistanceSlope d = touch.slope;
+  d.distance += touch.radius;  // of the point itself, as the shape curves there
   const BarrierSample& b = touch.answer;
   return touch.area * (b.second * d.gradient * d.gradient.transpose() +
                        b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));

@@ -147,7 +147,7 @@ const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const
                [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
                  state.touches.push_back({point, shape, at, slope,
                                           body.contact_sample(point, slope.distance, loads.barrier),
-                                          touched_area(body, loads, shape, point)});
+                                          touched_area(body, loads, shape, point), body.radius_at(point)});
                });
   return state.touches;
 }

@@ -93,6 +93,7 @@ struct Touch {
   DistanceSlope slope;     ///< of the surface there (Body::skin_radii)
   BarrierSample answer;    ///< of the body to it there, a unit of area
   double area = 0;         ///< m^2 that it stands for
+  double radius = 0;       ///< m, of the surface around it
 };
 
 /// What touches, found once for a state: a solve's energies and their derivatives, and after it pads, forces and report

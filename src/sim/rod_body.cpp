@@ -25,7 +25,7 @@ RodSection section_of(double young, double radius, double wall) {
 
 }  // namespace
 
-double RodBody::radius_at(double share) const {
+double RodBody::radius_along(double share) const {
   const double end = setup_.end_radius > 0 ? setup_.end_radius : setup_.radius;
   return setup_.radius + share * (end - setup_.radius);
 }
@@ -42,7 +42,7 @@ Result<RodBody> RodBody::create(const Setup& setup) {
   body.shares_ = quadrature.shares;
   std::vector<RodSection> sections;
   for (double share : body.shares_)
-    sections.push_back(section_of(3 * setup.shear_modulus, body.radius_at(share), setup.wall));
+    sections.push_back(section_of(3 * setup.shear_modulus, body.radius_along(share), setup.wall));
   Result<Rod> rod = Rod::create(std::move(quadrature), body.rest_, std::move(sections));
   if (!rod) return rod.failure();
   body.rod_ = std::move(rod).value();
@@ -82,7 +82,7 @@ void RodBody::lay_skin(const Centreline& line) {
   skin_rest_ = blend_all(skin_.stencils, skin_.stencils.value, rest_);
   skin_areas_.assign(skin_rest_.size(), 0.0);
   for (int k = 0; k <= segments; ++k) {
-    const double radius = radius_at(static_cast<double>(k) / segments);
+    const double radius = radius_along(static_cast<double>(k) / segments);
     radii_.push_back(radius);
     const bool solid = setup_.wall >= radius;
     // A trial may flatten a tube but for a hundredth of its lumen, where the section's law ends.
@@ -115,7 +115,7 @@ void RodBody::lay_bed(const Centreline& line) {
   const StencilTable& table = rod_.stencils();
   for (int row = 0; row < table.rows(); ++row) {
     const Vec3 at = blend(table, table.value, row, rest_);
-    const double around = 2 * pi * radius_at(shares_[row]) * rod_.point_lengths()[row];
+    const double around = 2 * pi * radius_along(shares_[row]) * rod_.point_lengths()[row];
     double stiffness = 0;
     for (std::size_t k = 0; k < setup_.held.size(); ++k)
       if ((at - blend(middles, middles.value, static_cast<int>(k), rest_)).norm() < setup_.held[k].radius)
@@ -141,7 +141,7 @@ void RodBody::weigh() {
 }
 
 double RodBody::row_mass(int row) const {
-  const double outer = radius_at(shares_[row]), inner = std::max(0.0, outer - setup_.wall);
+  const double outer = radius_along(shares_[row]), inner = std::max(0.0, outer - setup_.wall);
   const double lumen = pi * inner * inner, wall = pi * outer * outer - lumen;
   return rod_.point_lengths()[row] * (setup_.density * wall + setup_.liquid_density * lumen);
 }

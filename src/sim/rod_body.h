@@ -75,7 +75,7 @@ class RodBody : public Body {
  private:
   /// Of the rule's points those whose weights of the first corner are 11/12, 8/12, 5/12 and 2/12.
   static constexpr std::array<int, 4> felt_points = {0, 4, 8, 12};
-  double radius_at(double share) const;
+  double radius_along(double share) const;
   void lay_skin(const Centreline& line);
   void lay_bed(const Centreline& line);
   void weigh();

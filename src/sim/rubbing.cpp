@@ -82,7 +82,7 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   const std::vector<Pose> frames_before = shape_frames(field, present_poses(field));
   FrictionLoad now;
   ContactPlaces places_before(organ.body->skin(), before);
-  for (const auto& [point, shape, at, d, answer, area] :
+  for (const auto& [point, shape, at, d, answer, area, radius] :
        organ.search.touching(*organ.body, organ.state.x, around)) {
     const double mu = coefficient(field, shape);
     if (mu <= 0 || is_holding_jaw(holding, shape)) continue;

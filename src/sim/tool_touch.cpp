@@ -236,7 +236,7 @@ double ToolTouch::safe_share(const VecX& x, const VecX& step, double share) cons
         way = std::max(way, path->way(places.corners(pair.triangle).col(c),
                                       share * moves.corners(pair.triangle).col(c)));
       if (way < (1.0 - contact_keep) * near.of_all()) continue;
-      for (int local : body_->contact_points()) {
+      for (int local : body_->contact_points(false)) {
         const int point = pair.triangle * contacts_each + local;
         if (way < (1.0 - contact_keep) * near.of(point)) continue;
         if (path_share != share) path.emplace(tool_, part, from, interpolate(from, to, share));
