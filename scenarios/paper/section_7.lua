@@ -1,11 +1,9 @@
--- Section 7 of Moutsopoulos and Gillies (1997), the groupstructure: a gallbladder that lies on its ground is taken by its
--- fundus, lifted off, shifted across and laid down again, while the cystic duct, which a common duct ties to the
--- patient, holds it back. Organs, ducts and ground are one equilibrium, with their masses.
---
--- force_over_way.csv in the run's folder has the pull on the jaws over the way that they went.
+-- Section 7 of Moutsopoulos and Gillies (1997), the groupstructure: a gallbladder that lies on its ground is taken by
+-- its fundus, lifted off, shifted across until the cystic duct, which a common duct ties to the patient, holds it back,
+-- and laid down again, while a blunt rod pushes on its neck. Organs, ducts and ground are one equilibrium, with masses.
 
 local calot = require "calot"
-local mm, s, kPa, deg = calot.units.mm, calot.units.s, calot.units.kPa, calot.units.deg
+local mm, s, kPa = calot.units.mm, calot.units.s, calot.units.kPa
 
 local ground = -120 * mm
 local neck, fundus = { -58 * mm, 112 * mm, -109 * mm }, { -108 * mm, 78 * mm, -101 * mm }
@@ -36,7 +34,11 @@ return calot.exercise {
           },
           {
             name = "cystic_duct",
-            shape = { type = "tube", points = { neck, { -45 * mm, 121 * mm, -110 * mm }, junction }, radius = 2.2 * mm },
+            shape = {
+              type = "tube",
+              points = { neck, { -45 * mm, 121 * mm, -110 * mm }, junction },
+              radius = 2.2 * mm,
+            },
             wall = { thickness = 0.8 * mm, density = 1050 },
           },
           {
@@ -58,9 +60,13 @@ return calot.exercise {
           { from = "cystic_duct.end", to = "common_duct.middle", radius = 4 * mm },
         },
       },
-      instruments = { left = { port = "right_lateral" } },
+      ports = { scope = { -60 * mm, -30 * mm, 10 * mm } },
+      instruments = {
+        left = { port = "right_lateral" },
+        right = { port = "epigastric", type = "bipolar_electrode" },
+      },
       solver = { motion = "dynamic" },
-      laparoscope = { look_at = "gallbladder.body", distance = 100 * mm },
+      laparoscope = { port = "scope", look_at = "gallbladder.body", distance = 135 * mm },
     }
   end,
 
@@ -74,19 +80,23 @@ return calot.exercise {
   end,
 
   demo = function(t)
+    t.right:move_to({ -66 * mm, 125 * mm, -75 * mm }, { speed = 60 * mm / s })
     t.left:approach("gallbladder.fundus", { speed = 60 * mm / s })
     t.left:close()
-    t.left:move_by({ 0, 0, 35 * mm }, { speed = 25 * mm / s }) -- off the ground
-    t.left:move_by({ -15 * mm, -40 * mm, 0 }, { speed = 25 * mm / s }) -- across, until the duct holds it back
-    t.left:wait(1 * s)
-    t.left:move_by({ 0, 0, -33 * mm }, { speed = 25 * mm / s })
+    t.left:move_by({ 0, 0, 30 * mm }, { speed = 25 * mm / s }) -- off the ground
+    t.left:move_by({ -10 * mm, -32 * mm, 0 }, { speed = 25 * mm / s }) -- across, until the duct holds it back
+    t.right:move_by({ -17 * mm, -42 * mm, -28 * mm }, { speed = 20 * mm / s }) -- and a push on its body
+    t.left:wait(0.5 * s)
+    t.right:move_by({ 17 * mm, 42 * mm, 28 * mm }, { speed = 20 * mm / s })
+    t.left:move_by({ 10 * mm, 32 * mm, 0 }, { speed = 25 * mm / s })
+    t.left:move_by({ 0, 0, -29 * mm }, { speed = 25 * mm / s })
     t.left:open()
-    t.left:move_by({ 0, 0, 30 * mm })
+    t.left:move_by({ -10 * mm, -10 * mm, 20 * mm })
     t.left:wait(2 * s)
   end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 300 }, weight = 1 },
+    { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 350 }, weight = 1 },
   },
-  golden = { at = { 0 } },
+  golden = { at = { 0, 5.5 * s, 9.4 * s, 17.5 * s } },
 }

@@ -4,7 +4,7 @@
 ---A place or a vector {x, y, z} in m, in the patient's frame: x to the patient's left, y towards the head,
 ---z out of the abdomen, from the navel.
 ---@alias calot.point number[]
----@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_obj
+---@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_obj|calot.shape_tube|calot.shape_rigid
 
 ---An exercise: what a scenario returns.
 ---@class calot.exercise
@@ -95,6 +95,8 @@
 ---@class calot.anatomy
 ---@field base? "standard"|"hydrops" named anatomy to start from; calot.anatomy(name) sets it
 ---@field organs? calot.organ[] the organs; with a base, the first overrides the base's first, and so on
+---@field joints? calot.joint[] what ties organs to each other: where a duct grows out of a gallbladder
+---@field ground? calot.ground[] shapes that stay and are touched
 ---@field support? calot.support a plane that carries the organs
 ---@field table_head_up? number reverse Trendelenburg tilt; default 15 * deg; -60 to 60 deg
 ---@field table_left_down? number tilt to the patient's left; default 10 * deg; -60 to 60 deg
@@ -104,6 +106,24 @@
 ---@field point? calot.point a point on it; default { 0, 0, 0 }
 ---@field normal? calot.point its unit normal, pointing out of the solid; default { 0, 0, 1 }
 ---@field friction? number coefficient of friction of the skin on it; 0 to 0.3 for wet tissue; default 0; 0 to 1
+
+---Ties a place on one organ to one on another: its end keeps its place and direction there.
+---@class calot.joint
+---@field from string "organ.landmark", the end that is tied
+---@field to string "organ.landmark", what it is tied to
+---@field radius? number of what is held at either side; default 4 * mm; 0.5 to 50 mm
+---@field stiffness? number of all of it, N/m; default 2000; 1 to 1e+06
+
+---A shape that stays and is touched.
+---@class calot.ground
+---@field name? string its name, unique; default "ground"
+---@field type? "plane"|"capsule"|"box" a plane (point, normal), a capsule (point, to, radius), a box with round edges (point, size, radius); default "plane"
+---@field point? calot.point on the plane, a capsule's beginning, a box' centre; default { 0, 0, 0 }
+---@field normal? calot.point the plane's unit normal, out of the solid; default { 0, 0, 1 }
+---@field to? calot.point a capsule's end; default { 0, 0, 0 }
+---@field size? calot.point a box' edges along x, y and z, without its rounding; default { 0, 0, 0 }
+---@field radius? number of a capsule, and of a box' edges; default 5 * mm; 0.5 to 250 mm
+---@field friction? number coefficient of friction of what touches it; default 0; 0 to 1
 
 ---An instrument through a port.
 ---@class calot.instrument
@@ -137,10 +157,10 @@
 ---@field view? number where the laparoscope looks at an organ from nearer than this it is refined too; 0: not; default 0 * mm; 0 to 400 mm
 ---@field scheme? "condensed"|"staged" solved together with the organ, or after it as its boundary allows (the 1997 scheme, to compare with); default "condensed"
 
----A hollow organ. In calot.anatomy's overrides, only what differs.
+---A hollow organ, a duct or vessel, or a rigid thing. In calot.anatomy's overrides, only what differs.
 ---@class calot.organ
 ---@field name? string its name, unique; landmarks are written "gallbladder.fundus"; default "gallbladder"
----@field shape? calot.shape its shape at rest: type "pear", "sphere" or "obj" with their keys
+---@field shape? calot.shape its shape at rest: type "pear", "sphere", "obj", "tube" or "rigid" with their keys
 ---@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 1000
 ---@field neck? calot.point where the shape's lower pole lies; default { -50 * mm, 130 * mm, -110 * mm }
 ---@field fundus? calot.point where its upper pole points to; default { -80 * mm, 100 * mm, -60 * mm }
@@ -176,13 +196,13 @@
 ---An elastic foundation under the skin near a landmark: the cystic plate, the duct's root.
 ---@class calot.held
 ---@field name? string its name, unique within the organ; default "bed"
----@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed" the landmark it surrounds
+---@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed"|"start"|"middle"|"end"|"centre" the landmark it surrounds
 ---@field radius? number how far it reaches; default 10 * mm; 0.5 to 250 mm
 ---@field stiffness? number N/m per m^2 of skin; default 300000; 1 to 1e+10 N/m^3
 
 ---A gallbladder: round fundus, tapering body, slim neck.
 ---@class calot.shape_pear
----@field type? "pear"|"sphere"|"obj" which shape: this one is "pear"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "pear"; default "pear"
 ---@field length? number neck to fundus; 70 to 100 mm is usual; default 80 * mm; 30 to 250 mm
 ---@field width? number largest diameter; 30 to 40 mm is usual; default 35 * mm; 10 to 120 mm
 ---@field refine? number control nodes are closer by this factor near the fundus; default 1; 1 to 8
@@ -190,14 +210,31 @@
 
 ---A ball, as in the paper's experiments.
 ---@class calot.shape_sphere
----@field type? "pear"|"sphere"|"obj" which shape: this one is "sphere"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "sphere"; default "pear"
 ---@field radius? number radius at rest; default 20 * mm; 5 to 100 mm
 
 ---A closed control mesh from a Wavefront OBJ file.
 ---@class calot.shape_obj
----@field type? "pear"|"sphere"|"obj" which shape: this one is "obj"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "obj"; default "pear"
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
+
+---A duct or a vessel: a tube along a line; solid where its wall is as thick as its radius.
+---@class calot.shape_tube
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "tube"; default "pear"
+---@field points calot.point[] its middle at rest, from its start to its end: two points or more
+---@field radius? number outer radius; default 2.5 * mm; 0.3 to 20 mm
+---@field end_radius? number outer radius at its end; 0: as at its start; default 0 * mm; 0 to 20 mm
+---@field nodes? number of its middle line; default 11; 5 to 60
+---@field pressure? number gauge pressure of what it carries; default 0 * kPa; -10 to 40 kPa
+
+---A rigid thing, such as a stone: a box with round edges, or a ball.
+---@class calot.shape_rigid
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "rigid"; default "pear"
+---@field size? calot.point edges of the box without its rounding; { 0, 0, 0 }: a ball; default { 0, 0, 0 }
+---@field rounding? number radius of its edges, or of the ball; default 5 * mm; 0.5 to 50 mm
+---@field centre? calot.point where it is; default { 0, 0, 0 }
+---@field density? number kg/m^3; default 1500; 100 to 20000 kg/m^3
 
 ---Where an instrument touches, as contact returns it.
 ---@class calot.contact

@@ -16,7 +16,8 @@ class Watch {
       for (const OrganState& organ : report.organs) volumes_.push_back(organ.volume);
     deepest = std::max(deepest, world.deepest_penetration());
     for (std::size_t k = 0; k < volumes_.size(); ++k)
-      swelling = std::max(swelling, std::abs(report.organs[k].volume / volumes_[k] - 1));
+      if (volumes_[k] > 0)  // a duct keeps none
+        swelling = std::max(swelling, std::abs(report.organs[k].volume / volumes_[k] - 1));
     for (const InstrumentState& tool : report.instruments)
       strongest = std::max(strongest, tool.tip_force.norm());
   }
@@ -35,12 +36,11 @@ struct Shipped {
 };
 
 class Scenario : public ::testing::TestWithParam<Shipped> {};
-INSTANTIATE_TEST_SUITE_P(Shipped, Scenario,
-                         ::testing::Values(Shipped{"grasp_and_traction", true, true},
-                                           Shipped{"paper/figure_1", false, false},
-                                           Shipped{"paper/figure_2", true, false},
-                                           Shipped{"paper/figure_4", true, false},
-                                           Shipped{"paper/section_6", true, false}));
+INSTANTIATE_TEST_SUITE_P(
+    Shipped, Scenario,
+    ::testing::Values(Shipped{"grasp_and_traction", true, true}, Shipped{"paper/figure_1", false, false},
+                      Shipped{"paper/figure_2", true, false}, Shipped{"paper/figure_4", true, false},
+                      Shipped{"paper/section_6", true, false}, Shipped{"paper/section_7", true, false}));
 
 TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
   std::vector<test::Stored> stored = test::stored_goldens();
