@@ -11,6 +11,7 @@
 #include "lua/load_exercise.h"
 #include "render/offscreen.h"
 #include "render/png.h"
+#include "session/force_plot.h"
 #include "session/metrics.h"
 #include "view/build_scene.h"
 
@@ -187,6 +188,10 @@ std::optional<Failure> make_report(Played& played) {
   played.report.score = score(played.exercise, played.report.metrics, session.progress);
   played.json = report_json(played.exercise, session, played.report);
   if (played.output.empty()) return std::nullopt;
+  if (const std::string plot = force_plot(played.exercise.scene, session.traces); !plot.empty()) {
+    const Result<std::string> drawn = write_text(played.output / "force_over_way.svg", plot);
+    if (!drawn) return drawn.failure();
+  }
   const Result<std::string> written = write_text(played.output / "report.json", played.json);
   return written ? std::nullopt : std::optional<Failure>(written.failure());
 }

@@ -7,6 +7,8 @@
 // A body that is a line carries only places on it so. What stands off it is held by struts instead, to several points of
 // the line: springs that keep a length. They leave free only a turn about that line, which a rod does not resist either.
 //
+// Two lines in one, end to end, are a hinge: struts along them resist no bend.
+//
 // Nothing is loaded at rest, nor when all moves as one rigid body; a force and what answers it lie on one line.
 
 #include "base/status.h"

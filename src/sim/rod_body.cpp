@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/units.h"
@@ -41,10 +42,15 @@ Result<RodBody> RodBody::create(const Setup& setup) {
   RodQuadrature quadrature = line->quadrature();
   body.shares_ = quadrature.shares;
   std::vector<RodSection> sections;
-  for (double share : body.shares_)
+  double axial = std::numeric_limits<double>::infinity();
+  for (double share : body.shares_) {
     sections.push_back(section_of(3 * setup.shear_modulus, body.radius_along(share), setup.wall));
+    axial = std::min(axial, sections.back().axial);
+  }
   Result<Rod> rod = Rod::create(std::move(quadrature), body.rest_, std::move(sections));
   if (!rod) return rod.failure();
+  // Where nothing loads it, forces are but rounding: a strain of 1e-4 is what they are judged beside then.
+  body.least_force_ = 1e-4 * axial;
   body.rod_ = std::move(rod).value();
   for (double length : body.rod_.point_lengths()) body.length_ += length;
   body.lay_skin(line.value());
@@ -75,7 +81,8 @@ Result<RodBody> RodBody::create(const Setup& setup) {
 /// Each segment between two points is two triangles flat as lines, one from either end, so that their contact points lie
 /// evenly on it.
 void RodBody::lay_skin(const Centreline& line) {
-  const int segments = std::max(4, static_cast<int>(std::ceil(length_ / rod_spacing)));
+  // An even number, so that the middle is a point.
+  const int segments = std::max(4, 2 * static_cast<int>(std::ceil(0.5 * length_ / rod_spacing)));
   std::vector<double> parameters;
   for (int k = 0; k <= segments; ++k) parameters.push_back(static_cast<double>(line.spans()) * k / segments);
   skin_.stencils = line.stencils(parameters);
@@ -152,7 +159,7 @@ double RodBody::value(const VecX& x) const {
 
 void RodBody::add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   rod_.add_gradient(x, setup_.pressure, gradient);
-  largest_internal = std::max(largest_node(gradient), largest_node(weight_));
+  largest_internal = std::max({largest_node(gradient), largest_node(weight_), least_force_});
   bed_.add_gradient(rod_.stencils(), x, gradient);
 }
 

@@ -84,6 +84,7 @@ class RodBody : public Body {
   Rod rod_;
   VecX rest_, weight_;
   double size_ = 0, length_ = 0;
+  double least_force_ = 0;  ///< N
   std::vector<double> edge_lengths_;
   BlockMatrix constant_{0, {}};
   std::optional<BlockMatrix> mass_;

@@ -12,6 +12,14 @@
 namespace calot {
 namespace {
 
+OrganDefinition duct(std::vector<Vec3> points) {
+  OrganDefinition organ;
+  organ.name = "duct";
+  organ.shape = TubeShape{.points = std::move(points)};
+  organ.wall.thickness = 1e-3;
+  return organ;
+}
+
 using test::sound_scene;
 using testing::HasSubstr;
 using units::deg;
@@ -203,6 +211,51 @@ const std::vector<Refusal>& refusals() {
        "scene.instruments.right.port", "already used by instrument \"left\"", "free: epigastric"},
       {"PortUsedByTheScope", [](auto& s) { s.instruments[1].port = "umbilical"; },
        "scene.instruments.right.port", "already used by the laparoscope", "free:"},
+      {"TubeOfOnePoint", [](auto& s) { s.anatomy.organs.push_back(duct({Vec3::Zero()})); },
+       "scene.anatomy.organs[2].shape.points", "along 1 points", "its start and its end"},
+      {"TubeThickerThanLong",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(3e-3, 0, 0)}));
+       },
+       "scene.anatomy.organs[2].shape.points", "shorter than it is thick", "longer or thinner"},
+      {"TubeFarAway",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30, 0, 0)}));
+       },
+       "scene.anatomy.organs[2].shape.points[2]", "(30, 0, 0) m", "* mm"},
+      {"TubeThatIsFilled",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+         s.anatomy.organs[1].bile.fill_volume = 1e-6;
+       },
+       "scene.anatomy.organs[2].bile", "keeps no filling", "a tube has a pressure"},
+      {"TubeHeldAtANeck",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+         s.anatomy.organs[1].held = {{"root", "neck", 5e-3, 1e5}};
+       },
+       "scene.anatomy.organs[2].held[1].landmark", "unknown landmark \"neck\"", "start, middle, end"},
+      {"StoneThatIsHeld",
+       [](auto& s) {
+         OrganDefinition stone = duct({});
+         stone.shape = RigidShape{};
+         stone.held = {{"root", "centre", 5e-3, 1e5}};
+         s.anatomy.organs.push_back(stone);
+       },
+       "scene.anatomy.organs[2].held", "a rigid thing is not held", "support it"},
+      {"JointToNowhere",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+         s.anatomy.joints = {{.from = "duct.start", .to = "gallbladder.nek"}};
+       },
+       "scene.anatomy.joints[1].to", "\"gallbladder.nek\"", "gallbladder.neck"},
+      {"JointToItself",
+       [](auto& s) { s.anatomy.joints = {{.from = "gallbladder.neck", .to = "gallbladder.fundus"}}; },
+       "scene.anatomy.joints[1].to", "tied to itself", "another organ"},
+      {"GroundTwice", [](auto& s) { s.anatomy.ground.resize(2); }, "scene.anatomy.ground[2].name",
+       "\"ground\" is given twice", "rename"},
+      {"GroundNormal", [](auto& s) { s.anatomy.ground = {{.normal = Vec3(0, 0, 2)}}; },
+       "scene.anatomy.ground[1].normal", "length must be 1", "give (0, 0, 1)"},
       {"SupportFriction", [](auto& s) { s.anatomy.support->friction = -0.1; },
        "scene.anatomy.support.friction", "coefficient of friction", "give 0 to 1"},
       {"Friction", [](auto& s) { s.instruments[0].friction = 1.5; }, "scene.instruments.left.friction",

@@ -1,0 +1,117 @@
+// Scenes of ducts, rigid things and ground: what each kind of body is to the others.
+
+#include <gtest/gtest.h>
+
+#include "rig.h"
+#include "sim/settle_field.h"
+#include "support/bodies.h"
+
+namespace calot {
+namespace {
+
+OrganDefinition duct(const std::vector<Vec3>& points) {
+  OrganDefinition organ;
+  organ.name = "duct";
+  organ.shape = TubeShape{.points = points, .radius = 3e-3};
+  organ.wall.thickness = 1e-3;
+  return organ;
+}
+
+SceneDefinition scene_of(const std::vector<OrganDefinition>& organs) {
+  SceneDefinition scene = test::scene_with(InstrumentType::bipolar_electrode);
+  scene.anatomy = {};
+  scene.anatomy.organs = organs;
+  scene.anatomy.table_head_up = scene.anatomy.table_left_down = 0;
+  scene.laparoscope.look_at = landmark_names(organs).front();
+  return scene;
+}
+
+World made(const SceneDefinition& scene) {
+  Result<World> world = World::create(scene);
+  EXPECT_TRUE(world) << to_text(world.failure());
+  return std::move(world).value();
+}
+
+/// Of all ground on an organ, N.
+Vec3 ground_force(const World& world, int organ) {
+  const Field& field = world.field();
+  const Organ& of = field.organs[static_cast<std::size_t>(organ)];
+  const ContactLoads now = contact_loads(field, of, present_poses(field));
+  Vec3 sum = Vec3::Zero();
+  for (const ContactForce& force :
+       contact_forces(*of.body, of.state.x, now, gather_pairs(*of.body, of.state.x, now, -contact_margin)))
+    sum -= force.on_shape;
+  return sum;
+}
+
+TEST(Kinds, ADuctHeldAtBothEndsGivesWayToARodAndComesBack) {
+  OrganDefinition organ = duct({{-100e-3, 90e-3, -100e-3}, {-60e-3, 90e-3, -100e-3}});
+  organ.held = {{"start", "start", 6e-3, 1e6}, {"end", "end", 6e-3, 1e6}};
+  World world = made(scene_of({organ}));
+  test::Driver driver(world);
+  const std::vector<Vec3> before = world.skin_positions(0);
+  const Vec3 middle = world.landmark("duct.middle");
+  EXPECT_NEAR((middle - Vec3(-80e-3, 90e-3, -97e-3)).norm(), 0, 1e-9) << "on the tube, above its line";
+  ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 5e-3), 0, 4) && driver.go(middle - Vec3(0, 0, 3e-3), 0, 4))
+      << driver.why();
+  const InstrumentState pressed = world.report().instruments[0];
+  EXPECT_GT(pressed.tip_force.z(), 0.02);
+  EXPECT_LT(world.landmark("duct.middle").z(), middle.z() - 1e-3);
+  EXPECT_LT(world.deepest_penetration(), 1e-9) << "its middle line stays outside";
+  ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 10e-3), 0, 4)) << driver.why();
+  for (std::size_t k = 0; k < before.size(); ++k)
+    EXPECT_LT((world.skin_positions(0)[k] - before[k]).norm(), 1e-6);  // m, of 40 mm: the solver's tolerance
+}
+
+TEST(Kinds, WhatLiesLooseOnTheGroundPressesOnItWithItsWeight) {
+  OrganDefinition stone;
+  stone.name = "stone";
+  stone.shape =
+      RigidShape{.size = Vec3(8e-3, 4e-3, 0), .rounding = 6e-3, .centre = Vec3(-60e-3, 90e-3, -110e-3)};
+  OrganDefinition loose =
+      duct({{-100e-3, 60e-3, -110e-3}, {-80e-3, 66e-3, -108e-3}, {-60e-3, 60e-3, -110e-3}});
+  loose.wall.density = 1050;
+  SceneDefinition scene = scene_of({stone, loose});
+  scene.anatomy.ground = {{.name = "floor", .point = Vec3(0, 0, -120e-3), .friction = 0.2}};
+  scene.solver.motion = SolverMotion::dynamics;
+  World world = made(scene);
+  const auto weight = [&](std::size_t organ) {
+    const VecX& load = world.field().organs[organ].body->kept_load();
+    return test::net_force(load);
+  };
+  for (int step = 0; step < 5; ++step)
+    ASSERT_TRUE(world.step({.instruments = {world.report().instruments[0].pose}}));
+  for (int organ : {0, 1}) {
+    const Vec3 down = weight(static_cast<std::size_t>(organ));
+    EXPECT_LT(down.z(), -1e-3);
+    EXPECT_LT((ground_force(world, organ) + down).norm(), 1e-3 * down.norm()) << organ;
+  }
+}
+
+TEST(Kinds, AJointHoldsADuctThatNothingElseHolds) {
+  OrganDefinition held = duct({{-100e-3, 90e-3, -100e-3}, {-60e-3, 90e-3, -100e-3}});
+  held.held = {{"start", "start", 6e-3, 1e6}, {"end", "end", 6e-3, 1e6}};
+  OrganDefinition tied = duct({{-80e-3, 90e-3, -100e-3}, {-80e-3, 90e-3, -130e-3}});
+  tied.name = "tied";
+  tied.wall.shear_modulus = held.wall.shear_modulus = 3e6;  // so that its weight bends it by little
+  tied.wall.density = 1050;
+  SceneDefinition scene = scene_of({held, tied});
+  scene.solver.motion = SolverMotion::dynamics;  // unstressed it could swing freely: it sinks to where it hangs
+  EXPECT_FALSE(World::create(scene)) << "loose, it falls";
+  scene.anatomy.joints = {{.from = "tied.start", .to = "duct.middle", .radius = 4e-3}};
+  World world = made(scene);
+  const VecX& x = world.field().organs[1].state.x;
+  EXPECT_NEAR((x.tail<3>() - Vec3(-80e-3, 90e-3, -130e-3)).norm(), 0, 1e-3) << "it hangs where it was drawn";
+  EXPECT_LT(x.tail<3>().z(), -130e-3 - 1e-7) << "by its weight";
+}
+
+TEST(Kinds, WhatStartsInTheGroundIsRefusedByName) {
+  SceneDefinition scene = scene_of({duct({{-100e-3, 90e-3, -100e-3}, {-70e-3, 90e-3, -100e-3}})});
+  scene.anatomy.ground = {{.point = Vec3(0, 0, -101e-3)}};
+  const Result<World> world = World::create(scene);
+  ASSERT_FALSE(world);
+  EXPECT_NE(to_text(world.failure()).find("'duct' starts 2"), std::string::npos) << to_text(world.failure());
+}
+
+}  // namespace
+}  // namespace calot
