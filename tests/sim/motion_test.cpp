@@ -344,6 +344,7 @@ double lowest(const World& world) {
 }
 
 TEST(Motion, AScenesLooseOrganSinksOntoItsSupportAndStaysThere) {
+  CALOT_SLOW_WHEN_SANITIZED("a sinking organ");
   SceneDefinition scene = loose_scene();
   Result<World> world = World::create(scene);
   ASSERT_TRUE(world) << to_text(world.failure());

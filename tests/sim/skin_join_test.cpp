@@ -10,6 +10,7 @@
 #include "sim/joint.h"
 #include "sim/rigid_body.h"
 #include "sim/self_contact.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace skin_join_test {
@@ -140,6 +141,7 @@ GroupRig held_balls(double apart_by) {
 }
 
 TEST(SkinJoin, BallsPressedTogetherMeetAndDoNotOverlap) {
+  CALOT_SLOW_WHEN_SANITIZED("two balls pressed together");
   GroupRig rig = held_balls(0.3e-3);
   const auto& join = dynamic_cast<const SkinJoin&>(*rig.joins[0]);
   for (int step = 0; step < 5; ++step) {
@@ -205,6 +207,7 @@ void hold_ends(GroupRig& rig, int body, double stiffness) {
 }
 
 TEST(SkinJoin, ADuctDrawnAcrossABallStaysOutside) {
+  CALOT_SLOW_WHEN_SANITIZED("a duct drawn across a ball");
   GroupRig rig({test::straight_duct(Vec3(-30e-3, -30e-3, 4e-3), Vec3(30e-3, -30e-3, 4e-3), thin),
                 test::soft_ball(Vec3::Zero())});
   hold_ends(rig, 0, 10);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -18,6 +19,7 @@ std::vector<std::uint64_t> hashes(const SceneDefinition& scene, int threads) {
 }
 
 TEST(Threads, SameBitsInEachStepOfAGraspWithExtensionsAndFriction) {
+  CALOT_SLOW_WHEN_SANITIZED("a grasp at three numbers of threads");
   SceneDefinition scene = test::ball_scene();
   scene.solver.extension_levels = 1;
   scene.instruments[0].friction = 0.2;

@@ -159,9 +159,9 @@ TEST(ToolTouch, NoSafeStepTakesAToolThroughASkin) {
   EXPECT_GT(share, 0.02);
   EXPECT_LT(share, 0.6);
   const auto gap = [&](double part) {  // to the cores
-    const VecX at = rig.x() + part * step;
+    const VecX at = rig.x() + part * step, of_skin = at.head(at.size() - 6);
     double least = 1;
-    ContactPlaces places(rig.body.skin(), at.head(at.size() - 6));
+    ContactPlaces places(rig.body.skin(), of_skin);
     for (const Shape& shape : instrument_shapes(rig.tool.trocar, pose_at(at.tail<6>()), rig.tool.geometry))
       for (int p = 0; p < contacts_each * static_cast<int>(rig.body.skin().triangles.size()); p += 7)
         least = std::min(least, signed_distance(core_of(contact_shape(shape)), places.at(p)));
