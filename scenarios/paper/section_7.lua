@@ -85,9 +85,9 @@ return calot.exercise {
     t.left:close()
     t.left:move_by({ 0, 0, 30 * mm }, { speed = 25 * mm / s }) -- off the ground
     t.left:move_by({ -10 * mm, -32 * mm, 0 }, { speed = 25 * mm / s }) -- across, until the duct holds it back
-    t.right:move_by({ -17 * mm, -42 * mm, -28 * mm }, { speed = 20 * mm / s }) -- and a push on its body
+    t.right:move_by({ -26 * mm, -30 * mm, -22 * mm }, { speed = 20 * mm / s }) -- and a push on its body
     t.left:wait(0.5 * s)
-    t.right:move_by({ 17 * mm, 42 * mm, 28 * mm }, { speed = 20 * mm / s })
+    t.right:move_by({ 26 * mm, 30 * mm, 22 * mm }, { speed = 20 * mm / s })
     t.left:move_by({ 10 * mm, 32 * mm, 0 }, { speed = 25 * mm / s })
     t.left:move_by({ 0, 0, -29 * mm }, { speed = 25 * mm / s })
     t.left:open()
@@ -98,5 +98,5 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 350 }, weight = 1 },
   },
-  golden = { at = { 0, 5.5 * s, 9.4 * s, 17.5 * s } },
+  golden = { at = { 0, 5.5 * s, 9 * s, 17 * s } },
 }

@@ -303,19 +303,23 @@ std::optional<Failure> check_action(const Tool& tool, InstrumentAction action) {
 
 namespace {
 
-/// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on.
+/// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on. Without
+/// friction, whose anchors belong to shapes that the tools' will come before.
 Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy, bool dynamic) {
   const bool alone = anatomy.joints.empty() &&
                      std::all_of(field.organs.begin(), field.organs.end(),
                                  [](const Organ& organ) { return is_hollow(organ.definition.shape); });
   if (alone) return true;
   SolveStatistics statistics;
+  const std::vector<Ground> rough = field.ground;
+  for (Ground& ground : field.ground) ground.friction = 0;
   const GroupSnapshot before = snapshot(field);
   Result<bool> rested = settle_field(field, "at rest", statistics);
   if (!rested && dynamic) {
     restore(field, before);
     rested = sink_field(field, statistics);
   }
+  field.ground = rough;
   if (!rested) return rested;
   for (Organ& organ : field.organs) {
     const ShellBody* shell = shell_of(organ);
