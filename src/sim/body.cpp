@@ -45,6 +45,23 @@ double Body::radius_at(int point) const {
   return sum;
 }
 
+double Body::thickest() const {
+  const std::vector<double>& radii = skin_radii();
+  return radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
+}
+
+Eigen::AlignedBox3d Body::box_of(std::span<const int> nodes, const VecX& x, double wider) const {
+  Eigen::AlignedBox3d box;
+  for (int node : nodes) {
+    const Vec3 at = x.segment<3>(Eigen::Index{3} * node);
+    if (node < coarse_nodes())
+      box.extend(at);
+    else
+      wider += 0.5 * at.norm();
+  }
+  return {box.min() - Vec3::Constant(wider), box.max() + Vec3::Constant(wider)};
+}
+
 double Body::core_depth() const {
   double depth = contact_guard;
   for (std::size_t row = 0; row < skin_radii().size(); ++row)

@@ -120,11 +120,13 @@ class Body {
   virtual double strain_energy(const VecX& x) const = 0;
   virtual double max_stretch(const VecX& x) const = 0;
 
-  /// What is touched, by triangles; see skin_radius().
+  /// What is touched, by triangles; see skin_radii().
   virtual const Tessellation& skin() const = 0;
   /// Of what the skin's points are the middles of, one a point, m: a rod's are on its centreline, and its triangles flat
   /// as lines. Empty: the skin itself is touched.
   virtual const std::vector<double>& skin_radii() const;
+  /// The largest of them, 0 without any.
+  double thickest() const;
   /// Of the surface around a contact point, m.
   double radius_at(int point) const;
   /// As skin_radii(), of what no trial of a solver may reach (contact_search.h, contact_guard below the shapes).
@@ -148,6 +150,8 @@ class Body {
   /// Nodes that each patch of skin depends on. As the weights are not negative it lies in the box of the coarse ones
   /// among them, widened by half of each detail's length, whatever the state.
   virtual const std::vector<std::vector<int>>& face_nodes() const = 0;
+  /// That box of some nodes, `wider` (m) on all sides.
+  Eigen::AlignedBox3d box_of(std::span<const int> nodes, const VecX& x, double wider = 0) const;
   /// How far the skin may be outside that box, m.
   virtual double beyond_nodes() const { return 0; }
   /// Triangles of each patch, which follow each other: those of the first patch first.

@@ -38,6 +38,24 @@ Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactL
 
 /// Fails (scenario) where an organ at rest is inside the ground.
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads);
+/// An organ of what is not solved for alone, where it was drawn: its landmarks are still to come. Its skin does not meet
+/// itself. Failures of the body are of its shape.
+template <class Kind>
+Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kind> body,
+                                   const OrganSetting& setting) {
+  if (!body) {
+    Failure failure = body.failure();
+    for (Problem& problem : failure.problems) problem.place = {"", 0, ".shape"};
+    return failure;
+  }
+  const auto drawn = std::make_shared<const Kind>(std::move(body).value());
+  if (std::optional<Failure> failure = check_clear_of_ground(*drawn, setting.loads)) return *failure;
+  RestedOrgan made{Organ{definition, drawn, {}, {}, {}, {}, {}, {}, {}, {}},
+                   NewtonWorkspace(drawn->pattern())};
+  made.organ.state.x = drawn->rest();
+  made.organ.search.own.active = false;
+  return made;
+}
 
 /// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
 std::vector<Problem> mesh_problems(const SceneDefinition& scene);

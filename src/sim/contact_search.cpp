@@ -9,26 +9,8 @@ namespace {
 /// Of each face of the control mesh, which holds its skin.
 std::vector<Eigen::AlignedBox3d> face_boxes(const Body& body, const VecX& x) {
   std::vector<Eigen::AlignedBox3d> boxes;
-  for (const std::vector<int>& nodes : body.face_nodes()) {
-    Eigen::AlignedBox3d box;
-    double details = 0;
-    for (int node : nodes) {
-      const Vec3 at = x.segment<3>(Eigen::Index{3} * node);
-      if (node < body.coarse_nodes())
-        box.extend(at);
-      else
-        details += 0.5 * at.norm();
-    }
-    const Vec3 wider = Vec3::Constant(details);
-    boxes.emplace_back(box.min() - wider, box.max() + wider);
-  }
+  for (const std::vector<int>& nodes : body.face_nodes()) boxes.push_back(body.box_of(nodes, x));
   return boxes;
-}
-
-/// How far the surface may be outside the boxes of its faces' nodes, m.
-double thickest(const Body& body) {
-  const std::vector<double>& radii = body.skin_radii();
-  return body.beyond_nodes() + (radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end()));
 }
 
 /// Adds the pairs with a shape that are nearer than `reach`.
@@ -37,7 +19,7 @@ void pairs_within(int index, const Shape& shape, const Body& body,
                   std::vector<ContactPair>& out) {
   const int each = body.triangles_each();
   const Bounds b = bounds(shape);
-  const double thick = thickest(body);
+  const double thick = body.beyond_nodes() + body.thickest();  // outside the boxes
   const Eigen::AlignedBox3d near(b.lower - Vec3::Constant(reach + thick),
                                  b.upper + Vec3::Constant(reach + thick));
   for (int f = 0; f < static_cast<int>(faces.size()); ++f) {

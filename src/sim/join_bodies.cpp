@@ -15,23 +15,9 @@ struct TiedPlace {
   JoinedPlace place;
 };
 
-/// The organ and the skin point of "organ.landmark", which validation has found.
-std::pair<int, int> find(const Field& field, const std::string& name) {
-  const std::size_t dot = name.find('.');
-  for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (field.organs[k].definition.name == name.substr(0, dot))
-      return {static_cast<int>(k), field.organs[k].landmarks.at(name.substr(dot + 1))};
-  return {0, 0};
-}
-
-double thickness(const Body& body) {
-  const std::vector<double>& radii = body.skin_radii();
-  return radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
-}
-
 Result<TiedPlace> tie(const JointDefinition& joint, Field& field) {
-  const auto [one, from] = find(field, joint.from);
-  const int other = find(field, joint.to).first;
+  const auto [one, from] = find_landmark(field.organs, joint.from);  // validation has found both
+  const int other = find_landmark(field.organs, joint.to).first;
   const Body &first = *field.organs[one].body, &second = *field.organs[other].body;
   const Vec3 place = first.skin_rest()[from];
   Result<JointLinks> links = joint_links(first, second, {one, other}, place, joint.radius, joint.stiffness);
@@ -40,7 +26,7 @@ Result<TiedPlace> tie(const JointDefinition& joint, Field& field) {
   // Where one grows out of the other they lie in each other: as far as both are thick there.
   constexpr double fold = 3e-3;  // m, of the wall around it
   return TiedPlace{{std::min(one, other), std::max(one, other)},
-                   {place, joint.radius + 2 * (thickness(first) + thickness(second)) + fold}};
+                   {place, joint.radius + 2 * (first.thickest() + second.thickest()) + fold}};
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 namespace calot {
 
-/// Makes the field's joins from its organs at rest. Fails (scenario) where a joint cannot be made and where two bodies
-/// that are not tied there are in each other at rest.
+/// Makes the field's joins from its organs at rest. Fails (scenario) where a joint cannot be made. Bodies that are in
+/// each other at rest without being tied there are not looked for.
 Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field);
 
 }  // namespace calot

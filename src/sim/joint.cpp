@@ -3,10 +3,8 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <map>
-#include <numbers>
 
 #include "fem/links.h"
-#include "sim/rod_body.h"
 
 namespace calot {
 namespace {
@@ -113,14 +111,6 @@ Result<JointLinks> joint_links(const Body& one, const Body& other, std::array<in
   }
   out.stiffness = stiffness / held;
   return out;
-}
-
-double end_stiffness(const RodBody& rod, bool last) {
-  const RodBody::Setup& setup = rod.setup();
-  const double outer = last && setup.end_radius > 0 ? setup.end_radius : setup.radius;
-  const double inner = std::max(0.0, outer - setup.wall);
-  const double section = std::numbers::pi * (outer * outer - inner * inner);
-  return 3 * setup.shear_modulus * section / (2 * outer);
 }
 
 void Joint::begin(std::span<const GroupPlace> bodies) const {

@@ -39,9 +39,6 @@ struct JointLinks {
 Result<JointLinks> joint_links(const Body& one, const Body& other, std::array<int, 2> bodies,
                                const Vec3& place, double radius, double stiffness);
 
-/// N/m: that of a piece of a rod as long as it is thick, at its first (share 0) or last (share 1) end.
-double end_stiffness(const class RodBody& rod, bool last);
-
 class Joint : public Join {
  public:
   explicit Joint(JointLinks links) : links_(std::move(links)) {}

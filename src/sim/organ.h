@@ -85,6 +85,9 @@ struct RestedOrgan {
 /// organ of that index.
 Failure at_organ(Failure failure, std::size_t index);
 
+/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
+std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name);
+
 /// A failed solve in words: what happened, and what to change.
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);
 

@@ -120,21 +120,13 @@ TriMesh rounded_box(const Vec3& size, double rounding, const Vec3& centre, doubl
 Result<RestedOrgan> make_rigid_organ(const OrganDefinition& definition, const OrganSetting& setting) {
   const auto& shape = std::get<RigidShape>(definition.shape);
   constexpr double spacing = 1.5e-3;  // m: contact points lie between
-  Result<RigidBody> body =
+  Result<RestedOrgan> made = organ_as_drawn(
+      definition,
       RigidBody::create({definition.name, rounded_box(shape.size, shape.rounding, shape.centre, spacing),
-                         shape.density, setting.up});
-  if (!body) {
-    Failure failure = body.failure();
-    for (Problem& problem : failure.problems) problem.place = {"", 0, ".shape"};
-    return failure;
-  }
-  const auto rigid = std::make_shared<const RigidBody>(std::move(body).value());
-  if (std::optional<Failure> failure = check_clear_of_ground(*rigid, setting.loads)) return *failure;
-  RestedOrgan made{Organ{definition, rigid, {}, {}, {}, {}, {}, {}, {}, {}},
-                   NewtonWorkspace(rigid->pattern())};
-  made.organ.state.x = rigid->rest();
-  for (const std::string& landmark : landmarks_of(definition.shape)) made.organ.landmarks[landmark] = 0;
-  made.organ.search.own.active = false;
+                         shape.density, setting.up}),
+      setting);
+  if (made)
+    for (const std::string& landmark : landmarks_of(definition.shape)) made->organ.landmarks[landmark] = 0;
   return made;
 }
 

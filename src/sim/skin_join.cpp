@@ -16,19 +16,6 @@ constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 
 
 using Box = Eigen::AlignedBox3d;
 
-/// Of what hangs on some nodes.
-Box box_of(const Body& body, const std::vector<int>& nodes, const VecX& x, double wider) {
-  Box box;
-  for (int node : nodes) {
-    const Vec3 at = x.segment<3>(Eigen::Index{3} * node);
-    if (node < body.coarse_nodes())
-      box.extend(at);
-    else
-      wider += 0.5 * at.norm();
-  }
-  return {box.min() - Vec3::Constant(wider), box.max() + Vec3::Constant(wider)};
-}
-
 /// Of the skin's points where these lie beyond the nodes: as one piece, and what that leaves.
 Box motion_beyond(const Body& body, const VecX& dx) {
   const Eigen::Map<const Eigen::Matrix3Xd> moves(dx.data(), 3, body.nodes());
@@ -53,8 +40,7 @@ std::vector<int> nodes_of(const Body& body, const std::vector<int>& patches) {
 
 SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> joined) const {
   Side side;
-  const std::vector<double>& radii = body.skin_radii();
-  if (!radii.empty()) side.radius = *std::max_element(radii.begin(), radii.end());
+  side.radius = body.thickest();
   const std::vector<Vec3>& rest = body.skin_rest();
   const auto left_out = [&](int point) {
     return std::any_of(joined.begin(), joined.end(), [&](const JoinedPlace& joint) {
@@ -140,7 +126,7 @@ void SkinJoin::gather_patches(const VecX& x) const {
     const Side& side = sides_[k];
     const VecX part = side.part(x);
     for (const std::vector<int>& nodes : side.body->face_nodes()) {
-      boxes[k].push_back(box_of(*side.body, nodes, part, side.radius + side.body->beyond_nodes()));
+      boxes[k].push_back(side.body->box_of(nodes, part, side.radius + side.body->beyond_nodes()));
       whole[k].extend(boxes[k].back());
     }
   }

@@ -36,18 +36,8 @@ Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSett
     for (const Landmark& landmark : landmark_rows())
       if (region.landmark == landmark.name && has_landmark(shape, landmark))
         setup.held.push_back({landmark.along, region.radius, region.stiffness});
-  Result<RodBody> body = RodBody::create(setup);
-  if (!body) {
-    Failure failure = body.failure();
-    for (Problem& problem : failure.problems) problem.place = {"", 0, ".shape"};
-    return failure;
-  }
-  const auto rod = std::make_shared<const RodBody>(std::move(body).value());
-  if (std::optional<Failure> failure = check_clear_of_ground(*rod, setting.loads)) return *failure;
-  RestedOrgan made{Organ{definition, rod, {}, {}, {}, {}, {}, {}, {}, {}}, NewtonWorkspace(rod->pattern())};
-  made.organ.state.x = rod->rest();
-  made.organ.landmarks = tube_landmarks(definition.shape, *rod);
-  made.organ.search.own.active = false;  // its points stand for what is around them
+  Result<RestedOrgan> made = organ_as_drawn(definition, RodBody::create(setup), setting);
+  if (made) made->organ.landmarks = tube_landmarks(definition.shape, *made->organ.body);
   return made;
 }
 

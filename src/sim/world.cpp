@@ -34,17 +34,6 @@ Vec3 up_direction(const AnatomyDefinition& anatomy) {
   throw std::logic_error("no " + what + " is called '" + name + "'");
 }
 
-/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
-std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
-  const std::size_t dot = name.find('.');
-  for (std::size_t k = 0; k < organs.size() && dot != std::string::npos; ++k) {
-    if (organs[k].definition.name != name.substr(0, dot)) continue;
-    const auto found = organs[k].landmarks.find(name.substr(dot + 1));
-    if (found != organs[k].landmarks.end()) return {static_cast<int>(k), found->second};
-  }
-  return {0, -1};
-}
-
 }  // namespace
 
 struct World::Impl {
@@ -502,8 +491,8 @@ Result<double> World::lowest_frequency(int index) const {
         FailureKind::simulation,
         fmt::format("'{}' is no hollow organ: its natural frequency is not known", organ.definition.name));
   const BodyMass mass(*shell, organ.state.x, organ.definition.wall.thickness, organ.definition.bile.density);
-  return calot::lowest_frequency(
-      *shell_of(organ), contact_loads(impl_->field, organ, present_poses(impl_->field)), organ.state, mass);
+  return calot::lowest_frequency(*shell, contact_loads(impl_->field, organ, present_poses(impl_->field)),
+                                 organ.state, mass);
 }
 
 double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }
