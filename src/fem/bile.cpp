@@ -159,10 +159,13 @@ Eigen::MatrixX3d Bile::moment_gradients(const VecX& x) const {
       sum.diagonal().array() += quarter;
     }
   }
-  Eigen::MatrixX3d out = Eigen::MatrixX3d::Zero(x.size(), 3);
+  std::vector<Mat3> by_node(static_cast<std::size_t>(x.size()) / 3, Mat3::Zero());
   for (int r = 0; r < points_.rows(); ++r)
     for (int e = points_.begin[r]; e < points_.begin[r + 1]; ++e)
-      out.middleRows<3>(Eigen::Index{3} * points_.node[e]) += points_.value[e] * by_point[r];
+      by_node[points_.node[e]] += points_.value[e] * by_point[r];
+  Eigen::MatrixX3d out(x.size(), 3);
+  for (std::size_t node = 0; node < by_node.size(); ++node)
+    out.middleRows<3>(3 * static_cast<Eigen::Index>(node)) = by_node[node];
   return out;
 }
 

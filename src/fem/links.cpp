@@ -1,5 +1,8 @@
 #include "fem/links.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace calot {
 
 double Links::value(const StencilTable& table, const VecX& x) const {
@@ -33,37 +36,58 @@ bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& row
   return add_points_hessian(points, hessian, matrix);
 }
 
+namespace {
+
+/// A node and its weights at four points: how it moves them.
+struct WeighedNode {
+  int node;
+  std::array<double, 4> weight;
+};
+
+/// Of all points, in increasing order: of each list one after another, as each increases.
+std::vector<WeighedNode> nodes_of(const std::array<StencilPoint, 4>& points) {
+  std::array<int, 4> at{}, end{};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (points[k].table != nullptr)
+      at[k] = points[k].table->begin[points[k].row], end[k] = points[k].table->begin[points[k].row + 1];
+  std::vector<WeighedNode> out;
+  for (;;) {
+    int next = std::numeric_limits<int>::max();
+    for (std::size_t k = 0; k < 4; ++k)
+      if (at[k] < end[k]) next = std::min(next, points[k].first_node + points[k].table->node[at[k]]);
+    if (next == std::numeric_limits<int>::max()) return out;
+    WeighedNode& added = out.emplace_back(next, std::array<double, 4>{});
+    for (std::size_t k = 0; k < 4; ++k)
+      if (at[k] < end[k] && points[k].first_node + points[k].table->node[at[k]] == next)
+        added.weight[k] = points[k].table->value[at[k]++];
+  }
+}
+
+}  // namespace
+
 bool add_points_hessian(const std::array<StencilPoint, 4>& points,
                         const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix) {
-  struct Node {
-    int node;
-    Eigen::Vector4d weight = Eigen::Vector4d::Zero();
-  };
-  std::vector<Node> nodes;
-  for (int k = 0; k < 4; ++k) {
-    if (points[k].table == nullptr) continue;
-    const StencilTable& table = *points[k].table;
-    for (int e = table.begin[points[k].row]; e < table.begin[points[k].row + 1]; ++e) {
-      const int node = points[k].first_node + table.node[e];
-      const auto at = std::lower_bound(nodes.begin(), nodes.end(), node,
-                                       [](const Node& n, int other) { return n.node < other; });
-      const auto place = at != nodes.end() && at->node == node ? at : nodes.insert(at, {node});
-      place->weight[k] = table.value[e];
-    }
-  }
+  const std::vector<WeighedNode> nodes = nodes_of(points);
   bool complete = true;
   for (std::size_t j = 0; j < nodes.size(); ++j) {
-    Eigen::Matrix<double, 12, 3> column = Eigen::Matrix<double, 12, 3>::Zero();
-    for (int k = 0; k < 4; ++k)
-      if (nodes[j].weight[k] != 0) column += nodes[j].weight[k] * hessian.middleCols<3>(3 * k);
+    Mat3 column[4];  // of the points' blocks by this node
+    for (int k = 0; k < 4; ++k) {
+      column[k].setZero();
+      if (points[k].table == nullptr) continue;
+      for (int l = 0; l < 4; ++l)
+        if (nodes[j].weight[l] != 0) column[k] += nodes[j].weight[l] * hessian.block<3, 3>(3 * k, 3 * l);
+    }
+    const int step = matrix.stride(nodes[j].node);
     for (std::size_t i = j; i < nodes.size(); ++i) {
+      const int slot = matrix.slot(nodes[i].node, nodes[j].node);
+      if (slot < 0) {
+        complete = false;
+        continue;
+      }
       Mat3 block = Mat3::Zero();
       for (int k = 0; k < 4; ++k)
-        if (nodes[i].weight[k] != 0) block += nodes[i].weight[k] * column.middleRows<3>(3 * k);
-      if (matrix.slot(nodes[i].node, nodes[j].node) < 0)
-        complete = false;
-      else
-        matrix.add(nodes[i].node, nodes[j].node, block);
+        if (nodes[i].weight[k] != 0) block += nodes[i].weight[k] * column[k];
+      Eigen::Map<Mat3, 0, Eigen::OuterStride<>>(matrix.values() + slot, Eigen::OuterStride<>(step)) += block;
     }
   }
   return complete;

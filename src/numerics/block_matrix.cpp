@@ -172,14 +172,21 @@ bool BlockMatrix::all_finite() const {
 }
 
 VecX BlockMatrix::multiply(const VecX& x) const {
+  using Columns = Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>;
   VecX y = VecX::Zero(size());
-  for (int column = 0; column < size(); ++column) {
-    for (int e = column_starts()[column]; e < column_starts()[column + 1]; ++e) {
-      const int row = rows()[e];
-      if (row < column) continue;  // upper entries of a diagonal block
-      y[row] += values_[e] * x[column];
-      if (row > column) y[column] += values_[e] * x[row];
+  for (int j = 0; j < nodes(); ++j) {
+    const int step = stride(j);
+    const double* block = values_.data() + column_starts()[3 * j];
+    const Vec3 here = x.segment<3>(3 * j);
+    const Mat3 diagonal = Columns(block, Eigen::OuterStride<>(step)).selfadjointView<Eigen::Lower>();
+    Vec3 sum = y.segment<3>(3 * j) + diagonal * here;
+    for (int b = pattern_->block_start[j] + 1; b < pattern_->block_start[j + 1]; ++b) {
+      const Columns values(block += 3, Eigen::OuterStride<>(step));
+      const int i = pattern_->block_row[b];
+      y.segment<3>(3 * i) += values * here;
+      sum += values.transpose() * x.segment<3>(3 * i);
     }
+    y.segment<3>(3 * j) = sum;
   }
   return y;
 }

@@ -5,11 +5,13 @@
 namespace calot {
 
 void Border::solve_with(const Cholesky& factor) {
-  answers.resize(gradients.rows(), gradients.cols());
-  complement.resize(constraints(), constraints());
-  for (int k = 0; k < constraints(); ++k) answers.col(k) = factor.solve(gradients.col(k));
-  for (int k = 0; k < constraints(); ++k)
-    for (int i = 0; i < constraints(); ++i) complement(i, k) = gradients.col(i).dot(answers.col(k));
+  if (constraints() == 0) {
+    answers.resize(gradients.rows(), 0);
+    complement.resize(0, 0);
+    return;
+  }
+  answers = factor.solve(gradients);
+  complement.noalias() = gradients.transpose() * answers;
   if (compliances.size() > 0) complement.diagonal() += compliances;
 }
 

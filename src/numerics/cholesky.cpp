@@ -133,19 +133,24 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
   return common.status == CHOLMOD_OK ? FactorStatus::ok : FactorStatus::out_of_memory;
 }
 
-VecX Cholesky::solve(const VecX& right) const {
+VecX Cholesky::solve(const VecX& right) const { return solve_columns(right); }
+Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right) const { return solve_columns(right); }
+
+template <class Columns>
+Columns Cholesky::solve_columns(const Columns& right) const {
   if (impl_->condensation)
     return impl_->condensation->expand(right, impl_->kept.solve(impl_->condensation->reduce(right)));
   cholmod_dense b{};
-  b.nrow = b.nzmax = b.d = static_cast<std::size_t>(right.size());
-  b.ncol = 1;
+  b.nrow = b.d = static_cast<std::size_t>(right.rows());
+  b.ncol = static_cast<std::size_t>(right.cols());
+  b.nzmax = b.nrow * b.ncol;
   b.x = const_cast<double*>(right.data());
   b.xtype = CHOLMOD_REAL;
   b.dtype = CHOLMOD_DOUBLE;
   cholmod_solve2(CHOLMOD_A, impl_->factor, &b, nullptr, &impl_->solution, nullptr, &impl_->work_y,
                  &impl_->work_e, &impl_->common);
-  VecX x =
-      VecX::Constant(right.size(), std::numeric_limits<double>::quiet_NaN());  // out of memory: not finite
+  Columns x = Columns::Constant(right.rows(), right.cols(),
+                                std::numeric_limits<double>::quiet_NaN());  // out of memory: not finite
   if (impl_->solution == nullptr || impl_->common.status < CHOLMOD_OK) return x;
   std::memcpy(x.data(), impl_->solution->x, sizeof(double) * static_cast<std::size_t>(x.size()));
   return x;

@@ -57,6 +57,8 @@ class Cholesky {
   FactorStatus factorise(const BlockMatrix& matrix);
   /// Solves with the last factor, which must be ok.
   VecX solve(const VecX& right) const;
+  /// Many columns in a fraction of the time that they take one by one.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   /// Cheap estimate of the reciprocal condition number: (smallest / largest diagonal of L)^2.
   double reciprocal_condition() const;
   FactorKind kind() const;
@@ -65,6 +67,8 @@ class Cholesky {
 
  private:
   struct Impl;
+  template <class Columns>
+  Columns solve_columns(const Columns& right) const;
   std::shared_ptr<Impl> impl_;
 };
 

@@ -216,29 +216,35 @@ bool Condensation::eliminate_single(const Piece& piece) {
 namespace {
 
 /// Three unknowns of each node.
-void pick(const VecX& from, const std::vector<int>& nodes, VecX& out) {
-  out.resize(3 * static_cast<Eigen::Index>(nodes.size()));
+template <class Columns>
+void pick(const Columns& from, const std::vector<int>& nodes, Columns& out) {
+  out.resize(3 * static_cast<Eigen::Index>(nodes.size()), from.cols());
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    out.segment<3>(3 * static_cast<Eigen::Index>(i)) = from.segment<3>(3 * Eigen::Index{nodes[i]});
+    out.template middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        from.template middleRows<3>(3 * Eigen::Index{nodes[i]});
 }
-void put(const VecX& from, const std::vector<int>& nodes, VecX& out) {
+template <class Columns>
+void put(const Columns& from, const std::vector<int>& nodes, Columns& out) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    out.segment<3>(3 * Eigen::Index{nodes[i]}) = from.segment<3>(3 * static_cast<Eigen::Index>(i));
+    out.template middleRows<3>(3 * Eigen::Index{nodes[i]}) =
+        from.template middleRows<3>(3 * static_cast<Eigen::Index>(i));
 }
 
 }  // namespace
 
-void Condensation::solve_lower(const Piece& piece, Eigen::Ref<VecX> x) const {
+template <class Columns>
+void Condensation::solve_lower(const Piece& piece, Columns& x) const {
   const double* factor = values_.data() + piece.factor;
   if (!piece.single)
     return ConstBlock(factor, piece.rows(), piece.rows()).triangularView<Eigen::Lower>().solveInPlace(x);
   for (Eigen::Index i = 0; i < piece.rows(); i += 3) {
-    auto here = x.segment<3>(i);
+    auto here = x.template middleRows<3>(i);
     Eigen::Map<const Mat3>(factor + 3 * i).triangularView<Eigen::Lower>().solveInPlace(here);
   }
 }
 
-void Condensation::solve_upper(const Piece& piece, Eigen::Ref<VecX> x) const {
+template <class Columns>
+void Condensation::solve_upper(const Piece& piece, Columns& x) const {
   const double* factor = values_.data() + piece.factor;
   if (!piece.single) {
     const ConstBlock l(factor, piece.rows(), piece.rows());
@@ -246,13 +252,14 @@ void Condensation::solve_upper(const Piece& piece, Eigen::Ref<VecX> x) const {
   }
   for (Eigen::Index i = 0; i < piece.rows(); i += 3) {
     const Eigen::Map<const Mat3> l(factor + 3 * i);
-    auto here = x.segment<3>(i);
+    auto here = x.template middleRows<3>(i);
     l.transpose().triangularView<Eigen::Upper>().solveInPlace(here);
   }
 }
 
-VecX Condensation::reduce(const VecX& right) const {
-  VecX out, inner, passed;
+template <class Columns>
+Columns Condensation::reduce(const Columns& right) const {
+  Columns out, inner, passed;
   pick(right, layout_->kept, out);
   for (const Piece& piece : layout_->pieces) {
     if (piece.outer.empty()) continue;
@@ -264,13 +271,15 @@ VecX Condensation::reduce(const VecX& right) const {
     else
       passed.noalias() = ConstBlock(coupling, piece.rows(), piece.meets()).transpose() * inner;
     for (std::size_t i = 0; i < piece.outer.size(); ++i)
-      out.segment<3>(3 * Eigen::Index{piece.outer[i]}) -= passed.segment<3>(3 * static_cast<Eigen::Index>(i));
+      out.template middleRows<3>(3 * Eigen::Index{piece.outer[i]}) -=
+          passed.template middleRows<3>(3 * static_cast<Eigen::Index>(i));
   }
   return out;
 }
 
-VecX Condensation::expand(const VecX& right, const VecX& kept) const {
-  VecX out(right.size()), inner, outer, passed;
+template <class Columns>
+Columns Condensation::expand(const Columns& right, const Columns& kept) const {
+  Columns out(right.rows(), right.cols()), inner, outer, passed;
   put(kept, layout_->kept, out);
   for (const Piece& piece : layout_->pieces) {
     pick(right, piece.inner, inner);
@@ -289,6 +298,11 @@ VecX Condensation::expand(const VecX& right, const VecX& kept) const {
   }
   return out;
 }
+
+template VecX Condensation::reduce(const VecX&) const;
+template VecX Condensation::expand(const VecX&, const VecX&) const;
+template Eigen::MatrixXd Condensation::reduce(const Eigen::MatrixXd&) const;
+template Eigen::MatrixXd Condensation::expand(const Eigen::MatrixXd&, const Eigen::MatrixXd&) const;
 
 double Condensation::flops() const {
   double sum = 0;

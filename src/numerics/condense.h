@@ -28,9 +28,11 @@ class Condensation {
   FactorStatus eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept);
 
   /// Loads on all unknowns (3 a node) as loads on the kept ones.
-  VecX reduce(const VecX& right) const;
+  template <class Columns>
+  Columns reduce(const Columns& right) const;
   /// All unknowns under loads `right`, from the kept ones.
-  VecX expand(const VecX& right, const VecX& kept) const;
+  template <class Columns>
+  Columns expand(const Columns& right, const Columns& kept) const;
 
   int pieces() const { return static_cast<int>(layout_->pieces.size()); }
   double flops() const;   ///< of one elimination
@@ -77,8 +79,10 @@ class Condensation {
   bool eliminate(const Piece& piece);
   bool eliminate_single(const Piece& piece);
   /// x := L^-1 x, L'^-1 x.
-  void solve_lower(const Piece& piece, Eigen::Ref<VecX> x) const;
-  void solve_upper(const Piece& piece, Eigen::Ref<VecX> x) const;
+  template <class Columns>
+  void solve_lower(const Piece& piece, Columns& x) const;
+  template <class Columns>
+  void solve_upper(const Piece& piece, Columns& x) const;
   double pivot(const Piece& piece, Eigen::Index i) const;
 
   std::shared_ptr<const Layout> layout_;

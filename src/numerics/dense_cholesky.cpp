@@ -41,21 +41,36 @@ bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends
   return true;
 }
 
-VecX cholesky_solve(const Eigen::MatrixXd& l, VecX right, const std::vector<Eigen::Index>& ends) {
+namespace {
+
+template <class Columns>
+void solve_columns(const Eigen::MatrixXd& l, const std::vector<Eigen::Index>& ends, Columns& right) {
   for (Eigen::Index first = 0; first < l.rows(); first += cholesky_block) {
     const auto [k, size, below] = Panel(l, ends, first);
-    auto here = right.segment(k, size);
+    auto here = right.middleRows(k, size);
     l.block(k, k, size, size).triangularView<Eigen::Lower>().solveInPlace(here);
-    if (below > 0) right.segment(k + size, below).noalias() -= l.block(k + size, k, below, size) * here;
+    if (below > 0) right.middleRows(k + size, below).noalias() -= l.block(k + size, k, below, size) * here;
   }
   for (Eigen::Index first = (l.rows() - 1) / cholesky_block * cholesky_block; first >= 0;
        first -= cholesky_block) {
     const auto [k, size, below] = Panel(l, ends, first);
-    auto here = right.segment(k, size);
+    auto here = right.middleRows(k, size);
     if (below > 0)
-      here.noalias() -= l.block(k + size, k, below, size).transpose() * right.segment(k + size, below);
+      here.noalias() -= l.block(k + size, k, below, size).transpose() * right.middleRows(k + size, below);
     l.block(k, k, size, size).triangularView<Eigen::Lower>().transpose().solveInPlace(here);
   }
+}
+
+}  // namespace
+
+VecX cholesky_solve(const Eigen::MatrixXd& l, VecX right, const std::vector<Eigen::Index>& ends) {
+  solve_columns(l, ends, right);
+  return right;
+}
+
+Eigen::MatrixXd cholesky_solve(const Eigen::MatrixXd& l, Eigen::MatrixXd right,
+                               const std::vector<Eigen::Index>& ends) {
+  solve_columns(l, ends, right);
   return right;
 }
 

@@ -109,14 +109,13 @@ void EnvelopeFactor::subtract(std::span<const int> nodes, const double* product)
 
 bool EnvelopeFactor::factorise() { return cholesky_in_place(l_, ends_); }
 
-VecX EnvelopeFactor::solve(const VecX& right) const {
-  VecX x(size());
-  for (Eigen::Index i = 0; i < size(); ++i) x[i] = right[unknown_[static_cast<std::size_t>(i)]];
-  x = cholesky_solve(l_, std::move(x), ends_);
-  VecX out(size());
-  for (Eigen::Index i = 0; i < size(); ++i) out[unknown_[static_cast<std::size_t>(i)]] = x[i];
-  return out;
+template <class Columns>
+Columns EnvelopeFactor::solve_columns(const Columns& right) const {
+  return cholesky_solve(l_, Columns(right(unknown_, Eigen::all)), ends_)(place_, Eigen::all);
 }
+
+VecX EnvelopeFactor::solve(const VecX& right) const { return solve_columns(right); }
+Eigen::MatrixXd EnvelopeFactor::solve(const Eigen::MatrixXd& right) const { return solve_columns(right); }
 
 double EnvelopeFactor::flops() const {
   double sum = 0;

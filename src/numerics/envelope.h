@@ -37,6 +37,7 @@ class EnvelopeFactor {
   bool factorise();
   /// With the last factor, which must have succeeded.
   VecX solve(const VecX& right) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   /// Of no nodes: infinity, 0.
   double smallest_pivot() const {
     return size() > 0 ? l_.diagonal().minCoeff() : std::numeric_limits<double>::infinity();
@@ -46,6 +47,8 @@ class EnvelopeFactor {
   long nonzeros() const;  ///< within the envelope
 
  private:
+  template <class Columns>
+  Columns solve_columns(const Columns& right) const;
   Eigen::Index end_of(Eigen::Index column) const {
     return ends_[static_cast<std::size_t>(column / cholesky_block)];
   }

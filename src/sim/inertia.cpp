@@ -48,6 +48,7 @@ Inertia::Inertia(const Body& body, const BodyState& state, double retardation)
       constant_(body.pattern()) {
   if (const BlockMatrix* mass = body.mass()) {
     BlockMatrix inertia = *mass;
+    mass_.emplace(*mass);
     inertia.scale(by_time_squared_ / retarded_.hessian_factor());
     constant_.add(inertia.entries());
   }
@@ -58,16 +59,16 @@ Inertia::Inertia(const Body& body, const BodyState& state, double retardation)
 
 double Inertia::value(const VecX& x) const {
   const double own = retarded_.value_factor() * body_.value(retarded_.lead(x));
-  if (!std::isfinite(own) || body_.mass() == nullptr) return own;
+  if (!std::isfinite(own) || !mass_) return own;
   const VecX off = x - predicted_;
-  return own + 0.5 * by_time_squared_ * off.dot(body_.mass()->multiply(off));
+  return own + 0.5 * by_time_squared_ * off.dot(mass_->multiply(off));
 }
 
 double Inertia::add_gradient(const VecX& x, VecX& gradient) const {
   double largest = 0;
   body_.add_gradient(retarded_.lead(x), gradient, largest);
-  if (body_.mass() == nullptr) return largest;
-  const VecX force = by_time_squared_ * body_.mass()->multiply(x - predicted_);
+  if (!mass_) return largest;
+  const VecX force = by_time_squared_ * mass_->multiply(x - predicted_);
   gradient += force;
   return std::max(largest, largest_node(force));
 }

@@ -3,6 +3,7 @@
 // potential stationary: elastic energies, asked by their retardation ahead, loads, contact, and
 // 1 / (2 h^2) (x - x0 - h v)' M (x - x0 - h v) of wall and liquid.
 
+#include "fem/nodal_mass.h"
 #include "numerics/retardation.h"
 #include "sim/body.h"
 
@@ -46,7 +47,8 @@ class Inertia {
   VecX begin_, predicted_;
   double by_time_squared_;  ///< 1 / h^2
   Retardation retarded_;
-  BlockMatrix constant_;  ///< of the Hessian, over its factor
+  BlockMatrix constant_;           ///< of the Hessian, over its factor
+  std::optional<NodalMass> mass_;  ///< none: the solid is weightless
   std::optional<LiquidMass> liquid_;
 };
 

@@ -34,7 +34,7 @@ VecX BodyMass::multiply(const VecX& motion) const {
   const StencilTable& table = body_.quadrature();
   for (int r = 0; r < table.rows(); ++r)
     spread(table, r, row_mass_[r] * blend(table, table.value, r, motion), out);
-  out += bile_density_ * (flow_ * cholesky_solve(kinetic_, flow_.transpose() * motion));
+  out += bile_density_ * (flow_ * cholesky_solve(kinetic_, VecX(flow_.transpose() * motion)));
   return out;
 }
 

@@ -118,7 +118,7 @@ Result<double> FreeForm::manipulate(const std::vector<Vec3>& points, const std::
   }
   normal.diagonal().array() += damping * damping;
   if (!cholesky_in_place(normal)) return fail(FailureKind::internal, "a lattice's damping is too small");
-  for (int c = 0; c < 3; ++c) nodes_.col(c) = cholesky_solve(normal, right.col(c));
+  nodes_ = cholesky_solve(normal, Eigen::MatrixXd(right));
   double largest_miss = 0;
   for (std::size_t k = 0; k < points.size(); ++k)
     largest_miss = std::max(largest_miss, (points[k] + displacement(points[k]) - targets[k]).norm());
