@@ -77,4 +77,14 @@ void for_each_chunk(Workers* workers, int chunks, const Work& work) {
   for (int k = 0; k < chunks; ++k) work(k);
 }
 
+/// Does all of these, which must be noexcept and share nothing that one of them changes, at once; the last one is begun
+/// first.
+template <class... Work>
+void do_at_once(Workers* workers, const Work&... work) {
+  for_each_chunk(workers, static_cast<int>(sizeof...(work)), [&](int chunk) noexcept {
+    int k = 0;
+    (static_cast<void>(k++ == chunk && (work(), true)), ...);
+  });
+}
+
 }  // namespace calot

@@ -29,11 +29,12 @@ void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMat
 }
 
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
-                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix) {
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
+                        const ColumnShare& share) {
   std::array<StencilPoint, 4> points;
   for (int k = 0; k < 4; ++k)
     if (rows[k] >= 0) points[k] = {&table, rows[k], 0};
-  return add_points_hessian(points, hessian, matrix);
+  return add_points_hessian(points, hessian, matrix, share);
 }
 
 namespace {
@@ -66,10 +67,12 @@ std::vector<WeighedNode> nodes_of(const std::array<StencilPoint, 4>& points) {
 }  // namespace
 
 bool add_points_hessian(const std::array<StencilPoint, 4>& points,
-                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix) {
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
+                        const ColumnShare& share) {
   const std::vector<WeighedNode> nodes = nodes_of(points);
   bool complete = true;
   for (std::size_t j = 0; j < nodes.size(); ++j) {
+    if (!share.has(nodes[j].node)) continue;
     Mat3 column[4];  // of the points' blocks by this node
     for (int k = 0; k < 4; ++k) {
       column[k].setZero();

@@ -27,12 +27,20 @@ struct StencilPoint {
   int row = 0, first_node = 0;
 };
 
-/// Adds a Hessian by up to four points to their nodes' pairs by all their weights. Couplings that the pattern does not
+/// Columns of every `of`-th node, from node `first` on: what one of several threads adds.
+struct ColumnShare {
+  int first = 0, of = 1;
+  bool has(int node) const { return node % of == first; }
+};
+
+/// Adds a Hessian by up to four points to their nodes' pairs by all their weights, in the columns of `share`. Couplings that the pattern does not
 /// hold are left out: then false.
 bool add_points_hessian(const std::array<StencilPoint, 4>& points,
-                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix);
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
+                        const ColumnShare& share = {});
 /// The same with points of one table (`rows`, unused ones negative).
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
-                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix);
+                        const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
+                        const ColumnShare& share = {});
 
 }  // namespace calot

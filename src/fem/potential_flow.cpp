@@ -11,6 +11,9 @@ namespace {
 constexpr int harmonics = PotentialFlow::harmonics, linear = PotentialFlow::linear;
 
 using Harmonics = Eigen::Matrix<double, harmonics, 1>;
+/// As wide as the processor's registers are; what is beyond is zero.
+constexpr int padded = (harmonics + 3) / 4 * 4;
+using NodeFlow = Eigen::Matrix<double, padded, 3>;
 
 /// Values and gradients of the solid harmonics at p.
 void sample_harmonics(const Vec3& p, Harmonics& h, std::array<Vec3, harmonics>& g) {
@@ -55,21 +58,22 @@ PotentialFlow PotentialFlow::inside(const StencilTable& points, const std::vecto
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : at) centre += p / static_cast<double>(at.size());
   const double scale = 1.0 / length;
-  Eigen::Matrix<double, harmonics, Eigen::Dynamic> flow =
-      Eigen::Matrix<double, harmonics, Eigen::Dynamic>::Zero(harmonics, x.size());
+  std::vector<NodeFlow> flow(static_cast<std::size_t>(x.size()) / 3, NodeFlow::Zero());
   PotentialFlow out{{}, Eigen::MatrixXd::Zero(harmonics, harmonics)};
   Harmonics h;
+  NodeFlow here = NodeFlow::Zero();
   std::array<Vec3, harmonics> g;
   for (int p = 0; p < points.rows(); ++p) {
     sample_harmonics(scale * (at[p] - centre), h, g);
-    for (int e = points.begin[p]; e < points.begin[p + 1]; ++e) {
-      const Harmonics here = points.value[e] * h;
-      flow.middleCols<3>(Eigen::Index{3} * points.node[e]) += here * areas[p].transpose();
-    }
+    for (int c = 0; c < 3; ++c) here.col(c).head<harmonics>() = areas[p][c] * h;
+    for (int e = points.begin[p]; e < points.begin[p + 1]; ++e)
+      flow[points.node[e]] += points.value[e] * here;
     const Harmonics scaled = h * scale;
     for (int l = 0; l < harmonics; ++l) out.kinetic.col(l) += scaled * g[l].dot(areas[p]);
   }
-  out.flow = flow.transpose();
+  out.flow.resize(x.size(), harmonics);
+  for (std::size_t node = 0; node < flow.size(); ++node)
+    out.flow.middleRows<3>(3 * static_cast<Eigen::Index>(node)) = flow[node].topRows<harmonics>().transpose();
   return out;
 }
 

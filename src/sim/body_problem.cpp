@@ -23,9 +23,11 @@ BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, ContactSea
     : BodyProblem(body, loads, std::vector<ContactPair>(), start, fixed_pressure) {
   search_ = &search;
   assembly_ = assembly;
-  search.own.workers = assembly ? &assembly->workers() : nullptr;
+  search.own.workers = workers();
   pairs_.reset();
 }
+
+Workers* BodyProblem::workers() const { return assembly_ ? &assembly_->workers() : nullptr; }
 
 const std::vector<ContactPair>& BodyProblem::pairs() const {
   if (!pairs_) pairs_ = search_->pairs(body_, start_, loads_, 0.0);
@@ -64,13 +66,13 @@ void BodyProblem::for_held_details(const Use& use) const {
     use(first + 3 * static_cast<Eigen::Index>(i), loads_.detail_holds[i]);
 }
 
-template <class Wall>
-void BodyProblem::beside_touches(const VecX& x, const Wall& wall) const {
-  for_each_chunk(assembly_ ? &assembly_->workers() : nullptr, 3, [&](int task) noexcept {
-    if (task == 0) wall();
-    if (task == 1) touching(x);
-    if (task == 2 && search_) search_->own.touching(body_, x);
-  });
+template <class... Work>
+void BodyProblem::beside_touches(const VecX& x, const Work&... work) const {
+  const auto own = [&]() noexcept {
+    if (search_) search_->own.touching(body_, x);
+  };
+  do_at_once(
+      workers(), own, [&]() noexcept { touching(x); }, work...);
 }
 
 double BodyProblem::value(const VecX& x) const {
@@ -93,14 +95,16 @@ double BodyProblem::value(const VecX& x) const {
   return sum;
 }
 
-double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient) const {
+template <class... Work>
+double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, const Work&... beside) const {
   double largest_internal = 0;
-  beside_touches(x, [&]() noexcept {
+  const auto wall = [&]() noexcept {
     if (loads_.inertia)
       largest_internal = loads_.inertia->add_gradient(x, gradient);
     else
       body_.add_gradient(x, gradient, largest_internal);
-  });
+  };
+  beside_touches(x, beside..., wall);
   loads_.grip.add_gradient(body_.skin().stencils, x, gradient);
   loads_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
@@ -127,10 +131,16 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal
 void BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal,
                                           VecX& values, Eigen::MatrixXd& of_constraints) const {
   of_energy.setZero(x.size());
-  VecX of_volume = VecX::Zero(x.size());
-  const double internal = add_dry_gradient(x, of_energy);
-  const double volume = body_.liquid()->add_weight_and_volume_gradient(x, of_energy, of_volume);
-  fill_constraints(x, volume, of_volume, values, of_constraints);
+  values.resize(constraints());
+  of_constraints.resize(x.size(), constraints());
+  VecX weight = VecX::Zero(x.size()), of_volume = weight;
+  const auto inertia = [&]() noexcept { fill_inertia(x, values, of_constraints); };
+  const auto liquid = [&]() noexcept {
+    const double volume = body_.liquid()->add_weight_and_volume_gradient(x, weight, of_volume);
+    fill_volume(volume, of_volume, values, of_constraints);
+  };
+  const double internal = add_dry_gradient(x, of_energy, inertia, liquid);
+  of_energy += weight;
   largest_internal = VecX::Constant(1, force_scale(internal, of_energy));
 }
 
@@ -148,7 +158,7 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
                                 matrix, assembly_);
   else if (const Liquid* liquid = body_.liquid())
     liquid->add_hessian(x, fixed_pressure_ ? multiplier_ : multipliers[0], matrix, assembly_);
-  ContactStiffness pressed(body_.skin(), matrix);
+  ContactStiffness pressed(body_.skin(), matrix, workers());
   for (const Touch& touch : touching(x)) pressed.add(touch.point, contact_hessian(loads_, touch));
   pressed.finish();
   for_held_details([&](Eigen::Index at, double stiffness) {
@@ -160,17 +170,23 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
 }
 
 void BodyProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
-  VecX of_volume = VecX::Zero(x.size());
-  const double volume = body_.liquid()->add_volume_gradient(x, of_volume);
-  fill_constraints(x, volume, of_volume, values, gradients);
-}
-
-void BodyProblem::fill_constraints(const VecX& x, double volume, const VecX& of_volume, VecX& values,
-                                   Eigen::MatrixXd& gradients) const {
   values.resize(constraints());
   gradients.resize(x.size(), constraints());
+  const auto inertia = [&]() noexcept { fill_inertia(x, values, gradients); };
+  do_at_once(workers(), inertia, [&]() noexcept {
+    VecX of_volume = VecX::Zero(x.size());
+    const double volume = body_.liquid()->add_volume_gradient(x, of_volume);
+    fill_volume(volume, of_volume, values, gradients);
+  });
+}
+
+void BodyProblem::fill_volume(double volume, const VecX& of_volume, VecX& values,
+                              Eigen::MatrixXd& gradients) const {
   values[0] = volume - volume_;
   gradients.col(0) = of_volume;
+}
+
+void BodyProblem::fill_inertia(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
   const LiquidMass* mass = liquid_mass();
   if (mass == nullptr) return;
   values.tail(LiquidMass::constraints) = mass->constraint_values(x);

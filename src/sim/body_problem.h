@@ -56,15 +56,17 @@ class BodyProblem : public ConstrainedEnergy {
   double moved(const VecX& x) const;
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;
-  /// Does `wall`, which must be noexcept, and finds what touches at x, for which no memory is shared: what touches is known
-  /// then.
-  template <class Wall>
-  void beside_touches(const VecX& x, const Wall& wall) const;
-  /// Gradient but for the liquid's part; its largest internal force.
-  double add_dry_gradient(const VecX& x, VecX& gradient) const;
-  /// Of a kept volume with its gradient, and of the inertia.
-  void fill_constraints(const VecX& x, double volume, const VecX& of_volume, VecX& values,
-                        Eigen::MatrixXd& gradients) const;
+  Workers* workers() const;
+  /// Does all `work`, which must be noexcept, and finds what touches at x, for which no memory is shared: what touches is
+  /// known then.
+  template <class... Work>
+  void beside_touches(const VecX& x, const Work&... work) const;
+  /// Gradient but for the liquid's part; its largest internal force. Does `beside`, noexcept, at the same time.
+  template <class... Work>
+  double add_dry_gradient(const VecX& x, VecX& gradient, const Work&... beside) const;
+  void fill_volume(double volume, const VecX& of_volume, VecX& values, Eigen::MatrixXd& gradients) const;
+  /// Of the inertia, behind the volume's.
+  void fill_inertia(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const;
   /// Calls use(first coordinate, N/m) for the details that springs hold at rest.
   template <class Use>
   void for_held_details(const Use& use) const;

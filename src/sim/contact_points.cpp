@@ -75,28 +75,36 @@ void ContactLoad::finish() {
 }
 
 void ContactStiffness::add(int point, const Mat3& hessian) {
-  if (point / contacts_each != triangle_) finish();
-  triangle_ = point / contacts_each;
+  const int triangle = point / contacts_each;
+  if (sums_.empty() || sums_.back().triangle != triangle) sums_.emplace_back().triangle = triangle;
   const Vec3& w = contact_weights(point);
   const Products products(w[0] * w[0], w[1] * w[0], w[2] * w[0], w[1] * w[1], w[2] * w[1], w[2] * w[2]);
-  sum_ += hessian.reshaped() * products;
+  sums_.back().sum += hessian.reshaped() * products;
+}
+
+Eigen::Matrix<double, 12, 12> ContactStiffness::OfTriangle::by_corners() const {
+  Eigen::Matrix<double, 12, 12> whole = Eigen::Matrix<double, 12, 12>::Zero();
+  int pair = 0;
+  for (int b = 0; b < 3; ++b)
+    for (int a = b; a < 3; ++a) {
+      const Mat3 block = sum.col(pair++).reshaped(3, 3);
+      whole.block<3, 3>(3 * a, 3 * b) = block;
+      whole.block<3, 3>(3 * b, 3 * a) = block.transpose();
+    }
+  return whole;
 }
 
 void ContactStiffness::finish() {
-  if (triangle_ >= 0) {
-    Eigen::Matrix<double, 12, 12> whole = Eigen::Matrix<double, 12, 12>::Zero();
-    int pair = 0;
-    for (int b = 0; b < 3; ++b)
-      for (int a = b; a < 3; ++a) {
-        const Mat3 block = sum_.col(pair++).reshaped(3, 3);
-        whole.block<3, 3>(3 * a, 3 * b) = block;
-        whole.block<3, 3>(3 * b, 3 * a) = block.transpose();
-      }
-    const Triangle& t = skin_.triangles[triangle_];
-    add_points_hessian(skin_.stencils, {t[0], t[1], t[2], -1}, whole, matrix_);
-  }
-  triangle_ = -1;
-  sum_.setZero();
+  constexpr std::size_t few = 8;
+  constexpr int most = 4;  // what each share does for itself is a tenth of the whole
+  const int shares = workers_ == nullptr || sums_.size() < few ? 1 : most;
+  for_each_chunk(workers_, shares, [&](int share) noexcept {
+    for (const OfTriangle& one : sums_) {
+      const Triangle& t = skin_.triangles[one.triangle];
+      add_points_hessian(skin_.stencils, {t[0], t[1], t[2], -1}, one.by_corners(), matrix_, {share, shares});
+    }
+  });
+  sums_.clear();
 }
 
 }  // namespace calot

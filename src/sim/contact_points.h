@@ -9,6 +9,7 @@
 
 #include <array>
 
+#include "base/workers.h"
 #include "collision/shapes.h"
 #include "geometry/stencil.h"
 #include "numerics/block_matrix.h"
@@ -92,19 +93,25 @@ class ContactLoad {
   Mat3 sum_ = Mat3::Zero();  ///< a column a corner
 };
 
-/// The same for Hessians by the points' places.
+/// The same for Hessians by the points' places; all with finish(), which `workers` may share, to the same bits.
 class ContactStiffness {
  public:
-  ContactStiffness(const Tessellation& skin, BlockMatrix& matrix) : skin_(skin), matrix_(matrix) {}
+  ContactStiffness(const Tessellation& skin, BlockMatrix& matrix, Workers* workers = nullptr)
+      : skin_(skin), matrix_(matrix), workers_(workers) {}
   void add(int point, const Mat3& hessian);
   void finish();
 
  private:
   using Products = Eigen::Matrix<double, 1, 6>;  ///< of the corners' weights: 00, 10, 20, 11, 21, 22
+  struct OfTriangle {
+    int triangle = 0;
+    Eigen::Matrix<double, 9, 6> sum = Eigen::Matrix<double, 9, 6>::Zero();  ///< a column a pair of corners
+    Eigen::Matrix<double, 12, 12> by_corners() const;
+  };
   const Tessellation& skin_;
   BlockMatrix& matrix_;
-  int triangle_ = -1;
-  Eigen::Matrix<double, 9, 6> sum_ = Eigen::Matrix<double, 9, 6>::Zero();  ///< a column a pair of corners
+  Workers* workers_;
+  std::vector<OfTriangle> sums_;
 };
 
 }  // namespace calot

@@ -86,9 +86,14 @@ void ContactSearch::pairs_with(int index, const Body& body, const VecX& x, const
 
 std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, const ContactLoads& loads,
                                               double extra) {
+  const std::size_t shapes = loads.shapes.size();
+  if (memory_.size() < shapes) memory_.resize(shapes);
+  std::vector<std::vector<ContactPair>> found(shapes);
+  for_each_chunk(own.workers, static_cast<int>(shapes), [&](int shape) noexcept {
+    pairs_with(shape, body, x, loads, reach_of(loads, extra), found[static_cast<std::size_t>(shape)]);
+  });
   std::vector<ContactPair> out;
-  for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape)
-    pairs_with(shape, body, x, loads, reach_of(loads, extra), out);
+  for (const std::vector<ContactPair>& some : found) out.insert(out.end(), some.begin(), some.end());
   return out;
 }
 
