@@ -10,15 +10,15 @@ namespace {
 
 constexpr int harmonics = PotentialFlow::harmonics, linear = PotentialFlow::linear;
 
-using Harmonics = Eigen::Matrix<double, harmonics, 1>;
 /// As wide as the processor's registers are; what is beyond is zero.
 constexpr int padded = (harmonics + 3) / 4 * 4;
+using Harmonics = Eigen::Matrix<double, padded, 1>;
 using NodeFlow = Eigen::Matrix<double, padded, 3>;
 
 /// Values and gradients of the solid harmonics at p.
 void sample_harmonics(const Vec3& p, Harmonics& h, std::array<Vec3, harmonics>& g) {
   const double x = p.x(), y = p.y(), z = p.z();
-  h << x, y, z, x * y, y * z, z * x, x * x - y * y, 2 * z * z - x * x - y * y,
+  h.head<harmonics>() << x, y, z, x * y, y * z, z * x, x * x - y * y, 2 * z * z - x * x - y * y,
       z * (2 * z * z - 3 * x * x - 3 * y * y), x * (4 * z * z - x * x - y * y),
       y * (4 * z * z - x * x - y * y), z * (x * x - y * y), x * y * z, x * (x * x - 3 * y * y),
       y * (3 * x * x - y * y);
@@ -59,19 +59,18 @@ PotentialFlow PotentialFlow::inside(const StencilTable& points, const std::vecto
   for (const Vec3& p : at) centre += p / static_cast<double>(at.size());
   const double scale = 1.0 / length;
   std::vector<NodeFlow> flow(static_cast<std::size_t>(x.size()) / 3, NodeFlow::Zero());
-  PotentialFlow out{{}, Eigen::MatrixXd::Zero(harmonics, harmonics)};
-  Harmonics h;
-  NodeFlow here = NodeFlow::Zero();
+  Eigen::Matrix<double, padded, harmonics> kinetic = Eigen::Matrix<double, padded, harmonics>::Zero();
+  Harmonics h = Harmonics::Zero();
   std::array<Vec3, harmonics> g;
   for (int p = 0; p < points.rows(); ++p) {
     sample_harmonics(scale * (at[p] - centre), h, g);
-    for (int c = 0; c < 3; ++c) here.col(c).head<harmonics>() = areas[p][c] * h;
+    const NodeFlow here = h * areas[p].transpose();
     for (int e = points.begin[p]; e < points.begin[p + 1]; ++e)
       flow[points.node[e]] += points.value[e] * here;
     const Harmonics scaled = h * scale;
-    for (int l = 0; l < harmonics; ++l) out.kinetic.col(l) += scaled * g[l].dot(areas[p]);
+    for (int l = 0; l < harmonics; ++l) kinetic.col(l) += scaled * g[l].dot(areas[p]);
   }
-  out.flow.resize(x.size(), harmonics);
+  PotentialFlow out{Eigen::MatrixXd(x.size(), harmonics), kinetic.topRows<harmonics>()};
   for (std::size_t node = 0; node < flow.size(); ++node)
     out.flow.middleRows<3>(3 * static_cast<Eigen::Index>(node)) = flow[node].topRows<harmonics>().transpose();
   return out;

@@ -122,9 +122,12 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, const Work&.
 
 void BodyProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const {
   gradient.setZero(x.size());
-  const double internal = add_dry_gradient(x, gradient);
-  if (const Liquid* liquid = body_.liquid())
-    liquid->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, gradient);
+  const Liquid* liquid = body_.liquid();
+  VecX weight = VecX::Zero(x.size());
+  const double internal = add_dry_gradient(x, gradient, [&]() noexcept {
+    if (liquid) liquid->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, weight);
+  });
+  gradient += weight;
   largest_internal = VecX::Constant(1, force_scale(internal, gradient));
 }
 
@@ -152,7 +155,7 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
     body_.add_hessian(x, matrix, assembly_);
   }
   loads_.grip.add_hessian(body_.skin().stencils, matrix);
-  loads_.friction.add_hessian(body_.skin(), x, matrix);
+  loads_.friction.add_hessian(body_.skin(), x, matrix, workers());
   if (const LiquidMass* mass = liquid_mass())
     body_.liquid()->add_hessian(x, multipliers[0], mass->weight(multipliers.tail(LiquidMass::constraints)),
                                 matrix, assembly_);

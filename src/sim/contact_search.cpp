@@ -50,8 +50,9 @@ std::vector<ContactPair> gather_pairs(const Body& body, const VecX& x, const Con
 
 void ContactSearch::pairs_with(int index, const Body& body, const VecX& x, const ContactLoads& loads,
                                double reach, std::vector<ContactPair>& out) {
-  constexpr double ahead = 4e-3;    // m remembered beyond what is asked for
-  constexpr double stale = 0.5e-3;  // m of motion after which remembered distances are measured again
+  constexpr double ahead = 4e-3;     // m remembered beyond what is asked for
+  constexpr double stale = 0.5e-3;   // m of motion after which remembered distances are measured again
+  constexpr double measured = 1e-3;  // m beyond what is asked for within which they are
   if (memory_.size() < loads.shapes.size()) memory_.resize(loads.shapes.size());
   Memory& memory = memory_[index];
   const Shape& shape = loads.shapes[index];
@@ -72,7 +73,11 @@ void ContactSearch::pairs_with(int index, const Body& body, const VecX& x, const
     memory.details = body.details();
     looked();
   } else if (approach > stale) {
-    for (ContactPair& pair : memory.near) pair.distance = places.nearness(pair.triangle, shape).of_all();
+    // What was far stays known by how much nearer it may have come.
+    for (ContactPair& pair : memory.near) {
+      pair.distance -= approach;
+      if (pair.distance < reach + measured) pair.distance = places.nearness(pair.triangle, shape).of_all();
+    }
     memory.reach -= approach;
     looked();
   }

@@ -28,9 +28,10 @@ void FrictionLoad::add_gradient(const Tessellation& skin, const VecX& x, VecX& g
   load.finish();
 }
 
-void FrictionLoad::add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix) const {
+void FrictionLoad::add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix,
+                               Workers* workers) const {
   ContactPlaces places(skin, x);
-  ContactStiffness stiffness(skin, matrix);
+  ContactStiffness stiffness(skin, matrix, workers);
   for (const RubbingPoint& rubbing : points)
     stiffness.add(rubbing.point, rubbing.hold.sample(places.at(rubbing.point)).hessian);
   stiffness.finish();

@@ -22,7 +22,8 @@ struct FrictionLoad {
   const RubbingPoint* find(int shape, int point) const;
   double value(const Tessellation& skin, const VecX& x) const;  ///< J
   void add_gradient(const Tessellation& skin, const VecX& x, VecX& gradient) const;
-  void add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix) const;
+  void add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix,
+                   Workers* workers = nullptr) const;
 };
 
 }  // namespace calot

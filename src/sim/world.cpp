@@ -118,14 +118,15 @@ void add_holds(Hash& hash, const Organ& organ) {
   }
 }
 
-/// The factor that is kept serves the next steps, so their bits depend on it: what it makes of the volume's gradient
-/// stands for all of its entries, which would take a tenth of a step.
+/// The factor that is kept serves the next steps, so their bits depend on it: what it makes of the constraints'
+/// gradients, all together, stands for all of its entries, which would take a tenth of a step.
 void add_factor(Hash& hash, const NewtonWorkspace& work) {
   hash.add(work.factored);
   hash.add(work.shifted);
   if (!work.factored) return;
-  add_vector(hash, work.border.gradients);
-  add_vector(hash, work.border.answers);
+  add_vector(hash, VecX(work.border.gradients.rowwise().sum()));
+  add_vector(hash, VecX(work.border.answers.rowwise().sum()));
+  add_vector(hash, work.border.complement);
 }
 
 void add_missed(Hash& hash, const MissedMotion& missed) {
