@@ -25,7 +25,7 @@ std::vector<OrganDefinition> ducts(int count, const Vec3& start) {
     duct.shape = TubeShape{.points = {from, 0.5 * (from + to), to}, .radius = 2.5e-3};
     duct.wall.thickness = 0.8e-3;
     duct.wall.density = 1050;
-    duct.held = {{"root", "start", 6e-3, 1e6}};
+    duct.held = {{"root", "start", 6e-3, 1e6}, {"tip", "end", 6e-3, 1e6}};
     out.push_back(duct);
     from = to;
   }
