@@ -152,6 +152,7 @@ struct AnatomyDefinition {
   std::vector<JointDefinition> joints;
   std::vector<GroundDefinition> ground;
   std::optional<SupportDefinition> support;
+  double friction = 0;  ///< Coulomb's, of the organs on each other (d); the rest state is found without
   double table_head_up = 0.2617993877991494;     ///< rad; reverse Trendelenburg 15 deg (c)
   double table_left_down = 0.17453292519943295;  ///< rad; left side down 10 deg (d)
 };

@@ -37,6 +37,10 @@ std::vector<KeyTable> field_tables() {
            list("joints", "joint", "what ties organs to each other: where a duct grows out of a gallbladder"),
            list("ground", "ground", "shapes that stay and are touched"),
            table("support", &Anatomy::support, "support", "a plane that carries the organs"),
+           number(
+               "friction", &Anatomy::friction, quantity::number, 0, 1,
+               "a coefficient of friction of organs on each other",
+               "coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated"),
            number("table_head_up", &Anatomy::table_head_up, quantity::angle, -60 * deg, 60 * deg,
                   "a tilt of an operating table", "reverse Trendelenburg tilt"),
            number("table_left_down", &Anatomy::table_left_down, quantity::angle, -60 * deg, 60 * deg,

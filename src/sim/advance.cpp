@@ -8,6 +8,7 @@
 
 #include "base/timed.h"
 #include "numerics/response.h"
+#include "sim/body_rubbing.h"
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/inertia.h"
@@ -305,7 +306,8 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   if (out.loaded) {
     const std::vector<Member> members = members_of(field, loads);
     Group& group = field.group;
-    const GroupProblem problem(members, group.joins, group.patterns);
+    const std::vector<JoinPointer> joins = joins_with(group.joins, group.rubbing);
+    const GroupProblem problem(members, joins, group.patterns);
     const VecX multipliers = problem.resting_multipliers();
     VecX values;
     if (field.step_time > 0) values = add_inertia(problem, multipliers, load);

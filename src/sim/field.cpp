@@ -31,7 +31,7 @@ void Field::add(RestedOrgan made) {
 
 GroupSnapshot snapshot(const Field& field) {
   const Group& group = field.group;
-  GroupSnapshot out{{}, group.work.keep(), {{}, group.patterns.joined}, group.missed};
+  GroupSnapshot out{{}, group.work.keep(), {{}, group.patterns.joined}, group.missed, group.rubbing};
   for (const Organ& organ : field.organs) out.organs.push_back(snapshot(organ));
   for (const BlockMatrix& own : group.patterns.own) out.patterns.own.push_back(own.pattern_only());
   return out;
@@ -42,6 +42,7 @@ void restore(Field& field, const GroupSnapshot& snapshot) {
   Group& group = field.group;
   group.work.restore(snapshot.factor);
   group.missed = snapshot.missed;
+  group.rubbing = snapshot.rubbing;
   group.patterns.joined = snapshot.patterns.joined;
   group.patterns.own.resize(snapshot.patterns.own.size(), BlockMatrix(0, {}));
   for (std::size_t k = 0; k < group.patterns.own.size(); ++k)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/organ.h"
+#include "sim/skin_rubbing.h"
 #include "sim/step_report.h"
 #include "sim/tool.h"
 
@@ -32,6 +33,8 @@ struct Group {
   GroupPatterns patterns;
   std::vector<JoinPointer> joins;
   MissedMotion missed;
+  double friction = 0;            ///< Coulomb's, of skins of different bodies on each other
+  std::vector<SkinHold> rubbing;  ///< at the last equilibrium (body_rubbing.h)
 
   /// After a body has become another one: nothing that was made for it serves.
   void forget_bodies() {
@@ -74,6 +77,7 @@ struct GroupSnapshot {
   NewtonWorkspace::Kept factor = NewtonWorkspace(BlockMatrix(0, {})).keep();
   GroupPatterns patterns;  ///< without values
   MissedMotion missed;
+  std::vector<SkinHold> rubbing;
 };
 GroupSnapshot snapshot(const Field& field);
 /// The field must have the organs that it is of.

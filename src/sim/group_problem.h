@@ -11,6 +11,7 @@
 namespace calot {
 
 class Workers;
+class SkinJoin;
 
 /// A body, what acts on it and where it is. All must outlive the problem that is made of it.
 struct Member {
@@ -33,6 +34,8 @@ struct GroupPlace {
 class Join {
  public:
   virtual ~Join() = default;
+  /// Null: it is no contact of skins, which may rub on each other (body_rubbing.h).
+  virtual const SkinJoin* skins() const { return nullptr; }
   /// A solve begins, of these bodies: they stay what they are until the next. Asked before anything else.
   virtual void begin(std::span<const GroupPlace> /*bodies*/) const {}
   /// Finds what acts at x, which is then asked for; threads call it for several joins at a time.

@@ -43,6 +43,7 @@ Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field) {
     }
     tied.push_back(made.value());
   }
+  field.group.friction = anatomy.friction;
   const int bodies = static_cast<int>(field.organs.size());
   for (int one = 0; one < bodies; ++one)
     for (int other = one + 1; other < bodies; ++other) {

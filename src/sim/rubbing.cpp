@@ -57,6 +57,7 @@ double change(const FrictionLoad& from, const FrictionLoad& to) {
 }  // namespace
 
 bool has_friction(const Field& field) {
+  if (field.group.friction > 0 && field.organs.size() > 1) return true;
   if (std::any_of(field.ground.begin(), field.ground.end(),
                   [](const Ground& ground) { return ground.friction > 0; }))
     return true;

@@ -1,5 +1,6 @@
 #include "sim/settle_field.h"
 
+#include "sim/body_rubbing.h"
 #include "sim/detail_fading.h"
 #include "sim/grip.h"
 #include "sim/rubbing.h"
@@ -66,11 +67,12 @@ namespace {
 
 /// Renews what rubs on all organs; whether no normal force asks for another limit any more.
 bool friction_agrees(Field& field, const std::vector<InstrumentPose>& poses, const std::vector<VecX>& before,
-                     int round, std::vector<ContactLoads>& loads) {
+                     int round, std::vector<ContactLoads>& loads, std::vector<SkinHold>& rubbing) {
   const double share = round < relaxed_round ? 1.0 : 0.5;
   bool agrees = true;
   for (std::size_t k = 0; k < field.organs.size(); ++k)
     agrees &= renew_friction(field, field.organs[k], poses, before[k], share, loads[k]) <= friction_tolerance;
+  agrees &= renew_body_friction(field, before, share, rubbing) <= friction_tolerance;
   return agrees;
 }
 
@@ -88,18 +90,25 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   }
   const std::vector<Member> members = members_of(field, loads);
   Group& group = field.group;
+  std::vector<SkinHold> rubbing = group.rubbing;
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {
-    total.add(settle(members, group.joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
+    const std::vector<JoinPointer> joins = joins_with(group.joins, rubbing);
+    total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
     if (!total.converged() || !has_friction(field)) break;
     std::vector<FrictionLoad> used;
     for (const ContactLoads& of_organ : loads) used.push_back(of_organ.friction);
-    if (friction_agrees(field, poses, before, round, loads)) {
+    std::vector<SkinHold> used_between = rubbing;
+    if (friction_agrees(field, poses, before, round, loads, rubbing)) {
       // Where nothing moved, not even rounding may.
       const bool stayed = poses == present_poses(field);
-      for (std::size_t k = 0; k < field.organs.size(); ++k)
-        if (!stayed || field.organs[k].state.x != before[k])
-          keep_friction(field, field.organs[k], poses, used[k]);
+      bool all_stayed = true;
+      for (std::size_t k = 0; k < field.organs.size(); ++k) {
+        if (stayed && field.organs[k].state.x == before[k]) continue;
+        keep_friction(field, field.organs[k], poses, used[k]);
+        all_stayed = false;
+      }
+      if (!all_stayed) keep_body_friction(field, std::move(used_between));
       break;
     }
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;

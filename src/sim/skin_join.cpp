@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "fem/links.h"
@@ -47,10 +48,13 @@ SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> 
       return (rest[point] - joint.place).norm() <= joint.within;
     });
   };
+  const std::vector<Triangle>& triangles = body.skin().triangles;
   for (std::size_t p = 0; p < rest.size(); ++p)
     side.areas.push_back(left_out(static_cast<int>(p)) ? 0.0 : 0.5 * body.skin_areas()[p]);
-  for (const Triangle& t : body.skin().triangles)
-    side.counts.push_back(std::none_of(t.begin(), t.end(), left_out));
+  for (const Triangle& t : triangles) side.counts.push_back(std::none_of(t.begin(), t.end(), left_out));
+  side.around.assign(rest.size(), -1);
+  for (std::size_t t = triangles.size(); t-- > 0;)
+    for (int corner : triangles[t]) side.around[corner] = static_cast<int>(t);
   side.at.assign(rest.size(), Vec3::Zero());
   side.way.assign(rest.size(), Vec3::Zero());
   side.looked.assign(rest.size(), 0);
@@ -314,6 +318,55 @@ Vec3 SkinJoin::force(const VecX& x) const {
     sum += touch.skin == 0 ? Vec3(-on_point) : on_point;
   }
   return sum;
+}
+
+/// Of the pair that is nearest, where its points were looked up last.
+RubbingPlace SkinJoin::rubbing_place(const SkinPair& pair) const {
+  const Side &one = sides_[pair.skin], &other = sides_[pair.other];
+  const auto of_one = [&](int row) { return BodyPoint{bodies_[pair.skin], row}; };
+  const auto of_other = [&](int row) { return BodyPoint{bodies_[pair.other], row}; };
+  const std::span<const int> corners = other.skin->corners(pair.simplex);
+  if (other.skin->is_triangle(pair.simplex))
+    return {{of_one(pair.point), of_other(corners[0]), of_other(corners[1]), of_other(corners[2])}, false};
+  const Triangle& t = one.body->skin().triangles[one.around[pair.point]];
+  if (t[1] == t[2]) {  // a line, too
+    const int beside = t[0] == pair.point ? t[1] : t[0];
+    return {{of_one(pair.point), of_other(corners[0]), of_other(corners[1]), of_one(beside)}, true};
+  }
+  const Vec3& point = one.at[pair.point];
+  const bool first = (other.at[corners[0]] - point).norm() <= (other.at[corners[1]] - point).norm();
+  return {{of_other(corners[first ? 0 : 1]), of_one(t[0]), of_one(t[1]), of_one(t[2])}, false};
+}
+
+std::vector<SkinPress> SkinJoin::pressing(const VecX& x) const {
+  const std::vector<SkinTouch> touches = touching(x);
+  std::vector<SkinPress> out;
+  if (touches.empty()) return out;
+  const std::vector<SkinPair>& pairs = pairs_below(x, self_barrier.range);
+  std::size_t at = 0;
+  const auto nearest = [&](const SkinTouch& touch) {  // both are ordered by skin and point
+    const auto before = [&](const SkinPair& pair) {
+      return std::tie(pair.skin, pair.point) < std::tie(touch.skin, touch.point);
+    };
+    while (before(pairs[at])) ++at;
+    const SkinPair* best = &pairs[at];
+    double least = gap_of(*best);
+    for (; at < pairs.size() && pairs[at].skin == touch.skin && pairs[at].point == touch.point; ++at)
+      if (const double gap = gap_of(pairs[at]); gap < least) least = gap, best = &pairs[at];
+    return *best;
+  };
+  for (std::size_t k = 0; k < touches.size();) {
+    const SkinTouch& touch = touches[k];
+    SkinPress press{{{bodies_[touch.skin], touch.point}, bodies_[touch.other]},
+                    {},
+                    Vec3::Zero(),
+                    sides_[touch.skin].areas[touch.point]};
+    for (; k < touches.size() && touches[k].skin == touch.skin && touches[k].point == touch.point; ++k)
+      press.force -= touch_gradient(touches[k], self_barrier.sample(touches[k].gap)).head<3>();
+    press.place = rubbing_place(nearest(touch));
+    out.push_back(press);
+  }
+  return out;
 }
 
 void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {

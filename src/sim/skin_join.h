@@ -11,6 +11,7 @@
 
 #include "collision/skin_contact.h"
 #include "sim/group_problem.h"
+#include "sim/skin_rubbing.h"
 
 namespace calot {
 
@@ -21,12 +22,21 @@ struct JoinedPlace {
   double within = 0;
 };
 
+/// What a point of one skin is pressed by, and the frame in which it may rub.
+struct SkinPress {
+  RubbingPair pair;
+  RubbingPlace place;
+  Vec3 force = Vec3::Zero();  ///< N, on the point
+  double area = 0;            ///< m^2 that it stands for
+};
+
 class SkinJoin : public Join {
  public:
   /// `bodies`: their places in the group.
   SkinJoin(const Body& one, const Body& other, std::array<int, 2> bodies,
            std::span<const JoinedPlace> joined = {});
 
+  const SkinJoin* skins() const override { return this; }
   void begin(std::span<const GroupPlace> bodies) const override;
   void find(const VecX& x) const override { touching(x); }
   double value(const VecX& x) const override;
@@ -39,6 +49,8 @@ class SkinJoin : public Join {
   const std::array<int, 2>& bodies() const { return bodies_; }
   /// All that presses at x, in the group's numbering; found once for a state. Valid until the next call.
   const std::vector<SkinTouch>& touching(const VecX& x) const;
+  /// All that presses at x, summed over what each point touches; ordered by skin, then point.
+  std::vector<SkinPress> pressing(const VecX& x) const;
   /// The smallest gap of the two skins at x, m, or as far as is looked (0.8 mm): 0 or less where they are in each other.
   double gap(const VecX& x) const;
   /// N, of the first body on the other.
@@ -55,6 +67,7 @@ class SkinJoin : public Join {
     double radius = 0;         ///< m, about its skin
     std::vector<double> areas;
     std::vector<char> counts;  ///< triangles of its skin that are met
+    std::vector<int> around;   ///< a triangle at each point
     // Near the other, at patches_x_:
     std::vector<int> patches, rows, nodes;
     std::optional<ContactSkin> skin;
@@ -85,6 +98,7 @@ class SkinJoin : public Join {
   bool active() const { return sides_[0].body != nullptr; }
   static void take_patches(Side& side);
   std::array<StencilPoint, 4> points_of(const SkinTouch& touch) const;
+  RubbingPlace rubbing_place(const SkinPair& pair) const;
 
   std::array<int, 2> bodies_;
   mutable std::array<Side, 2> sides_;

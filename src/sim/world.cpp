@@ -100,6 +100,13 @@ void add_body_state(Hash& hash, const Organ& organ) {
     for (int detail : *organ.refused_details) hash.add(detail);
 }
 
+void add_stick_slip(Hash& hash, const StickSlip& hold) {
+  hash.add(hold.limit);
+  hash.add(hold.stiffness);
+  add_point(hash, hold.anchor);
+  add_point(hash, hold.normal);
+}
+
 void add_holds(Hash& hash, const Organ& organ) {
   for (const GripPoint& grip : organ.grips) {
     hash.add(grip.instrument);
@@ -111,10 +118,7 @@ void add_holds(Hash& hash, const Organ& organ) {
   for (const RubbingPoint& rubbing : organ.friction.points) {
     hash.add(rubbing.shape);
     hash.add(rubbing.point);
-    hash.add(rubbing.hold.limit);
-    hash.add(rubbing.hold.stiffness);
-    add_point(hash, rubbing.hold.anchor);
-    add_point(hash, rubbing.hold.normal);
+    add_stick_slip(hash, rubbing.hold);
   }
 }
 
@@ -134,6 +138,20 @@ void add_missed(Hash& hash, const MissedMotion& missed) {
   add_vector(hash, missed.dpressures);
   hash.add(missed.travel);
   hash.add(missed.iterations);
+}
+
+void add_rubbing(Hash& hash, const std::vector<SkinHold>& rubbing) {
+  for (const SkinHold& held : rubbing) {
+    hash.add(held.pair.point.body);
+    hash.add(held.pair.point.row);
+    hash.add(held.pair.on);
+    for (const BodyPoint& point : held.place.points) {
+      hash.add(point.body);
+      hash.add(point.row);
+    }
+    hash.add(held.across);
+    add_stick_slip(hash, held.hold);
+  }
 }
 
 void add_tool(Hash& hash, const Tool& tool) {
@@ -156,6 +174,7 @@ std::uint64_t World::Impl::hash_field() const {
     add_holds(hash, organ);
   }
   add_missed(hash, field.group.missed);
+  add_rubbing(hash, field.group.rubbing);
   add_factor(hash, field.group.work);
   for (const Tool& tool : field.tools) add_tool(hash, tool);
   return hash.value();
@@ -303,6 +322,7 @@ Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anato
   SolveStatistics statistics;
   const std::vector<Ground> rough = field.ground;
   for (Ground& ground : field.ground) ground.friction = 0;
+  field.group.friction = 0;
   const GroupSnapshot before = snapshot(field);
   Result<bool> rested = settle_field(field, "at rest", statistics);
   if (!rested && dynamic) {
@@ -310,6 +330,7 @@ Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anato
     rested = sink_field(field, statistics);
   }
   field.ground = rough;
+  field.group.friction = anatomy.friction;
   if (!rested) return rested;
   for (Organ& organ : field.organs) {
     const ShellBody* shell = shell_of(organ);
