@@ -47,9 +47,10 @@ double BodyPlaces::across(const RubbingPlace& place) const {
   return share * share * (3 - 2 * share);
 }
 
-RubbingFrame BodyPlaces::frame(const RubbingPlace& place, double across) const {
-  const std::array<Vec3, 4> at = of(place);
-  const Edges edges(at, place.lines);
+namespace {
+
+RubbingFrame frame_of(const std::array<Vec3, 4>& at, bool lines, double across) {
+  const Edges edges(at, lines);
   const double length = edges.along.norm();
   const Vec3 first = edges.along / length, arm = at[0] - at[1];
   // Where nothing across the first axis counts any plane does.
@@ -71,8 +72,42 @@ RubbingFrame BodyPlaces::frame(const RubbingPlace& place, double across) const {
   const Mat3 turned = counted * cross_matrix(arm);
   out.at = counted * arm;
   out.slopes = {counted, -counted - turned * by_along, turned * by_along, turned * by_third};
-  out.slopes[place.lines ? 0 : 1] -= turned * by_third;
+  out.slopes[lines ? 0 : 1] -= turned * by_third;
   return out;
+}
+
+using Slope = Eigen::Matrix<double, 12, 1>;
+using Bend = Eigen::Matrix<double, 12, 12>;
+
+Slope slope_by_points(const RubbingFrame& frame, const Vec3& by_place) {
+  Slope out;
+  for (int k = 0; k < 4; ++k)
+    out.segment<3>(3 * k) = frame.slopes[static_cast<std::size_t>(k)].transpose() * by_place;
+  return out;
+}
+
+/// What the frame's turning adds to the Hessian, by differences of the slopes: exact to 1e-9 of itself. The first
+/// point's part follows, as nothing changes with a motion of all.
+Bend turning(const std::array<Vec3, 4>& at, bool lines, double across, const Vec3& by_place) {
+  const double step = 1e-6 * (at[2] - at[1]).norm();
+  Bend out = Bend::Zero();
+  for (int k = 3; k < 12; ++k) {
+    std::array<Vec3, 4> ahead = at, behind = at;
+    const auto point = static_cast<std::size_t>(k / 3);
+    ahead[point][k % 3] += step;
+    behind[point][k % 3] -= step;
+    out.col(k) = (slope_by_points(frame_of(ahead, lines, across), by_place) -
+                  slope_by_points(frame_of(behind, lines, across), by_place)) /
+                 (2 * step);
+    out.col(k % 3) -= out.col(k);
+  }
+  return 0.5 * (out + out.transpose());
+}
+
+}  // namespace
+
+RubbingFrame BodyPlaces::frame(const RubbingPlace& place, double across) const {
+  return frame_of(of(place), place.lines, across);
 }
 
 const SkinHold* find_hold(std::span<const SkinHold> holds, const RubbingPair& pair) {
@@ -99,11 +134,11 @@ void SkinRubbing::add_gradient(const VecX& x, VecX& gradient) const {
   const BodyPlaces places(bodies_, x);
   for (const SkinHold& held : holds_) {
     const RubbingFrame frame = places.frame(held);
-    const Vec3 slope = held.hold.sample(frame.at).gradient;
+    const Slope slope = slope_by_points(frame, held.hold.sample(frame.at).gradient);
     const std::array<StencilPoint, 4> points = points_of(held.place);
     for (std::size_t k = 0; k < 4; ++k) {
       const StencilTable& table = *points[k].table;
-      const Vec3 force = frame.slopes[k].transpose() * slope;
+      const Vec3 force = slope.segment<3>(3 * static_cast<Eigen::Index>(k));
       for (int e = table.begin[points[k].row]; e < table.begin[points[k].row + 1]; ++e)
         gradient.segment<3>(Eigen::Index{3} * (points[k].first_node + table.node[e])) +=
             table.value[e] * force;
@@ -115,11 +150,14 @@ void SkinRubbing::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   const BodyPlaces places(bodies_, x);
   lacking_ = false;
   for (const SkinHold& held : holds_) {
-    const RubbingFrame frame = places.frame(held);
-    const Mat3 bend = held.hold.sample(frame.at).hessian;
+    const std::array<Vec3, 4> at = places.of(held.place);
+    const RubbingFrame frame = frame_of(at, held.place.lines, held.across);
+    const FrictionSample sample = held.hold.sample(frame.at);
     Eigen::Matrix<double, 3, 12> slopes;
     for (int k = 0; k < 4; ++k) slopes.block<3, 3>(0, 3 * k) = frame.slopes[static_cast<std::size_t>(k)];
-    lacking_ |= !add_points_hessian(points_of(held.place), slopes.transpose() * bend * slopes, matrix);
+    const Bend bend = slopes.transpose() * sample.hessian * slopes +
+                      turning(at, held.place.lines, held.across, sample.gradient);
+    lacking_ |= !add_points_hessian(points_of(held.place), bend, matrix);
   }
 }
 

@@ -84,8 +84,6 @@ class SkinRubbing : public Join {
   }
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
-  /// As if frames did not turn any further: what that leaves out is a force of friction over a length of the frame, some
-  /// hundredths of what sticks, and Newton's method makes it good.
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
   bool lacking() const override { return lacking_; }
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
