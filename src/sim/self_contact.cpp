@@ -15,9 +15,15 @@ namespace {
 /// gathered, and only how these move against each other ages the pairs: a fold that is pulled along keeps its own.
 /// More reach means fewer searches and more to look at between them: these were the fastest of nine in a grasp.
 constexpr double close_reach = 0.8e-3, group_reach = 3e-3;
+/// Of edges.
+constexpr double least_edges_reach = 0.35e-3;
 /// Walls that are nearer than the first of these may touch in the next solve, and are coupled in its matrix; beyond
 /// the second they are not any more.
 constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
+/// The same of edges.
+constexpr double edges_couple(double of_points) {
+  return of_points * (self_edge_barrier.range / self_barrier.range);
+}
 
 /// Bound on how much any two skin points that hang on `nodes` move against each other when the nodes move by `dx`, m:
 /// what the coarse nodes' motions differ by, and the details' of each level.
@@ -75,6 +81,19 @@ double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>&
                                    motions, keep);
 }
 
+double cut_by(const std::array<int, 4>& ends, const std::vector<Vec3>& at, const std::vector<Vec3>& motion,
+              double keep, double share) {
+  const EdgePair edges = edge_pair(ends, at);
+  EdgePair motions = edge_pair(ends, motion);
+  double longest = 0;
+  for (int i : {0, 1})
+    for (int k : {2, 3}) longest = std::max(longest, (motions[i] - motions[k]).squaredNorm());
+  const double reach = (edges[1] - edges[0]).norm() + (edges[3] - edges[2]).norm();
+  if (share * std::sqrt(longest) < (1.0 - keep) * ((edges[0] - edges[2]).norm() - reach)) return share;
+  for (Vec3& m : motions) m *= share;
+  return share * calot::safe_share(edges, motions, keep);
+}
+
 }  // namespace
 
 const SkinNet& SelfContact::net(const Body& body) {
@@ -116,29 +135,34 @@ void SelfContact::refresh_groups(const Body& body, const VecX& x, double need) {
   pairs_known_ = false;
 }
 
-double SelfContact::refresh(const Body& body, const VecX& x, double need) {
+double SelfContact::refresh(const Body& body, const VecX& x, double need, double need_edges) {
   if (!active || !x.allFinite()) {
-    near_.clear();
+    forget_pairs();
     groups_known_ = pairs_known_ = false;
     return 0;
   }
-  refresh_groups(body, x, need);
+  const double beside = beside_edges(body);
+  refresh_groups(body, x, std::max(need, std::hypot(need_edges, beside)));
   if (groups_.empty()) {
-    near_.clear();
+    forget_pairs();
     return 0;
   }
   if (pairs_known_) {
     const double approach = relative_motion(body, x - pairs_x_, nodes_);
-    if (need + approach <= close_reach) return approach;
+    if (need + approach <= pairs_reach_ && need_edges + approach <= edges_reach_) return approach;
   }
-  refresh_groups(body, x, close_reach);
+  edges_reach_ = std::max(need_edges, least_edges_reach);
+  pairs_reach_ = std::max({close_reach, need, std::hypot(edges_reach_, beside)});
+  refresh_groups(body, x, pairs_reach_);
   pairs_known_ = true;
   pairs_x_ = x;
-  near_.clear();
-  nearest_ = close_reach;
+  nearest_ = pairs_reach_;
+  nearest_edges_ = edges_reach_;
   look_up(body, x, at_);
-  near_ = near_pairs(*net_, {at_, nullptr, close_reach, 1}, groups_, workers);
+  near_ = near_pairs(*net_, {at_, nullptr, pairs_reach_, 1}, groups_, workers);
+  edges_near_ = edges_at(*net_, near_, {at_, nullptr, edges_reach_, 1});
   for (const SelfPair& pair : near_) nearest_ = std::min(nearest_, pair.distance);
+  for (const EdgesNear& pair : edges_near_) nearest_edges_ = std::min(nearest_edges_, pair.distance);
   return 0;
 }
 
@@ -147,20 +171,20 @@ void SelfContact::look_up(const Body& body, const VecX& x, std::vector<Vec3>& po
   for (int row : rows_) points[row] = body.skin_point(row, x);
 }
 
-const std::vector<SelfTouch>& SelfContact::touching(const Body& body, const VecX& x) {
+const SelfContact::Touching& SelfContact::found_at(const Body& body, const VecX& x) {
   for (std::size_t k = 0; active && k < found_.size(); ++k) {
     const Touching& known = found_[k];
     if (known.x.size() != x.size() || known.x != x || known.details != body.details()) continue;
     newest_ = k;
-    return known.touches;
+    return known;
   }
   newest_ = 1 - newest_;
-  found_[newest_] = {active ? x : VecX(), body.details(), find_touching(body, x)};
-  return found_[newest_].touches;
+  found_[newest_] = {active ? x : VecX(), body.details(), find_touching(body, x), find_crossing(body, x)};
+  return found_[newest_];
 }
 
 std::vector<SelfTouch> SelfContact::find_touching(const Body& body, const VecX& x) {
-  const double near = self_barrier.range + refresh(body, x, self_barrier.range);
+  const double near = self_barrier.range + refresh(body, x, self_barrier.range, self_edge_barrier.range);
   std::vector<SelfTouch> out;
   if (near_.empty() || nearest_ >= near) return out;
   look_up(body, x, at_);
@@ -185,10 +209,30 @@ std::vector<SelfTouch> SelfContact::find_touching(const Body& body, const VecX& 
   return out;
 }
 
+std::vector<EdgeTouch> SelfContact::find_crossing(const Body& body, const VecX& x) {
+  constexpr double range = self_edge_barrier.range;
+  const double near = range + refresh(body, x, self_barrier.range, range);
+  std::vector<EdgeTouch> out;
+  if (edges_near_.empty() || nearest_edges_ >= near) return out;
+  look_up(body, x, at_);
+  for (const EdgesNear& pair : edges_near_) {
+    if (pair.distance >= near) continue;
+    const std::array<int, 4> ends = ends_of(*net_, pair);
+    const EdgeCrossing crossing{
+        self_edge_barrier,
+        EdgeCrossing::parallel_bound(net_->edge_lengths[pair.edge], net_->edge_lengths[pair.other], range)};
+    const EdgeCrossing::Sample sample = crossing.sample(edge_pair(ends, at_));
+    if (sample.energy == 0) continue;
+    out.push_back({ends, sample, std::sqrt(net_->edge_areas[pair.edge] * net_->edge_areas[pair.other])});
+  }
+  return out;
+}
+
 double SelfContact::value(const Body& body, const VecX& x) {
   double sum = 0;
   for (const SelfTouch& touch : touching(body, x))
     sum += touch.area * self_barrier.sample(touch.sample.distance).energy;
+  for (const EdgeTouch& touch : crossing(body, x)) sum += touch.area * touch.sample.energy;
   return sum;
 }
 
@@ -201,6 +245,9 @@ void SelfContact::add_gradient(const Body& body, const VecX& x, VecX& gradient) 
     for (int k = 0; k < touch.part.corners; ++k)
       spread(skin, touch.part.corner[k], touch.sample.weight[k + 1] * force, gradient);
   }
+  for (const EdgeTouch& touch : crossing(body, x))
+    for (int k = 0; k < 4; ++k)
+      spread(skin, touch.ends[k], touch.area * touch.sample.gradient.segment<3>(3 * k), gradient);
 }
 
 void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix) {
@@ -222,6 +269,9 @@ void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matr
                            touch.area * (b.second * slope * slope.transpose() + b.derivative * bend), matrix);
     lacking_ |= !complete;
   }
+  for (const EdgeTouch& touch : crossing(body, x))
+    lacking_ |=
+        !add_points_hessian(body.skin().stencils, touch.ends, touch.area * touch.sample.hessian, matrix);
 }
 
 double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step, double keep, double share) {
@@ -239,37 +289,52 @@ double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step
 }
 
 double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step, double keep) {
-  const double lost = 1.0 - keep;
+  const double lost = 1.0 - keep, beside = beside_edges(body);
   const double anywhere = relative_motion(body, step, all_nodes(body)) / lost;
-  refresh_groups(body, x, anywhere);
+  refresh_groups(body, x, std::hypot(anywhere, beside));
   if (groups_.empty()) return 1.0;
   const double far = relative_motion(body, step, nodes_) / lost;
   double share = 1.0;
   if (far <= close_reach) {
-    const double near = far + refresh(body, x, far);
-    if (near_.empty() || nearest_ >= near) return share;
+    const double near = far + refresh(body, x, far, far);
+    if ((near_.empty() || nearest_ >= near) && (edges_near_.empty() || nearest_edges_ >= near)) return share;
     look_up(body, x, at_);
     look_up(body, step, way_);
     for (const SelfPair& pair : near_)
       if (pair.distance < near) share = cut_by(*net_, pair, at_, way_, keep, share);
+    for (const EdgesNear& pair : edges_near_)
+      if (pair.distance < near) share = cut_by(ends_of(*net_, pair), at_, way_, keep, share);
     return share;
   }
   look_up(body, x, at_);
   look_up(body, step, way_);
-  for (const SelfPair& pair : near_pairs(*net_, {at_, &way_, 0, lost}, groups_, workers))
-    share = cut_by(*net_, pair, at_, way_, keep, share);
+  // A point at an edge is further from what it meets by as much as the edge is long.
+  const SkinMotion moving{at_, &way_, beside, lost};
+  const std::vector<SelfPair> pairs = near_pairs(*net_, moving, groups_, workers);
+  for (const SelfPair& pair : pairs) share = cut_by(*net_, pair, at_, way_, keep, share);
+  for (const EdgesNear& pair : edges_at(*net_, pairs, moving))
+    share = cut_by(ends_of(*net_, pair), at_, way_, keep, share);
   return share;
 }
 
 bool SelfContact::any_nearer(const Body& body, const VecX& x, double distance) {
-  const double near = distance + refresh(body, x, distance);
-  if (near_.empty() || nearest_ >= near) return false;
+  const double edges = edges_couple(distance), aged = refresh(body, x, distance, edges);
+  const double near = distance + aged, near_edges = edges + aged;
+  const bool points = !near_.empty() && nearest_ < near,
+             at_edges = !edges_near_.empty() && nearest_edges_ < near_edges;
+  if (!points && !at_edges) return false;
   look_up(body, x, at_);
-  return std::any_of(near_.begin(), near_.end(), [&](const SelfPair& pair) {
-    return pair.distance < near &&
-           nearest_point(at_[pair.skin_point], corners_of(net_->triangles[pair.triangle], at_)).distance <
-               distance;
-  });
+  return std::any_of(near_.begin(), near_.end(),
+                     [&](const SelfPair& pair) {
+                       return pair.distance < near &&
+                              nearest_point(at_[pair.skin_point],
+                                            corners_of(net_->triangles[pair.triangle], at_))
+                                      .distance < distance;
+                     }) ||
+         std::any_of(edges_near_.begin(), edges_near_.end(), [&](const EdgesNear& pair) {
+           return pair.distance < near_edges &&
+                  nearest_of_edges(edge_pair(ends_of(*net_, pair), at_)).distance < edges;
+         });
 }
 
 std::optional<BlockMatrix> SelfContact::new_pattern(const Body& body, const VecX& x,
@@ -280,16 +345,22 @@ std::optional<BlockMatrix> SelfContact::new_pattern(const Body& body, const VecX
     return widened ? std::optional(own) : std::nullopt;
   // Of all pairs this near, however many more are remembered: the pattern must not depend on where else the skin was
   // looked at.
-  const double near = uncouple_above + refresh(body, x, uncouple_above);
+  const double edges = edges_couple(uncouple_above), aged = refresh(body, x, uncouple_above, edges);
+  const double near = uncouple_above + aged;
   look_up(body, x, at_);
-  std::vector<std::array<int, 4>> groups;  // faces of a point and of a triangle's corners
+  std::vector<std::array<int, 4>> groups;  // faces of a point and of a triangle's corners, or of edges' ends
+  const auto face_of = [&](int row) { return body.skin().at[row].face; };
   for (const SelfPair& pair : near_) {
     const Triangle& t = net_->triangles[pair.triangle];
     if (pair.distance >= near ||
         nearest_point(at_[pair.skin_point], corners_of(t, at_)).distance >= uncouple_above)
       continue;
-    const auto face_of = [&](int row) { return body.skin().at[row].face; };
     groups.push_back({face_of(pair.skin_point), face_of(t[0]), face_of(t[1]), face_of(t[2])});
+  }
+  for (const EdgesNear& pair : edges_near_) {
+    const std::array<int, 4> ends = ends_of(*net_, pair);
+    if (pair.distance >= edges + aged || nearest_of_edges(edge_pair(ends, at_)).distance >= edges) continue;
+    groups.push_back({face_of(ends[0]), face_of(ends[1]), face_of(ends[2]), face_of(ends[3])});
   }
   std::sort(groups.begin(), groups.end());
   groups.erase(std::unique(groups.begin(), groups.end()), groups.end());

@@ -7,12 +7,15 @@
 // A force and what answers it lie on one line and share out by the weights of the nearest point: what the wall does
 // to itself sums to no force and no torque.
 //
-// Not covered: two edges that cross with no point near either's triangle. Where the skin's points stand wider apart than
-// the barrier's range (0.4 mm; they may by up to half a jaw's width) a sharp fold can pass another so.
+// Where the skin's points stand wider apart than the barrier's range (0.4 mm; they may by up to half a jaw's width) sharp
+// folds meet with no point near: their edges are kept apart beside (collision/edge_crossing.h), within a quarter of that
+// range, so that walls that lie on each other press by their points alone.
 
+#include <cmath>
 #include <optional>
 
 #include "collision/barrier.h"
+#include "collision/edge_crossing.h"
 #include "collision/simplex_distance.h"
 #include "collision/surface_parts.h"
 #include "sim/self_search.h"
@@ -23,12 +26,22 @@ namespace calot {
 /// (what holds them there is the grip).
 inline constexpr Barrier self_barrier{0.4e-3, 20e3};
 
+/// Of edges that cross.
+inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, self_barrier.stiffness};
+
 /// A skin point and a part of the skin that press on each other.
 struct SelfTouch {
   int skin_point = 0;
   SurfacePart part;
   FlatSample sample;
   double area = 0;  ///< m^2 that it counts for; negative where the part counts so
+};
+
+/// Two edges of the skin that press on each other.
+struct EdgeTouch {
+  std::array<int, 4> ends{};  ///< skin points, as in EdgePair
+  EdgeCrossing::Sample sample;
+  double area = 0;  ///< m^2 that it counts for
 };
 
 /// Finds what is near and remembers it until other things could have come near; what it remembers is no part of any
@@ -41,7 +54,13 @@ class SelfContact {
   Workers* workers = nullptr;
 
   /// All that touches at x, ordered by skin point, then part; found once for a state. Valid until the next call.
-  const std::vector<SelfTouch>& touching(const Body& body, const VecX& x);
+  const std::vector<SelfTouch>& touching(const Body& body, const VecX& x) {
+    return found_at(body, x).touches;
+  }
+  /// And all edges that cross in range, ordered.
+  const std::vector<EdgeTouch>& crossing(const Body& body, const VecX& x) {
+    return found_at(body, x).crossings;
+  }
   /// Energy (J) and derivatives.
   double value(const Body& body, const VecX& x);
   void add_gradient(const Body& body, const VecX& x, VecX& gradient);
@@ -50,7 +69,7 @@ class SelfContact {
   /// Whether the last add_hessian left some out.
   bool lacking() const { return lacking_; }
 
-  /// The largest part of `share` of the step on which no point and triangle lose more than 1 - keep of their
+  /// The largest part of `share` of the step on which no point and triangle, and no two edges, lose more than 1 - keep of their
   /// distance; of a long step, gone in parts, in none of these.
   double safe_share(const Body& body, const VecX& x, const VecX& step, double keep, double share);
   /// The pattern that a matrix needs to hold the couplings of what is near at x, or the body's own once that has moved
@@ -58,9 +77,12 @@ class SelfContact {
   std::optional<BlockMatrix> new_pattern(const Body& body, const VecX& x, const BlockMatrix& present);
 
  private:
-  /// Sees to it that near_ holds all pairs nearer than `need` at x, at most close_reach. Returns how much of their
-  /// distance its pairs may have lost since it was gathered, m.
-  double refresh(const Body& body, const VecX& x, double need);
+  /// Sees to it that near_ holds all pairs nearer than `need` at x, and those at edges nearer than `need_edges`. Returns
+  /// how much of their distance its pairs may have lost since it was gathered, m.
+  double refresh(const Body& body, const VecX& x, double need, double need_edges);
+  void forget_pairs() { near_.clear(), edges_near_.clear(); }
+  /// Half of the longest edge at rest, stretched by a quarter: how far a point may be beside edges that meet, m.
+  double beside_edges(const Body& body) { return 0.625 * net(body).longest_edge; }
   /// safe_share() of a step no longer than groups are remembered.
   double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
@@ -71,13 +93,16 @@ class SelfContact {
   void look_up(const Body& body, const VecX& x, std::vector<Vec3>& points) const;
   const SkinNet& net(const Body& body);
   std::vector<SelfTouch> find_touching(const Body& body, const VecX& x);
+  std::vector<EdgeTouch> find_crossing(const Body& body, const VecX& x);
 
   /// What touched at the last two states that were asked for: where a step began and where it is tried.
   struct Touching {
     VecX x;
     std::vector<int> details;
     std::vector<SelfTouch> touches;
+    std::vector<EdgeTouch> crossings;
   };
+  const Touching& found_at(const Body& body, const VecX& x);
   std::array<Touching, 2> found_;
   std::size_t newest_ = 0;
   std::optional<SkinNet> net_;
@@ -93,6 +118,9 @@ class SelfContact {
   VecX pairs_x_;
   std::vector<SelfPair> near_;
   double nearest_ = 0;  ///< m, of these pairs
+  std::vector<EdgesNear> edges_near_;
+  double nearest_edges_ = 0;                  ///< m, of these
+  double pairs_reach_ = 0, edges_reach_ = 0;  ///< m, how near all are remembered
   bool lacking_ = false;
   std::vector<Vec3> at_, way_;  ///< room for look_up()
 };

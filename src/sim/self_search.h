@@ -1,9 +1,10 @@
 #pragma once
-// Which points of an organ's skin may meet which of its triangles.
+// Which points of an organ's skin may meet which of its triangles, and which edges which.
 
 #include <span>
 #include <utility>
 
+#include "collision/edge_distance.h"
 #include "sim/body.h"
 
 namespace calot {
@@ -15,7 +16,12 @@ struct SkinNet {
   std::vector<Vec3> rest;           ///< m, of each skin point
   std::vector<Triangle> triangles;  ///< corners increasing, so that two triangles see their edge alike
   std::vector<int> begin, around;  ///< triangles around point p: around[begin[p]] .. around[begin[p + 1] - 1]
-  double apart = 0;                ///< m, see neighbours()
+  std::vector<std::array<int, 2>> edges;         ///< ends increasing; ordered
+  std::vector<int> edge_begin, edges_around;     ///< edges at point p, as `begin` and `around`
+  std::vector<double> edge_lengths, edge_areas;  ///< m, at rest; m^2, a third of the triangles at it
+  double longest_edge = 0;                       ///< m, at rest
+  std::vector<std::array<int, 3>> sides;         ///< of each triangle: edges
+  double apart = 0;                              ///< m, see neighbours()
 
   /// Points in groups of groups, by where they are at rest. The first node is the root; children follow their parent.
   struct Node {
@@ -32,8 +38,11 @@ struct SkinNet {
   /// keeps them in order, they would press on each other at rest, and as the barrier's range is a small part of that
   /// distance even wall shortened to a tenth presses on nothing.
   bool neighbours(int row, int triangle) const;
+  /// As near as that by any of their ends.
+  bool edges_neighbour(int edge, int other) const;
 
  private:
+  void gather_edges();
   void split(int node);
 };
 
@@ -52,6 +61,12 @@ struct SelfPair {
   double distance = 0;  ///< m, when it was gathered; 0 of those on a way
 };
 
+/// Two edges of the same skin that are no neighbours, edge < other.
+struct EdgesNear {
+  int edge = 0, other = 0;
+  double distance = 0;  ///< m, when it was gathered; 0 of those on a way
+};
+
 using GroupPair = std::pair<int, int>;  ///< two of SkinNet::nodes without children, or one twice
 
 /// Groups with points that are nearer than `reach` (m) to a triangle around a point of the other, but for neighbours.
@@ -62,5 +77,12 @@ std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& 
 /// of the triangles around them are read.
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
                                  std::span<const GroupPair> groups, Workers* workers = nullptr);
+/// All edges at the points of those pairs with edges of their triangles; ordered. Where two edges come within d of each
+/// other an end of one is as near to a triangle at the other as hypot(d, half the shorter's length): what parts them is
+/// across both. Where `skin` stays these are measured, and only those nearer than its reach returned.
+std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin);
+/// The ends of two edges: skin points.
+std::array<int, 4> ends_of(const SkinNet& net, const EdgesNear& pair);
+EdgePair edge_pair(const std::array<int, 4>& ends, const std::vector<Vec3>& points);
 
 }  // namespace calot

@@ -155,6 +155,78 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   }
 }
 
+/// Least distance of edges that are no neighbours, m, up to `most`.
+double nearest_edges(const SkinNet& net, const Organ& organ, const VecX& x, double most) {
+  const std::vector<Vec3> skin = organ.body->skin_positions(x);
+  const double around = std::hypot(most, net.longest_edge);
+  const std::vector<SelfPair> pairs =
+      near_pairs(net, {skin, nullptr, around, 1}, near_groups(net, skin, around));
+  double out = most;
+  for (const EdgesNear& e : edges_at(net, pairs, {skin, nullptr, most, 1})) out = std::min(out, e.distance);
+  return out;
+}
+
+/// Dented until edges cross with less than `gap` between them.
+VecX crossed(const Organ& organ, const SkinNet& net, double gap) {
+  for (double points = 3 * gap; points > 0.1 * gap; points *= 0.9) {
+    VecX x = dented(organ, points);
+    if (nearest_edges(net, organ, x, gap) < gap) return x;
+  }
+  return {};
+}
+
+TEST(SelfContact, EdgesThatCrossPressOnEachOther) {
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
+  const Organ& organ = field.organs[0];
+  const ShellBody& body = *shell_of(organ);
+  const SkinNet net(body);
+  const VecX x = crossed(organ, net, 0.5 * self_edge_barrier.range);
+  ASSERT_GT(x.size(), 0);
+  SelfContact own;
+  ASSERT_FALSE(own.crossing(body, x).empty());
+  VecX g = VecX::Zero(x.size());
+  own.add_gradient(body, x, g);
+  EXPECT_LT(test::net_force(g).norm(), 1e-12 * g.lpNorm<1>());
+  EXPECT_LT(test::net_torque(x, g, Vec3(0, 0, 20e-3)).norm(), 1e-12 * body.size() * g.lpNorm<1>());
+  std::optional<BlockMatrix> h = own.new_pattern(body, x, body.pattern());
+  ASSERT_TRUE(h);
+  h->set_zero();
+  own.add_hessian(body, x, *h);
+  EXPECT_FALSE(own.lacking());
+  Rng rng(6);
+  for (int k = 0; k < 3; ++k) {
+    const VecX d = test::random_coordinates(rng, static_cast<int>(x.size()), 1.0);
+    constexpr double step = 1e-10;  // m: a hundred-thousandth of the distances
+    VecX ahead = VecX::Zero(x.size()), behind = ahead;
+    own.add_gradient(body, x + step * d, ahead);
+    own.add_gradient(body, x - step * d, behind);
+    EXPECT_NEAR(g.dot(d), (own.value(body, x + step * d) - own.value(body, x - step * d)) / (2 * step),
+                1e-4 * g.norm() * d.norm());
+    const VecX bend = (ahead - behind) / (2 * step);
+    EXPECT_LT((h->multiply(d) - bend).norm(), 1e-3 * bend.norm());
+  }
+}
+
+/// At 10 mm a step, half a metre a second, and in steps as short as solvers make them.
+TEST(SelfContact, NoStepTakesCrossingEdgesThroughEachOther) {
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
+  const Organ& organ = field.organs[0];
+  const SkinNet net(*organ.body);
+  const VecX x = crossed(organ, net, 0.05e-3);
+  ASSERT_GT(x.size(), 0);
+  const double before = nearest_edges(net, organ, x, 1e-3);
+  VecX step = VecX::Zero(x.size());
+  for (int i = 0; i < organ.body->nodes(); ++i) step[3 * i] = organ.body->rest()[3 * i] > 0 ? -1 : 1;
+  for (double length : {0.1e-3, 10e-3}) {
+    const double share = SelfContact().safe_share(*organ.body, x, length * step, 0.2, 1.0);
+    EXPECT_LT(share, 1.0) << length;
+    for (int k = 1; k <= 4; ++k)
+      EXPECT_GE(nearest_edges(net, organ, x + 0.25 * k * share * length * step, 1e-3),
+                0.2 * 0.2 * before * (1 - 1e-6))
+          << length << ", at most two parts of a way take their share";
+  }
+}
+
 TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
   const ShellBody& body = *shell_of(field.organs[0]);
