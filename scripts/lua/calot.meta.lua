@@ -98,6 +98,7 @@
 ---@field joints? calot.joint[] what ties organs to each other: where a duct grows out of a gallbladder
 ---@field ground? calot.ground[] shapes that stay and are touched
 ---@field support? calot.support a plane that carries the organs
+---@field friction? number coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated; default 0; 0 to 1
 ---@field table_head_up? number reverse Trendelenburg tilt; default 15 * deg; -60 to 60 deg
 ---@field table_left_down? number tilt to the patient's left; default 10 * deg; -60 to 60 deg
 
