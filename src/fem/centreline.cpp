@@ -39,21 +39,65 @@ Vec3 point_at(const std::vector<Vec3>& polyline, const std::vector<double>& ends
 
 }  // namespace
 
-Centreline::Centreline(int spans) : spans_(spans) {
-  for (int k = -degree; k <= spans + degree; ++k) knots_.push_back(std::clamp(k, 0, spans));
+Centreline::Centreline(const std::vector<double>& breaks) : knots_(degree, breaks.front()) {
+  knots_.insert(knots_.end(), breaks.begin(), breaks.end());
+  knots_.insert(knots_.end(), degree, breaks.back());
 }
 
 Result<Centreline> Centreline::create(int nodes) {
   if (nodes < least_nodes)
     return fail(FailureKind::scenario, fmt::format("{} nodes are too few for a centreline", nodes),
                 fmt::format("give it at least {}", least_nodes));
-  return Centreline(nodes - degree);
+  std::vector<double> breaks;
+  for (int k = 0; k <= nodes - degree; ++k) breaks.push_back(k);
+  return Centreline(breaks);
+}
+
+int Centreline::span_at(double u) const {
+  const auto first = knots_.begin() + degree + 1, last = knots_.end() - degree - 1;
+  return static_cast<int>(std::upper_bound(first, last, u) - first);
+}
+
+Centreline Centreline::part(double first, double last) const {
+  constexpr double rounding = 1e-9;  // a span so short would be nothing else
+  std::vector<double> breaks{first};
+  for (double knot : knots_)
+    if (knot > breaks.back() + rounding && knot < last - rounding) breaks.push_back(knot);
+  if (breaks.size() == 1) breaks.push_back(0.5 * (first + last));
+  breaks.push_back(last);
+  return Centreline(breaks);
+}
+
+double Centreline::to_knot(double u) const {
+  double least = std::abs(u - knots_.front());
+  for (double knot : knots_) least = std::min(least, std::abs(u - knot));
+  return least;
+}
+
+VecX Centreline::in_part(const Centreline& part, const VecX& x) const {
+  VecX out(Eigen::Index{3} * part.nodes());
+  for (int i = 0; i < part.nodes(); ++i) {
+    // Any span of the part that the node has a say in lies in one of this line's, whose blossom at the node's three
+    // knots it is.
+    const int within = std::clamp(i - degree / 2, 0, part.spans() - 1) + degree;
+    const int span = span_at(0.5 * (part.knots_[within] + part.knots_[within + 1]));
+    Eigen::Matrix<double, 3, degree + 1> points;
+    for (int k = 0; k <= degree; ++k) points.col(k) = x.segment<3>(Eigen::Index{3} * (span + k));
+    for (int level = 1; level <= degree; ++level)
+      for (int k = degree; k >= level; --k) {
+        const double begin = knots_[span + k], end = knots_[span + k + 1 - level + degree];
+        const double share = (part.knots_[i + level] - begin) / (end - begin);
+        points.col(k) = ((1 - share) * points.col(k - 1) + share * points.col(k)).eval();
+      }
+    out.segment<3>(Eigen::Index{3} * i) = points.col(degree);
+  }
+  return out;
 }
 
 StencilTable Centreline::stencils(const std::vector<double>& parameters) const {
   StencilTable out;
   for (double u : parameters) {
-    const int first = std::clamp(static_cast<int>(std::floor(u)), 0, spans_ - 1);
+    const int first = span_at(u);
     for (int order = 0; order <= 2; ++order) {
       const Weights weights = basis(knots_, first + degree, u, degree, order);
       std::vector<double>& to = order == 0 ? out.value : order == 1 ? out.du : out.duu;
@@ -67,11 +111,16 @@ StencilTable Centreline::stencils(const std::vector<double>& parameters) const {
 
 RodQuadrature Centreline::quadrature() const {
   const double off = 0.5 / std::sqrt(3.0);
-  std::vector<double> parameters;
-  for (int span = 0; span < spans_; ++span)
-    for (double side : {-off, off}) parameters.push_back(span + 0.5 + side);
-  RodQuadrature out{stencils(parameters), std::vector<double>(parameters.size(), 0.5), parameters};
-  for (double& share : out.shares) share /= spans_;
+  std::vector<double> parameters, weights;
+  for (int span = 0; span < spans(); ++span) {
+    const double begin = knots_[span + degree], end = knots_[span + degree + 1];
+    for (double side : {-off, off}) {
+      parameters.push_back(0.5 * (begin + end) + (end - begin) * side);
+      weights.push_back(0.5 * (end - begin));
+    }
+  }
+  RodQuadrature out{stencils(parameters), weights, parameters};
+  for (double& share : out.shares) share = (share - from()) / (to() - from());
   return out;
 }
 
@@ -86,7 +135,7 @@ Result<VecX> Centreline::along(const std::vector<Vec3>& polyline) const {
   std::vector<Vec3> points;
   for (int i = 0; i < nodes(); ++i) {
     const double greville = (knots_[i + 1] + knots_[i + 2] + knots_[i + 3]) / 3;
-    points.push_back(point_at(polyline, ends, greville / spans_ * ends.back()));
+    points.push_back(point_at(polyline, ends, (greville - from()) / (to() - from()) * ends.back()));
   }
   return to_coordinates(points);
 }

@@ -1,6 +1,7 @@
 #pragma once
-// The middle line of a duct or a vessel: a cubic B-spline over an open uniform knot vector (Piegl and Tiller, The NURBS
-// Book, 2nd ed., sections 2.2 and 2.3), which begins at its first control node and ends at its last.
+// The middle line of a duct or a vessel: a cubic B-spline over an open knot vector (Piegl and Tiller, The NURBS Book, 2nd
+// ed., sections 2.2 and 2.3), which begins at its first control node and ends at its last. The knots of a whole line are
+// uniform; a part of it that was divided has those of the whole between its ends, and is the same curve.
 
 #include <vector>
 
@@ -25,10 +26,21 @@ class Centreline {
   static Result<Centreline> create(int nodes);
 
   int nodes() const { return spans() + 3; }
-  /// The parameter runs from 0 to this, a span each unit.
-  int spans() const { return spans_; }
+  int spans() const { return static_cast<int>(knots_.size()) - 7; }
+  /// The parameter runs from from() to to(): of a whole line from 0, a span each unit.
+  double from() const { return knots_.front(); }
+  double to() const { return knots_.back(); }
 
-  /// A row of four nodes for each parameter in [0, spans()]; its derivatives are du and duu, the others empty. A line
+  /// Its part between two parameters, first < last, where its knots are kept; one within a single span has one more.
+  Centreline part(double first, double last) const;
+  /// Coordinates of a part's nodes for which it is the same curve as this line with its nodes at x (Ramshaw 1989,
+  /// "Blossoms are polar forms", Comput. Aided Geom. Des. 6(4):323-358): fixed blends of these, so velocities too.
+  VecX in_part(const Centreline& part, const VecX& x) const;
+
+  /// How far a parameter is from the nearest knot.
+  double to_knot(double u) const;
+
+  /// A row of four nodes for each parameter in [from(), to()]; its derivatives are du and duu, the others empty. A line
   /// that is held at its end node and at the direction to the next one is clamped.
   StencilTable stencils(const std::vector<double>& parameters) const;
 
@@ -46,9 +58,11 @@ class Centreline {
   Result<VecX> along(const std::vector<Vec3>& polyline) const;
 
  private:
-  explicit Centreline(int spans);
+  /// Of spans between these parameters, increasing.
+  explicit Centreline(const std::vector<double>& breaks);
+  /// The span of a parameter.
+  int span_at(double u) const;
 
-  int spans_;
   std::vector<double> knots_;
 };
 

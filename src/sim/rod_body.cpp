@@ -32,64 +32,119 @@ double RodBody::radius_along(double share) const {
 }
 
 Result<RodBody> RodBody::create(const Setup& setup) {
-  RodBody body;
-  body.setup_ = setup;
-  const Result<Centreline> line = Centreline::create(setup.nodes);
+  Result<Centreline> line = Centreline::create(setup.nodes);
   if (!line) return line.failure();
-  Result<VecX> rest = line->along(setup.points);
+  RodBody body(setup, std::move(line).value());
+  Result<VecX> rest = body.line_.along(setup.points);
   if (!rest) return rest.failure();
   body.rest_ = std::move(rest).value();
-  RodQuadrature quadrature = line->quadrature();
-  body.shares_ = quadrature.shares;
+  std::vector<double> middles;
+  for (const HeldPart& held : setup.held) middles.push_back(held.share * body.line_.spans());
+  const StencilTable table = body.line_.stencils(middles);
+  body.held_at_ = blend_all(table, table.value, body.rest_);
+  if (Result<bool> built = body.build(); !built) return built.failure();
+  return body;
+}
+
+Result<RodBody> RodBody::part(int first, int last) const {
+  RodBody body(setup_, line_.part(skin_parameters_[first], skin_parameters_[last]));
+  body.setup_.nodes = body.line_.nodes();
+  body.rest_ = line_.in_part(body.line_, rest_);
+  body.part_ = {skin_shares_[first], skin_shares_[last]};
+  body.held_at_ = held_at_;
+  body.least_edge_ = *std::min_element(edge_lengths_.begin(), edge_lengths_.end());
+  body.skin_parameters_.assign(skin_parameters_.begin() + first, skin_parameters_.begin() + last + 1);
+  body.skin_shares_.assign(skin_shares_.begin() + first, skin_shares_.begin() + last + 1);
+  if (Result<bool> built = body.build(); !built) return built.failure();
+  return body;
+}
+
+double RodBody::share_of_length(int point) const {
+  double before = 0, all = 0;
+  for (std::size_t k = 1; k < skin_rest_.size(); ++k) {
+    all += (skin_rest_[k] - skin_rest_[k - 1]).norm();
+    if (static_cast<int>(k) == point) before = all;
+  }
+  return before / all;
+}
+
+int RodBody::point_to_divide_at(double share) const {
+  constexpr double on_knot = 1e-9, least_span = 0.2;  // of a span of the whole
+  int nearest = -1;
+  double least = 2;
+  for (int point = 1; point + 1 < static_cast<int>(skin_rest_.size()); ++point) {
+    const double off = line_.to_knot(skin_parameters_[point]);
+    const double away = std::abs(share_of_length(point) - share);
+    if ((off > on_knot && off < least_span) || away >= least) continue;
+    nearest = point;
+    least = away;
+  }
+  return nearest;
+}
+
+Result<bool> RodBody::build() {
+  if (Result<bool> laid = lay_rod(); !laid) return laid;
+  if (skin_shares_.empty()) choose_skin_points();
+  lay_skin();
+  Result<TubeMesh> tube = TubeMesh::create(skin_rest_, rod_sectors);
+  if (!tube) return tube.failure();
+  tube_ = std::move(tube).value();
+  drawn_rest_ = drawn(rest_).positions;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : drawn_rest_) box.extend(p);
+  size_ = box.diagonal().norm();
+  for (int i = 0; i < nodes(); ++i) {
+    double shortest = size_;
+    for (int other : {i - 1, i + 1})
+      if (other >= 0 && other < nodes())
+        shortest =
+            std::min(shortest, (rest_.segment<3>(3 * i) - rest_.segment<3>(Eigen::Index{3} * other)).norm());
+    edge_lengths_.push_back(std::max(shortest, least_edge_));
+  }
+  std::vector<std::vector<int>> cliques = rod_.cliques();
+  cliques.insert(cliques.end(), face_nodes_.begin(), face_nodes_.end());
+  constant_ = BlockMatrix(nodes(), cliques);
+  lay_bed();
+  weigh();
+  return true;
+}
+
+Result<bool> RodBody::lay_rod() {
+  RodQuadrature quadrature = line_.quadrature();
   std::vector<RodSection> sections;
   double axial = std::numeric_limits<double>::infinity();
-  for (double share : body.shares_) {
-    sections.push_back(section_of(3 * setup.shear_modulus, body.radius_along(share), setup.wall));
+  for (double share : quadrature.shares) {
+    shares_.push_back(part_[0] + share * (part_[1] - part_[0]));
+    sections.push_back(section_of(3 * setup_.shear_modulus, radius_along(shares_.back()), setup_.wall));
     axial = std::min(axial, sections.back().axial);
   }
-  Result<Rod> rod = Rod::create(std::move(quadrature), body.rest_, std::move(sections));
+  Result<Rod> rod = Rod::create(std::move(quadrature), rest_, std::move(sections));
   if (!rod) return rod.failure();
   // Where nothing loads it, forces are but rounding: a strain of 1e-4 is what they are judged beside then.
-  body.least_force_ = 1e-4 * axial;
-  body.rod_ = std::move(rod).value();
-  for (double length : body.rod_.point_lengths()) body.length_ += length;
-  body.lay_skin(line.value());
-  Result<TubeMesh> tube = TubeMesh::create(body.skin_rest_, rod_sectors);
-  if (!tube) return tube.failure();
-  body.tube_ = std::move(tube).value();
-  body.drawn_rest_ = body.drawn(body.rest_).positions;
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : body.drawn_rest_) box.extend(p);
-  body.size_ = box.diagonal().norm();
-  const int nodes = body.nodes();
-  for (int i = 0; i < nodes; ++i) {
-    double shortest = body.size_;
-    for (int other : {i - 1, i + 1})
-      if (other >= 0 && other < nodes)
-        shortest = std::min(
-            shortest, (body.rest_.segment<3>(3 * i) - body.rest_.segment<3>(Eigen::Index{3} * other)).norm());
-    body.edge_lengths_.push_back(shortest);
+  least_force_ = 1e-4 * axial;
+  rod_ = std::move(rod).value();
+  for (double length : rod_.point_lengths()) length_ += length;
+  return true;
+}
+
+void RodBody::choose_skin_points() {
+  // An even number of segments, so that the middle is a point.
+  const int segments = std::max(4, 2 * static_cast<int>(std::ceil(0.5 * length_ / rod_spacing)));
+  for (int k = 0; k <= segments; ++k) {
+    skin_parameters_.push_back(static_cast<double>(line_.spans()) * k / segments);
+    skin_shares_.push_back(static_cast<double>(k) / segments);
   }
-  std::vector<std::vector<int>> cliques = body.rod_.cliques();
-  cliques.insert(cliques.end(), body.face_nodes_.begin(), body.face_nodes_.end());
-  body.constant_ = BlockMatrix(nodes, cliques);
-  body.lay_bed(line.value());
-  body.weigh();
-  return body;
 }
 
 /// Each segment between two points is two triangles flat as lines, one from either end, so that their contact points lie
 /// evenly on it.
-void RodBody::lay_skin(const Centreline& line) {
-  // An even number, so that the middle is a point.
-  const int segments = std::max(4, 2 * static_cast<int>(std::ceil(0.5 * length_ / rod_spacing)));
-  std::vector<double> parameters;
-  for (int k = 0; k <= segments; ++k) parameters.push_back(static_cast<double>(line.spans()) * k / segments);
-  skin_.stencils = line.stencils(parameters);
+void RodBody::lay_skin() {
+  const int segments = static_cast<int>(skin_shares_.size()) - 1;
+  skin_.stencils = line_.stencils(skin_parameters_);
   skin_rest_ = blend_all(skin_.stencils, skin_.stencils.value, rest_);
   skin_areas_.assign(skin_rest_.size(), 0.0);
   for (int k = 0; k <= segments; ++k) {
-    const double radius = radius_along(static_cast<double>(k) / segments);
+    const double radius = radius_along(skin_shares_[k]);
     radii_.push_back(radius);
     const bool solid = setup_.wall >= radius;
     // A trial may flatten a tube but for a hundredth of its lumen, where the section's law ends.
@@ -115,18 +170,14 @@ void RodBody::lay_skin(const Centreline& line) {
   }
 }
 
-void RodBody::lay_bed(const Centreline& line) {
-  std::vector<double> parameters;
-  for (const HeldPart& held : setup_.held) parameters.push_back(held.share * line.spans());
-  const StencilTable middles = line.stencils(parameters);
+void RodBody::lay_bed() {
   const StencilTable& table = rod_.stencils();
   for (int row = 0; row < table.rows(); ++row) {
     const Vec3 at = blend(table, table.value, row, rest_);
     const double around = 2 * pi * radius_along(shares_[row]) * rod_.point_lengths()[row];
     double stiffness = 0;
     for (std::size_t k = 0; k < setup_.held.size(); ++k)
-      if ((at - blend(middles, middles.value, static_cast<int>(k), rest_)).norm() < setup_.held[k].radius)
-        stiffness += setup_.held[k].stiffness * around;
+      if ((at - held_at_[k]).norm() < setup_.held[k].radius) stiffness += setup_.held[k].stiffness * around;
     if (stiffness <= 0) continue;
     bed_.row.push_back(row);
     bed_.target.push_back(at);

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "fem/centreline.h"
 #include "fem/links.h"
 #include "fem/ring.h"
 #include "fem/rod.h"
@@ -10,8 +11,6 @@
 #include "sim/body.h"
 
 namespace calot {
-
-class Centreline;
 
 class RodBody : public Body {
  public:
@@ -35,6 +34,24 @@ class RodBody : public Body {
   };
   /// Fails (scenario) where the line cannot be one.
   static Result<RodBody> create(const Setup& setup);
+
+  /// Its part between two of its skin points, first < last: the same curve with the same sections, bed and skin points
+  /// there.
+  Result<RodBody> part(int first, int last) const;
+  RodBody called(const std::string& name) const {
+    RodBody out = *this;
+    out.setup_.name = name;
+    return out;
+  }
+  /// Places or velocities of a part's nodes for which it moves as this body with its nodes at x does there.
+  VecX in_part(const RodBody& part, const VecX& x) const { return line_.in_part(part.line_, x); }
+  /// Of its skin points that which lies nearest to a share of the length at rest and can be divided at: at a knot, or
+  /// far enough from one to leave no span that would hold the solver up. None but at its ends: -1.
+  int point_to_divide_at(double share) const;
+  /// Where a skin point lies, as a share of the length at rest.
+  double share_of_length(int point) const;
+  /// Whether anything of it lies bedded.
+  bool bedded() const { return !bed_.row.empty(); }
 
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }
@@ -75,16 +92,28 @@ class RodBody : public Body {
  private:
   /// Of the rule's points those whose weights of the first corner are 11/12, 8/12, 5/12 and 2/12.
   static constexpr std::array<int, 4> felt_points = {0, 4, 8, 12};
-  double radius_along(double share) const;
-  void lay_skin(const Centreline& line);
-  void lay_bed(const Centreline& line);
+  RodBody(const Setup& setup, Centreline line) : setup_(setup), line_(std::move(line)) {}
+  /// All that follows from setup, line and rest line.
+  Result<bool> build();
+  Result<bool> lay_rod();
+  void choose_skin_points();
+  void lay_skin();
+  void lay_bed();
   void weigh();
+  /// At a share of the whole line, by its parameter.
+  double radius_along(double share) const;
 
   Setup setup_;
+  Centreline line_;
+  std::array<double, 2> part_{0, 1};  ///< of the whole, by parameter: what of it is left
+  std::vector<Vec3> held_at_;         ///< m, middles of what is held
+  /// Where the skin points are on the line, and as shares of the whole.
+  std::vector<double> skin_parameters_, skin_shares_;
   Rod rod_;
   VecX rest_, weight_;
   double size_ = 0, length_ = 0;
   double least_force_ = 0;  ///< N
+  double least_edge_ = 0;   ///< m, of the whole: a short span at a cut holds no step up
   std::vector<double> edge_lengths_;
   BlockMatrix constant_{0, {}};
   std::optional<BlockMatrix> mass_;

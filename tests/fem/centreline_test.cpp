@@ -55,6 +55,31 @@ TEST(Centreline, ItsSecondDerivativeIsContinuousForAnyNodes) {
   }
 }
 
+TEST(Centreline, APartIsTheSameCurveAndSoIsAPartOfThat) {
+  const Centreline line = line_of(9);
+  VecX x(3 * line.nodes());
+  for (int i = 0; i < x.size(); ++i) x[i] = std::sin(1.7 * i * i);  // any nodes
+  const auto expect_same = [&](const Centreline& part, const VecX& nodes) {
+    ASSERT_EQ(nodes.size(), 3 * part.nodes());
+    std::vector<double> at;
+    for (int k = 0; k <= 30; ++k) at.push_back(part.from() + k / 30.0 * (part.to() - part.from()));
+    const StencilTable of_line = line.stencils(at), of_part = part.stencils(at);
+    for (int row = 0; row < of_line.rows(); ++row)
+      for (const auto& [weights, other] : {std::pair{&of_line.value, &of_part.value},
+                                           {&of_line.du, &of_part.du},
+                                           {&of_line.duu, &of_part.duu}})
+        EXPECT_LT((blend(of_line, *weights, row, x) - blend(of_part, *other, row, nodes)).norm(), 1e-11);
+  };
+  for (const auto& [from, to] : {std::pair{0.0, 2.4}, {2.4, 6.0}, {1.3, 4.0}, {3.2, 3.7}, {0.0, 1.0}}) {
+    const Centreline part = line.part(from, to);
+    EXPECT_GE(part.nodes(), Centreline::least_nodes);
+    const VecX nodes = line.in_part(part, x);
+    expect_same(part, nodes);
+    const Centreline half = part.part(from, 0.5 * (from + to));
+    expect_same(half, part.in_part(half, nodes));
+  }
+}
+
 TEST(Centreline, QuadratureIsExactToDegreeThree) {
   const Centreline line = line_of(7);
   const RodQuadrature quadrature = line.quadrature();
