@@ -36,6 +36,10 @@ struct MeshFile {
   bool operator==(const MeshFile&) const = default;
 };
 
+/// Which end of a tube that is divided stays with the patient: the one that is held, itself or by what it is tied to (its
+/// end where both are, or neither), or always the same.
+enum class PatientEnd { held, start, end };
+
 /// A duct or a vessel: a tube along a line; a solid thread where its wall is as thick as its radius.
 struct TubeShape {
   std::vector<Vec3> points;  ///< m, of its middle at rest, from its start to its end
@@ -43,6 +47,7 @@ struct TubeShape {
   double end_radius = 0;     ///< m, at its end; 0: as at its start
   int nodes = 11;            ///< control nodes of the middle line
   double pressure = 0;       ///< Pa, gauge, of what it carries
+  PatientEnd patient_end = PatientEnd::held;
   bool operator==(const TubeShape&) const = default;
 };
 
@@ -280,5 +285,7 @@ const std::vector<std::string>& anatomy_names();
 /// "scene.ports.umbilical") unless the name is itself the problem ("scene.instruments[2].name"). Empty when
 /// the scene is sound.
 std::vector<Problem> validate(const SceneDefinition& scene);
+/// The same of an organ that comes later, with paths from "organ": ".wall.thickness" is "organ.wall.thickness".
+std::vector<Problem> validate(const OrganDefinition& organ);
 
 }  // namespace calot

@@ -252,7 +252,11 @@ std::vector<KeyTable> shape_tables() {
                   "outer radius at its end; 0: as at its start"),
            count("nodes", &TubeShape::nodes, 5, 60, "a number of control nodes", "of its middle line"),
            number("pressure", &TubeShape::pressure, quantity::pressure, -10 * kPa, 40 * kPa,
-                  "a pressure in a duct", "gauge pressure of what it carries")}),
+                  "a pressure in a duct", "gauge pressure of what it carries"),
+           choice(
+               "patient_end", &TubeShape::patient_end, {"held", "start", "end"},
+               "the end that stays with the patient where it is divided: what is held, itself or by what it "
+               "is tied to (its end where both ends are, or neither), or always the start or the end")}),
       keys_of<RigidShape>(
           "shape_rigid", "A rigid thing, such as a stone: a box with round edges, or a ball.",
           {type("rigid"),

@@ -307,4 +307,14 @@ std::vector<Problem> validate(const SceneDefinition& scene) {
   return check.take();
 }
 
+std::vector<Problem> validate(const OrganDefinition& organ) {
+  FieldCheck check;
+  check.identifier("organ.name", organ.name, "organ");
+  check_organ(check, "organ", organ);
+  if (!organ.compared_with.empty())
+    check.problem("organ.compared_with", "only organs that the scene has from the start are compared",
+                  "leave compared_with out");
+  return check.take();
+}
+
 }  // namespace calot

@@ -61,6 +61,8 @@ Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kin
 std::vector<Problem> mesh_problems(const SceneDefinition& scene);
 
 Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting);
+/// Where a tube's landmarks lie on the line at rest: skin points.
+std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& body);
 Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting);
 Result<RestedOrgan> make_rigid_organ(const OrganDefinition& definition, const OrganSetting& setting);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sim/rubbing.h"
-#include "sim/settle_field.h"
 #include "sim/skin_join.h"
 
 namespace calot {

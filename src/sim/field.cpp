@@ -8,6 +8,12 @@ std::vector<InstrumentPose> present_poses(const Field& field) {
   return poses;
 }
 
+std::vector<VecX> present_places(const Field& field) {
+  std::vector<VecX> out;
+  for (const Organ& organ : field.organs) out.push_back(organ.state.x);
+  return out;
+}
+
 std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
   std::vector<Ground> out;
   for (const GroundDefinition& g : anatomy.ground) {
@@ -24,9 +30,15 @@ std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
 
 void Field::add(RestedOrgan made) {
   organs.push_back(std::move(made.organ));
+  enrol(organs.back());
   group.forget_bodies();
   group.missed = {};
   if (organs.size() == 1) group.work = std::move(made.work);
+}
+
+void Field::enrol(Organ& organ) {
+  organ.record = static_cast<int>(membership.roll.size());
+  membership.roll.push_back({organ.definition.name, ++lives, {}});
 }
 
 GroupSnapshot snapshot(const Field& field) {

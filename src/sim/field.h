@@ -5,17 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "sim/organ.h"
+#include "sim/members.h"
 #include "sim/skin_rubbing.h"
 #include "sim/step_report.h"
 #include "sim/tool.h"
 
 namespace calot {
-
-/// What the laparoscope looks at from near by.
-struct ViewedPlace {
-  int organ = 0, skin_point = 0;
-};
 
 /// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
 /// the second order in the way.
@@ -62,12 +57,19 @@ struct Field {
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
   Assembly* assembly = nullptr;  ///< the world's threads; null: one does all
+  Membership membership;
+  std::shared_ptr<const FieldMembers> members;  ///< as it is now, for states; null before keep_members()
+  std::uint64_t lives = 0;                      ///< that were given to bodies
 
   /// The first one's last factor serves on.
   void add(RestedOrgan made);
+  /// Puts an organ on the roll.
+  void enrol(Organ& organ);
 };
 
 std::vector<InstrumentPose> present_poses(const Field& field);
+/// Where the nodes of each organ are, m.
+std::vector<VecX> present_places(const Field& field);
 /// The anatomy's ground, its support last.
 std::vector<Ground> ground_of(const AnatomyDefinition& anatomy);
 

@@ -1,9 +1,12 @@
 #include "sim/field_state.h"
 
+#include "sim/change_bodies.h"
+
 namespace calot {
 
 FieldState field_state(const Field& field) {
   FieldState state;
+  state.members = field.members;
   state.group = snapshot(field);
   for (const Tool& tool : field.tools)
     state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
@@ -12,6 +15,7 @@ FieldState field_state(const Field& field) {
 }
 
 void restore(Field& field, const FieldState& state) {
+  restore_members(field, state.members);
   restore(field, state.group);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];

@@ -16,6 +16,7 @@ struct ToolSnapshot {
 
 struct FieldState {
   long steps = 0;
+  std::shared_ptr<const FieldMembers> members;
   GroupSnapshot group;
   std::vector<ToolSnapshot> tools;
   StepReport report;  ///< of the step that led here: events are raised by what differs from it
@@ -23,7 +24,7 @@ struct FieldState {
 
 /// Organs and tools; steps and report are the world's.
 FieldState field_state(const Field& field);
-/// The field must have the organs and tools that the state is of.
+/// The field must have the tools that the state is of; its bodies become the state's.
 void restore(Field& field, const FieldState& state);
 
 }  // namespace calot

@@ -4,55 +4,59 @@
 
 #include <algorithm>
 
-#include "sim/joint.h"
-#include "sim/skin_join.h"
+#include "geometry/tri_mesh.h"
 
 namespace calot {
-namespace {
 
-struct TiedPlace {
-  std::array<int, 2> bodies{};
-  JoinedPlace place;
-};
-
-Result<TiedPlace> tie(const JointDefinition& joint, Field& field) {
-  const auto [one, from] = find_landmark(field.organs, joint.from);  // validation has found both
-  const int other = find_landmark(field.organs, joint.to).first;
-  const Body &first = *field.organs[one].body, &second = *field.organs[other].body;
-  const Vec3 place = first.skin_rest()[from];
-  Result<JointLinks> links = joint_links(first, second, {one, other}, place, joint.radius, joint.stiffness);
+Result<bool> add_joint(const JointDefinition& joint, bool at_rest, Field& field) {
+  const auto [one, from] = find_landmark(field.organs, joint.from);  // both are known to be there
+  const auto [other, to] = find_landmark(field.organs, joint.to);
+  const Organ &first = field.organs[one], &second = field.organs[other];
+  std::array<std::vector<Vec3>, 2> skins{first.body->skin_rest(), second.body->skin_rest()};
+  if (!at_rest)
+    skins = {first.body->skin_positions(first.state.x), second.body->skin_positions(second.state.x)};
+  Result<JointLinks> links = joint_links(*first.body, *second.body, skins, {one, other}, skins[0][from],
+                                         joint.radius, joint.stiffness);
   if (!links) return links.failure();
-  field.group.joins.push_back(std::make_shared<Joint>(std::move(links).value()));
+  field.membership.joints.push_back({std::make_shared<const Joint>(std::move(links).value()), at_rest});
   // Where one grows out of the other they lie in each other: as far as both are thick there.
-  constexpr double fold = 3e-3;  // m, of the wall around it
-  return TiedPlace{{std::min(one, other), std::max(one, other)},
-                   {place, joint.radius + 2 * (first.thickest() + second.thickest()) + fold}};
+  const double within = joint.radius + 2 * (first.body->thickest() + second.body->thickest()) + joint_fold;
+  const std::array bodies{std::min(one, other), std::max(one, other)};
+  field.membership.tied.push_back({bodies, {first.body->skin_rest()[from], within}});
+  if (!at_rest) {  // at rest they may have been far apart
+    const int there = nearest_of(skins[1], skins[0][from]);
+    field.membership.tied.push_back({bodies, {second.body->skin_rest()[there], within}});
+  }
+  return true;
 }
 
-}  // namespace
-
-Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field) {
-  std::vector<TiedPlace> tied;
-  for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
-    Result<TiedPlace> made = tie(anatomy.joints[i], field);
-    if (!made) {
-      Failure failure = made.failure();
-      for (Problem& problem : failure.problems)
-        problem.place = {"", 0, fmt::format("scene.anatomy.joints[{}]", i + 1)};
-      return failure;
-    }
-    tied.push_back(made.value());
-  }
-  field.group.friction = anatomy.friction;
+void renew_joins(Field& field) {
+  std::vector<JoinPointer>& joins = field.group.joins;
+  joins.clear();
+  field.group.rubbing.clear();  // it knows bodies by their places: they begin to stick anew
+  for (const FieldJoint& joint : field.membership.joints) joins.push_back(joint.joint);
   const int bodies = static_cast<int>(field.organs.size());
   for (int one = 0; one < bodies; ++one)
     for (int other = one + 1; other < bodies; ++other) {
       std::vector<JoinedPlace> places;
-      for (const TiedPlace& place : tied)
-        if (place.bodies == std::array{one, other}) places.push_back(place.place);
-      field.group.joins.push_back(std::make_shared<SkinJoin>(
-          *field.organs[one].body, *field.organs[other].body, std::array{one, other}, places));
+      for (const TiedPlace& tied : field.membership.tied)
+        if (tied.bodies == std::array{one, other}) places.push_back(tied.place);
+      joins.push_back(std::make_shared<SkinJoin>(*field.organs[one].body, *field.organs[other].body,
+                                                 std::array{one, other}, places));
     }
+}
+
+Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field) {
+  field.group.friction = anatomy.friction;
+  for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
+    Result<bool> made = add_joint(anatomy.joints[i], true, field);
+    if (made) continue;
+    Failure failure = made.failure();
+    for (Problem& problem : failure.problems)
+      problem.place = {"", 0, fmt::format("scene.anatomy.joints[{}]", i + 1)};
+    return failure;
+  }
+  renew_joins(field);
   return true;
 }
 

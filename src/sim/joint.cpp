@@ -11,17 +11,19 @@ namespace {
 
 constexpr int fewest_points = 3;
 
-/// The skin points of a body by their distance from a place at rest.
-std::vector<std::pair<double, int>> by_distance(const Body& body, const Vec3& place) {
+using Skin = std::vector<Vec3>;
+
+/// Skin points by their distance from a place.
+std::vector<std::pair<double, int>> by_distance(const Skin& skin, const Vec3& place) {
   std::vector<std::pair<double, int>> out;
-  for (std::size_t i = 0; i < body.skin_rest().size(); ++i)
-    out.emplace_back((body.skin_rest()[i] - place).norm(), static_cast<int>(i));
+  for (std::size_t i = 0; i < skin.size(); ++i)
+    out.emplace_back((skin[i] - place).norm(), static_cast<int>(i));
   std::sort(out.begin(), out.end());
   return out;
 }
 
 /// The least weights of the points within `reach` that sum to 1 and give the place; none where these do not span it.
-std::optional<CarriedPlace> weights_within(const Body& body, const Vec3& place,
+std::optional<CarriedPlace> weights_within(const Skin& skin, const Vec3& place,
                                            const std::vector<std::pair<double, int>>& points, double reach) {
   constexpr double exact = 1e-9;  // of the reach
   CarriedPlace out;
@@ -35,8 +37,7 @@ std::optional<CarriedPlace> weights_within(const Body& body, const Vec3& place,
   if (out.points.empty()) return {};
   const auto count = static_cast<Eigen::Index>(out.points.size());
   Eigen::Matrix4Xd places(4, count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    places.col(i) << 1, (body.skin_rest()[out.points[i]] - place) / reach;
+  for (Eigen::Index i = 0; i < count; ++i) places.col(i) << 1, (skin[out.points[i]] - place) / reach;
   const Eigen::Map<const VecX> near(nearness.data(), count);
   const Eigen::Matrix4d products = places * near.asDiagonal() * places.transpose();
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
@@ -58,12 +59,12 @@ double total(const CarriedPlace& place) {
 /// A place as the points around it carry it, from near ones if their weights are small, else from as many as it takes:
 /// a place far above a flat patch would be thrown about by what is small on the patch. None where that takes weights
 /// beyond `wildest`: of a line that is not quite straight.
-std::optional<CarriedPlace> carried(const Body& body, const Vec3& place, double radius) {
+std::optional<CarriedPlace> carried(const Skin& skin, const Vec3& place, double radius) {
   constexpr double calm = 3, wildest = 8, wider = 1.25;
-  const std::vector<std::pair<double, int>> points = by_distance(body, place);
+  const std::vector<std::pair<double, int>> points = by_distance(skin, place);
   std::optional<CarriedPlace> best;
   for (double reach = points.front().first + radius;; reach *= wider) {
-    std::optional<CarriedPlace> found = weights_within(body, place, points, reach);
+    std::optional<CarriedPlace> found = weights_within(skin, place, points, reach);
     if (found && (!best || total(*found) < total(*best))) best = std::move(found);
     if (best && total(*best) <= calm) return best;
     if (reach > points.back().first) break;
@@ -75,6 +76,12 @@ std::optional<CarriedPlace> carried(const Body& body, const Vec3& place, double 
 
 Result<JointLinks> joint_links(const Body& one, const Body& other, std::array<int, 2> bodies,
                                const Vec3& place, double radius, double stiffness) {
+  return joint_links(one, other, {one.skin_rest(), other.skin_rest()}, bodies, place, radius, stiffness);
+}
+
+Result<JointLinks> joint_links(const Body& one, const Body& other, const std::array<Skin, 2>& skins,
+                               std::array<int, 2> bodies, const Vec3& place, double radius,
+                               double stiffness) {
   if (!(radius > 0) || !(stiffness > 0) || bodies[0] == bodies[1])
     return fail(FailureKind::scenario,
                 "the joint of '" + one.name() + "' and '" + other.name() +
@@ -83,31 +90,29 @@ Result<JointLinks> joint_links(const Body& one, const Body& other, std::array<in
   JointLinks out;
   out.bodies = bodies;
   int held = 0;
-  std::vector<std::pair<double, int>> on_other = by_distance(other, place);
-  for (const auto& [distance, point] : by_distance(one, place)) {
+  std::vector<std::pair<double, int>> on_other = by_distance(skins[1], place);
+  for (const auto& [distance, point] : by_distance(skins[0], place)) {
     if (held >= fewest_points && distance > radius) break;
     ++held;
     const CarriedPlace end{{point}, {1.0}};
-    if (std::optional<CarriedPlace> there = carried(other, one.skin_rest()[point], radius)) {
+    if (std::optional<CarriedPlace> there = carried(skins[1], skins[0][point], radius)) {
       out.links.push_back({end, std::move(*there), 0});
       continue;
     }
     // A line: to its nearest point, and as far as a radius or more along it on both sides.
-    const Vec3 middle = other.skin_rest()[on_other[0].second];
+    const Vec3 middle = skins[1][on_other[0].second];
     std::array<int, 3> feet{on_other[0].second, -1, -1};
     for (const auto& [unused, foot] : on_other) {
-      const Vec3 arm = other.skin_rest()[foot] - middle;
+      const Vec3 arm = skins[1][foot] - middle;
       if (arm.norm() < radius) continue;
       if (feet[1] < 0) feet[1] = foot;
-      if (arm.dot(other.skin_rest()[feet[1]] - middle) < 0) {
+      if (arm.dot(skins[1][feet[1]] - middle) < 0) {
         feet[2] = foot;
         break;
       }
     }
     for (int foot : feet)
-      if (foot >= 0)
-        out.links.push_back(
-            {end, {{foot}, {1.0}}, (other.skin_rest()[foot] - one.skin_rest()[point]).norm()});
+      if (foot >= 0) out.links.push_back({end, {{foot}, {1.0}}, (skins[1][foot] - skins[0][point]).norm()});
   }
   out.stiffness = stiffness / held;
   return out;

@@ -38,6 +38,10 @@ struct JointLinks {
 /// numbers are not positive or the bodies are the same.
 Result<JointLinks> joint_links(const Body& one, const Body& other, std::array<int, 2> bodies,
                                const Vec3& place, double radius, double stiffness);
+/// The same with the skin points of both at these places, m, where the joint then is not loaded.
+Result<JointLinks> joint_links(const Body& one, const Body& other,
+                               const std::array<std::vector<Vec3>, 2>& skins, std::array<int, 2> bodies,
+                               const Vec3& place, double radius, double stiffness);
 
 class Joint : public Join {
  public:

@@ -29,7 +29,7 @@ Failure at_organ(Failure failure, std::size_t index) {
 }
 
 std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
-  const std::size_t dot = name.find('.');
+  const std::size_t dot = name.rfind('.');  // a piece's name has one, too
   for (std::size_t k = 0; k < organs.size() && dot != std::string::npos; ++k) {
     if (organs[k].definition.name != name.substr(0, dot)) continue;
     const auto found = organs[k].landmarks.find(name.substr(dot + 1));

@@ -58,6 +58,7 @@ struct Organ {
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
   /// Where the details were found to be those that are wanted: remembered, no part of any result.
   std::optional<ContactPlace> looked_at;
+  int record = -1;  ///< on the field's roll (members.h)
 };
 
 /// The body as a shell, which alone is refined; null: it is none.

@@ -50,12 +50,6 @@ std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& lo
   return out;
 }
 
-std::vector<VecX> present_places(const Field& field) {
-  std::vector<VecX> out;
-  for (const Organ& organ : field.organs) out.push_back(organ.state.x);
-  return out;
-}
-
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to) {
   double travel = 0;
   for (std::size_t i = 0; i < to.size(); ++i)

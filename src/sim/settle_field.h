@@ -20,9 +20,6 @@ void count(const NewtonResult& result, SolveStatistics& statistics);
 /// The organs as members of one group under `loads`, one an organ.
 std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads);
 
-/// Where the nodes of each organ are, m.
-std::vector<VecX> present_places(const Field& field);
-
 /// The way of the tool that travels most from where it stands, m.
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to);
 

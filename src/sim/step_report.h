@@ -33,6 +33,8 @@ struct InstrumentState {
 };
 
 struct OrganState {
+  std::string name;
+  int record = -1;         ///< on the world's roll: an organ's own as long as the world is not set back
   double pressure = 0;     ///< Pa, gauge, at the highest point
   double volume = 0;       ///< m^3 enclosed
   double energy = 0;       ///< J, wall

@@ -4,9 +4,7 @@
 #include "sim/rod_body.h"
 
 namespace calot {
-namespace {
 
-/// Where the landmarks lie on the line at rest: skin points.
 std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& body) {
   std::map<std::string, int> out;
   const int last = static_cast<int>(body.skin_rest().size()) - 1;
@@ -15,8 +13,6 @@ std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& b
       out[landmark.name] = static_cast<int>(std::lround(landmark.along * last));
   return out;
 }
-
-}  // namespace
 
 Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting) {
   const auto& shape = std::get<TubeShape>(definition.shape);

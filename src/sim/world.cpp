@@ -7,9 +7,11 @@
 #include <stdexcept>
 
 #include "base/hash.h"
+#include "base/suggest.h"
 #include "fem/assembly.h"
 #include "sim/advance.h"
 #include "sim/body_kinds.h"
+#include "sim/change_bodies.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
 #include "sim/join_bodies.h"
@@ -59,6 +61,14 @@ struct World::Impl {
   std::uint64_t hash_field() const;
   bool same_factors(const FieldState& state) const;
   std::uint64_t hash(std::uint64_t of_field) const;
+
+  double time() const { return static_cast<double>(steps) / scene.solver.rate; }
+  /// Changes the field's members; the report then is of them, with the events of the last step. On failure all is as it
+  /// was before.
+  template <class Change>
+  auto change(const std::string& what, const Change& change) -> decltype(change());
+  /// What change() must leave as it was on failure.
+  Result<bool> settle_change(const std::string& what);
 };
 
 namespace {
@@ -165,10 +175,40 @@ void add_tool(Hash& hash, const Tool& tool) {
     hash.add(v);
 }
 
+void add_place(Hash& hash, const CarriedPlace& place) {
+  for (int point : place.points) hash.add(point);
+  for (double weight : place.weights) hash.add(weight);
+}
+
+/// Who is there, where that is not who the scene has.
+void add_members(Hash& hash, const Field& field) {
+  if (is_as_in_scene(field)) return;
+  for (const Organ& organ : field.organs) {
+    hash.add(organ.definition.name);
+    add_vector(hash, organ.body->rest());
+  }
+  for (const FieldJoint& joint : field.membership.joints) {
+    const JointLinks& links = joint.joint->links();
+    for (int body : links.bodies) hash.add(body);
+    hash.add(links.stiffness);
+    for (const JointLinks::Link& link : links.links) {
+      add_place(hash, link.one);
+      add_place(hash, link.other);
+      hash.add(link.length);
+    }
+  }
+  for (const TiedPlace& tied : field.membership.tied) {
+    for (int body : tied.bodies) hash.add(body);
+    add_point(hash, tied.place.place);
+    hash.add(tied.place.within);
+  }
+}
+
 }  // namespace
 
 std::uint64_t World::Impl::hash_field() const {
   Hash hash;
+  add_members(hash, field);
   for (const Organ& organ : field.organs) {
     add_body_state(hash, organ);
     add_holds(hash, organ);
@@ -224,6 +264,8 @@ InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad&
 
 OrganState World::Impl::organ_state(const Organ& organ) const {
   OrganState state;
+  state.name = organ.definition.name;
+  state.record = organ.record;
   const VecX& x = organ.state.x;
   if (const Liquid* liquid = organ.body->liquid()) {
     state.pressure = liquid->pressure_at_top(x, organ.state.datum_pressure);
@@ -238,7 +280,7 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
 
 void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions) {
   const std::vector<ToolLoad> loads = tool_loads(field);
-  report.time = static_cast<double>(steps) / scene.solver.rate;
+  report.time = time();
   report.instruments.clear();
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     report.instruments.push_back(instrument_state(i, loads[i]));
@@ -265,7 +307,9 @@ void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<Inst
   }
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const double limit = field.organs[k].definition.wall.overstretch;
-    const bool was = k < before.size() && before[k].max_stretch > limit;
+    const bool was = std::any_of(before.begin(), before.end(), [&](const OrganState& one) {
+      return one.record == field.organs[k].record && one.max_stretch > limit;
+    });
     if (report.organs[k].max_stretch > limit && !was)
       events.push_back(
           {EventKind::overstretch, 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
@@ -393,6 +437,9 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
+  world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
+  world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
+  keep_members(world.impl_->field);
   world.impl_->observe({}, {});
   return world;
 }
@@ -415,7 +462,7 @@ Result<StepReport> World::step(const StepInput& input) {
   self.report.statistics = {};
   if (self.scene.solver.skip_still && self.still == input) {
     ++self.steps;
-    self.report.time = static_cast<double>(self.steps) / self.scene.solver.rate;
+    self.report.time = self.time();
     self.report.events.clear();
     self.report.state_hash = self.hash(self.field_hash);
     return self.report;
@@ -453,11 +500,8 @@ FieldState World::state() const {
 
 Result<bool> World::restore(const FieldState& state) {
   Impl& self = *impl_;
-  bool same =
-      state.group.organs.size() == self.field.organs.size() && state.tools.size() == self.field.tools.size();
-  for (std::size_t k = 0; same && k < state.group.organs.size(); ++k)
-    same = state.group.organs[k].body->same_as(*self.field.organs[k].body);
-  if (!same) return fail(FailureKind::internal, "a field state can only be given back to the world it is of");
+  if (!state.members || state.members->world != self.field.members->world)
+    return fail(FailureKind::internal, "a field state can only be given back to the world it is of");
   calot::restore(self.field, state);
   self.steps = state.steps;
   self.report = state.report;
@@ -475,18 +519,26 @@ Vec3 World::port_position(const std::string& port) const {
   unknown_name("port", port);
 }
 
-Vec3 World::landmark(const std::string& name) const {
-  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
-  if (skin_point < 0) unknown_name("landmark", name);
-  const Organ& at = impl_->field.organs[organ];
-  return at.body->surface_point(skin_point, at.state.x);
+namespace {
+
+/// Where a landmark is, or was last.
+SkinPlace skin_place(const Field& field, const std::string& name) {
+  const auto [organ, skin_point] = find_landmark(field.organs, name);
+  if (skin_point >= 0) {
+    const Organ& at = field.organs[organ];
+    return {at.body->surface_point(skin_point, at.state.x), at.body->skin_normals(at.state.x)[skin_point]};
+  }
+  const std::size_t dot = name.rfind('.');
+  const BodyRecord* record = dot == std::string::npos ? nullptr : gone_body(field, name.substr(0, dot));
+  if (record == nullptr || !record->gone->landmarks.contains(name.substr(dot + 1)))
+    unknown_name("landmark", name);
+  return record->gone->landmarks.at(name.substr(dot + 1));
 }
 
-Vec3 World::landmark_normal(const std::string& name) const {
-  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
-  if (skin_point < 0) unknown_name("landmark", name);
-  return skin_normals(organ)[skin_point];
-}
+}  // namespace
+
+Vec3 World::landmark(const std::string& name) const { return skin_place(impl_->field, name).at; }
+Vec3 World::landmark_normal(const std::string& name) const { return skin_place(impl_->field, name).normal; }
 
 const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }
 std::vector<Vec3> World::skin_positions(int organ) const {
@@ -515,6 +567,107 @@ Result<double> World::lowest_frequency(int index) const {
   const BodyMass mass(*shell, organ.state.x, organ.definition.wall.thickness, organ.definition.bile.density);
   return calot::lowest_frequency(*shell, contact_loads(impl_->field, organ, present_poses(impl_->field)),
                                  organ.state, mass);
+}
+
+// ---- bodies that come and go
+
+/// Where masses count the next step brings what changed into motion. Else all must come to rest first.
+Result<bool> World::Impl::settle_change(const std::string& what) {
+  if (field.step_time > 0) return true;
+  return settle_field(field, what, report.statistics);
+}
+
+template <class Change>
+auto World::Impl::change(const std::string& what, const Change& change) -> decltype(change()) {
+  if (failed) return failure;
+  const FieldState before = field_state(field);
+  auto done = change();
+  if (!done) return done;
+  if (Result<bool> settled = settle_change(what); !settled) {
+    calot::restore(field, before);
+    return settled.failure();
+  }
+  report.organs.clear();
+  for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
+  const std::vector<ToolLoad> loads = tool_loads(field);
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    report.instruments[i] = instrument_state(i, loads[i]);
+    report.instruments[i].action = field.tools[i].action;
+  }
+  field_hash = hash_field();
+  report.state_hash = hash(field_hash);
+  still.reset();
+  return done;
+}
+
+Result<int> World::organ(const std::string& name) const { return find_body(impl_->field, name); }
+Result<int> World::organ(const BodyHandle& handle) const { return find_body(impl_->field, handle); }
+BodyHandle World::handle(int organ) const { return handle_of(impl_->field, organ); }
+
+Result<Division> World::divide(const std::string& name, double share) {
+  const Result<int> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was divided", name),
+                       [&] { return divide_body(impl_->field, organ.value(), share, impl_->time()); });
+}
+
+Result<bool> World::remove(const std::string& name, const std::string& why) {
+  const Result<int> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was removed", name),
+                       [&] { return remove_body(impl_->field, organ.value(), why, impl_->time()); });
+}
+
+Result<int> World::add(const OrganDefinition& definition) {
+  if (std::vector<Problem> problems = validate(definition); !problems.empty())
+    return Failure{FailureKind::scenario, std::move(problems)};
+  const SolverDefinition& solver = impl_->scene.solver;
+  ContactLoads still;
+  for (const Ground& ground : impl_->field.ground) still.shapes.push_back(contact_shape(ground.shape));
+  FillingLimits limits;
+  limits.sinks = solver.motion == SolverMotion::dynamics;
+  const OrganSetting setting{still, impl_->up, solver.tolerance,
+                             definition.extensions ? solver.extension_levels : 0, &limits};
+  Result<int> added = impl_->change(fmt::format("after '{}' came", definition.name),
+                                    [&] { return add_body(impl_->field, definition, setting); });
+  if (added) return added;
+  Failure failure = added.failure();
+  for (Problem& problem : failure.problems)  // of its definition
+    if (problem.place.path.starts_with('.')) problem.place.path.insert(0, "organ");
+  return failure;
+}
+
+Result<bool> World::tie(const JointDefinition& joint) {
+  for (const std::string& name : {joint.from, joint.to})
+    if (Result<Vec3> there = place(name); !there) return there.failure();
+  if (joint.from.substr(0, joint.from.rfind('.')) == joint.to.substr(0, joint.to.rfind('.')))
+    return fail(FailureKind::scenario, "an organ is tied to itself", "name a place on another organ");
+  return impl_->change(fmt::format("after '{}' was tied to '{}'", joint.from, joint.to),
+                       [&] { return tie_bodies(impl_->field, joint); });
+}
+
+Result<bool> World::untie(const std::string& one, const std::string& other) {
+  const Result<int> first = organ(one), second = organ(other);
+  if (!first) return first.failure();
+  if (!second) return second.failure();
+  return impl_->change(fmt::format("after '{}' and '{}' were untied", one, other),
+                       [&] { return untie_bodies(impl_->field, first.value(), second.value()); });
+}
+
+Result<Vec3> World::place(const std::string& name) const {
+  const std::size_t dot = name.rfind('.');
+  if (find_landmark(impl_->field.organs, name).second >= 0) return landmark(name);
+  if (dot != std::string::npos && gone_body(impl_->field, name.substr(0, dot)) != nullptr)
+    if (const Result<int> there = organ(name.substr(0, dot)); !there) return there.failure();
+  return fail(FailureKind::scenario, fmt::format("unknown landmark \"{}\"", name),
+              suggestion(name, landmarks()));
+}
+
+std::vector<std::string> World::landmarks() const {
+  std::vector<std::string> names;
+  for (const Organ& organ : impl_->field.organs)
+    for (const auto& [name, point] : organ.landmarks) names.push_back(organ.definition.name + "." + name);
+  return names;
 }
 
 double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }

@@ -10,6 +10,7 @@
 
 #include "anatomy/definitions.h"
 #include "geometry/stencil.h"
+#include "sim/body_handle.h"
 #include "sim/step_report.h"
 
 namespace calot {
@@ -41,16 +42,37 @@ class World {
   /// Of the present state, computed anew.
   std::uint64_t state_hash() const;
 
-  /// All that moves, to be copied and given back to this world: what follows has the same bits. Fails (internal) where
-  /// it is another world's.
+  /// All that moves and who is there, to be copied and given back to this world: what follows has the same bits. Fails
+  /// (internal) where it is another world's.
   FieldState state() const;
   Result<bool> restore(const FieldState& state);
 
+  // Organs come, go and are divided between steps (sim/change_bodies.h); the report then is of those that are there. Where
+  // masses do not count all come to rest at once. Each fails (scenario; simulation where no rest was found) with the world
+  // as it was; what is asked for by a name or handle that is gone is told when it went and why.
+
+  /// Place of an organ among those that are there.
+  Result<int> organ(const std::string& name) const;
+  Result<int> organ(const BodyHandle& handle) const;
+  BodyHandle handle(int organ) const;
+  /// At about this share of a tube's length, from its start.
+  Result<Division> divide(const std::string& organ, double share);
+  Result<bool> remove(const std::string& organ, const std::string& why);
+  /// Its place, the last; problems have paths as of validate(organ).
+  Result<int> add(const OrganDefinition& definition);
+  /// Where they are now.
+  Result<bool> tie(const JointDefinition& joint);
+  /// Undoes all joints of two organs.
+  Result<bool> untie(const std::string& one, const std::string& other);
+  /// Place of "organ.landmark", m, of an organ that is there.
+  Result<Vec3> place(const std::string& organ_and_landmark) const;
+  std::vector<std::string> landmarks() const;  ///< of these
+
   /// Upward direction (unit): minus gravity, turned by the table's tilt.
   Vec3 up() const;
-  /// m. This and the next two throw std::logic_error for a name that the scene does not have.
+  /// m. This and the next two throw std::logic_error for a name that the scene does not have and no organ had.
   Vec3 port_position(const std::string& port) const;
-  /// Present place of "organ.landmark" on the skin, m.
+  /// Present place of "organ.landmark" on the skin, m; of an organ that went, where it was last.
   Vec3 landmark(const std::string& organ_and_landmark) const;
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
