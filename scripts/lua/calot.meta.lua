@@ -228,6 +228,7 @@
 ---@field end_radius? number outer radius at its end; 0: as at its start; default 0 * mm; 0 to 20 mm
 ---@field nodes? number of its middle line; default 11; 5 to 60
 ---@field pressure? number gauge pressure of what it carries; default 0 * kPa; -10 to 40 kPa
+---@field patient_end? "held"|"start"|"end" the end that stays with the patient where it is divided: what is held, itself or by what it is tied to (its end where both ends are, or neither), or always the start or the end; default "held"
 
 ---A rigid thing, such as a stone: a box with round edges, or a ball.
 ---@class calot.shape_rigid
@@ -300,6 +301,30 @@ function Steps:hold(name, predicate, duration) end
 ---@param value any a finite number, a text of up to 200 bytes, or true or false
 ---@param unit? string its unit, for people
 function Steps:note(name, value, unit) end
+
+---Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most). Its pieces are organs of their own, "cystic_duct.patient" and "cystic_duct.specimen", each with the landmarks start, middle and end; the tube's patient_end says which is which. Returns their names, the patient's first, and the share where it was divided.
+---@param organ string a tube's name
+---@param share number from its start, 0, to its end, 1; 0 to 1
+---@return string, string, number
+function Steps:divide(organ, share) end
+
+---Takes an organ out of the field, with its joints. What asks for it later is told when and why it went.
+---@param organ string an organ's name
+---@param why? string such as "taken out"
+function Steps:remove(organ, why) end
+
+---Brings an organ into the field, where its definition has it; mesh files are not read here.
+---@param organ calot.organ as in the scene's anatomy
+function Steps:add(organ) end
+
+---Ties a place on one organ to one on another where they are now.
+---@param joint calot.joint as in the scene's anatomy
+function Steps:tie(joint) end
+
+---Undoes all joints of two organs.
+---@param organ string an organ's name
+---@param other string the other's name
+function Steps:untie(organ, other) end
 
 ---The t of demo = function(t, p): moves the instruments.
 ---@class calot.Demo: calot.Session

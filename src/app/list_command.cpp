@@ -107,7 +107,8 @@ Listing parameters(const ExerciseDefinition& exercise) {
 std::vector<Listing> of_scenario(const ExerciseDefinition& exercise) {
   const SceneDefinition& scene = exercise.scene;
   Listing landmarks{"landmarks", "Landmarks", {}};
-  for (const OrganDefinition& organ : scene.anatomy.organs) add_landmarks(landmarks, organ.name + ".");
+  for (const auto* organs : {&scene.anatomy.organs, &exercise.later_organs})
+    for (const OrganDefinition& organ : *organs) add_landmarks(landmarks, organ.name + ".");
   return {parameters(exercise),
           ports(scene.ports.empty() ? default_ports() : scene.ports),
           instruments(scene),

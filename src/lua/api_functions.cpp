@@ -103,6 +103,40 @@ std::vector<ApiFunction> session_functions() {
        {required(text("name", "", "its name: letters, digits and _")), required(noted),
         text("unit", "", "its unit, for people")},
        ""},
+      {"Steps",
+       "divide",
+       "Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most). Its "
+       "pieces are "
+       "organs of their own, \"cystic_duct.patient\" and \"cystic_duct.specimen\", each with the landmarks "
+       "start, "
+       "middle and end; the tube's patient_end says which is which. Returns their names, the patient's "
+       "first, and "
+       "the share where it was divided.",
+       {required(text("organ", "", "a tube's name")),
+        required(number("share", quantity::number, 0, 1, "a share of a length",
+                        "from its start, 0, to its end, 1"))},
+       "string, string, number"},
+      {"Steps",
+       "remove",
+       "Takes an organ out of the field, with its joints. What asks for it later is told when and why it "
+       "went.",
+       {organ(true), text("why", "", "such as \"taken out\"")},
+       ""},
+      {"Steps",
+       "add",
+       "Brings an organ into the field, where its definition has it; mesh files are not read here.",
+       {required(table("organ", "organ", "as in the scene's anatomy"))},
+       ""},
+      {"Steps",
+       "tie",
+       "Ties a place on one organ to one on another where they are now.",
+       {required(table("joint", "joint", "as in the scene's anatomy"))},
+       ""},
+      {"Steps",
+       "untie",
+       "Undoes all joints of two organs.",
+       {required(text("organ", "", "an organ's name")), required(text("other", "", "the other's name"))},
+       ""},
       {"Demo",
        "together",
        "Runs functions side by side, one for each instrument say, until all have ended.",

@@ -288,8 +288,8 @@ int DemoScript::play_motion(lua_State* L, int instrument, double dry_duration, c
 int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
   if (how.jaw && !can_use_jaws(L, instrument, "approach's jaw")) return 0;
   const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
-    const Vec3 normal = world(L).landmark_normal(how.landmark);
-    const Vec3 open_tip = world(L).landmark(how.landmark) + how.offset - how.depth * normal;
+    const Vec3 normal = landmark_normal(L, how.landmark);
+    const Vec3 open_tip = landmark(L, how.landmark) + how.offset - how.depth * normal;
     const double jaw = how.jaw.value_or(path.geometry().jaw_opening);
     const Vec3 tip = closed_tip(path.trocar(), open_tip, jaw, path.geometry());
     // Straight in at the end, halfway between the shaft's way and the skin's normal: both jaws come down

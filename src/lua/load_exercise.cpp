@@ -98,7 +98,7 @@ class LuaExercise final : public ExerciseScript {
 
   const ExerciseDefinition& definition() const override { return definition_; }
   InputSource& demo() override { return demo_; }
-  Result<bool> advance(const World& world, Progress& progress, double dt) override {
+  Result<bool> advance(World& world, Progress& progress, double dt) override {
     return steps_.advance(world, progress, dt);
   }
   void set_emergency_flush(const std::function<void()>& flush) override {
@@ -225,6 +225,7 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
       definition.step_names = declared->steps;
       definition.hold_names = declared->holds;
       definition.note_names = declared->notes;
+      definition.later_organs = declared->later;
       // Steps that were not reached have metrics nobody knows of: say nothing about them.
       if (declared->complete) check_metrics(check, definition);
     } else if (declared.failure().kind == FailureKind::resource) {

@@ -8,6 +8,7 @@
 #include "base/index_of.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"
+#include "lua/read_scene.h"
 #include "lua/steps_script.h"
 #include "script/binding.h"
 
@@ -286,6 +287,44 @@ int hold(lua_State* L) {
   return steps.hold(L, arguments.text("name"), arguments.function("predicate"), arguments.number("duration"));
 }
 
+int divide(lua_State* L) {
+  StepsScript& steps = steps_of(L, "divide");
+  const Arguments arguments(L, steps, "Steps", "divide");
+  return arguments.good() ? steps.divide(L, arguments.text("organ"), arguments.number("share")) : 0;
+}
+
+int remove(lua_State* L) {
+  StepsScript& steps = steps_of(L, "remove");
+  const Arguments arguments(L, steps, "Steps", "remove");
+  if (arguments.good()) steps.remove(L, arguments.text("organ"), arguments.text("why"));
+  return 0;
+}
+
+int add(lua_State* L) {
+  StepsScript& steps = steps_of(L, "add");
+  Arguments arguments(L, steps, "Steps", "add");
+  if (!arguments.good()) return 0;
+  const OrganDefinition organ = read_organ(arguments.check(), *arguments.read().take("organ"), "organ", {});
+  if (arguments.finish()) steps.add(L, organ);
+  return 0;
+}
+
+int tie(lua_State* L) {
+  StepsScript& steps = steps_of(L, "tie");
+  Arguments arguments(L, steps, "Steps", "tie");
+  JointDefinition joint;
+  arguments.table("joint", "joint").read(joint);
+  if (arguments.finish()) steps.tie(L, joint);
+  return 0;
+}
+
+int untie(lua_State* L) {
+  StepsScript& steps = steps_of(L, "untie");
+  const Arguments arguments(L, steps, "Steps", "untie");
+  if (arguments.good()) steps.untie(L, arguments.text("organ"), arguments.text("other"));
+  return 0;
+}
+
 // ---- demo
 
 struct DemoCall {
@@ -423,6 +462,11 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Steps", "step", guarded<step>},
                           {"Steps", "hold", guarded<hold>},
                           {"Steps", "note", guarded<note>},
+                          {"Steps", "divide", guarded<divide>},
+                          {"Steps", "remove", guarded<remove>},
+                          {"Steps", "add", guarded<add>},
+                          {"Steps", "tie", guarded<tie>},
+                          {"Steps", "untie", guarded<untie>},
                           {"Demo", "together", guarded<together>},
                           {"Instrument", "holds", guarded<holds>},
                           {"Instrument", "force", guarded<force>},

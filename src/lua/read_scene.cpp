@@ -31,6 +31,14 @@ class SceneReader {
     return scene;
   }
 
+  void read_organ(OrganDefinition& organ, const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("organ"));
+    if (const Value* bile = reader.take("bile")) forget_filling(organ.bile, *bile);
+    reader.read(organ);
+    if (const Value* shape = reader.take("shape")) read_shape(organ.shape, *shape, path + ".shape");
+    if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
+  }
+
  private:
   AnatomyDefinition read_anatomy(const Value& value, const std::string& path) {
     const TableReader reader(check_, &value, path, api_table("anatomy"));
@@ -66,14 +74,6 @@ class SceneReader {
     for (std::size_t i = 0; i < list->items.size(); ++i)
       TableReader(check_, &list->items[i], indexed(reader.path_of(key), i), api_table(of))
           .read(out.emplace_back());
-  }
-
-  void read_organ(OrganDefinition& organ, const Value& value, const std::string& path) {
-    const TableReader reader(check_, &value, path, api_table("organ"));
-    if (const Value* bile = reader.take("bile")) forget_filling(organ.bile, *bile);
-    reader.read(organ);
-    if (const Value* shape = reader.take("shape")) read_shape(organ.shape, *shape, path + ".shape");
-    if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
   }
 
   /// One of volume and pressure given here replaces whichever the anatomy had.
@@ -212,6 +212,13 @@ class SceneReader {
 
 SceneDefinition read_scene(FieldCheck& check, const Value& scene, const MeshFolders& folders) {
   return SceneReader(check, folders).read(scene);
+}
+
+OrganDefinition read_organ(FieldCheck& check, const Value& organ, const std::string& path,
+                           const MeshFolders& folders) {
+  OrganDefinition definition;
+  SceneReader(check, folders).read_organ(definition, organ, path);
+  return definition;
 }
 
 }  // namespace calot

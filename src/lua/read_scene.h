@@ -17,4 +17,8 @@ struct MeshFolders {
 /// What is unfit becomes problems below "scene" and keeps its default. Limits are left to validate().
 SceneDefinition read_scene(FieldCheck& check, const Value& scene, const MeshFolders& folders);
 
+/// One organ as a list of the anatomy has it, at `path`; a shape of a mesh file is sought in these folders.
+OrganDefinition read_organ(FieldCheck& check, const Value& organ, const std::string& path,
+                           const MeshFolders& folders);
+
 }  // namespace calot

@@ -79,8 +79,14 @@ void ScriptSession::complain(lua_State* L, const std::string& message, const std
 }
 
 int ScriptSession::organ(lua_State* L, const std::string& name) {
+  if (!checking()) {
+    const Result<int> found = world(L).organ(name);
+    if (found) return found.value();
+    complain(L, found.failure());
+    return -1;
+  }
   std::vector<std::string> names;
-  for (const OrganDefinition& organ : scene().anatomy.organs) {
+  for (const OrganDefinition& organ : known_organs()) {
     if (organ.name == name) return static_cast<int>(names.size());
     names.push_back(organ.name);
   }
@@ -88,9 +94,35 @@ int ScriptSession::organ(lua_State* L, const std::string& name) {
   return -1;
 }
 
+std::vector<OrganDefinition> ScriptSession::known_organs() const {
+  std::vector<OrganDefinition> all = scene().anatomy.organs;
+  all.insert(all.end(), later_organs().begin(), later_organs().end());
+  return all;
+}
+
+void ScriptSession::complain(lua_State* L, const Failure& failure) {
+  std::string message, hint;
+  for (const Problem& problem : failure.problems) {
+    const std::string& path = problem.place.path;
+    message +=
+        fmt::format("{}{}{}{}", message.empty() ? "" : "; ", path, path.empty() ? "" : ": ", problem.message);
+    if (hint.empty()) hint = problem.hint;
+  }
+  complain(L, message, hint);
+}
+
 bool ScriptSession::is_landmark(lua_State* L, const std::string& name) {
-  const std::vector<std::string> names = landmark_names(scene().anatomy.organs);
-  if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+  if (!checking()) {
+    const Result<Vec3> found = world(L).place(name);
+    if (found) return true;
+    complain(L, found.failure());
+    return false;
+  }
+  const std::vector<std::string> names = landmark_names(known_organs());
+  if (std::find(names.begin(), names.end(), name) != names.end()) {
+    if (has_world() && !world(L).place(name)) stand_in();  // it comes later
+    return true;
+  }
   complain(L, fmt::format("unknown landmark \"{}\"", name), suggestion(name, names));
   return false;
 }
@@ -116,11 +148,18 @@ bool ScriptSession::can_activate(lua_State* L, int instrument, const std::string
 }
 
 Vec3 ScriptSession::landmark(lua_State* L, const std::string& name) const {
-  if (!checking() || has_world()) return world(L).landmark(name);
-  for (const OrganDefinition& organ : scene().anatomy.organs)
+  if (!checking()) return world(L).landmark(name);
+  if (has_world())
+    if (const Result<Vec3> found = world(L).place(name)) return found.value();
+  for (const OrganDefinition& organ : known_organs())
     for (const Landmark& row : landmark_rows())
       if (name == organ.name + "." + row.name) return organ.neck + row.along * (organ.fundus - organ.neck);
   return Vec3::Zero();  // complained about already
+}
+
+Vec3 ScriptSession::landmark_normal(lua_State* L, const std::string& name) const {
+  if (!checking() || world(L).place(name)) return world(L).landmark_normal(name);
+  return world(L).up();
 }
 
 Vec3 ScriptSession::tip(lua_State* L, int instrument) {
@@ -136,7 +175,8 @@ Vec3 ScriptSession::shaft_axis(lua_State* L, int instrument) {
 
 TouchedPlace ScriptSession::contact(lua_State* L, int instrument,
                                     const std::function<ToolPart(const InstrumentState&)>& choose) {
-  const std::vector<std::string> landmarks = landmark_names(scene().anatomy.organs);
+  const std::vector<std::string> landmarks =
+      checking() ? landmark_names(scene().anatomy.organs) : world(L).landmarks();
   TouchedPlace place;
   if (checking()) {
     if (landmarks.empty()) return place;
@@ -156,7 +196,7 @@ TouchedPlace ScriptSession::contact(lua_State* L, int instrument,
   double nearest = std::numeric_limits<double>::infinity();
   for (const std::string& name : landmarks) {
     const double distance = (world(L).landmark(name) - load.at).norm();
-    if (!name.starts_with(load.organ + ".") || distance >= nearest) continue;
+    if (name.substr(0, name.rfind('.')) != load.organ || distance >= nearest) continue;
     nearest = distance;
     place.landmark = name;
   }
@@ -198,7 +238,7 @@ InstrumentState ScriptSession::stand_in_instrument(int instrument) {
 
 OrganState ScriptSession::stand_in_organ(int organ) {
   const double share = share_of_filling[next_level()];
-  const BileDefinition& bile = scene().anatomy.organs[static_cast<std::size_t>(organ)].bile;
+  const BileDefinition bile = known_organs()[static_cast<std::size_t>(organ)].bile;
   OrganState state;
   state.pressure = share * bile.fill_pressure.value_or(usual_pressure);
   state.volume = share * bile.fill_volume.value_or(usual_volume);
@@ -325,8 +365,8 @@ std::optional<Vec3> Arguments::point(const Value& value, const std::string& name
   return point;
 }
 
-TableReader Arguments::options(const std::string& api) {
-  return {check_, reader_.take("options"), "options", api_table(api)};
+TableReader Arguments::table(const std::string& name, const std::string& api) {
+  return {check_, reader_.take(name), name, api_table(api)};
 }
 
 }  // namespace calot

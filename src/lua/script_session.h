@@ -54,7 +54,9 @@ class ScriptSession {
 
   /// A mistake at the script's line: raised, or collected in a dry run.
   void complain(lua_State* L, const std::string& message, const std::string& hint);
-  /// Index of the organ, or -1 after a complaint.
+  /// All of its problems as one.
+  void complain(lua_State* L, const Failure& failure);
+  /// Index of the organ among those of the world's report, in a dry run among known_organs(); or -1 after a complaint.
   int organ(lua_State* L, const std::string& name);
   /// "organ.landmark" of this scene; complains when it is none.
   bool is_landmark(lua_State* L, const std::string& name);
@@ -64,6 +66,8 @@ class ScriptSession {
   bool can_activate(lua_State* L, int instrument, const std::string& command);
   /// Where a landmark of this scene is now, m; in a dry run without a world about where it will be.
   Vec3 landmark(lua_State* L, const std::string& name) const;
+  /// The skin's outward normal there, unit; in a dry run needs a world.
+  Vec3 landmark_normal(lua_State* L, const std::string& name) const;
   /// Where an instrument's tip is now, m; a stand-in where a dry run does not know it.
   Vec3 tip(lua_State* L, int instrument);
   /// From its port to its tip, unit.
@@ -87,6 +91,9 @@ class ScriptSession {
     return failure.kind == FailureKind::scenario && (complained_ || (sandbox_.take_raised() && stood_in_));
   }
 
+  /// The scene's organs and those that may come later.
+  std::vector<OrganDefinition> known_organs() const;
+
  protected:
   void set_world(const World* world) { world_ = world; }
   void end(const std::string& why) { ended_ = why; }
@@ -95,6 +102,8 @@ class ScriptSession {
   bool stood_in() const { return stood_in_; }
   /// In a dry run: an instrument's tip where that is known.
   virtual std::optional<Vec3> known_tip(int /*instrument*/) const { return std::nullopt; }
+  /// Of a dry run: what steps may bring, beside the scene's organs.
+  virtual const std::vector<OrganDefinition>& later_organs() const { return exercise_.later_organs; }
   /// In a dry run: counts a wait, and ends the run (by a yield) when it would last too long. True: it does.
   /// No duration: the wait lasts as long as the world makes it.
   bool end_dry_run(lua_State* L, std::optional<double> duration);
@@ -144,7 +153,9 @@ class Arguments {
   /// The point in `value`, or nothing and a problem for finish().
   std::optional<Vec3> point(const Value& value, const std::string& name);
   /// Of a table of options; `api` is its declaration.
-  TableReader options(const std::string& api);
+  TableReader options(const std::string& api) { return table("options", api); }
+  TableReader table(const std::string& name, const std::string& api);
+  FieldCheck& check() { return check_; }
   /// Raises or reports what options() and others found. True when all is well.
   bool finish();
 

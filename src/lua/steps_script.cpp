@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "script/lua_headers.h"
+#include "sim/change_bodies.h"
 
 namespace calot {
 namespace {
@@ -42,12 +43,13 @@ Result<StepsScript::Declared> StepsScript::run_dry() {
   return declared_;
 }
 
-Result<bool> StepsScript::advance(const World& world, Progress& progress, double dt) {
+Result<bool> StepsScript::advance(World& world, Progress& progress, double dt) {
   if (finished_) return true;
   sandbox().set_time(world.report().time);
   const Sandbox::Call call(sandbox());
   set_world(&world);
   progress_ = &progress;
+  changing_ = &world;
   Result<bool> result = false;
   if (thread_ == nullptr) {
     for (const std::string& hold : exercise().hold_names) progress.set_metric(hold + ".time_in_s", 0);
@@ -58,6 +60,7 @@ Result<bool> StepsScript::advance(const World& world, Progress& progress, double
   if (result) result = run();
   set_world(nullptr);
   progress_ = nullptr;
+  changing_ = nullptr;
   return result;
 }
 
@@ -234,6 +237,68 @@ void StepsScript::note(lua_State* L, const std::string& name, const Value& value
     return complain(L, fmt::format("there are {} notes already", most_notes),
                     "note a value when it is final, not in every step of the simulation");
   progress_->add_note(std::move(note));
+}
+
+bool StepsScript::may_change(lua_State* L, const char* method) {
+  if (!may_wait(L, method)) return false;
+  if (!checking()) world(L);  // raises what is wrong outside of steps
+  return true;
+}
+
+void StepsScript::bring_later(const OrganDefinition& organ) {
+  for (const OrganDefinition& known : known_organs())
+    if (known.name == organ.name) return;
+  declared_.later.push_back(organ);
+}
+
+int StepsScript::divide(lua_State* L, const std::string& name, double share) {
+  if (!may_change(L, "divide")) return 0;
+  const int organ = this->organ(L, name);
+  const std::array<std::string, 2> pieces = piece_names(name);
+  if (checking() && organ >= 0) {
+    OrganDefinition piece = known_organs()[static_cast<std::size_t>(organ)];
+    if (!std::holds_alternative<TubeShape>(piece.shape))
+      complain(L, fmt::format("'{}' cannot be divided: it is a {}", name, shape_name(piece.shape)),
+               "divide a tube: a duct or a vessel");
+    for (const std::string& of : pieces) {
+      piece.name = of;
+      bring_later(piece);
+    }
+  }
+  if (!checking()) {
+    const Result<Division> done = changing_->divide(name, share);
+    if (!done) complain(L, done.failure());
+    share = done->share;
+  }
+  lua_pushstring(L, pieces[0].c_str());
+  lua_pushstring(L, pieces[1].c_str());
+  lua_pushnumber(L, share);
+  return 3;
+}
+
+void StepsScript::remove(lua_State* L, const std::string& name, const std::string& why) {
+  if (!may_change(L, "remove") || organ(L, name) < 0 || checking()) return;
+  if (const Result<bool> done = changing_->remove(name, why); !done) complain(L, done.failure());
+}
+
+void StepsScript::add(lua_State* L, const OrganDefinition& organ) {
+  if (!may_change(L, "add")) return;
+  if (checking()) {
+    if (std::vector<Problem> problems = validate(organ); !problems.empty())
+      return complain(L, Failure{FailureKind::scenario, std::move(problems)});
+    return bring_later(organ);
+  }
+  if (const Result<int> done = changing_->add(organ); !done) complain(L, done.failure());
+}
+
+void StepsScript::tie(lua_State* L, const JointDefinition& joint) {
+  if (!may_change(L, "tie") || !is_landmark(L, joint.from) || !is_landmark(L, joint.to) || checking()) return;
+  if (const Result<bool> done = changing_->tie(joint); !done) complain(L, done.failure());
+}
+
+void StepsScript::untie(lua_State* L, const std::string& one, const std::string& other) {
+  if (!may_change(L, "untie") || organ(L, one) < 0 || organ(L, other) < 0 || checking()) return;
+  if (const Result<bool> done = changing_->untie(one, other); !done) complain(L, done.failure());
 }
 
 int StepsScript::hold(lua_State* L, const std::string& name, int predicate, double duration) {

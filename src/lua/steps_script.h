@@ -12,11 +12,12 @@ class StepsScript final : public ScriptSession {
               const Parameters& parameters, std::vector<Problem>* problems = nullptr);
 
   /// See ExerciseScript::advance.
-  Result<bool> advance(const World& world, Progress& progress, double dt);
+  Result<bool> advance(World& world, Progress& progress, double dt);
 
   /// What a dry run found. `complete`: the function ran to its end.
   struct Declared {
     std::vector<std::string> steps, holds, notes;  ///< holds are "step.hold"; notes those of numbers
+    std::vector<OrganDefinition> later;            ///< organs that may come: pieces of others too
     bool complete = false;
   };
   /// Runs the function with waits that return at once. A failure is the script's.
@@ -29,7 +30,18 @@ class StepsScript final : public ScriptSession {
   void try_step() { step_tried_ = true; }
   void step(lua_State* L, const std::string& name, const std::string& title, double limit);
   void note(lua_State* L, const std::string& name, const Value& value, const std::string& unit);
+  // What changes who is in the world, at once. In a dry run names are known from when they may come and are not forgotten.
+  int divide(lua_State* L, const std::string& organ, double share);
+  void remove(lua_State* L, const std::string& organ, const std::string& why);
+  void add(lua_State* L, const OrganDefinition& organ);
+  void tie(lua_State* L, const JointDefinition& joint);
+  void untie(lua_State* L, const std::string& one, const std::string& other);
   int hold(lua_State* L, const std::string& name, int predicate, double duration);
+
+ protected:
+  const std::vector<OrganDefinition>& later_organs() const override {
+    return checking() ? declared_.later : ScriptSession::later_organs();
+  }
 
  private:
   struct Wait {
@@ -46,6 +58,9 @@ class StepsScript final : public ScriptSession {
   bool is_name(lua_State* L, const std::string& what, const std::string& name);
   int suspend(lua_State* L, Wait wait);
   int dry_wait(lua_State* L, std::optional<double> duration);
+  /// Whether who is in the world may change: not while a predicate is asked, and not without one.
+  bool may_change(lua_State* L, const char* method);
+  void bring_later(const OrganDefinition& organ);
   std::optional<Failure> start();
   Result<bool> ask(int predicate);
   /// Whether the wait is over. A hold's metric is brought up to date.
@@ -62,6 +77,7 @@ class StepsScript final : public ScriptSession {
   bool timed_out_ =
       false;  ///< the step's limit has passed: conditions are not waited for until the next step
   Progress* progress_ = nullptr;
+  World* changing_ = nullptr;  ///< the world of the call that is running
   Declared declared_;
   std::string current_;      ///< the step declared last
   bool step_tried_ = false;  ///< one was, well or not

@@ -62,7 +62,9 @@ struct ExerciseDefinition {
   GoldenDefinition golden;
   /// Steps, holds and noted numbers of the script, found by running it dry: metrics are named after them.
   std::vector<std::string> step_names, hold_names, note_names;  ///< hold_names are "step.hold"
-  std::string file;                                             ///< the scenario's path
+  /// What the script may bring into the field, pieces of divided ducts too, likewise.
+  std::vector<OrganDefinition> later_organs;
+  std::string file;                             ///< the scenario's path
   std::uint64_t source_hash = 0;                ///< of the scenario's text and the modules it required
   std::map<std::string, std::string> params;    ///< every parameter's value as text, defaults included
   std::vector<ParameterDefinition> parameters;  ///< ordered by name
@@ -84,8 +86,9 @@ class ExerciseScript {
   /// The demo as an input source; lives no longer than the script.
   virtual InputSource& demo() = 0;
   /// Resumes the steps coroutine after a world step of length dt. True when the steps have ended. Marks
-  /// steps, holds and their metrics in `progress`. The first call begins at the time before that step.
-  virtual Result<bool> advance(const World& world, Progress& progress, double dt) = 0;
+  /// steps, holds and their metrics in `progress`. The first call begins at the time before that step. What steps change
+  /// of who is in the world is no input and not recorded: a replay runs the same steps.
+  virtual Result<bool> advance(World& world, Progress& progress, double dt) = 0;
   /// Called from another thread just before the process ends with the resource-limit exit code because a
   /// single call into the script hangs: write out what was recorded. The simulating thread is in the script.
   virtual void set_emergency_flush(const std::function<void()>& /*flush*/) {}

@@ -130,7 +130,8 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
         names.push_back(instrument.name);
       return names;
     case MetricOwner::organ:
-      for (const OrganDefinition& organ : exercise.scene.anatomy.organs) names.push_back(organ.name);
+      for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+        for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
       return names;
     case MetricOwner::compared_organ:
       for (const OrganDefinition& organ : exercise.scene.anatomy.organs)
@@ -240,8 +241,13 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
       pressure = std::max(pressure, sample.pressure);
       stretch = std::max(stretch, sample.max_stretch);
     }
-    metrics[scene.anatomy.organs[i].name + ".peak_pressure_Pa"] = pressure;
-    metrics[scene.anatomy.organs[i].name + ".max_stretch"] = stretch;
+    // Of several with one name, one after the other, the largest.
+    const std::string& name = traces.organ_names[i];
+    for (const auto& [metric, value] :
+         {std::pair{".peak_pressure_Pa", pressure}, {".max_stretch", stretch}}) {
+      const auto [known, fresh] = metrics.try_emplace(name + metric, value);
+      if (!fresh) known->second = std::max(known->second, value);
+    }
   }
   for (const StepRecord& step : progress.steps()) {
     if (step.ended >= 0) metrics[step.name + ".time_s"] = step.ended - step.started;

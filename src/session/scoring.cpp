@@ -21,12 +21,13 @@ std::vector<double> times_of(const Progress& progress, EventKind kind) {
 
 /// The events that change or mark a metric, so that an instructor can look them up in the recording.
 std::vector<double> times_behind(const Progress& progress, const std::string& metric) {
-  const std::size_t dot = metric.find('.');
-  const std::string owner = metric.substr(0, dot), what = metric.substr(dot + 1);
+  const std::size_t dot = metric.find('.'), last = metric.rfind('.');
+  const std::string owner = metric.substr(0, dot), what = metric.substr(last + 1);
+  const std::string full_owner = metric.substr(0, last);  // a piece of an organ has a dot in its name
   const std::optional<EventKind> kind = event_behind(what);
   std::vector<double> times;
   for (const SessionEvent& event : progress.events()) {
-    const bool owned = event.kind == kind && (event.instrument == owner || event.organ == owner);
+    const bool owned = event.kind == kind && (event.instrument == owner || event.organ == full_owner);
     const bool ends_step = ends_a_step(event.kind) && event.step == owner;
     if (owned || ends_step) times.push_back(event.time);
   }

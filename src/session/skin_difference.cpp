@@ -76,11 +76,16 @@ SkinDifferences::SkinDifferences(const World& world) {
 }
 
 std::optional<SkinDifference> SkinDifferences::of(const World& world, int index) const {
-  const std::vector<Organ>& organs = world.field().organs;
-  for (std::size_t k = 0; k < organs.size(); ++k)
-    if (organs[k].definition.name == organs[index].definition.compared_with)
-      return skin_difference(moved_skin(organs[index], first_[index]), moved_skin(organs[k], first_[k]));
-  return std::nullopt;
+  const std::string& reference = world.scene().anatomy.organs[index].compared_with;
+  const Organ *organ = nullptr, *other = nullptr;
+  for (const Organ& one : world.field().organs) {
+    if (one.record >= static_cast<int>(first_.size())) continue;  // it came later
+    if (one.record == index) organ = &one;
+    if (one.definition.name == reference) other = &one;
+  }
+  if (organ == nullptr || other == nullptr) return std::nullopt;
+  return skin_difference(moved_skin(*organ, first_[organ->record]),
+                         moved_skin(*other, first_[other->record]));
 }
 
 }  // namespace calot

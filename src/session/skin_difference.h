@@ -29,7 +29,8 @@ std::optional<SkinDifference> skin_difference(const MovedSkin& skin, const Moved
 class SkinDifferences {
  public:
   explicit SkinDifferences(const World& world);
-  /// None for an organ that is compared with none, or where that one has not moved. Some 0.1 s.
+  /// None for an organ of the scene that is compared with none, or where that one has not moved or either has gone. Some
+  /// 0.1 s.
   std::optional<SkinDifference> of(const World& world, int organ) const;
 
  private:

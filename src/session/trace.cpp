@@ -42,7 +42,6 @@ void append_sample(const World& world, Traces& traces) {
   const StepReport& report = world.report();
   const SceneDefinition& scene = world.scene();
   traces.instruments.resize(report.instruments.size());
-  traces.organs.resize(report.organs.size());
   traces.time.push_back(report.time);
   for (std::size_t i = 0; i < report.instruments.size(); ++i) {
     const InstrumentState& state = report.instruments[i];
@@ -58,8 +57,14 @@ void append_sample(const World& world, Traces& traces) {
     sample.active = state.action == InstrumentAction::activate;
     traces.instruments[i].push_back(sample);
   }
-  for (std::size_t i = 0; i < report.organs.size(); ++i) {
-    traces.organs[i].push_back({report.organs[i].pressure, report.organs[i].max_stretch});
+  for (const OrganState& organ : report.organs) {
+    const auto row = static_cast<std::size_t>(organ.record);
+    if (row >= traces.organs.size()) {
+      traces.organs.resize(row + 1);
+      traces.organ_names.resize(row + 1);
+    }
+    traces.organ_names[row] = organ.name;
+    traces.organs[row].push_back({organ.pressure, organ.max_stretch});
   }
 }
 

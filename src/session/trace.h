@@ -31,7 +31,9 @@ struct OrganSample {
 struct Traces {
   std::vector<double> time;                                ///< s, one a sample
   std::vector<std::vector<InstrumentSample>> instruments;  ///< [instrument][sample]
-  std::vector<std::vector<OrganSample>> organs;            ///< [organ][sample]
+  /// [organ][sample], in the order in which organs came; of one that came later or went, those of its time.
+  std::vector<std::vector<OrganSample>> organs;
+  std::vector<std::string> organ_names;
 };
 
 /// Appends the world's present report.

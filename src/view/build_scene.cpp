@@ -22,18 +22,24 @@ SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene
   const SceneDefinition& scene = world.scene();
   camera_ = laparoscope_camera(scene.laparoscope, world.port_position(scene.laparoscope.port),
                                world.landmark(scene.laparoscope.look_at));
-  for (std::size_t i = 0; i < scene.anatomy.organs.size(); ++i) {
-    const Pose to_organ = organ_frame(scene.anatomy.organs[i]).inverse();
-    std::vector<Vec3> rest = world.drawn_rest(static_cast<int>(i));
-    for (Vec3& p : rest) p = to_organ * p;
-    SceneMesh mesh;
-    const OrganShape& shape = scene.anatomy.organs[i].shape;
-    mesh.material = material_of(shape);
-    mesh.triangles = world.drawn_triangles(static_cast<int>(i));
-    if (is_hollow(shape)) mesh.vessels = grow_vessels(rest, mesh.triangles);
-    mesh.rest_positions = std::move(rest);
-    organs_.push_back(std::move(mesh));
+  for (const Organ& organ : world.field().organs) {
+    const auto k = static_cast<std::size_t>(organ.record);
+    if (k >= organs_.size()) organs_.resize(k + 1);
+    organs_[k] = organ_mesh(world, world.organ(organ.definition.name).value());
   }
+}
+
+SceneMesh SceneBuilder::organ_mesh(const World& world, int organ) {
+  const OrganDefinition& definition = world.field().organs[organ].definition;
+  const Pose to_organ = organ_frame(definition).inverse();
+  std::vector<Vec3> rest = world.drawn_rest(organ);
+  for (Vec3& p : rest) p = to_organ * p;
+  SceneMesh mesh;
+  mesh.material = material_of(definition.shape);
+  mesh.triangles = world.drawn_triangles(organ);
+  if (is_hollow(definition.shape)) mesh.vessels = grow_vessels(rest, mesh.triangles);
+  mesh.rest_positions = std::move(rest);
+  return mesh;
 }
 
 Scene SceneBuilder::build(const World& world) const {
@@ -46,8 +52,10 @@ Scene SceneBuilder::build(const World& world) const {
          instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))
       scene.meshes.push_back(std::move(mesh));
   }
-  for (std::size_t i = 0; i < organs_.size(); ++i) {
-    SceneMesh mesh = organs_[i];
+  for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
+    const auto record = static_cast<std::size_t>(world.field().organs[i].record);
+    // One that came since is laid out anew for each picture: a duct or a stone takes no time.
+    SceneMesh mesh = record < organs_.size() ? organs_[record] : organ_mesh(world, static_cast<int>(i));
     DrawnSkin skin = moulds_.skin(world, static_cast<int>(i));
     mesh.positions = std::move(skin.positions);
     mesh.normals = std::move(skin.normals);

@@ -19,8 +19,9 @@ class SceneBuilder {
  private:
   SceneCamera camera_;
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
-  std::vector<SceneMesh>
-      organs_;  // all that does not move of them: material, rest positions, triangles, vessels
+  /// All that does not move of an organ: material, rest positions, triangles, vessels.
+  static SceneMesh organ_mesh(const World& world, int organ);
+  std::vector<SceneMesh> organs_;  // the scene's
   JawMoulds moulds_;
 };
 

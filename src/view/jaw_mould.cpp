@@ -97,7 +97,7 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
       Vec3 moved = local;
       moved.x() += share_on_pad(tool.geometry, local.y(), local.z()) *
                    (moulded_height(tool.geometry, local.y(), local.z()) - local.x());
-      held.push_back({static_cast<int>(k), grip.skin_point, jaw.linear() * (moved - local)});
+      held.push_back({organ.record, grip.skin_point, jaw.linear() * (moved - local)});
     }
   }
   if (!held.empty()) {
@@ -126,7 +126,7 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
   // The skin around what is held stays where it is.
   std::vector<Vec3> ways(positions.size(), Vec3::Zero());
   for (const Held& held : held_)
-    if (held.organ == organ) ways[held.skin_point] = smooth(weight_) * held.way;
+    if (held.record == field.organs[organ].record) ways[held.skin_point] = smooth(weight_) * held.way;
   std::vector<Vec3> from, to;
   for (std::size_t p = 0; p < positions.size(); ++p) {
     if (!form.contains(positions[p])) continue;

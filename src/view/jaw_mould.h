@@ -55,8 +55,8 @@ class JawMould {
 
  private:
   struct Held {
-    int organ = 0, skin_point = 0;
-    Vec3 way = Vec3::Zero();  ///< m, patient's frame: from where it is held to where the mould has it
+    int record = 0, skin_point = 0;  ///< the organ's
+    Vec3 way = Vec3::Zero();         ///< m, patient's frame: from where it is held to where the mould has it
   };
   std::vector<Held> held_;
   Pose hinge_ = Pose::Identity();  ///< of the tool while it held

@@ -357,7 +357,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "holds"},
         Misspelt{"InHold", "t:hold('b', function()\n return t.left:forse() > 1 end, 1 * s)", "", "forse",
                  "force"},
-        Misspelt{"OfT", "t:wait_until(function()\n return t:tme() > 1 end)", "", "tme", "time"},
+        Misspelt{"OfT", "t:wait_until(function()\n return t:timme() > 1 end)", "", "timme", "time"},
         Misspelt{"OfPressure", "t:wait_until(function()\n return t:presure('gallbladder') > 1 end)", "",
                  "presure", "pressure"},
         Misspelt{"OfAnInstrument", "t:wait_until(function()\n return t.lefft:holds() end)", "", "lefft",

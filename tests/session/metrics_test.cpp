@@ -178,6 +178,7 @@ TEST(Metrics, ForcesArePeaksAndTheMeanOfWhatWasLoaded) {
 
 TEST(Metrics, OrgansReportTheirPeaks) {
   Traces traces = traced(50, 0.04, [](double) { return at(Vec3::Zero()); });
+  traces.organ_names = {"ball"};
   traces.organs = {{{1000, 1.1}, {1800, 1.3}, {1200, 1.2}}};
   EXPECT_EQ(measured(traces, "ball.peak_pressure_Pa"), 1800);
   EXPECT_EQ(measured(traces, "ball.max_stretch"), 1.3);
@@ -185,6 +186,7 @@ TEST(Metrics, OrgansReportTheirPeaks) {
 
 TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   Traces traces = traced(50, 1, [](double t) { return at({0.05 * t, 0, 0}); });
+  traces.organ_names = {"ball"};
   traces.organs.assign(1, std::vector<OrganSample>(traces.time.size()));
   Progress progress;
   progress.begin_step(0, "grasp", "", 0);

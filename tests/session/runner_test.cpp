@@ -166,7 +166,7 @@ TEST(Runner, AScriptsErrorEndsTheSessionWithItsFailure) {
   class Broken : public test::TimedScript {
    public:
     Broken() : TimedScript(5) {}
-    Result<bool> advance(const World& world, Progress& progress, double dt) override {
+    Result<bool> advance(World& world, Progress& progress, double dt) override {
       if (world.report().time > 0.05)
         return fail(FailureKind::scenario, "attempt to index a nil value", "", {"x.lua", 9, {}});
       return TimedScript::advance(world, progress, dt);
@@ -304,6 +304,112 @@ TEST(StepTable, HasOneColumnCountThroughoutAndARowAState) {
   while (std::getline(in, line)) commas.push_back(std::count(line.begin(), line.end(), ','));
   fs::remove_all(folder);
   EXPECT_EQ(commas, std::vector<std::ptrdiff_t>(7, 10));  // header, rest, 5 steps; 11 columns
+}
+
+OrganDefinition held_tube(const std::string& name, double y) {
+  OrganDefinition tube;
+  tube.name = name;
+  tube.shape = TubeShape{.points = {Vec3(0, y, -0.2), Vec3(0.03, y, -0.2)}};
+  tube.held = {{"first", "start", 5e-3, 1e6}, {"second", "end", 5e-3, 1e6}};
+  return tube;
+}
+
+/// A ball, and far from it a duct and a vein.
+ExerciseDefinition changing_exercise() {
+  ExerciseDefinition exercise = test::small_exercise();
+  exercise.scene.anatomy.organs.push_back(held_tube("duct", 0.1));
+  exercise.scene.anatomy.organs.push_back(held_tube("vein", 0.08));
+  return exercise;
+}
+
+/// After three steps the duct is divided and the vein removed, after six another one comes.
+class ChangingScript : public test::TimedScript {
+ public:
+  explicit ChangingScript(const ExerciseDefinition& exercise) : TimedScript(0.2, exercise) {}
+  Result<bool> advance(World& world, Progress& progress, double dt) override {
+    const int step = static_cast<int>(std::lround(world.report().time / dt));
+    if (step == 3) {
+      EXPECT_TRUE(world.divide("duct", 0.5));
+      EXPECT_TRUE(world.remove("vein", "taken out"));
+    }
+    if (step == 6) {
+      EXPECT_TRUE(world.add(held_tube("third", 0.06)));
+    }
+    return TimedScript::advance(world, progress, dt);
+  }
+};
+
+SessionResult played_changing(ChangingScript& script, InputSource& source, const SessionOptions& options) {
+  Result<World> world = World::create(script.definition().scene);
+  EXPECT_TRUE(world) << to_text(world.failure());
+  return run_session(world.value(), script, source, options);
+}
+
+TEST(ChangingOrgans, KeepTheirRowsAndMetricsForAsLongAsTheyAreThere) {
+  const test::Folder folder;
+  const std::string path = (folder.path() / "steps.csv").string();
+  ChangingScript script(changing_exercise());
+  Result<StepTable> table = StepTable::create(path, script.definition().scene);
+  ASSERT_TRUE(table);
+  SessionOptions options;
+  options.table = &table.value();
+  const SessionResult result = played_changing(script, script.demo(), options);
+  std::ifstream in(path);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(in, line);) {
+    rows.emplace_back();
+    std::stringstream fields(line + ",");
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+  }
+  ASSERT_EQ(rows.size(), 12u);  // header, rest, 10 steps
+  const auto filled = [&](const std::string& organ) {
+    const auto column = std::find(rows[0].begin(), rows[0].end(), organ + ".max_stretch") - rows[0].begin();
+    std::vector<std::size_t> out;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      EXPECT_EQ(rows[k].size(), rows[0].size()) << k;
+      if (!rows[k].at(static_cast<std::size_t>(column)).empty()) out.push_back(k - 1);
+    }
+    return out;
+  };
+  const auto from_to = [](std::size_t first, std::size_t last) {
+    std::vector<std::size_t> out;
+    for (std::size_t k = first; k <= last; ++k) out.push_back(k);
+    return out;
+  };
+  EXPECT_EQ(filled("ball"), from_to(0, 10));
+  EXPECT_EQ(filled("duct"), from_to(0, 3));
+  EXPECT_EQ(filled("vein"), from_to(0, 3));
+  EXPECT_EQ(filled("duct.patient"), from_to(4, 10));
+  EXPECT_EQ(filled("duct.specimen"), from_to(4, 10));
+  EXPECT_EQ(filled("third"), from_to(7, 10));
+  const std::map<std::string, double> metrics =
+      measure(script.definition().scene, result.traces, result.progress);
+  for (const char* organ : {"ball", "duct", "vein", "duct.patient", "duct.specimen", "third"})
+    EXPECT_TRUE(metrics.contains(std::string(organ) + ".max_stretch")) << organ;
+  EXPECT_EQ(result.traces.organs[1].size(), 4u);
+}
+
+TEST(ChangingOrgans, AReplayRunsTheSameStepsToTheSameBits) {
+  const test::Folder folder;
+  const std::string path = (folder.path() / "recording.jsonl").string();
+  ChangingScript script(changing_exercise());
+  const World at_rest = World::create(script.definition().scene).value();
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(path, recording_header(script.definition(), at_rest, "small.lua"));
+  ASSERT_TRUE(writer);
+  SessionOptions options;
+  options.recording = &writer.value();
+  const SessionResult first = played_changing(script, script.demo(), options);
+  const Result<Recording> recording = read_recording(path);
+  ASSERT_TRUE(recording) << to_text(recording.failure());
+  ChangingScript again(changing_exercise());
+  ReplaySource source(recording.value());
+  const SessionResult second = played_changing(again, source, {});
+  EXPECT_EQ(second.state_hashes, first.state_hashes);
+  ASSERT_EQ(recording->steps.size() + 1, second.state_hashes.size());
+  for (std::size_t k = 0; k < recording->steps.size(); ++k)
+    EXPECT_EQ(recording->steps[k].state_hash, second.state_hashes[k + 1]) << k;
+  EXPECT_EQ(first.state_hashes.size(), 11u);
 }
 
 }  // namespace

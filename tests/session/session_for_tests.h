@@ -76,7 +76,7 @@ class TimedScript : public ExerciseScript {
       : duration_(duration), exercise_(std::move(exercise)), demo_(duration) {}
   const ExerciseDefinition& definition() const override { return exercise_; }
   InputSource& demo() override { return demo_; }
-  Result<bool> advance(const World& world, Progress& progress, double dt) override {
+  Result<bool> advance(World& world, Progress& progress, double dt) override {
     const double time = world.report().time;
     if (progress.steps().empty()) progress.begin_step(time - dt, "only", "The only step", 0);
     if (time < duration_ - dt / 2) return false;

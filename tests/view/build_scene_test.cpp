@@ -53,6 +53,35 @@ TEST(BuildScene, DrawsTheSkinThatTheWorldTouches) {
   EXPECT_NE(skin->vessels, nullptr);
 }
 
+TEST(BuildScene, DrawsPiecesAndNotWhatIsGone) {
+  SceneDefinition definition = sphere_scene();
+  OrganDefinition duct;
+  duct.name = "duct";
+  duct.shape = TubeShape{.points = {Vec3(0, 0.1, -0.08), Vec3(0.04, 0.1, -0.08)}};
+  duct.held = {{"first", "start", 5e-3, 1e6}, {"second", "end", 5e-3, 1e6}};
+  definition.anatomy.organs.push_back(duct);
+  World world = make_world(definition);
+  const SceneBuilder builder(world);
+  const std::size_t before = builder.build(world).meshes.size();
+  const auto drawn = [&](int organ) {
+    const Scene scene = builder.build(world);
+    const std::vector<Vec3> places = world.drawn(organ).positions;
+    return std::count_if(scene.meshes.begin(), scene.meshes.end(), [&](const SceneMesh& mesh) {
+      return mesh.positions == places && mesh.triangles == world.drawn_triangles(organ) &&
+             mesh.rest_positions.size() == places.size();
+    });
+  };
+  ASSERT_TRUE(world.divide("duct", 0.5));
+  EXPECT_EQ(builder.build(world).meshes.size(), before + 1);
+  for (int organ : {0, 1, 2}) EXPECT_EQ(drawn(organ), 1) << organ;
+  ASSERT_TRUE(world.remove("duct.specimen", ""));
+  ASSERT_TRUE(world.remove("ball", ""));
+  EXPECT_EQ(builder.build(world).meshes.size(), before - 1);
+  EXPECT_EQ(drawn(0), 1);
+  // The laparoscope still looks where the ball was, also one that is set up now.
+  EXPECT_EQ(build_scene(world).meshes.size(), before - 1);
+}
+
 TEST(BuildScene, ASupportedOrganHasADrapeAndNoLiver) {
   const Scene scene = build_scene(make_world(sphere_scene()));
   EXPECT_EQ(mesh_of(scene, Material::liver), nullptr);

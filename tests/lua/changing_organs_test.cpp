@@ -1,0 +1,142 @@
+// Organs that come, go and are divided by a scenario's steps.
+
+#include <gtest/gtest.h>
+
+#include "lua/scenario_files.h"
+#include "session/metrics.h"
+#include "session/runner.h"
+
+namespace calot {
+namespace {
+
+using test::Folder;
+
+/// A duct held at its end, a stone tied to its start, far from all instruments, where masses count.
+test::ScenarioText ducts(const std::string& steps) {
+  test::ScenarioText text;
+  text.scene =
+      "return { anatomy = { organs = {\n"
+      "  { name = 'duct', shape = { type = 'tube', points = { { 0, 0, -200 * mm }, { 40 * mm, 0, -200 * mm } "
+      "} },\n"
+      "    wall = { density = 1050 }, held = { { landmark = 'end', radius = 5 * mm, stiffness = 1e6 } } },\n"
+      "  { name = 'stone', shape = { type = 'rigid', centre = { -3 * mm, 0, -200 * mm }, rounding = 3 * mm } "
+      "} },\n"
+      "  joints = { { from = 'duct.start', to = 'stone.centre' } } },\n"
+      "laparoscope = { look_at = 'duct.end' }, solver = { motion = 'dynamic' },\n"
+      "instruments = { left = { port = 'right_subcostal' } } }";
+  text.steps = steps;
+  text.demo = "t:wait(0.2 * s)";
+  return text;
+}
+
+struct Outcome {
+  std::string why;  ///< it failed; empty: it did not
+  SessionResult result;
+  std::vector<std::string> organs;  ///< at the end
+};
+
+/// Loaded, and played where that succeeds.
+Outcome outcome(const test::ScenarioText& text) {
+  const Folder folder;
+  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, text.text());
+  if (!script) return {to_text(script.failure()), {}, {}};
+  World world = World::create(script.value()->definition().scene).value();
+  Outcome out;
+  out.result = run_session(world, *script.value(), script.value()->demo(), {});
+  if (out.result.end == SessionEnd::failed) out.why = to_text(out.result.failure);
+  for (const OrganState& organ : world.report().organs) out.organs.push_back(organ.name);
+  return out;
+}
+
+TEST(ChangingOrgansInSteps, AreDividedRemovedTiedAndAdded) {
+  const Outcome played = outcome(ducts(
+      "t:step('cut', 'Cut')\n t:wait(0.06 * s)\n"
+      "local patient, specimen, share = t:divide('duct', 0.5)\n"
+      "assert(patient == 'duct.patient' and specimen == 'duct.specimen' and math.abs(share - 0.5) < 0.04)\n"
+      "assert(math.abs(t:place('duct.patient.start')[1] - 20 * mm) < 10 * mm)\n"
+      "t:untie('duct.specimen', 'stone')\n"
+      "t:tie { from = 'duct.specimen.end', to = 'duct.patient.end', stiffness = 100 }\n"
+      "t:wait(0.04 * s)\n t:remove('stone', 'taken out')\n"
+      "t:add { name = 'other', shape = { type = 'rigid', centre = { 0, 40 * mm, -200 * mm } } }\n"
+      "t:wait(0.04 * s)"));
+  EXPECT_EQ(played.why, "");
+  EXPECT_EQ(played.result.end, SessionEnd::steps_done);
+  EXPECT_EQ(played.organs, (std::vector<std::string>{"duct.patient", "duct.specimen", "other"}));
+}
+
+TEST(ChangingOrgansInSteps, PlayedTwiceHaveTheSameBits) {
+  const test::ScenarioText text =
+      ducts("t:step('cut', 'Cut') t:wait(0.04 * s) t:divide('duct', 0.5) t:wait(0.06 * s)");
+  const std::vector<std::uint64_t> first = outcome(text).result.state_hashes;
+  EXPECT_GT(first.size(), 4u);
+  EXPECT_EQ(outcome(text).result.state_hashes, first);
+}
+
+TEST(ChangingOrgansInSteps, WhatIsGoneSaysWhenAndWhyAtTheAuthorsLine) {
+  const std::string gone = "duct was divided at 0.06 s (its pieces are duct.patient and duct.specimen)";
+  const std::string divided =
+      "t:step('cut', 'Cut')\n t:wait(0.06 * s)\n t:divide('duct', 0.5) t:wait(0.04 * s)\n";
+  for (const char* use : {"t:pressure('duct')", "t:place('duct.start')", "t:divide('duct', 0.5)",
+                          "t:remove('duct')", "t.left:holds('duct')", "t.left:distance('duct.end')"}) {
+    const std::string why = outcome(ducts(divided + use)).why;
+    EXPECT_NE(why.find(gone), std::string::npos) << use << ": " << why;
+    EXPECT_NE(why.find(".lua:20: "), std::string::npos) << use << ": " << why;
+  }
+  const std::string why = outcome(ducts("t:step('cut', 'Cut')\n t:remove('stone', 'taken out')\n"
+                                        "t:wait(0.04 * s) t:place('stone.centre')"))
+                              .why;
+  EXPECT_NE(why.find("stone was removed: taken out at 0.02 s"), std::string::npos) << why;
+}
+
+TEST(ChangingOrgansInSteps, MistakesAreFoundWithoutPlaying) {
+  struct Case {
+    const char *steps, *message;
+  };
+  for (const Case& mistake :
+       {Case{"t:divide('dukt', 0.5)", "unknown organ \"dukt\" (did you mean \"duct\"?)"},
+        Case{"t:divide('stone', 0.5)", "'stone' cannot be divided: it is a rigid"},
+        Case{"t:divide('duct', 5)", "t:divide: share"},
+        Case{"t:divide('duct', 0.5) t:place('duct.patiant.end')", "\"duct.patient.end\""},
+        Case{"t:wait_until(function() t:remove('stone') return true end)", "inside a predicate"},
+        Case{"t:add { name = 'other', shape = { type = 'rigid', density = -1 } }", "organ.shape.density"},
+        Case{"t:add { nmae = 'other' }", "unknown key"},
+        Case{"t:tie { from = 'duct.start', to = 'stone.middle' }", "unknown landmark \"stone.middle\""},
+        Case{"t:tie { from = 'duct.start' }", "\"to\" is missing"},
+        Case{"t:untie('duct', 'stein')", "unknown organ \"stein\""}}) {
+    const Folder folder;
+    const Result<std::unique_ptr<ExerciseScript>> script =
+        test::load_text(folder, ducts(std::string("t:step('a', 'A')\n") + mistake.steps).text());
+    ASSERT_FALSE(script) << mistake.steps;
+    EXPECT_EQ(script.failure().kind, FailureKind::scenario);
+    const std::string why = to_text(script.failure());
+    EXPECT_NE(why.find(mistake.message), std::string::npos) << why;
+    EXPECT_NE(why.find(".lua:18: "), std::string::npos) << why;
+  }
+}
+
+TEST(ChangingOrgansInSteps, PiecesHaveMetricsThatAScoreKnowsBeforeItIsPlayed) {
+  test::ScenarioText text = ducts("t:step('cut', 'Cut') t:divide('duct', 0.5) t:wait(0.04 * s)");
+  text.score =
+      "calot.score.weighted { { calot.score.benchmark { metric = 'duct.specimen.max_stretch', novice = 2, "
+      "expert = 1 }, weight = 1 } }";
+  const Outcome played = outcome(text);
+  EXPECT_EQ(played.why, "");
+  ASSERT_GT(played.result.traces.organs.size(), 3u);
+  EXPECT_EQ(played.result.traces.organ_names[3], "duct.specimen");
+  EXPECT_FALSE(played.result.traces.organs[3].empty());
+}
+
+TEST(ChangingOrgansInDemo, ApproachPiecesThatStepsMake) {
+  test::ScenarioText text = ducts("t:step('cut', 'Cut') t:divide('duct', 0.5) t:wait(0.04 * s)");
+  text.demo = "t:wait(0.06 * s) t.left:approach('duct.patient.start')";
+  EXPECT_EQ(outcome(text).why, "");
+  // Also where the demo's places are tried in a world at rest.
+  const Folder folder;
+  const Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, text.text());
+  ASSERT_TRUE(script) << to_text(script.failure());
+  const World world = World::create(script.value()->definition().scene).value();
+  for (const Problem& problem : script.value()->rehearse(world)) ADD_FAILURE() << to_text(problem);
+}
+
+}  // namespace
+}  // namespace calot
