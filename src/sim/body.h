@@ -85,8 +85,6 @@ class Body {
   virtual ~Body() = default;
 
   virtual const std::string& name() const = 0;
-  /// Whether both are one body, but for their details.
-  virtual bool same_as(const Body& other) const { return this == &other; }
   virtual const VecX& rest() const = 0;
   int nodes() const { return static_cast<int>(rest().size()) / 3; }
   /// The first nodes, which are places; the others are the details, displacements added to them.

@@ -102,11 +102,6 @@ class ShellBody : public Body {
   int most_levels() const override { return base_->levels.levels(); }
   double largest_motion(const VecX& dx) const override;
 
-  bool same_as(const Body& other) const override {
-    const auto* shell = dynamic_cast<const ShellBody*>(&other);
-    return shell != nullptr && base_ == shell->base_;
-  }
-
   const std::string& name() const override { return base_->setup.name; }
   int coarse_nodes() const override { return refined_->surface.basis.coarse_nodes(); }
   const VecX& rest() const override { return refined_->rest; }
