@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "fem/point_mass.h"
 #include "numerics/parts.h"
+#include "sim/loop_skin.h"
 #include "skin/subdivision.h"
 
 namespace calot {
@@ -52,22 +53,6 @@ struct RulePoints {
   }
 };
 
-std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  std::vector<double> areas;
-  for (const Triangle& t : triangles)
-    areas.push_back(0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm());
-  return areas;
-}
-
-/// Of each point, a third of each of its triangles'.
-std::vector<double> lumped(const std::vector<double>& areas, const std::vector<Triangle>& triangles,
-                           std::size_t points) {
-  std::vector<double> out(points, 0.0);
-  for (std::size_t k = 0; k < triangles.size(); ++k)
-    for (int p : triangles[k]) out[p] += areas[k] / 3.0;
-  return out;
-}
-
 StencilTable without_derivatives(const StencilTable& table) {
   StencilTable out;
   out.begin = table.begin;
@@ -76,46 +61,8 @@ StencilTable without_derivatives(const StencilTable& table) {
   return out;
 }
 
-/// The coarsest tessellation whose points stand close enough, or the finest that is allowed.
-Tessellation close_skin(const LoopSurface& surface, const VecX& rest) {
-  constexpr int finest = 24;
-  int parts = 4;
-  while (true) {
-    Tessellation skin = surface.tessellate(parts);
-    const double gap = widest_gap(blend_all(skin.stencils, skin.stencils.value, rest), skin.triangles);
-    if (parts == finest || gap <= skin_spacing) return skin;
-    parts = std::clamp(static_cast<int>(std::ceil(parts * gap / skin_spacing)), parts + 1, finest);
-  }
-}
-
 /// Of each edge: flows cost 1 % less than by the skin, which has a point each mm and takes fifteen times as long.
 constexpr int flow_parts = 3;
-
-/// Adds the nodes from `first` on that skin points depend on to `nodes`, which has those before.
-void add_nodes(const StencilTable& skin, const std::vector<int>& points, int first, std::vector<char>& seen,
-               std::vector<int>& nodes) {
-  const std::size_t known = nodes.size();
-  for (int r : points) {
-    // Nodes increase within a row: those looked for are its last.
-    for (int e = skin.begin[r + 1] - 1; e >= skin.begin[r] && skin.node[e] >= first; --e)
-      if (!std::exchange(seen[skin.node[e] - first], 1)) nodes.push_back(skin.node[e]);
-  }
-  for (std::size_t k = known; k < nodes.size(); ++k) seen[nodes[k] - first] = 0;
-  std::sort(nodes.begin() + static_cast<std::ptrdiff_t>(known), nodes.end());
-}
-
-/// Points of each face's triangles, each once, increasing.
-std::vector<std::vector<int>> points_of_faces(const Tessellation& skin, std::size_t faces) {
-  const std::size_t each = skin.triangles.size() / faces;
-  std::vector<std::vector<int>> out(faces);
-  for (std::size_t k = 0; k < skin.triangles.size(); ++k)
-    out[k / each].insert(out[k / each].end(), skin.triangles[k].begin(), skin.triangles[k].end());
-  for (std::vector<int>& points : out) {
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -124,7 +71,7 @@ Result<ShellBody> ShellBody::create(const Setup& setup) {
   if (!levels) return levels.failure();
   const VecX rest = to_coordinates(setup.control.points);
   Base base{setup, std::move(levels).value()};
-  base.skin = close_skin(base.levels.surface(), rest);
+  base.skin = close_skin(base.levels.surface(), rest, skin_spacing);
   if (setup.bile) base.flow_skin = base.levels.surface().tessellate(flow_parts);
   base.skin_rest = blend_all(base.skin.stencils, base.skin.stencils.value, rest);
   base.triangle_areas = areas_of(base.skin_rest, base.skin.triangles);

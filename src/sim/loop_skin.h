@@ -1,0 +1,25 @@
+#pragma once
+// The skin of a body whose surface is a Loop surface: how it is laid over the control nodes.
+
+#include "skin/subdivision.h"
+
+namespace calot {
+
+/// The coarsest tessellation whose points stand no further apart than `spacing` (m) at rest, or the finest that is
+/// allowed.
+Tessellation close_skin(const LoopSurface& surface, const VecX& rest, double spacing);
+
+/// m^2, of each triangle.
+std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
+/// Of each point, a third of each of its triangles'.
+std::vector<double> lumped(const std::vector<double>& areas, const std::vector<Triangle>& triangles,
+                           std::size_t points);
+
+/// Points of each face's triangles, each once, increasing.
+std::vector<std::vector<int>> points_of_faces(const Tessellation& skin, std::size_t faces);
+/// Adds the nodes from `first` on that skin points depend on to `nodes`, which has those before. `seen`: one a node from
+/// `first` on, 0 before and after.
+void add_nodes(const StencilTable& skin, const std::vector<int>& points, int first, std::vector<char>& seen,
+               std::vector<int>& nodes);
+
+}  // namespace calot
