@@ -62,12 +62,16 @@ const std::vector<Landmark>& landmark_rows() {
       {"start", "of a tube", 0, 0, Landmark::Of::tube},
       {"middle", "of a tube", 0.5, 0, Landmark::Of::tube},
       {"end", "of a tube", 1, 0, Landmark::Of::tube},
-      {"centre", "of a rigid thing", 0.5, 0, Landmark::Of::rigid}};
+      {"centre", "of a rigid thing", 0.5, 0, Landmark::Of::rigid},
+      {"back", "of a lobe: the middle of where it is held", 0, 0, Landmark::Of::lobe},
+      {"edge", "of a lobe: the middle of its edge", 1, 0, Landmark::Of::lobe},
+      {"underside", "of a lobe: the middle of its underside, where its bed is", 0.5, -1, Landmark::Of::lobe},
+      {"upper_side", "of a lobe: the middle of its upper side", 0.5, 1, Landmark::Of::lobe}};
   return rows;
 }
 
 const std::vector<std::string>& shape_names() {
-  static const std::vector<std::string> names = {"pear", "sphere", "obj", "tube", "rigid"};
+  static const std::vector<std::string> names = {"pear", "sphere", "obj", "tube", "rigid", "lobe"};
   return names;
 }
 
@@ -75,7 +79,8 @@ const std::string& shape_name(const OrganShape& shape) { return shape_names()[sh
 
 bool has_landmark(const OrganShape& shape, const Landmark& landmark) {
   if (is_hollow(shape)) return landmark.of == Landmark::Of::hollow;
-  return landmark.of == (std::holds_alternative<TubeShape>(shape) ? Landmark::Of::tube : Landmark::Of::rigid);
+  if (std::holds_alternative<TubeShape>(shape)) return landmark.of == Landmark::Of::tube;
+  return landmark.of == (std::holds_alternative<LobeShape>(shape) ? Landmark::Of::lobe : Landmark::Of::rigid);
 }
 
 std::vector<std::string> landmarks_of(const OrganShape& shape) {

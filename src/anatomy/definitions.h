@@ -60,8 +60,26 @@ struct RigidShape {
   bool operator==(const RigidShape&) const = default;
 };
 
-using OrganShape = std::variant<PearShape, SphereShape, MeshFile, TubeShape, RigidShape>;
-/// Of its own kind, "pear", "sphere", "obj", "tube", "rigid".
+/// A lobe of the liver, cut off at its back, where it is held. It lies as the gallbladder does that has its bed in the
+/// lobe's underside: on the liver's side of the line from the organ's neck to its fundus.
+struct LobeShape {
+  double width = 140e-3, depth = 90e-3;    ///< m, across; from its back to its edge; the liver 280 by 160 (c)
+  double thickness = 45e-3;                ///< m, about, at its back; the liver 80 mm (c)
+  double edge = 9e-3;                      ///< m, thickness of its edge (d)
+  double edge_angle = 0.6981317007977318;  ///< rad, between underside and upper side at its edge (d)
+  double overhang = 16e-3;  ///< m, by which the fundus stands out beyond its edge; 10 to 15 mm (m)
+  double bed_length = 80e-3, bed_width = 35e-3;  ///< m, of the gallbladder; a width of 0: there is no bed
+  double bed_depth = 6.5e-3;                     ///< m, how deep the gallbladder lies in it (d)
+  double young = 6e3;     ///< Pa; 2 to 6 kPa by elastography, 5 to 20 by indentation (c)
+  double poisson = 0.45;  ///< nearly incompressible: beyond, its tetrahedra would lock (d)
+  double density = 1060;  ///< kg/m^3; 1050 to 1060 (c)
+  bool sags = false;  ///< false: as drawn it is in balance with its weight, as a liver seen in a patient is
+  double hold = 1e7;  ///< N/m per m^2 of its back (d)
+  bool operator==(const LobeShape&) const = default;
+};
+
+using OrganShape = std::variant<PearShape, SphereShape, MeshFile, TubeShape, RigidShape, LobeShape>;
+/// Of its own kind, "pear", "sphere", "obj", "tube", "rigid", "lobe".
 const std::string& shape_name(const OrganShape& shape);
 const std::vector<std::string>& shape_names();
 /// A closed shell with bile; else it has neither neck nor fundus, and no filling that is kept.
@@ -147,6 +165,8 @@ struct SupportDefinition {
   double friction = 0;          ///< Coulomb's, of the skin on it (d); the rest state is found without
 };
 
+/// Of a lobe's skin, on which its tetrahedra are condensed.
+inline constexpr int lobe_nodes = 90;
 /// Control nodes of all organs together: more take over half a minute to come to rest.
 inline constexpr int most_nodes = 1000;
 inline constexpr std::size_t most_organs = 24;
@@ -258,13 +278,15 @@ struct SceneDefinition {
 std::vector<PortDefinition> default_ports();
 
 /// A place on every organ of its kind: of hollow ones on the skin next to a point of the box around it, of tubes along
-/// their middle; rigid things have their centre.
+/// their middle; rigid things have their centre, lobes places on their skin.
 struct Landmark {
   const char* name;
   const char* doc;
-  double along;  ///< share of the way from the neck's end to the fundus' end, or from start to end
-  double side;   ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side
-  enum class Of { hollow, tube, rigid } of = Of::hollow;
+  double
+      along;  ///< share of the way from the neck's end to the fundus' end, from start to end, from back to edge
+  double
+      side;  ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side; of a lobe -1 below, 1 above
+  enum class Of { hollow, tube, rigid, lobe } of = Of::hollow;
 };
 const std::vector<Landmark>& landmark_rows();
 bool has_landmark(const OrganShape& shape, const Landmark& landmark);

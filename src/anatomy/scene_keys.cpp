@@ -144,11 +144,13 @@ std::vector<KeyTable> organ_tables() {
   return {
       keys_of<Organ>(
           "organ",
-          "A hollow organ, a duct or vessel, or a rigid thing. In calot.anatomy's overrides, only what "
+          "A hollow organ, a duct or vessel, a rigid thing, or a lobe of the liver. In calot.anatomy's "
+          "overrides, only what "
           "differs.",
           {text("name", &Organ::name, "its name, unique; landmarks are written \"gallbladder.fundus\""),
            table("shape", "shape",
-                 "its shape at rest: type \"pear\", \"sphere\", \"obj\", \"tube\" or \"rigid\" with their "
+                 "its shape at rest: type \"pear\", \"sphere\", \"obj\", \"tube\", \"rigid\" or \"lobe\" "
+                 "with their "
                  "keys"),
            count("nodes", &Organ::nodes, 12, most_nodes, "a number of control nodes",
                  "control nodes; more resolve finer folds and cost more"),
@@ -266,6 +268,40 @@ std::vector<KeyTable> shape_tables() {
                   "a rigid thing's rounding", "radius of its edges, or of the ball"),
            place("centre", &RigidShape::centre, abdomen_reach, "a place in the abdomen", "where it is"),
            number("density", &RigidShape::density, quantity::density, 100, 20000, "a density", "kg/m^3")}),
+      keys_of<LobeShape>(
+          "shape_lobe",
+          "A lobe of the liver, held at its back. Give it the neck, fundus and liver_side of the gallbladder "
+          "in "
+          "its bed.",
+          {type("lobe"),
+           number("width", &LobeShape::width, quantity::length, 60 * mm, 300 * mm, "a lobe's width",
+                  "across"),
+           number("depth", &LobeShape::depth, quantity::length, 40 * mm, 200 * mm, "a lobe's depth",
+                  "from its back to its edge"),
+           number("thickness", &LobeShape::thickness, quantity::length, 15 * mm, 120 * mm,
+                  "a lobe's thickness", "about, at its back"),
+           number("edge", &LobeShape::edge, quantity::length, 4 * mm, 40 * mm, "a lobe's edge",
+                  "thickness of its edge"),
+           number("edge_angle", &LobeShape::edge_angle, quantity::angle, 10 * deg, 70 * deg,
+                  "an angle of a lobe's edge", "between underside and upper side at its edge"),
+           number("overhang", &LobeShape::overhang, quantity::length, -100 * mm, 100 * mm,
+                  "a fundus' way beyond the edge", "by which the fundus stands out beyond its edge"),
+           number("bed_length", &LobeShape::bed_length, quantity::length, 30 * mm, 250 * mm,
+                  "a gallbladder's length", "of the gallbladder whose bed it has"),
+           number("bed_width", &LobeShape::bed_width, quantity::length, 0, 120 * mm, "a gallbladder's width",
+                  "of that gallbladder; 0: no bed"),
+           number("bed_depth", &LobeShape::bed_depth, quantity::length, 0, 40 * mm, "a bed's depth",
+                  "how deep the gallbladder lies in it"),
+           number("young", &LobeShape::young, quantity::pressure, 0.5 * kPa, 1000 * kPa,
+                  "a liver's Young's modulus", "Young's modulus; 2 to 20 kPa were measured"),
+           number("poisson", &LobeShape::poisson, quantity::number, 0, 0.47, "a Poisson's ratio",
+                  "Poisson's ratio; beyond 0.45 the elements begin to lock"),
+           number("density", &LobeShape::density, quantity::density, 0, 2000, "a liver's density",
+                  "kg/m^3; 1050 to 1060 is usual; 0: without weight and inertia"),
+           flag("sags", &LobeShape::sags,
+                "true: its weight acts; false: as drawn it is in balance with its weight"),
+           number("hold", &LobeShape::hold, quantity::foundation, 1, 1e10,
+                  "a foundation's stiffness a unit area", "of its back, N/m per m^2")}),
   };
 }
 

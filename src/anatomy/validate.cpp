@@ -64,6 +64,24 @@ void check_tube(FieldCheck& check, const std::string& path, const TubeShape& tub
   }
 }
 
+void check_lobe(FieldCheck& check, const std::string& path, const LobeShape& lobe) {
+  check_limits(check, path, "shape_lobe", lobe);
+  if (check.is_fine(path + ".edge") && check.is_fine(path + ".thickness") && lobe.edge >= lobe.thickness)
+    check.problem(path + ".edge",
+                  fmt::format("an edge of {:g} mm is no thinner than the back, {:g} mm", lobe.edge / mm,
+                              lobe.thickness / mm),
+                  "make it thinner");
+  if (check.is_fine(path + ".bed_width") && check.is_fine(path + ".width") &&
+      lobe.bed_width > 0.5 * lobe.width)
+    check.problem(path + ".bed_width",
+                  fmt::format("a bed {:g} mm wide leaves too little of a lobe of {:g} mm",
+                              lobe.bed_width / mm, lobe.width / mm),
+                  "make the lobe at least twice as wide");
+  if (check.is_fine(path + ".bed_depth") && check.is_fine(path + ".bed_width") &&
+      lobe.bed_depth > 0.5 * lobe.bed_width)
+    check.problem(path + ".bed_depth", "a bed deeper than half its width", "make it shallower");
+}
+
 void check_shape(FieldCheck& check, const std::string& path, const OrganShape& shape) {
   if (const auto* pear = std::get_if<PearShape>(&shape)) {
     check_pear(check, path, *pear);
@@ -75,6 +93,8 @@ void check_shape(FieldCheck& check, const std::string& path, const OrganShape& s
     check_limits(check, path, "shape_rigid", *rigid);
     if (rigid->size.minCoeff() < 0)
       check.problem(path + ".size", "a box has an edge below zero", "give edges of zero or more");
+  } else if (const auto* lobe = std::get_if<LobeShape>(&shape)) {
+    check_lobe(check, path, *lobe);
   } else {
     const auto& file = std::get<MeshFile>(shape);
     if (file.path.empty())
@@ -125,7 +145,8 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
   const bool has_own_nodes = organ.shape.index() >= 2;
   check_limits(check, path, "organ", organ, has_own_nodes ? "nodes" : "");
   check_shape(check, path + ".shape", organ.shape);
-  if (is_hollow(organ.shape)) check_axis(check, path, organ);
+  if (is_hollow(organ.shape) || std::holds_alternative<LobeShape>(organ.shape))
+    check_axis(check, path, organ);
   if (!is_hollow(organ.shape) && (organ.bile.fill_volume || organ.bile.fill_pressure))
     check.problem(path + ".bile", fmt::format("a {} keeps no filling", shape_name(organ.shape)),
                   "leave fill_volume and fill_pressure out; a tube has a pressure");
@@ -169,6 +190,7 @@ void check_compared(FieldCheck& check, const std::string& path, const OrganDefin
 int nodes_of(const OrganDefinition& organ) {
   if (const auto* tube = std::get_if<TubeShape>(&organ.shape)) return tube->nodes;
   if (std::holds_alternative<RigidShape>(organ.shape)) return 4;
+  if (std::holds_alternative<LobeShape>(organ.shape)) return lobe_nodes;
   return std::holds_alternative<MeshFile>(organ.shape) || organ.nodes > most_nodes ? 0 : organ.nodes;
 }
 

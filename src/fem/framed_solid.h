@@ -2,13 +2,14 @@
 // A solid in pieces, each linear in a frame that turns with it: it may turn by any angle while what bends stays small
 // within a piece.
 //
-// A piece has the energy, at nodes x with rest places X and places y = R'(x - c) seen in its frame R,
+// A piece has rest places X and places y = R'(x - c) of its nodes seen in its frame R. The energy is, over all pieces p
+// with displacements u = y - X,
 //
-//   min over R of  1/2 (y - X)' S (y - X) + 1/2 k |w|^2,   w = 1/2 sum of slope x y,
+//   min over the frames of  sum 1/2 u_p' S_pq u_q + sum 1/2 k_p |w_p|^2,   w = 1/2 sum of slope x y,
 //
 // w being the turn that is left of the piece's mean deformation: with a k above the stiffness S by some ten times R is
-// the rotation of the polar decomposition but for an angle of the second order in the strain. As R minimises, the
-// gradient is the one at a fixed R, forces have no net torque, and the Hessian is exact in closed form. It is not
+// the rotation of the polar decomposition but for an angle of the second order in the strain. As the frames minimise, the
+// gradient is the one at fixed frames, forces have no net torque, and the Hessian is exact in closed form. It is not
 // projected: it may be indefinite where the solid is squeezed.
 
 #include <span>
@@ -21,13 +22,22 @@ namespace calot {
 class FramedSolid {
  public:
   struct Piece {
-    std::vector<int> nodes;     ///< increasing
-    Eigen::MatrixXd stiffness;  ///< S, N/m: symmetric, rigid motions (to first order) cost nothing
+    std::vector<int> nodes;   ///< increasing
     Eigen::Matrix3Xd slopes;  ///< 1/m, a column a node: the mean deformation gradient is the sum of x slope'
     double turning = 0;       ///< k, J
   };
+  /// S_pq and its transpose S_qp, N/m, by x, y, z of the pieces' nodes; one that is its own is symmetric. With all frames
+  /// equal rigid motions cost nothing, to first order.
+  struct Stiffness {
+    int one = 0, other = 0;
+    Eigen::MatrixXd block;
+  };
+  struct Parts {
+    std::vector<Piece> pieces;
+    std::vector<Stiffness> stiffness;  ///< of every pair of pieces once
+  };
   FramedSolid() = default;
-  FramedSolid(const VecX& rest, std::vector<Piece> pieces);
+  FramedSolid(const VecX& rest, Parts parts);
 
   /// J; infinite where a piece is inside out.
   double value(const VecX& x) const;
@@ -35,24 +45,26 @@ class FramedSolid {
   void add_hessian(const VecX& x, BlockMatrix& matrix) const;
   std::vector<std::vector<int>> cliques() const;
   std::vector<Mat3> frames(const VecX& x) const;
-  const std::vector<Piece>& pieces() const { return pieces_; }
+  const Parts& parts() const { return parts_; }
 
  private:
-  /// A piece in its frame.
+  /// The pieces in their frames; columns follow each other piece by piece.
   struct Seen {
     bool admissible = false;
-    Mat3 frame = Mat3::Identity();
-    Eigen::Matrix3Xd at, forces;  ///< m, N, in the frame, a column a node
-    Vec3 left = Vec3::Zero();     ///< w
+    std::vector<Mat3> frames, means;  ///< mean deformation gradients in the frames
+    Eigen::Matrix3Xd at, forces;      ///< m, N
     double energy = 0;
   };
-  struct Rest {
-    Eigen::Matrix3Xd at;  ///< m, from the nodes' middle
-  };
-  Seen see(std::size_t piece, const VecX& x) const;
+  Eigen::Index count(std::size_t piece) const { return first_[piece + 1] - first_[piece]; }
+  Seen see(const VecX& x) const;
+  /// Energy and forces in the present frames.
+  void look(const Eigen::Matrix3Xd& places, Seen& seen) const;
 
-  std::vector<Piece> pieces_;
-  std::vector<Rest> rest_;
+  Parts parts_;
+  std::vector<Eigen::Index> first_;  ///< column of each piece, and their number
+  std::vector<int> nodes_;           ///< of all pieces, increasing
+  std::vector<Eigen::Index> place_;  ///< of each column among them
+  Eigen::Matrix3Xd rest_;            ///< m, from each piece's middle
 };
 
 }  // namespace calot

@@ -1,6 +1,7 @@
 #include "fem/solid_reduction.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 
 namespace calot {
@@ -27,123 +28,168 @@ Result<std::vector<TetMatrices>> all_matrices(const std::vector<QuadraticTet>& t
   return out;
 }
 
-/// Where each point of the mesh goes with the kept nodes, 3 rows a point.
-Matrix recovery(const SolidMesh& mesh, const std::vector<TetMatrices>& tets) {
-  const auto points = static_cast<Eigen::Index>(mesh.free.size());
-  Matrix out = Matrix::Zero(3 * points, 3 * Eigen::Index{mesh.nodes});
-  std::vector<Eigen::Index> number(mesh.free.size(), -1);
-  Eigen::Index free = 0;
-  for (Eigen::Index p = 0; p < points; ++p) {
-    if (mesh.free[static_cast<std::size_t>(p)]) {
-      number[static_cast<std::size_t>(p)] = free++;
-      continue;
-    }
-    const int row = static_cast<int>(p);
-    for (int e = mesh.rows.begin[row]; e < mesh.rows.begin[row + 1]; ++e)
-      out.block<3, 3>(3 * p, 3 * Eigen::Index{mesh.rows.node[e]}) = mesh.rows.value[e] * Mat3::Identity();
+/// The points (rows) as blends of the kept nodes.
+Matrix blends_of(const SolidMesh& mesh) {
+  Matrix out = Matrix::Zero(static_cast<Eigen::Index>(mesh.averaged.size()), mesh.nodes);
+  for (int p = 0; p < mesh.rows.rows(); ++p)
+    for (int e = mesh.rows.begin[p]; e < mesh.rows.begin[p + 1]; ++e)
+      out(p, mesh.rows.node[e]) = mesh.rows.value[e];
+  return out;
+}
+
+/// The kept nodes as averages of the points (one column a point) by least squares.
+Matrix averages(const SolidMesh& mesh) {
+  Matrix blends = blends_of(mesh);
+  for (std::size_t p = 0; p < mesh.averaged.size(); ++p)
+    if (!mesh.averaged[p]) blends.row(static_cast<Eigen::Index>(p)).setZero();
+  return Matrix(blends.transpose() * blends).llt().solve(blends.transpose());
+}
+
+Matrix by_components(const Matrix& scalar) {
+  Matrix out = Matrix::Zero(3 * scalar.rows(), 3 * scalar.cols());
+  for (Eigen::Index c = 0; c < scalar.cols(); ++c)
+    for (Eigen::Index r = 0; r < scalar.rows(); ++r)
+      out.block<3, 3>(3 * r, 3 * c).diagonal().setConstant(scalar(r, c));
+  return out;
+}
+
+/// Rigid motions of the points to first order.
+Matrix rigid_motions(const std::vector<Vec3>& points) {
+  Matrix out(3 * static_cast<Eigen::Index>(points.size()), 6);
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    out.block<3, 3>(3 * static_cast<Eigen::Index>(p), 0).setIdentity();
+    out.block<3, 3>(3 * static_cast<Eigen::Index>(p), 3) = -cross_matrix(points[p] - middle);
   }
-  if (free == 0) return out;
-  Matrix inner = Matrix::Zero(3 * free, 3 * free), right = Matrix::Zero(3 * free, out.cols());
-  for (std::size_t t = 0; t < tets.size(); ++t)
-    for (int a = 0; a < 10; ++a) {
-      const Eigen::Index row = number[mesh.tets[t][a]];
-      if (row < 0) continue;
-      for (int b = 0; b < 10; ++b) {
-        const int other = mesh.tets[t][b];
-        const Mat3 block = tets[t].stiffness.block<3, 3>(3 * a, 3 * b);
-        if (number[other] >= 0)
-          inner.block<3, 3>(3 * row, 3 * number[other]) += block;
-        else
-          right.middleRows<3>(3 * row).noalias() -= block * out.middleRows<3>(3 * Eigen::Index{other});
-      }
-    }
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(inner);
-  factor.solveInPlace(right);
-  for (Eigen::Index p = 0; p < points; ++p)
-    if (const Eigen::Index row = number[static_cast<std::size_t>(p)]; row >= 0)
-      out.middleRows<3>(3 * p) = right.middleRows<3>(3 * row);
   return out;
 }
 
-/// Kept nodes on which the points of some tetrahedra depend.
-std::vector<int> nodes_of(const Matrix& columns) {
-  std::vector<int> out;
-  for (Eigen::Index node = 0; 3 * node < columns.cols(); ++node)
-    if (!columns.middleCols<3>(3 * node).isZero(0)) out.push_back(static_cast<int>(node));
-  return out;
-}
+/// What moves of the points, by forces on them, where the nodes that they are averaged to stay.
+class HeldPoints {
+ public:
+  HeldPoints(const SolidMesh& mesh, const std::vector<TetMatrices>& tets, const std::vector<Vec3>& points)
+      : average_(by_components(averages(mesh))) {
+    const auto size = 3 * static_cast<Eigen::Index>(points.size());
+    Matrix whole = Matrix::Zero(size, size);
+    for (std::size_t t = 0; t < tets.size(); ++t)
+      for (int a = 0; a < 10; ++a)
+        for (int b = 0; b < 10; ++b)
+          whole.block<3, 3>(3 * mesh.tets[t][a], 3 * mesh.tets[t][b]) +=
+              tets[t].stiffness.block<3, 3>(3 * a, 3 * b);
+    // Springs on what the nodes have of rigid motions: as these stay, they do nothing.
+    const Matrix of_nodes = average_ * rigid_motions(points);
+    const Matrix felt = average_.transpose() * (Eigen::HouseholderQR<Matrix>(of_nodes).householderQ() *
+                                                Matrix::Identity(of_nodes.rows(), 6));
+    whole += whole.diagonal().mean() / felt.squaredNorm() * 6 * felt * felt.transpose();
+    factor_.compute(whole);
+    by_nodes_ = factor_.solve(average_.transpose());
+    Matrix soft = average_ * by_nodes_;
+    held_.compute(0.5 * (soft + soft.transpose()));
+  }
+  Matrix answer(const Matrix& forces) const {
+    Matrix out = factor_.solve(forces);
+    out -= by_nodes_ * held_.solve(average_ * out);
+    return out;
+  }
 
-FramedSolid::Piece piece_of(const SolidMesh& mesh, const std::vector<TetMatrices>& tets,
-                            const Matrix& recovered, const std::vector<int>& members,
-                            const ElasticSolid& solid) {
-  std::vector<int> points;
-  for (int t : members) points.insert(points.end(), mesh.tets[t].begin(), mesh.tets[t].end());
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  const auto place = [&](int point) {
-    return std::lower_bound(points.begin(), points.end(), point) - points.begin();
-  };
-  const auto count = static_cast<Eigen::Index>(points.size());
-  Matrix moved(3 * count, recovered.cols()), forces = Matrix::Zero(3 * count, recovered.cols());
-  for (Eigen::Index p = 0; p < count; ++p)
-    moved.middleRows<3>(3 * p) =
-        recovered.middleRows<3>(3 * Eigen::Index{points[static_cast<std::size_t>(p)]});
+ private:
+  Matrix average_, by_nodes_;
+  Eigen::LLT<Matrix> factor_, held_;
+};
+
+/// What a piece is before the points find their balance.
+struct Blended {
+  FramedSolid::Piece piece;
+  Matrix forces;     ///< of its nodes' motions on the points, N/m
+  Matrix stiffness;  ///< of its nodes
+};
+
+Blended blended(const SolidMesh& mesh, const std::vector<TetMatrices>& tets, const std::vector<int>& members,
+                const ElasticSolid& solid) {
+  std::vector<int> nodes;
+  for (int t : members)
+    for (int point : mesh.tets[t])
+      nodes.insert(nodes.end(), mesh.rows.node.begin() + mesh.rows.begin[point],
+                   mesh.rows.node.begin() + mesh.rows.begin[point + 1]);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const auto count = static_cast<Eigen::Index>(nodes.size());
+  Blended out;
+  out.forces = Matrix::Zero(3 * static_cast<Eigen::Index>(mesh.averaged.size()), 3 * count);
+  out.stiffness = Matrix::Zero(3 * count, 3 * count);
+  out.piece.slopes = Eigen::Matrix3Xd::Zero(3, count);
   double volume = 0;
-  Eigen::Matrix3Xd of_points = Eigen::Matrix3Xd::Zero(3, count);
-  Matrix own(30, recovered.cols());
+  Eigen::Matrix<double, 10, Eigen::Dynamic> blends(10, count);
   for (int t : members) {
-    for (int a = 0; a < 10; ++a) own.middleRows<3>(3 * a) = moved.middleRows<3>(3 * place(mesh.tets[t][a]));
-    const Matrix pulled = tets[t].stiffness * own;
-    for (int a = 0; a < 10; ++a) {
-      const Eigen::Index p = place(mesh.tets[t][a]);
-      forces.middleRows<3>(3 * p) += pulled.middleRows<3>(3 * a);
-      of_points.col(p) += tets[t].slopes.col(a);
-    }
+    blends.setZero();
+    for (int a = 0; a < 10; ++a)
+      for (int e = mesh.rows.begin[mesh.tets[t][a]]; e < mesh.rows.begin[mesh.tets[t][a] + 1]; ++e)
+        blends(a, std::lower_bound(nodes.begin(), nodes.end(), mesh.rows.node[e]) - nodes.begin()) =
+            mesh.rows.value[e];
+    const Matrix moved = by_components(blends), forces = tets[t].stiffness * moved;
+    out.stiffness.noalias() += moved.transpose() * forces;
+    for (int a = 0; a < 10; ++a) out.forces.middleRows<3>(3 * mesh.tets[t][a]) += forces.middleRows<3>(3 * a);
+    out.piece.slopes += tets[t].slopes * blends;
     volume += tets[t].volume;
   }
-  Matrix whole(recovered.cols(), recovered.cols());
-  whole.noalias() = moved.transpose() * forces;
-  Eigen::Matrix3Xd slopes = Eigen::Matrix3Xd::Zero(3, mesh.nodes);
-  for (Eigen::Index p = 0; p < count; ++p) {
-    const int row = points[static_cast<std::size_t>(p)];
-    for (int e = mesh.rows.begin[row]; e < mesh.rows.begin[row + 1]; ++e)
-      slopes.col(mesh.rows.node[e]) += mesh.rows.value[e] / volume * of_points.col(p);
-  }
-  FramedSolid::Piece out;
-  out.nodes = nodes_of(moved);
-  const auto nodes = static_cast<Eigen::Index>(out.nodes.size());
-  out.stiffness.resize(3 * nodes, 3 * nodes);
-  out.slopes.resize(3, nodes);
-  for (Eigen::Index b = 0; b < nodes; ++b) {
-    const Eigen::Index to_b = 3 * Eigen::Index{out.nodes[static_cast<std::size_t>(b)]};
-    out.slopes.col(b) = slopes.col(to_b / 3);
-    for (Eigen::Index a = 0; a < nodes; ++a) {
-      const Eigen::Index to_a = 3 * Eigen::Index{out.nodes[static_cast<std::size_t>(a)]};
-      out.stiffness.block<3, 3>(3 * a, 3 * b) =
-          0.5 * (whole.block<3, 3>(to_a, to_b) + whole.block<3, 3>(to_b, to_a).transpose());
-    }
-  }
-  out.turning = frame_turning * solid.shear() * volume;
+  out.piece.slopes /= volume;
+  out.piece.nodes = std::move(nodes);
+  out.piece.turning = frame_turning * solid.shear() * volume;
   return out;
+}
+
+/// Of a density of 1, where the points go with the nodes.
+Matrix mass_of(const SolidMesh& mesh, const std::vector<Vec3>& points, const Matrix& recovered) {
+  const Matrix blends = blends_of(mesh);
+  Matrix carried = Matrix::Zero(recovered.rows(), recovered.cols());
+  Matrix by_blends = Matrix::Zero(blends.rows(), blends.cols());
+  for (const QuadraticTet& tet : mesh.tets) {
+    const Eigen::Matrix<double, 10, 10> products = tet_products(corners_of(tet, points));
+    for (int a = 0; a < 10; ++a)
+      for (int b = 0; b < 10; ++b) {
+        carried.middleRows<3>(3 * tet[a]) += products(a, b) * recovered.middleRows<3>(3 * tet[b]);
+        by_blends.row(tet[a]) += products(a, b) * blends.row(tet[b]);
+      }
+  }
+  const Matrix recovers = recovered.transpose() * carried;
+  return 0.25 * (recovers + recovers.transpose()) + 0.5 * by_components(blends.transpose() * by_blends);
 }
 
 }  // namespace
 
-Result<std::vector<FramedSolid::Piece>> reduce(const SolidMesh& mesh, const VecX& rest,
-                                               const ElasticSolid& solid) {
-  const Result<std::vector<TetMatrices>> tets =
-      all_matrices(mesh.tets, blend_all(mesh.rows, mesh.rows.value, rest), solid);
+Result<ReducedSolid> reduce(const SolidMesh& mesh, const VecX& rest, const ElasticSolid& solid) {
+  const std::vector<Vec3> points = blend_all(mesh.rows, mesh.rows.value, rest);
+  const Result<std::vector<TetMatrices>> tets = all_matrices(mesh.tets, points, solid);
   if (!tets) return tets.failure();
-  const Matrix recovered = recovery(mesh, tets.value());
   std::vector<std::vector<int>> members;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const auto piece = static_cast<std::size_t>(mesh.piece_of[t]);
     if (members.size() <= piece) members.resize(piece + 1);
     members[piece].push_back(static_cast<int>(t));
   }
-  std::vector<FramedSolid::Piece> out;
-  for (const std::vector<int>& of : members)
-    out.push_back(piece_of(mesh, tets.value(), recovered, of, solid));
+  const HeldPoints held(mesh, tets.value(), points);
+  ReducedSolid out;
+  std::vector<Blended> all;
+  Matrix recovered = by_components(blends_of(mesh));
+  for (const std::vector<int>& of : members) {
+    all.push_back(blended(mesh, tets.value(), of, solid));
+    out.parts.pieces.push_back(all.back().piece);
+    const Matrix answer = held.answer(all.back().forces);
+    const int here = static_cast<int>(all.size()) - 1;
+    for (int before = 0; before <= here; ++before) {
+      Matrix block = -all[static_cast<std::size_t>(before)].forces.transpose() * answer;
+      if (before == here) {
+        block += all.back().stiffness;
+        block = (0.5 * (block + block.transpose())).eval();
+      }
+      out.parts.stiffness.push_back({before, here, std::move(block)});
+    }
+    for (std::size_t a = 0; a < all.back().piece.nodes.size(); ++a)
+      recovered.middleCols<3>(3 * Eigen::Index{all.back().piece.nodes[a]}) -=
+          answer.middleCols<3>(3 * static_cast<Eigen::Index>(a));
+  }
+  out.mass = mass_of(mesh, points, recovered);
   return out;
 }
 

@@ -56,18 +56,11 @@ StencilTable fill_by_surface(const TetGrid& grid,
     if (grid.on_surface(point)) {
       add(point, 1);
     } else {
-      const std::array<int, 3> at = grid.place(point);
-      // Of each way neither end, the first or the last: 26 points of faces, edges and corners.
-      for (int choice = 1; choice < 27; ++choice) {
-        std::array<int, 3> foot = at;
-        double share = -1;
-        for (int way = 0, rest = choice; way < 3; ++way, rest /= 3) {
-          const double along = static_cast<double>(at[way]) / (n[way] - 1);
-          if (rest % 3 == 0) continue;
-          foot[way] = rest % 3 == 1 ? 0 : n[way] - 1;
-          share *= rest % 3 == 1 ? along - 1 : -along;
-        }
-        add(grid.point(foot), share);
+      std::array<int, 3> foot = grid.place(point);
+      const double along = static_cast<double>(foot[2]) / (n[2] - 1);
+      for (int end : {0, 1}) {
+        foot[2] = end * (n[2] - 1);
+        add(grid.point(foot), end == 0 ? 1 - along : along);
       }
     }
     for (const auto& [node, weight] : row) {

@@ -34,9 +34,8 @@ struct TetGrid {
   }
 };
 
-/// Each point of the grid by those on its surface, by transfinite interpolation (Gordon and Hall 1973): rows for all
-/// points of the grid from the rows of its surface's (`of_surface`, by the grid's points; others are not read). What
-/// the surface's places are a linear function of, the others' are as well.
+/// Rows for all points of the grid from those of its surface (`of_surface`, by the grid's points; others are not read):
+/// points inside are evenly spread along the third way between the two sides that it leads to.
 StencilTable fill_by_surface(const TetGrid& grid,
                              const std::vector<std::vector<std::pair<int, double>>>& of_surface);
 

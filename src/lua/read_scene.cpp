@@ -119,6 +119,9 @@ class SceneReader {
     } else if (wanted == "rigid") {
       if (wanted != present) shape = RigidShape{};
       reader.read(std::get<RigidShape>(shape));
+    } else if (wanted == "lobe") {
+      if (wanted != present) shape = LobeShape{};
+      reader.read(std::get<LobeShape>(shape));
     } else {
       if (wanted != present) shape = MeshFile{};
       MeshFile& mesh = std::get<MeshFile>(shape);

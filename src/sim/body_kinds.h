@@ -65,5 +65,6 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
 std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& body);
 Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting);
 Result<RestedOrgan> make_rigid_organ(const OrganDefinition& definition, const OrganSetting& setting);
+Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSetting& setting);
 
 }  // namespace calot

@@ -39,7 +39,7 @@ SolidMesh mesh_of(const SolidBody::Setup& setup, const LoopSurface& surface) {
   mesh.tets = grid.tets();
   mesh.rows = fill_by_surface(grid, rows);
   mesh.nodes = setup.box.points();
-  for (int p = 0; p < grid.points(); ++p) mesh.free.push_back(!grid.on_surface(p));
+  for (int p = 0; p < grid.points(); ++p) mesh.averaged.push_back(grid.on_surface(p));
   for (int t = 0; t < static_cast<int>(mesh.tets.size()); ++t) {
     const std::array<int, 3> cell = grid.cell_of(t);
     mesh.piece_of.push_back(cell[0] * setup.strips[0] / grid.cells[0] +
@@ -57,24 +57,20 @@ Result<SolidBody> SolidBody::create(const Setup& setup) {
   body.setup_ = setup;
   body.rest_ = to_coordinates(setup.control.points);
   body.mesh_ = mesh_of(setup, surface.value());
-  if (std::optional<Failure> failure = body.build_solid()) return *failure;
+  Result<ReducedSolid> reduced = reduce(body.mesh_, body.rest_, setup.material);
+  if (!reduced) return reduced.failure();
+  body.solid_ = FramedSolid(body.rest_, std::move(reduced->parts));
+  const std::vector<Vec3> points = blend_all(body.mesh_.rows, body.mesh_.rows.value, body.rest_);
+  for (const QuadraticTet& tet : body.mesh_.tets) {
+    const TetMatrices matrices = tet_matrices(places_of(tet, points), setup.material).value();
+    body.slopes_.push_back(matrices.slopes / matrices.volume);
+    body.volume_ += matrices.volume;
+  }
   body.skin_ = close_skin(surface.value(), body.rest_, solid_skin_spacing);
   body.build_skin();
-  body.build_matrices();
+  body.build_matrices(setup.density * reduced->mass);
+  body.setup_.foundation = nullptr;  // what it refers to need not outlive this
   return body;
-}
-
-std::optional<Failure> SolidBody::build_solid() {
-  Result<std::vector<FramedSolid::Piece>> pieces = reduce(mesh_, rest_, setup_.material);
-  if (!pieces) return pieces.failure();
-  solid_ = FramedSolid(rest_, std::move(pieces).value());
-  const std::vector<Vec3> points = blend_all(mesh_.rows, mesh_.rows.value, rest_);
-  for (const QuadraticTet& tet : mesh_.tets) {
-    const TetMatrices matrices = tet_matrices(places_of(tet, points), setup_.material).value();
-    slopes_.push_back(matrices.slopes / matrices.volume);
-    volume_ += matrices.volume;
-  }
-  return std::nullopt;
 }
 
 void SolidBody::build_skin() {
@@ -94,7 +90,7 @@ void SolidBody::build_skin() {
   least_force_ = 1e-4 * setup_.material.young * area / nodes();
 }
 
-void SolidBody::build_matrices() {
+void SolidBody::build_matrices(const Eigen::MatrixXd& mass) {
   std::vector<std::vector<int>> cliques = solid_.cliques();
   cliques.insert(cliques.end(), face_nodes_.begin(), face_nodes_.end());
   constant_ = BlockMatrix(nodes(), cliques);
@@ -107,26 +103,11 @@ void SolidBody::build_matrices() {
   }
   bed_.add_hessian(skin_.stencils, constant_);
   if (!(setup_.density > 0)) return;
-  const std::vector<Vec3> points = blend_all(mesh_.rows, mesh_.rows.value, rest_);
-  const auto count = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, nodes()), carried = rows;
-  for (int p = 0; p < mesh_.rows.rows(); ++p)
-    for (int e = mesh_.rows.begin[p]; e < mesh_.rows.begin[p + 1]; ++e)
-      rows(p, mesh_.rows.node[e]) = mesh_.rows.value[e];
-  for (const QuadraticTet& tet : mesh_.tets) {
-    const Eigen::Matrix<double, 10, 10> products = tet_products(places_of(tet, points));
-    for (int a = 0; a < 10; ++a)
-      for (int b = 0; b < 10; ++b) carried.row(tet[a]) += setup_.density * products(a, b) * rows.row(tet[b]);
-  }
-  const Eigen::MatrixXd mass = rows.transpose() * carried;
   mass_ = constant_.blank();
   for (int b = 0; b < nodes(); ++b)
-    for (int a = b; a < nodes(); ++a) mass_->add(a, b, 0.5 * (mass(a, b) + mass(b, a)) * Mat3::Identity());
+    for (int a = b; a < nodes(); ++a) mass_->add(a, b, mass.block<3, 3>(3 * a, 3 * b));
   if (!setup_.sags) return;
-  load_.resize(rest_.size());
-  const VecX of_nodes = mass.rowwise().sum();
-  for (int node = 0; node < nodes(); ++node)
-    load_.segment<3>(3 * node) = -of_nodes[node] * units::standard_gravity * setup_.up;
+  load_ = mass * -units::standard_gravity * setup_.up.replicate(nodes(), 1);
 }
 
 double SolidBody::value(const VecX& x) const { return solid_.value(x) + bed_.value(skin_.stencils, x); }

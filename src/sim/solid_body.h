@@ -12,7 +12,7 @@
 namespace calot {
 
 /// The skin's points stand this close at rest, m.
-inline constexpr double solid_skin_spacing = 3e-3;
+inline constexpr double solid_skin_spacing = 5.5e-3;
 
 class SolidBody : public Body {
  public:
@@ -62,9 +62,8 @@ class SolidBody : public Body {
   double volume() const { return volume_; }  ///< m^3, at rest
 
  private:
-  std::optional<Failure> build_solid();
   void build_skin();
-  void build_matrices();
+  void build_matrices(const Eigen::MatrixXd& mass);
 
   Setup setup_;
   SolidMesh mesh_;

@@ -19,6 +19,9 @@ Vec3 foot_of(const AnatomyDefinition& anatomy, const Vec3& about) {
   return ground.type == GroundType::plane ? below(ground.point, ground.normal) : about;
 }
 
+/// It is the liver that is seen.
+bool is_lobe(const OrganDefinition& organ) { return std::holds_alternative<LobeShape>(organ.shape); }
+
 }  // namespace
 
 std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
@@ -35,7 +38,8 @@ std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
   for (const GroundDefinition& ground : anatomy.ground) meshes.push_back(ground_mesh(ground, about));
   if (anatomy.support) meshes.push_back(plane_mesh(anatomy.support->point, anatomy.support->normal, about));
   if (meshes.empty() && hollow != anatomy.organs.end()) {
-    meshes.push_back(liver_mesh(*hollow));
+    if (std::none_of(anatomy.organs.begin(), anatomy.organs.end(), is_lobe))
+      meshes.push_back(liver_mesh(*hollow));
     add(abdomen_meshes(*hollow));
   } else {
     meshes.push_back(abdominal_wall(meshes.empty() ? about : foot_of(anatomy, about)));

@@ -8,32 +8,47 @@
 
 namespace calot::test {
 
-/// Not condensed, over the points of the tetrahedra, which are its nodes: a frame for each tetrahedron, or one for all
-/// whose `piece_of` is the same.
-inline FramedSolid whole_solid(const std::vector<QuadraticTet>& tets, const std::vector<Vec3>& points,
-                               const ElasticSolid& solid) {
-  std::vector<FramedSolid::Piece> pieces;
-  for (const QuadraticTet& tet : tets) {
-    std::array<Vec3, 10> at;
-    for (int a = 0; a < 10; ++a) at[a] = points[tet[a]];
-    const TetMatrices matrices = tet_matrices(at, solid).value();
-    std::array<int, 10> order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return tet[a] < tet[b]; });
-    FramedSolid::Piece piece;
-    piece.stiffness.resize(30, 30);
-    piece.slopes.resize(3, 10);
-    for (int a = 0; a < 10; ++a) {
-      piece.nodes.push_back(tet[order[a]]);
-      piece.slopes.col(a) = matrices.slopes.col(order[a]) / matrices.volume;
-      for (int b = 0; b < 10; ++b)
-        piece.stiffness.block<3, 3>(3 * a, 3 * b) =
-            matrices.stiffness.block<3, 3>(3 * order[a], 3 * order[b]);
+/// Not condensed: each tetrahedron turns on its own. The points are its nodes.
+struct WholeSolid {
+  std::vector<FramedSolid> tets;
+
+  WholeSolid(const std::vector<QuadraticTet>& of, const std::vector<Vec3>& points, const ElasticSolid& solid) {
+    for (const QuadraticTet& tet : of) {
+      std::array<Vec3, 10> at;
+      for (int a = 0; a < 10; ++a) at[a] = points[tet[a]];
+      const TetMatrices matrices = tet_matrices(at, solid).value();
+      std::array<int, 10> order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+      std::sort(order.begin(), order.end(), [&](int a, int b) { return tet[a] < tet[b]; });
+      FramedSolid::Piece piece;
+      Eigen::MatrixXd stiffness(30, 30);
+      piece.slopes.resize(3, 10);
+      for (int a = 0; a < 10; ++a) {
+        piece.nodes.push_back(tet[order[a]]);
+        piece.slopes.col(a) = matrices.slopes.col(order[a]) / matrices.volume;
+        for (int b = 0; b < 10; ++b)
+          stiffness.block<3, 3>(3 * a, 3 * b) = matrices.stiffness.block<3, 3>(3 * order[a], 3 * order[b]);
+      }
+      piece.turning = frame_turning * solid.shear() * matrices.volume;
+      tets.emplace_back(to_coordinates(points), FramedSolid::Parts{{piece}, {{0, 0, stiffness}}});
     }
-    piece.turning = frame_turning * solid.shear() * matrices.volume;
-    pieces.push_back(std::move(piece));
   }
-  return FramedSolid(to_coordinates(points), std::move(pieces));
-}
+  double value(const VecX& x) const {
+    double sum = 0;
+    for (const FramedSolid& tet : tets) sum += tet.value(x);
+    return sum;
+  }
+  void add_gradient(const VecX& x, VecX& gradient) const {
+    for (const FramedSolid& tet : tets) tet.add_gradient(x, gradient);
+  }
+  void add_hessian(const VecX& x, BlockMatrix& matrix) const {
+    for (const FramedSolid& tet : tets) tet.add_hessian(x, matrix);
+  }
+  std::vector<std::vector<int>> cliques() const {
+    std::vector<std::vector<int>> out;
+    for (const FramedSolid& tet : tets) out.push_back(tet.parts().pieces[0].nodes);
+    return out;
+  }
+};
 
 /// The linear stiffness of all tetrahedra over their points, N/m.
 inline Eigen::MatrixXd whole_stiffness(const std::vector<QuadraticTet>& tets, const std::vector<Vec3>& points,
@@ -78,7 +93,7 @@ inline BentBox bent_box(const std::array<int, 3>& cells, int pieces,
   out.mesh.rows = fill_by_surface(out.grid, of_surface);
   out.mesh.nodes = static_cast<int>(out.kept.size());
   out.points = blend_all(out.mesh.rows, out.mesh.rows.value, out.rest);
-  for (int p = 0; p < out.grid.points(); ++p) out.mesh.free.push_back(!out.grid.on_surface(p));
+  for (int p = 0; p < out.grid.points(); ++p) out.mesh.averaged.push_back(out.grid.on_surface(p));
   for (int t = 0; t < static_cast<int>(out.mesh.tets.size()); ++t)
     out.mesh.piece_of.push_back(out.grid.cell_of(t)[1] * pieces / cells[1]);
   return out;
