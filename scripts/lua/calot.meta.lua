@@ -4,7 +4,7 @@
 ---A place or a vector {x, y, z} in m, in the patient's frame: x to the patient's left, y towards the head,
 ---z out of the abdomen, from the navel.
 ---@alias calot.point number[]
----@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_obj|calot.shape_tube|calot.shape_rigid
+---@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_obj|calot.shape_tube|calot.shape_rigid|calot.shape_lobe
 
 ---An exercise: what a scenario returns.
 ---@class calot.exercise
@@ -158,10 +158,10 @@
 ---@field view? number where the laparoscope looks at an organ from nearer than this it is refined too; 0: not; default 0 * mm; 0 to 400 mm
 ---@field scheme? "condensed"|"staged" solved together with the organ, or after it as its boundary allows (the 1997 scheme, to compare with); default "condensed"
 
----A hollow organ, a duct or vessel, or a rigid thing. In calot.anatomy's overrides, only what differs.
+---A hollow organ, a duct or vessel, a rigid thing, or a lobe of the liver. In calot.anatomy's overrides, only what differs.
 ---@class calot.organ
 ---@field name? string its name, unique; landmarks are written "gallbladder.fundus"; default "gallbladder"
----@field shape? calot.shape its shape at rest: type "pear", "sphere", "obj", "tube" or "rigid" with their keys
+---@field shape? calot.shape its shape at rest: type "pear", "sphere", "obj", "tube", "rigid" or "lobe" with their keys
 ---@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 1000
 ---@field neck? calot.point where the shape's lower pole lies; default { -50 * mm, 130 * mm, -110 * mm }
 ---@field fundus? calot.point where its upper pole points to; default { -80 * mm, 100 * mm, -60 * mm }
@@ -197,13 +197,13 @@
 ---An elastic foundation under the skin near a landmark: the cystic plate, the duct's root.
 ---@class calot.held
 ---@field name? string its name, unique within the organ; default "bed"
----@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed"|"start"|"middle"|"end"|"centre" the landmark it surrounds
+---@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed"|"start"|"middle"|"end"|"centre"|"back"|"edge"|"underside"|"upper_side" the landmark it surrounds
 ---@field radius? number how far it reaches; default 10 * mm; 0.5 to 250 mm
 ---@field stiffness? number N/m per m^2 of skin; default 300000; 1 to 1e+10 N/m^3
 
 ---A gallbladder: round fundus, tapering body, slim neck.
 ---@class calot.shape_pear
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "pear"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "pear"; default "pear"
 ---@field length? number neck to fundus; 70 to 100 mm is usual; default 80 * mm; 30 to 250 mm
 ---@field width? number largest diameter; 30 to 40 mm is usual; default 35 * mm; 10 to 120 mm
 ---@field refine? number control nodes are closer by this factor near the fundus; default 1; 1 to 8
@@ -211,18 +211,18 @@
 
 ---A ball, as in the paper's experiments.
 ---@class calot.shape_sphere
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "sphere"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "sphere"; default "pear"
 ---@field radius? number radius at rest; default 20 * mm; 5 to 100 mm
 
 ---A closed control mesh from a Wavefront OBJ file.
 ---@class calot.shape_obj
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "obj"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "obj"; default "pear"
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
 
 ---A duct or a vessel: a tube along a line; solid where its wall is as thick as its radius.
 ---@class calot.shape_tube
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "tube"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "tube"; default "pear"
 ---@field points calot.point[] its middle at rest, from its start to its end: two points or more
 ---@field radius? number outer radius; default 2.5 * mm; 0.3 to 20 mm
 ---@field end_radius? number outer radius at its end; 0: as at its start; default 0 * mm; 0 to 20 mm
@@ -232,11 +232,29 @@
 
 ---A rigid thing, such as a stone: a box with round edges, or a ball.
 ---@class calot.shape_rigid
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid" which shape: this one is "rigid"; default "pear"
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "rigid"; default "pear"
 ---@field size? calot.point edges of the box without its rounding; { 0, 0, 0 }: a ball; default { 0, 0, 0 }
 ---@field rounding? number radius of its edges, or of the ball; default 5 * mm; 0.5 to 50 mm
 ---@field centre? calot.point where it is; default { 0, 0, 0 }
 ---@field density? number kg/m^3; default 1500; 100 to 20000 kg/m^3
+
+---A lobe of the liver, held at its back. Give it the neck, fundus and liver_side of the gallbladder in its bed.
+---@class calot.shape_lobe
+---@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "lobe"; default "pear"
+---@field width? number across; default 140 * mm; 60 to 300 mm
+---@field depth? number from its back to its edge; default 90 * mm; 40 to 200 mm
+---@field thickness? number about, at its back; default 45 * mm; 15 to 120 mm
+---@field edge? number thickness of its edge; default 9 * mm; 4 to 40 mm
+---@field edge_angle? number between underside and upper side at its edge; default 40 * deg; 10 to 70 deg
+---@field overhang? number by which the fundus stands out beyond its edge; default 16 * mm; -100 to 100 mm
+---@field bed_length? number of the gallbladder whose bed it has; default 80 * mm; 30 to 250 mm
+---@field bed_width? number of that gallbladder; 0: no bed; default 35 * mm; 0 to 120 mm
+---@field bed_depth? number how deep the gallbladder lies in it; default 6.5 * mm; 0 to 40 mm
+---@field young? number Young's modulus; 2 to 20 kPa were measured; default 6 * kPa; 0.5 to 1000 kPa
+---@field poisson? number Poisson's ratio; beyond 0.45 the elements begin to lock; default 0.45; 0 to 0.47
+---@field density? number kg/m^3; 1050 to 1060 is usual; 0: without weight and inertia; default 1060; 0 to 2000 kg/m^3
+---@field sags? boolean true: its weight acts; false: as drawn it is in balance with its weight; default false
+---@field hold? number of its back, N/m per m^2; default 1e+07; 1 to 1e+10 N/m^3
 
 ---Where an instrument touches, as contact returns it.
 ---@class calot.contact

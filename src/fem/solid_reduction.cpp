@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "numerics/modes.h"
+
 namespace calot {
 namespace {
 
@@ -139,21 +141,39 @@ Blended blended(const SolidMesh& mesh, const std::vector<TetMatrices>& tets, con
   return out;
 }
 
-/// Of a density of 1, where the points go with the nodes.
-Matrix mass_of(const SolidMesh& mesh, const std::vector<Vec3>& points, const Matrix& recovered) {
-  const Matrix blends = blends_of(mesh);
-  Matrix carried = Matrix::Zero(recovered.rows(), recovered.cols());
-  Matrix by_blends = Matrix::Zero(blends.rows(), blends.cols());
+/// M motions, of a density of 1.
+Matrix carried(const SolidMesh& mesh, const std::vector<Vec3>& points, const Matrix& motions) {
+  Matrix out = Matrix::Zero(motions.rows(), motions.cols());
   for (const QuadraticTet& tet : mesh.tets) {
     const Eigen::Matrix<double, 10, 10> products = tet_products(corners_of(tet, points));
     for (int a = 0; a < 10; ++a)
-      for (int b = 0; b < 10; ++b) {
-        carried.middleRows<3>(3 * tet[a]) += products(a, b) * recovered.middleRows<3>(3 * tet[b]);
-        by_blends.row(tet[a]) += products(a, b) * blends.row(tet[b]);
-      }
+      for (int b = 0; b < 10; ++b)
+        out.middleRows<3>(3 * tet[a]) += products(a, b) * motions.middleRows<3>(3 * tet[b]);
   }
-  const Matrix recovers = recovered.transpose() * carried;
-  return 0.25 * (recovers + recovers.transpose()) + 0.5 * by_components(blends.transpose() * by_blends);
+  return out;
+}
+
+/// What the inside does beside nodes that are held, where the whole is accelerated as a rigid body: of these motions the
+/// vibrations.
+std::optional<Failure> find_modes(const SolidMesh& mesh, const std::vector<Vec3>& points,
+                                  const HeldPoints& held, const Matrix& recovered, ReducedSolid& out) {
+  const Matrix loads = carried(mesh, points, rigid_motions(points));
+  Matrix shapes = held.answer(loads);
+  const Mat6 stiffness = shapes.transpose() * loads,
+             inertia = shapes.transpose() * carried(mesh, points, shapes);
+  const std::optional<Modes6> found =
+      modes(Mat6(0.5 * (stiffness + stiffness.transpose())), Mat6(0.5 * (inertia + inertia.transpose())));
+  if (!found)
+    return fail(FailureKind::scenario, "the solid has no inside that moves", "cut it in more tetrahedra");
+  shapes = (shapes * found->vectors).eval();
+  for (int k = 0; k < inner_modes; ++k) {
+    const double largest = shapes.col(k).cwiseAbs().maxCoeff();
+    shapes.col(k) /= largest;
+    out.mode_inertia[k] = 1 / (largest * largest);
+    out.mode_stiffness[k] = found->values[k] * out.mode_inertia[k];
+  }
+  out.mode_coupling = recovered.transpose() * carried(mesh, points, shapes);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -189,7 +209,9 @@ Result<ReducedSolid> reduce(const SolidMesh& mesh, const VecX& rest, const Elast
       recovered.middleCols<3>(3 * Eigen::Index{all.back().piece.nodes[a]}) -=
           answer.middleCols<3>(3 * static_cast<Eigen::Index>(a));
   }
-  out.mass = mass_of(mesh, points, recovered);
+  const Matrix mass = recovered.transpose() * carried(mesh, points, recovered);
+  out.mass = 0.5 * (mass + mass.transpose());
+  if (std::optional<Failure> failure = find_modes(mesh, points, held, recovered, out)) return *failure;
   return out;
 }
 

@@ -42,9 +42,9 @@ LobeCells lobe_cells(const LobeForm& form) {
   out.surface.cells = {8, 4};
   out.along = {0, 0.32, 0.6, 0.83, 1};
   if (form.bed_width > 0) {
-    const double bed = 0.5 * form.bed_width / form.width;  // half of it, of the width
-    for (double side :
-         {-0.5, -0.25 - 0.5 * bed, -bed, -0.5 * bed, 0.0, 0.5 * bed, bed, 0.25 + 0.5 * bed, 0.5})
+    // Of the width: half the bed, and the shoulder of what is round in it.
+    const double bed = 0.5 * form.bed_width / form.width, shoulder = 0.62 * bed, beside = 0.25 + 0.5 * bed;
+    for (double side : {-0.5, -beside, -bed, -shoulder, 0.0, shoulder, bed, beside, 0.5})
       out.across.push_back(0.5 + side);
   } else {
     for (int k = 0; k <= out.surface.cells[0]; ++k) out.across.push_back(k / 8.0);

@@ -7,13 +7,13 @@ namespace calot {
 namespace {
 
 /// m, between bed and gallbladder as drawn: they press on each other from nearer.
-constexpr double bed_clearance = 1.5e-3;
+constexpr double bed_clearance = 2.0e-3;
 
-LobeForm form_of(const LobeShape& shape, double axis) {
+LobeForm form_of(const LobeShape& shape) {
   LobeForm form;
   form.width = shape.width, form.depth = shape.depth;
   form.thickness = shape.thickness, form.edge = shape.edge, form.edge_angle = shape.edge_angle;
-  form.edge_at = axis - shape.overhang;
+  form.edge_at = shape.bed_length - shape.overhang;
   form.bed_width = shape.bed_width;
   form.underside = 0.5 * shape.bed_width - shape.bed_depth;
   if (shape.bed_width <= 0) return form;
@@ -29,7 +29,7 @@ LobeForm form_of(const LobeShape& shape, double axis) {
 Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSetting& setting) {
   const auto& shape = std::get<LobeShape>(definition.shape);
   const Pose frame = organ_frame(definition);
-  const LobeForm form = form_of(shape, (definition.fundus - definition.neck).norm());
+  const LobeForm form = form_of(shape);
   const LobeCells cells = lobe_cells(form);
   SolidBody::Setup setup;
   setup.name = definition.name;

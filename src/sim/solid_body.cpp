@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/units.h"
 #include "numerics/parts.h"
@@ -10,6 +11,9 @@
 
 namespace calot {
 namespace {
+
+static_assert(inner_modes % 3 == 0);
+constexpr int mode_nodes = inner_modes / 3;
 
 std::array<Vec3, 10> places_of(const QuadraticTet& tet, const std::vector<Vec3>& points) {
   std::array<Vec3, 10> out;
@@ -55,7 +59,8 @@ Result<SolidBody> SolidBody::create(const Setup& setup) {
   if (!surface) return surface.failure();
   SolidBody body;
   body.setup_ = setup;
-  body.rest_ = to_coordinates(setup.control.points);
+  body.rest_ = VecX::Zero(3 * (Eigen::Index{setup.box.points()} + mode_nodes));
+  body.rest_.head(3 * Eigen::Index{setup.box.points()}) = to_coordinates(setup.control.points);
   body.mesh_ = mesh_of(setup, surface.value());
   Result<ReducedSolid> reduced = reduce(body.mesh_, body.rest_, setup.material);
   if (!reduced) return reduced.failure();
@@ -64,11 +69,12 @@ Result<SolidBody> SolidBody::create(const Setup& setup) {
   for (const QuadraticTet& tet : body.mesh_.tets) {
     const TetMatrices matrices = tet_matrices(places_of(tet, points), setup.material).value();
     body.slopes_.push_back(matrices.slopes / matrices.volume);
-    body.volume_ += matrices.volume;
   }
+  const VecX shift = Vec3::UnitX().replicate(body.coarse_nodes(), 1);
+  body.volume_ = shift.dot(reduced->mass * shift);
   body.skin_ = close_skin(surface.value(), body.rest_, solid_skin_spacing);
   body.build_skin();
-  body.build_matrices(setup.density * reduced->mass);
+  body.build_matrices(reduced.value());
   body.setup_.foundation = nullptr;  // what it refers to need not outlive this
   return body;
 }
@@ -77,23 +83,25 @@ void SolidBody::build_skin() {
   skin_rest_ = blend_all(skin_.stencils, skin_.stencils.value, rest_);
   areas_ = areas_of(skin_rest_, skin_.triangles);
   skin_areas_ = lumped(areas_, skin_.triangles, skin_rest_.size());
-  std::vector<char> seen(static_cast<std::size_t>(nodes()), 0);
+  std::vector<char> seen(static_cast<std::size_t>(coarse_nodes()), 0);
   for (const std::vector<int>& points : points_of_faces(skin_, setup_.control.triangles.size()))
     add_nodes(skin_.stencils, points, 0, seen, face_nodes_.emplace_back());
   Eigen::AlignedBox3d box;
   for (const Vec3& p : skin_rest_) box.extend(p);
   size_ = box.diagonal().norm();
   edge_lengths_ = shortest_edges(setup_.control);
+  edge_lengths_.insert(edge_lengths_.end(), mode_nodes,
+                       *std::min_element(edge_lengths_.begin(), edge_lengths_.end()));
   // Where nothing loads it, forces are but rounding: a strain of 1e-4 on a node's part of the skin.
   double area = 0;
   for (double of_triangle : areas_) area += of_triangle;
   least_force_ = 1e-4 * setup_.material.young * area / nodes();
 }
 
-void SolidBody::build_matrices(const Eigen::MatrixXd& mass) {
-  std::vector<std::vector<int>> cliques = solid_.cliques();
-  cliques.insert(cliques.end(), face_nodes_.begin(), face_nodes_.end());
-  constant_ = BlockMatrix(nodes(), cliques);
+void SolidBody::build_matrices(const ReducedSolid& reduced) {
+  std::vector<int> all(static_cast<std::size_t>(nodes()));
+  std::iota(all.begin(), all.end(), 0);
+  constant_ = BlockMatrix(nodes(), std::vector<std::vector<int>>{all});
   for (int row = 0; setup_.foundation && row < skin_.stencils.rows(); ++row) {
     const double stiffness = setup_.foundation(skin_rest_[row], skin_.at[row].face) * skin_areas_[row];
     if (stiffness <= 0) continue;
@@ -102,18 +110,37 @@ void SolidBody::build_matrices(const Eigen::MatrixXd& mass) {
     bed_.stiffness.push_back(stiffness);
   }
   bed_.add_hessian(skin_.stencils, constant_);
+  const int places = coarse_nodes();
+  mode_stiffness_ = reduced.mode_stiffness;
+  const auto add_modes = [&](const VecX& diagonal, BlockMatrix& matrix) {
+    for (int k = 0; k < mode_nodes; ++k)
+      matrix.add(places + k, places + k, Mat3(diagonal.segment<3>(3 * k).asDiagonal()));
+  };
+  add_modes(mode_stiffness_, constant_);
   if (!(setup_.density > 0)) return;
   mass_ = constant_.blank();
-  for (int b = 0; b < nodes(); ++b)
-    for (int a = b; a < nodes(); ++a) mass_->add(a, b, mass.block<3, 3>(3 * a, 3 * b));
+  for (int b = 0; b < places; ++b) {
+    for (int a = b; a < places; ++a)
+      mass_->add(a, b, setup_.density * reduced.mass.block<3, 3>(3 * a, 3 * b));
+    for (int k = 0; k < mode_nodes; ++k)
+      mass_->add(places + k, b, setup_.density * reduced.mode_coupling.block<3, 3>(3 * b, 3 * k).transpose());
+  }
+  add_modes(setup_.density * reduced.mode_inertia, *mass_);
   if (!setup_.sags) return;
-  load_ = mass * -units::standard_gravity * setup_.up.replicate(nodes(), 1);
+  load_ = VecX::Zero(rest_.size());
+  const VecX up = setup_.up.replicate(places, 1);
+  load_.head(up.size()) = -units::standard_gravity * setup_.density * (reduced.mass * up);
 }
 
-double SolidBody::value(const VecX& x) const { return solid_.value(x) + bed_.value(skin_.stencils, x); }
+double SolidBody::value(const VecX& x) const {
+  const VecX modes = x.tail<inner_modes>();
+  return solid_.value(x) + 0.5 * modes.dot(mode_stiffness_.cwiseProduct(modes)) +
+         bed_.value(skin_.stencils, x);
+}
 
 void SolidBody::add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   solid_.add_gradient(x, gradient);
+  gradient.tail<inner_modes>() += mode_stiffness_.cwiseProduct(x.tail<inner_modes>());
   largest_internal = std::max(largest_node(gradient), least_force_);
   if (load_.size() > 0) largest_internal = std::max(largest_internal, largest_node(load_));
   bed_.add_gradient(skin_.stencils, x, gradient);

@@ -36,6 +36,8 @@ class SolidBody : public Body {
 
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }
+  /// The nodes after them are no places, but how far the modes of the inside are (solid_reduction.h), m, three a node.
+  int coarse_nodes() const override { return mesh_.nodes; }
   double size() const override { return size_; }
   const std::vector<double>& edge_lengths() const override { return edge_lengths_; }
   const BlockMatrix& pattern() const override {
@@ -63,7 +65,7 @@ class SolidBody : public Body {
 
  private:
   void build_skin();
-  void build_matrices(const Eigen::MatrixXd& mass);
+  void build_matrices(const ReducedSolid& reduced);
 
   Setup setup_;
   SolidMesh mesh_;
@@ -71,6 +73,7 @@ class SolidBody : public Body {
   VecX rest_, load_;
   double size_ = 0, volume_ = 0;
   double least_force_ = 0;  ///< N
+  VecX mode_stiffness_;     ///< N/m
   std::vector<double> edge_lengths_, areas_, skin_areas_;
   std::vector<Vec3> skin_rest_;
   std::vector<std::vector<int>> face_nodes_;
