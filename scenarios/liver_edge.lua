@@ -59,5 +59,5 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 250 }, weight = 1 },
   },
-  golden = { at = { 0, 7.5 * s } },
+  golden = { at = { 0, 4.5 * s } },
 }
