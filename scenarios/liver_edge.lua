@@ -1,5 +1,5 @@
 local calot = require "calot"
-local mm, s, kPa, deg = calot.units.mm, calot.units.s, calot.units.kPa, calot.units.deg
+local mm, s, kPa = calot.units.mm, calot.units.s, calot.units.kPa
 
 local neck, fundus, liver_side = { -50 * mm, 130 * mm, -110 * mm }, { -80 * mm, 100 * mm, -60 * mm }, { 0, 0.8, 0.6 }
 

@@ -4,7 +4,26 @@
 
 namespace calot {
 
+namespace {
+
+/// Whether each block is a number times the identity.
+bool same_for_all_ways(const BlockMatrix& mass) {
+  for (int column = 0; column < mass.size(); ++column)
+    for (int e = mass.column_starts()[column]; e < mass.column_starts()[column + 1]; ++e) {
+      const bool diagonal = mass.rows()[e] % 3 == column % 3;
+      const int own = mass.column_starts()[column - column % 3] + (e - mass.column_starts()[column]) / 3 * 3;
+      if (mass.entries()[e] != (diagonal ? mass.entries()[own] : 0.0)) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
 NodalMass::NodalMass(const BlockMatrix& mass) : begin_{0} {
+  if (!same_for_all_ways(mass)) {
+    whole_ = mass;
+    return;
+  }
   for (int node = 0; node < mass.nodes(); ++node) {
     const int column = 3 * node;
     for (int e = mass.column_starts()[column]; e < mass.column_starts()[column + 1]; e += 3) {
@@ -16,6 +35,7 @@ NodalMass::NodalMass(const BlockMatrix& mass) : begin_{0} {
 }
 
 VecX NodalMass::multiply(const VecX& x) const {
+  if (whole_) return whole_->multiply(x);
   const std::size_t nodes = begin_.size() - 1;
   std::vector<Lanes> from(nodes), to(nodes, Lanes{});
   for (std::size_t i = 0; i < nodes; ++i) from[i] = Lanes{x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};

@@ -1,6 +1,7 @@
 #pragma once
-// A mass matrix as it is multiplied: masses act alike along x, y and z, so one number stands for each 3 x 3 block.
+// A mass matrix as it is multiplied: where masses act alike along x, y and z one number stands for each 3 x 3 block.
 
+#include <optional>
 #include <vector>
 
 #include "numerics/block_matrix.h"
@@ -9,7 +10,6 @@ namespace calot {
 
 class NodalMass {
  public:
-  /// Each block of `mass` is a number times the identity, kg.
   explicit NodalMass(const BlockMatrix& mass);
   /// M x, of 3 coordinates a node.
   VecX multiply(const VecX& x) const;
@@ -18,6 +18,8 @@ class NodalMass {
   std::vector<int> begin_;  ///< of each node's column, nodes + 1
   std::vector<int> row_;    ///< >= the column, increasing: the diagonal first
   std::vector<double> mass_;
+  std::optional<BlockMatrix>
+      whole_;  ///< where some block is not a number times the identity: a condensed solid's
 };
 
 }  // namespace calot

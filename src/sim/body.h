@@ -106,7 +106,7 @@ class Body {
   virtual void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const = 0;
   /// A constant load, N, 3 a node, on top of that; empty: none.
   virtual const VecX& kept_load() const;
-  /// Of the solid: kg, by the nodes, with the pattern of pattern(); each block a number times the identity. Null: it is weightless.
+  /// Of the solid: kg, by the nodes, with the pattern of pattern(). Null: it is weightless.
   virtual const BlockMatrix* mass() const { return nullptr; }
   /// Null: it is not filled.
   virtual const Liquid* liquid() const { return nullptr; }

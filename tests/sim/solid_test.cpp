@@ -249,6 +249,32 @@ TEST(Solid, ItsForcesAreTheSlopeOfItsEnergyAndItsHessianTheirs) {
   }
 }
 
+TEST(Solid, AStepOfItsMotionIsTheSlopeOfItsEnergyToo) {
+  const BodyPointer body = body_of(lobe());
+  Rng rng(8);
+  const int size = static_cast<int>(body->rest().size());
+  BodyState state;
+  state.x = body->rest();
+  state.motion = {{body->rest() + test::random_coordinates(rng, size, 1e-4),
+                   test::random_coordinates(rng, size, 1e-2), Vec3::Zero()},
+                  0.02};
+  const Inertia inertia(*body, state, 5e-3);
+  const auto forces = [&](const VecX& at) {
+    VecX out = VecX::Zero(size);
+    inertia.add_gradient(at, out);
+    return out;
+  };
+  const VecX x = body->rest() + test::random_coordinates(rng, size, 1e-3), g = forces(x);
+  BlockMatrix h = body->pattern();
+  inertia.hessian(x, h, nullptr);
+  const VecX d = test::random_coordinates(rng, size, 1.0);
+  constexpr double step = 1e-6;  // m
+  EXPECT_NEAR((inertia.value(x + step * d) - inertia.value(x - step * d)) / (2 * step), g.dot(d),
+              1e-6 * g.norm() * d.norm());
+  const VecX bend = (forces(x + step * d) - forces(x - step * d)) / (2 * step);
+  EXPECT_LT((bend - h.multiply(d)).norm(), 1e-6 * bend.norm());
+}
+
 TEST(Solid, ItsMassAndWeightAreThoseOfItsVolume) {
   OrganDefinition organ = lobe();
   std::get<LobeShape>(organ.shape).sags = true;
