@@ -11,15 +11,12 @@
 namespace calot {
 namespace {
 
-/// How far pairs are remembered, and groups of points, m. Only points in near groups are looked at when pairs are
+/// How far groups of points are remembered, m. Only points in near groups are looked at when pairs are
 /// gathered, and only how these move against each other ages the pairs: a fold that is pulled along keeps its own.
 /// More reach means fewer searches and more to look at between them: these were the fastest of nine in a grasp.
-constexpr double close_reach = 0.8e-3, group_reach = 3e-3;
+constexpr double group_reach = 3e-3;
 /// Of edges.
 constexpr double least_edges_reach = 0.35e-3;
-/// Walls that are nearer than the first of these may touch in the next solve, and are coupled in its matrix; beyond
-/// the second they are not any more.
-constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
 /// The same of edges.
 constexpr double edges_couple(double of_points) {
   return of_points * (self_edge_barrier.range / self_barrier.range);

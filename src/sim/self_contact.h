@@ -25,6 +25,11 @@ namespace calot {
 /// How walls press on each other: over less than the 0.7 mm that jaws leave between the two skins of a fold they hold
 /// (what holds them there is the grip).
 inline constexpr Barrier self_barrier{0.4e-3, 20e3};
+/// How far pairs of what meets so are remembered, m.
+inline constexpr double close_reach = 0.8e-3;
+/// Walls that are nearer than the first of these may touch in the next solve, and are coupled in its matrix; beyond
+/// the second they are not any more.
+inline constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
 
 /// Of edges that cross.
 inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, self_barrier.stiffness};

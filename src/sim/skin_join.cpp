@@ -11,9 +11,8 @@
 namespace calot {
 namespace {
 
-/// How far pairs are remembered, and patches of skin, m: as of a skin with itself.
-constexpr double close_reach = 0.8e-3, patch_reach = 3e-3;
-constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
+/// How far patches of skin are remembered, m: as groups of points of a skin with itself.
+constexpr double patch_reach = 3e-3;
 
 using Box = Eigen::AlignedBox3d;
 
