@@ -17,7 +17,7 @@ namespace {
 constexpr double group_reach = 3e-3;
 /// Of edges.
 constexpr double least_edges_reach = 0.35e-3;
-/// The same of edges.
+/// Of edges: couple_below and uncouple_above in proportion.
 constexpr double edges_couple(double of_points) {
   return of_points * (self_edge_barrier.range / self_barrier.range);
 }
