@@ -12,7 +12,6 @@
 #include "render/offscreen.h"
 #include "render/png.h"
 #include "session/force_plot.h"
-#include "session/metrics.h"
 #include "view/build_scene.h"
 
 namespace calot {
@@ -184,8 +183,7 @@ LoadOptions project_options() {
 /// Measures and scores; writes the report where there is an output folder.
 std::optional<Failure> make_report(Played& played) {
   const SessionResult& session = played.session;
-  played.report.metrics = measure(played.exercise.scene, session.traces, session.progress);
-  played.report.score = score(played.exercise, played.report.metrics, session.progress);
+  played.report.score = score(played.exercise, session.metrics, session.progress);
   played.json = report_json(played.exercise, session, played.report);
   if (played.output.empty()) return std::nullopt;
   if (const std::string plot = force_plot(played.exercise.scene, session.traces); !plot.empty()) {

@@ -89,7 +89,7 @@ std::string summary(const Played& played) {
   text += fmt::format("\n{}\n{}", bold("Events"), events_text(session.progress));
   if (!session.progress.notes().empty())
     text += fmt::format("\n{}\n{}", bold("Noted"), notes_text(session.progress));
-  text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(played.report.metrics));
+  text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(session.metrics));
   text += played.report.aborted
               ? fmt::format("\n{} none: the session did not come to its end\n", bold("Score"))
               : fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,

@@ -34,6 +34,10 @@ struct Note {
 /// Everything the report and the score are made from.
 class Progress {
  public:
+  Progress() = default;
+  /// Of a session that was played before.
+  Progress(std::vector<StepRecord> steps, std::vector<SessionEvent> events, std::vector<Note> notes)
+      : steps_(std::move(steps)), events_(std::move(events)), notes_(std::move(notes)) {}
   /// Ends the running step as done, if any, and starts the next.
   void begin_step(double time, const std::string& name, const std::string& title, double limit);
   /// Ends the running step, if any ("done", "timeout" or "aborted"), and raises step_done or step_timeout.

@@ -105,6 +105,13 @@ RecordedStep parse_step(const Json& json, const RecordingHeader& header, double 
   return step;
 }
 
+Measured parse_measured(const Json& json, std::vector<std::string>& problems) {
+  JsonFields fields(json, problems);
+  Measured measured = read_measured(fields.any("measured"), problems);
+  fields.expect_no_others();
+  return measured;
+}
+
 std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
                       std::vector<std::string>& problems) {
   JsonFields fields(json, problems);
@@ -143,6 +150,7 @@ class Reader {
     }
     if (problems_.empty() && line_ == 0) add_problem("this is not a recording: it is empty");
     keep_first(problems_);
+    if (recording_.end.empty()) recording_.measured.reset();  // no checksum vouches for it
     if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
     return std::move(recording_);
   }
@@ -176,6 +184,10 @@ class Reader {
       problems.emplace_back("there is more after the recording's end");
     else if (json.is_object() && json.contains("end"))
       recording_.end = parse_end(json, recording_.steps.size(), text_hash_, problems);
+    else if (recording_.measured)
+      problems.emplace_back("there is more between what was measured and the recording's end");
+    else if (json.is_object() && json.contains("measured"))
+      recording_.measured = parse_measured(json, problems);
     else
       add_step(parse_step(json, recording_.header, static_cast<double>(line_ - 1) / recording_.header.rate,
                           problems),
@@ -270,6 +282,13 @@ bool RecordingWriter::write(const RecordedStep& step) {
   if (step.state_hash) json["state_hash"] = hex(*step.state_hash);
   ++steps_;
   return add_line(json.dump());
+}
+
+bool RecordingWriter::write(const Measured& measured) {
+  const OrderedJson json = {{"measured", measured_json(measured)}};
+  // An author's texts may hold any bytes.
+  const std::string line = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  return line.size() >= longest_line || add_line(line);
 }
 
 bool RecordingWriter::finish(const std::string& end) {

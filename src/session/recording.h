@@ -7,7 +7,11 @@
 //               "state_hash":...}
 //   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"actions":["activate",...],
 //               "state_hash":"..."}   (rad, m; actions where an instrument acts, "none" for one that does not)
+//   then       {"measured":{"exercise_hash":...,"metrics":{...},"steps":[...],"events":[...],"noted":[...],"notes":[...]}}
 //   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before)
+//
+// What was measured (session/measured.h) may be missing, as in recordings made before it was written: it is found again
+// by a replay.
 //
 // Poses that come from elsewhere need schema, scenario, rate_Hz, instruments and, in each step, time_s and poses; what
 // has no state hash is played and not compared. calot.recording/1 is the same without actions, and is read too.
@@ -27,6 +31,7 @@
 #include "base/status.h"
 #include "session/build_info.h"
 #include "session/exercise.h"
+#include "session/measured.h"
 
 namespace calot {
 
@@ -53,7 +58,8 @@ struct RecordedStep {
 struct Recording {
   RecordingHeader header;
   std::vector<RecordedStep> steps;
-  std::string end;  ///< how the session ended; empty where the last line is missing
+  std::optional<Measured> measured;  ///< of a whole recording only
+  std::string end;                   ///< how the session ended; empty where the last line is missing
 };
 
 /// Where a recording without an end stops; none for a whole one.
@@ -69,6 +75,8 @@ class RecordingWriter {
   static Result<RecordingWriter> create(const std::string& path, const RecordingHeader& header);
   /// False once a write has failed (disk full).
   bool write(const RecordedStep& step);
+  /// After the last step. Left out where it would be longer than a reader takes.
+  bool write(const Measured& measured);
   bool finish(const std::string& end);
 
  private:

@@ -3,46 +3,10 @@
 #include "base/hash.h"
 #include "session/build_info.h"
 #include "session/json.h"
+#include "session/progress_json.h"
 
 namespace calot {
 namespace {
-
-OrderedJson steps_json(const Progress& progress) {
-  OrderedJson list = OrderedJson::array();
-  for (const StepRecord& step : progress.steps()) {
-    OrderedJson json = {
-        {"name", step.name}, {"title", step.title}, {"outcome", step.outcome}, {"started_s", step.started}};
-    json["ended_s"] = step.ended >= 0 ? OrderedJson(step.ended) : OrderedJson();
-    json["limit_s"] = step.limit > 0 ? OrderedJson(step.limit) : OrderedJson();
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-OrderedJson events_json(const Progress& progress) {
-  OrderedJson list = OrderedJson::array();
-  for (const SessionEvent& event : progress.events()) {
-    OrderedJson json = {{"event", to_text(event.kind)}, {"time_s", event.time}, {"step", event.step}};
-    if (!event.instrument.empty()) json["instrument"] = event.instrument;
-    if (!event.organ.empty()) json["organ"] = event.organ;
-    if (const char* key = event_row(event.kind).value; *key != 0) json[key] = event.value;
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-OrderedJson notes_json(const Progress& progress) {
-  OrderedJson list = OrderedJson::array();
-  for (const Note& note : progress.notes()) {
-    OrderedJson json = {{"name", note.name}};
-    std::visit([&](const auto& value) { json["value"] = value; }, note.value);
-    json["unit"] = note.unit;
-    json["time_s"] = note.time;
-    json["step"] = note.step;
-    list.push_back(std::move(json));
-  }
-  return list;
-}
 
 /// Benchmarks are design values of the exercise, not yet measured on surgeons, and say so.
 OrderedJson benchmark_json(const ScorePart& part) {
@@ -116,7 +80,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   if (session.end == SessionEnd::failed) json["failure"] = to_text(session.failure);
   json["steps"] = steps_json(session.progress);
   json["events"] = events_json(session.progress);
-  json["metrics"] = report.metrics;
+  json["metrics"] = session.metrics;
   json["noted"] = notes_json(session.progress);
   json["notes"] = session.notes;
   json["motion_processing"] = {{"version", MotionProcessing::version},

@@ -2,7 +2,6 @@
 // The report of a session as versioned JSON. Field names carry their unit; a reader may rely on every key of
 // schema calot.report/1, and ignores keys it does not know.
 
-#include <map>
 #include <string>
 
 #include "session/exercise.h"
@@ -12,7 +11,6 @@
 namespace calot {
 
 struct SessionReport {
-  std::map<std::string, double> metrics;
   Score score;
   bool aborted = false;                ///< the session was cut: its parts are kept, but it has no total
   double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "session/metrics.h"
 #include "session/skin_difference.h"
 
 namespace calot {
@@ -41,12 +42,20 @@ class Session {
     note_differences();
     note_refusals();
     observe(true);
-    if (options_.recording != nullptr) options_.recording->finish(to_text(result_.end));
+    result_.metrics = measure(script_.definition().scene, result_.traces, result_.progress);
+    finish_recording();
     result_.timing.wall_s = seconds_since(start);
     return std::move(result_);
   }
 
  private:
+  void finish_recording() {
+    if (options_.recording == nullptr) return;
+    options_.recording->write(
+        {exercise_hash(script_.definition()), result_.metrics, result_.progress, result_.notes});
+    options_.recording->finish(to_text(result_.end));
+  }
+
   void end(SessionEnd how) {
     ended_ = true;
     result_.end = how;

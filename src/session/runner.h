@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct SessionResult {
   Failure failure;  ///< of the world, the script, the source or a file, where end is failed
   Progress progress;
   Traces traces;
+  std::map<std::string, double> metrics;  ///< measured when it ended
   /// State hash after each step; the rest state's first.
   std::vector<std::uint64_t> state_hashes;
   SessionTiming timing;

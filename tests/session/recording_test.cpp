@@ -105,6 +105,66 @@ TEST_F(RecordingFile, ReadsBackTheSameBits) {
   }
 }
 
+Measured small_measured() {
+  Measured measured;
+  measured.exercise_hash = 0xfeedULL << 48;
+  measured.metrics = {{"left.path_length_mm", 1.0 / 3}, {"note.depth", -0.0}};
+  measured.progress.begin_step(0, "only", "The \"only\" step", 30);
+  WorldEvent pull;
+  pull.kind = EventKind::overforce;
+  pull.time = 0.1 + 0.2;
+  pull.instrument = "left";
+  pull.value = 5.1;
+  measured.progress.add_event(pull);
+  for (const auto& value : {std::variant<double, bool, std::string>(1e-3), {true}, {std::string("deep")}})
+    measured.progress.add_note({0.2, "", "depth", value, "m"});
+  measured.progress.end_step(2, "done");
+  measured.progress.begin_step(2, "next", "Never ended", 0);
+  measured.notes = {"something is less accurate"};
+  return measured;
+}
+
+TEST_F(RecordingFile, WhatWasMeasuredIsReadBackAsTheSameBits) {
+  Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
+  for (const RecordedStep& step : random_steps(3)) ASSERT_TRUE(writer->write(step));
+  const Measured measured = small_measured();
+  ASSERT_TRUE(writer->write(measured) && writer->finish("done"));
+  const Result<Recording> recording = read_recording(path_);
+  ASSERT_TRUE(recording) << complaint();
+  ASSERT_TRUE(recording->measured);
+  EXPECT_EQ(measured_json(*recording->measured), measured_json(measured));
+  EXPECT_EQ(recording->measured->metrics, measured.metrics);
+  EXPECT_EQ(recording->measured->progress.running()->name, "next");
+  EXPECT_EQ(recording->measured->progress.events()[0].time, 0.1 + 0.2);
+  EXPECT_EQ(recording->steps.size(), 3u);
+}
+
+TEST_F(RecordingFile, WhatWasMeasuredCountsOnlyInAWholeRecordingAndOnlyBehindItsSteps) {
+  Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
+  const std::vector<RecordedStep> steps = random_steps(3);
+  ASSERT_TRUE(writer->write(steps[0]) && writer->write(small_measured()));
+  const Result<Recording> cut = read_recording(path_);
+  ASSERT_TRUE(cut) << complaint();
+  EXPECT_FALSE(cut->measured);
+  EXPECT_TRUE(cut_note(cut.value()));
+  ASSERT_TRUE(writer->write(steps[1]));
+  EXPECT_NE(complaint().find("jsonl:4: there is more between what was measured"), std::string::npos)
+      << complaint();
+}
+
+TEST_F(RecordingFile, EveryMistakeInWhatWasMeasuredIsNamed) {
+  write(random_steps(1), "");
+  append(
+      R"({"measured":{"exercise_hash":"1","metrics":{"a":"b"},"steps":7,"events":[{"event":"sneeze","time_s":1,)"
+      R"("step":"x","force":1}],"noted":[{"name":"a","unit":"","time_s":0,"step":"","value":[]}],"notes":[]}})"
+      "\n");
+  const std::string said = complaint();
+  for (const char* part :
+       {"exercise_hash must be sixteen", "metrics: a must be a number", "steps must be a list",
+        "events[0].event is of no kind", "events[0].force is not known", "noted[0].value must"})
+    EXPECT_NE(said.find(part), std::string::npos) << part << " is missing in\n" << said;
+}
+
 TEST_F(RecordingFile, IsCompleteOnDiskAfterEveryStep) {
   Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
   ASSERT_TRUE(writer);
