@@ -29,28 +29,12 @@ struct Checked {
   bool ok() const { return module || exercise.has_value(); }
 };
 
-/// Every .lua file below a folder, but for hidden folders.
-std::vector<Named> files_below(const std::string& folder) {
-  std::vector<Named> files;
-  std::error_code error;
-  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    const fs::path& path = entry->path();
-    if (entry->is_directory(error) && path.filename().string().starts_with('.'))
-      entry.disable_recursion_pending();
-    else if (path.extension() == ".lua" && !entry->is_directory(error))
-      files.push_back({path.string(), true});
-  }
-  std::sort(files.begin(), files.end(), [](const Named& a, const Named& b) { return a.file < b.file; });
-  return files;
-}
-
 std::vector<Named> files_of(const std::vector<std::string>& names) {
   std::vector<Named> files;
   std::error_code error;
   for (const std::string& name : names) {
     if (fs::is_directory(name, error)) {
-      for (Named& file : files_below(name)) files.push_back(std::move(file));
+      for (const fs::path& file : files_below(name, ".lua")) files.push_back({file.string(), true});
     } else {
       files.push_back({name, false});
     }

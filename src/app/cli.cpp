@@ -23,6 +23,7 @@ struct Program {
   CLI::App app{"Calot, a scriptable simulator of laparoscopic cholecystectomy"};
   RunCommand run;
   ReplayCommand replay;
+  ScoreCommand score;
   CheckCommand check;
   ListCommand list;
   NewCommand fresh;
@@ -39,6 +40,15 @@ void add_threads(CLI::App& command, int& threads) {
       ->capture_default_str();
 }
 
+void add_fail_below(CLI::App& command, std::optional<double>& points, const char* about) {
+  command.add_option("--fail-below", points, about)->type_name("S")->check([](const std::string& text) {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    return number && value >= 0 && value <= 100 ? ""
+                                                : text + " is no score: give 0 to 100";  // nan is neither
+  });
+}
+
 void add_session_options(CLI::App& command, SessionCommand& options) {
   add_threads(command, options.threads);
   command.add_flag("--json", options.json, "print the report as JSON, and nothing else, to stdout");
@@ -50,14 +60,7 @@ void add_session_options(CLI::App& command, SessionCommand& options) {
       ->type_name("TIMES")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 3600.0));
-  command.add_option("--fail-below", options.fail_below, "exit with 1 when the score is below this")
-      ->type_name("S")
-      ->check([](const std::string& text) {
-        double value = 0;
-        const bool number = CLI::detail::lexical_cast(text, value);
-        return number && value >= 0 && value <= 100 ? ""
-                                                    : text + " is no score: give 0 to 100";  // nan is neither
-      });
+  add_fail_below(command, options.fail_below, "exit with 1 when the score is below this");
 }
 
 void add_run(Program& program) {
@@ -100,6 +103,39 @@ void add_replay(Program& program) {
       ->type_name("DIR");
   add_session_options(command, program.replay);
   command.callback([&program] { program.chosen = [&program] { return replay_command(program.replay); }; });
+}
+
+void add_score(Program& program) {
+  CLI::App& command = *program.app.add_subcommand("score", "score recordings of one trainee or of a class");
+  ScoreCommand& score = program.score;
+  command.add_option("exercise", score.exercise, "the scenario's .lua file")->required();
+  command
+      .add_option("recordings", score.recordings,
+                  "recordings, or folders with all recordings (.jsonl) below them")
+      ->required();
+  command
+      .add_option("--benchmarks", score.benchmarks,
+                  "a Lua table of novice's and expert's figures, used instead of the exercise's own")
+      ->type_name("FILE");
+  command.add_option("-j,--jobs", score.jobs, "recordings scored at once; results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, most_threads))
+      ->capture_default_str();
+  command
+      .add_option("-o,--output", score.output,
+                  "folder for scores.json, scores.csv and one result for each recording, which a second run "
+                  "takes as it is")
+      ->type_name("DIR");
+  command.add_flag("--again", score.again, "score anew what the output folder has already");
+  command.add_flag("--replay", score.replay,
+                   "simulate every recording, and compare with what it holds (default: simulate only where "
+                   "the exercise has changed)");
+  CLI::Option* json =
+      command.add_flag("--json", score.json, "print the scores as JSON, and nothing else, to stdout");
+  command.add_flag("--csv", score.csv, "print the scores as CSV, and nothing else, to stdout")
+      ->excludes(json);
+  add_fail_below(command, score.fail_below, "exit with 1 when any score is below this");
+  command.callback([&program] { program.chosen = [&program] { return score_command(program.score); }; });
 }
 
 void add_check(Program& program) {
@@ -209,6 +245,7 @@ int parse_and_run(int argc, char** argv) {
   program.app.require_subcommand(0, 1);
   add_run(program);
   add_replay(program);
+  add_score(program);
   add_check(program);
   add_list(program);
   add_new(program);

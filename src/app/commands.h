@@ -1,9 +1,11 @@
 #pragma once
 // The commands behind `calot`, each with what its command line fills in. None of them parses arguments.
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/exit_code.h"
@@ -34,6 +36,23 @@ struct ReplayCommand : SessionCommand {
   std::string scenario;  ///< empty: the one named in the recording
 };
 ExitCode replay_command(const ReplayCommand& command);
+
+/// As many as there are cores.
+inline int usual_jobs() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, most_threads);
+}
+
+struct ScoreCommand {
+  std::string exercise;
+  std::vector<std::string> recordings;  ///< files, or folders with all below them
+  std::string benchmarks;               ///< a table's file; empty: the exercise's own
+  std::string output;                   ///< folder of results; empty: nowhere
+  int jobs = usual_jobs();              ///< processes
+  bool json = false, csv = false;
+  bool replay = false, again = false;
+  std::optional<double> fail_below;  ///< points of 100
+};
+ExitCode score_command(const ScoreCommand& command);
 
 struct CheckCommand {
   std::vector<std::string> scenarios;  ///< files, or folders with all below them

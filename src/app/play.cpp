@@ -6,8 +6,8 @@
 #include "app/interrupt.h"
 #include "app/output_folder.h"
 #include "app/project.h"
+#include "app/replay_checks.h"
 #include "app/terminal.h"
-#include "base/suggest.h"
 #include "lua/load_exercise.h"
 #include "render/offscreen.h"
 #include "render/png.h"
@@ -117,22 +117,6 @@ void show_progress(ProgressLine& line, const World& world, const Progress& progr
                         step != nullptr ? step->title : ""));
 }
 
-std::optional<Failure> check_replay(const Recording& recording, const ExerciseDefinition& exercise) {
-  std::vector<std::string> names;
-  for (const InstrumentDefinition& instrument : exercise.scene.instruments) names.push_back(instrument.name);
-  const RecordingHeader& header = recording.header;
-  if (header.scenario == exercise.id && header.instruments == names &&
-      header.rate == exercise.scene.solver.rate) {
-    return std::nullopt;
-  }
-  return fail(
-      FailureKind::usage,
-      fmt::format("the recording is of {} ({} at {} Hz), the scenario is {} ({} at {} Hz)", header.scenario,
-                  shortened(fmt::format("{}", fmt::join(header.instruments, ", ")), 200), header.rate,
-                  exercise.id, fmt::join(names, ", "), exercise.scene.solver.rate),
-      "name the scenario it was made with: --scenario FILE");
-}
-
 SessionResult run(const PlayRequest& request, ExerciseScript& script, World& world, Outputs& outputs,
                   FrameCapture* capture) {
   std::optional<ReplaySource> replay;
@@ -144,7 +128,7 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
   options.table = outputs.table ? &*outputs.table : nullptr;
   ProgressLine line;
   options.observer = [&](const World& present, const Progress& progress, bool last) {
-    show_progress(line, present, progress, script.definition().time_limit);
+    if (request.show_progress) show_progress(line, present, progress, script.definition().time_limit);
     if (request.on_state && !last) request.on_state(present);
     if (capture != nullptr) capture->observe(present, last);
   };
@@ -242,7 +226,9 @@ Result<Played> play(const PlayRequest& request) {
   if (!script) return script.failure();
   const ExerciseDefinition& exercise = script.value()->definition();
   if (request.replay != nullptr) {
-    if (std::optional<Failure> wrong = check_replay(*request.replay, exercise)) return *wrong;
+    if (std::optional<Failure> wrong =
+            check_replay(*request.replay, exercise, "name the scenario it was made with: --scenario FILE"))
+      return *wrong;
   }
   Played played;
   played.rendered = request.render;

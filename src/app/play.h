@@ -35,8 +35,9 @@ struct PlayRequest {
   std::vector<double> at;         ///< s, of pictures besides the golden ones
   bool write = false;             ///< write report, frames, table and recording into `output`
   std::filesystem::path
-      output;              ///< folder, of which an earlier session's files are replaced; empty: out/<id>
-  bool overwrite = false;  ///< without `output`: replace what out/<id> holds instead of taking out/<id>-2
+      output;                 ///< folder, of which an earlier session's files are replaced; empty: out/<id>
+  bool overwrite = false;     ///< without `output`: replace what out/<id> holds instead of taking out/<id>-2
+  bool show_progress = true;  ///< on a terminal
   const Recording* replay = nullptr;           ///< play these inputs instead of the scenario's demo
   std::function<void(const World&)> on_state;  ///< called at rest and after each step
   /// Called with the scene of each golden frame, before it is drawn.

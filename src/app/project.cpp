@@ -43,6 +43,21 @@ std::vector<fs::path> project_scenarios() {
   return files;
 }
 
+std::vector<fs::path> files_below(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (entry->is_directory(error) && path.filename().string().starts_with('.'))
+      entry.disable_recursion_pending();
+    else if (path.extension() == extension && !entry->is_directory(error))
+      files.push_back(path);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 std::string scenario_name(const fs::path& file) {
   return file.lexically_relative(project_folder() / "scenarios").replace_extension().generic_string();
 }

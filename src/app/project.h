@@ -21,6 +21,10 @@ std::filesystem::path project_part(const std::string& name);
 /// Every scenario of the project (scenarios/**/*.lua), sorted.
 std::vector<std::filesystem::path> project_scenarios();
 
+/// Every file with that extension (".lua") below a folder, sorted; hidden folders are left out.
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder,
+                                               const std::string& extension);
+
 /// What one of them is called: its path below scenarios/ without ".lua", such as "paper/figure_4".
 std::string scenario_name(const std::filesystem::path& file);
 

@@ -6,6 +6,7 @@
 #include "app/project.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/suggest.h"
 
 namespace calot {
 namespace {
@@ -54,6 +55,23 @@ Result<fs::path> find_scenario(const RecordingHeader& header, const fs::path& re
                   ? fmt::format("{}no scenario in {} has the id {}", file, where, header.scenario)
                   : fmt::format("{}several scenarios in {} have the id {}", file, where, header.scenario),
               "name the scenario it was made with: --scenario FILE");
+}
+
+std::optional<Failure> check_replay(const Recording& recording, const ExerciseDefinition& exercise,
+                                    const std::string& hint) {
+  std::vector<std::string> names;
+  for (const InstrumentDefinition& instrument : exercise.scene.instruments) names.push_back(instrument.name);
+  const RecordingHeader& header = recording.header;
+  if (header.scenario == exercise.id && header.instruments == names &&
+      header.rate == exercise.scene.solver.rate) {
+    return std::nullopt;
+  }
+  return fail(
+      FailureKind::usage,
+      fmt::format("the recording is of {} ({} at {} Hz), the scenario is {} ({} at {} Hz)", header.scenario,
+                  shortened(fmt::format("{}", fmt::join(header.instruments, ", ")), 200), header.rate,
+                  exercise.id, fmt::join(names, ", "), exercise.scene.solver.rate),
+      hint);
 }
 
 std::optional<Failure> check_replay_output(const fs::path& output, const fs::path& recording) {

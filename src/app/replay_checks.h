@@ -15,6 +15,10 @@ Result<std::filesystem::path> find_scenario(const RecordingHeader& header,
                                             const std::filesystem::path& recording,
                                             const std::string& chosen);
 
+/// Fails (usage, with that hint) where the recording is not of this exercise's field: its id, instruments and rate.
+std::optional<Failure> check_replay(const Recording& recording, const ExerciseDefinition& exercise,
+                                    const std::string& hint);
+
 /// A replay must not be written over the recording it plays.
 std::optional<Failure> check_replay_output(const std::filesystem::path& output,
                                            const std::filesystem::path& recording);

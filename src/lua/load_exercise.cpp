@@ -11,6 +11,7 @@
 #include "lua/read_exercise.h"
 #include "lua/read_scene.h"
 #include "lua/steps_script.h"
+#include "lua/table_file.h"
 #include "script/lua_headers.h"
 #include "script/source_map.h"
 #include "sim/body_kinds.h"
@@ -60,13 +61,6 @@ class Loader {
   SourceMap map_;
   std::vector<Problem> problems_;
 };
-
-/// Gives a problem with one of the exercise's fields the line that the field is written on.
-void locate(Problem& problem, const SourceMap& map, const std::string& file) {
-  if (!problem.place.file.empty()) return;
-  problem.place.file = file;
-  problem.place.line = std::max(1, map.line_of(problem.place.path));
-}
 
 /// Where brackets are nested deepest: Lua does not say where it gave up.
 int deepest_line(const std::string& text) {

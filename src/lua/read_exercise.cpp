@@ -13,10 +13,6 @@ namespace {
 
 constexpr double weight_slack = 1e-6;  // what a sum of weights written as decimals may be off
 
-std::string indexed(const std::string& path, std::size_t index) {
-  return fmt::format("{}[{}]", path, index + 1);
-}
-
 void check_id(FieldCheck& check, const std::string& id) {
   bool good = !id.empty();
   for (const char c : id) good = good && ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-');

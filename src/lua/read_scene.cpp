@@ -11,10 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string indexed(const std::string& path, std::size_t index) {
-  return fmt::format("{}[{}]", path, index + 1);
-}
-
 class SceneReader {
  public:
   SceneReader(FieldCheck& check, const MeshFolders& folders) : check_(check), folders_(folders) {}

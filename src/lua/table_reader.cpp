@@ -73,6 +73,10 @@ std::string example(const Key& key) {
 
 }  // namespace
 
+std::string indexed(const std::string& path, std::size_t index) {
+  return fmt::format("{}[{}]", path, index + 1);
+}
+
 std::optional<Vec3> read_point(FieldCheck& check, const Value& value, const std::string& path) {
   bool good = value.is(Value::Kind::table) && value.items.size() == 3 && value.fields.empty();
   for (const Value& item : value.items)

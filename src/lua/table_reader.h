@@ -13,6 +13,9 @@
 
 namespace calot {
 
+/// The path of a list's entry, counted from 0: "path[1]" for the first.
+std::string indexed(const std::string& path, std::size_t index);
+
 /// The point {x, y, z}, or a problem at `path`.
 std::optional<Vec3> read_point(FieldCheck& check, const Value& value, const std::string& path);
 

@@ -28,7 +28,8 @@ struct ScorePart {
   EventKind event = EventKind::contact;  ///< penalty
   double each = 0.25;
   double weight = 1;
-  Place place;  ///< where the author wrote it
+  std::string calibration = "uncalibrated";  ///< where its figures come from
+  Place place;                               ///< where the author wrote it
 };
 
 struct ScoreDefinition {

@@ -8,7 +8,6 @@
 namespace calot {
 namespace {
 
-/// Benchmarks are design values of the exercise, not yet measured on surgeons, and say so.
 OrderedJson benchmark_json(const ScorePart& part) {
   OrderedJson json;
   if (part.kind == ScorePartKind::benchmark) {
@@ -16,9 +15,30 @@ OrderedJson benchmark_json(const ScorePart& part) {
   } else {
     json = {{"event", to_text(part.event)}, {"each", part.each}};
   }
-  json["calibration"] = "uncalibrated";
+  json["calibration"] = part.calibration;
   return json;
 }
+
+OrderedJson timing_json(const SessionResult& session, double start_to_first_frame) {
+  const SessionTiming& timing = session.timing;
+  OrderedJson json = {{"real_time_factor", real_time_factor(session)},
+                      {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
+                      {"wall_s", timing.wall_s},
+                      {"simulation_s", timing.simulation_s},
+                      {"frames_s", timing.frames_s},
+                      {"assembly_s", timing.assembly_s},
+                      {"factorisation_s", timing.factorisation_s},
+                      {"solve_s", timing.solve_s},
+                      {"contact_s", timing.contact_s},
+                      {"steps", session.state_hashes.empty() ? 0 : session.state_hashes.size() - 1},
+                      {"substeps", timing.substeps},
+                      {"newton_iterations", timing.newton_iterations}};
+  json["start_to_first_frame_s"] =
+      start_to_first_frame >= 0 ? OrderedJson(start_to_first_frame) : OrderedJson();
+  return json;
+}
+
+}  // namespace
 
 OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted) {
   OrderedJson json = {{"total", aborted ? OrderedJson() : OrderedJson(score.total)},
@@ -45,27 +65,6 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
   }
   return json;
 }
-
-OrderedJson timing_json(const SessionResult& session, double start_to_first_frame) {
-  const SessionTiming& timing = session.timing;
-  OrderedJson json = {{"real_time_factor", real_time_factor(session)},
-                      {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
-                      {"wall_s", timing.wall_s},
-                      {"simulation_s", timing.simulation_s},
-                      {"frames_s", timing.frames_s},
-                      {"assembly_s", timing.assembly_s},
-                      {"factorisation_s", timing.factorisation_s},
-                      {"solve_s", timing.solve_s},
-                      {"contact_s", timing.contact_s},
-                      {"steps", session.state_hashes.empty() ? 0 : session.state_hashes.size() - 1},
-                      {"substeps", timing.substeps},
-                      {"newton_iterations", timing.newton_iterations}};
-  json["start_to_first_frame_s"] =
-      start_to_first_frame >= 0 ? OrderedJson(start_to_first_frame) : OrderedJson();
-  return json;
-}
-
-}  // namespace
 
 double real_time_factor(const SessionResult& session) {
   if (session.traces.time.empty() || session.timing.wall_s <= 0) return 0;

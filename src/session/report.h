@@ -5,6 +5,7 @@
 #include <string>
 
 #include "session/exercise.h"
+#include "session/json.h"
 #include "session/runner.h"
 #include "session/scoring.h"
 
@@ -15,6 +16,9 @@ struct SessionReport {
   bool aborted = false;                ///< the session was cut: its parts are kept, but it has no total
   double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn
 };
+
+/// Total, verdict and parts; `aborted` as in the report.
+OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted);
 
 /// Pretty-printed, keys in a fixed order, with a final line end.
 std::string report_json(const ExerciseDefinition& exercise, const SessionResult& session,

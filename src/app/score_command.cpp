@@ -1,0 +1,266 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/output_folder.h"
+#include "app/play.h"
+#include "app/process_pool.h"
+#include "app/project.h"
+#include "app/score_recording.h"
+#include "app/score_tables.h"
+#include "app/terminal.h"
+#include "base/hash.h"
+#include "base/log.h"
+#include "lua/read_benchmarks.h"
+#include "session/json_fields.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Each once, though it may have been named twice: a trainee counts once in a class.
+std::vector<std::string> recordings_of(const std::vector<std::string>& names) {
+  std::vector<std::string> files;
+  std::set<fs::path> seen;
+  std::error_code error;
+  const auto add = [&](const std::string& file) {
+    if (seen.insert(fs::weakly_canonical(file, error)).second)
+      files.push_back(file);
+    else
+      log_info(fmt::format("{} is named twice; it is scored once.", file));
+  };
+  for (const std::string& name : names) {
+    if (!fs::is_directory(name, error)) {
+      add(name);
+      continue;
+    }
+    for (const fs::path& file : files_below(name, ".jsonl")) add(file.string());
+  }
+  return files;
+}
+
+/// What was scored before, one file an entry: "hash of the second line" and the entry without its file's name.
+class Results {
+ public:
+  explicit Results(fs::path folder) : folder_(std::move(folder)) {}
+
+  /// Null where there is none, or where it is not what was written.
+  OrderedJson find(const std::string& key) const {
+    std::error_code error;
+    if (folder_.empty() || !fs::is_regular_file(path(key), error)) return {};
+    const Result<std::string> text = read_text(path(key));
+    const std::size_t end = text ? text->find('\n') : std::string::npos;
+    if (end == std::string::npos || text->substr(0, end) != checksum(text->substr(end + 1))) return {};
+    return OrderedJson::parse(text->substr(end + 1), nullptr, false);
+  }
+
+  Result<std::string> keep(const std::string& key, OrderedJson entry) const {
+    entry.erase("file");
+    const std::string text = entry.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    return write_text(path(key), checksum(text) + '\n' + text);
+  }
+
+ private:
+  fs::path path(const std::string& key) const { return folder_ / (key + ".json"); }
+  static std::string checksum(const std::string& text) {
+    Hash hash;
+    hash.add(std::string_view(text));
+    return '"' + hex(hash.value()) + '"';
+  }
+
+  fs::path folder_;
+};
+
+/// One run of the command.
+class ClassScorer {
+ public:
+  ClassScorer(const ScoreCommand& command, RecordingScorer scorer, std::vector<std::string> files)
+      : command_(command),
+        scorer_(std::move(scorer)),
+        files_(std::move(files)),
+        results_(command.output),
+        entries_(files_.size()) {}
+
+  std::optional<Failure> run() {
+    const PoolOptions options{command_.jobs, &interrupt_flag()};
+    const Result<int> done = work_in_processes(
+        static_cast<int>(files_.size()), options, [this](int k) { return answer(k); },
+        [this](int k, Result<std::string> text) { take(k, std::move(text)); });
+    if (!done) return done.failure();
+    if (interrupt_flag())
+      return fail(FailureKind::interrupted,
+                  fmt::format("interrupted when {} of {} recordings were done", done.value(), files_.size()));
+    return unwritten_;
+  }
+
+  const std::vector<OrderedJson>& entries() const { return entries_; }
+  int taken() const { return taken_; }
+
+ private:
+  const std::string& file(int k) const { return files_[static_cast<std::size_t>(k)]; }
+
+  /// In a process of its own.
+  std::string answer(int k) {
+    const std::string key = command_.output.empty() ? "" : scorer_.key(file(k));
+    OrderedJson json = {{"key", key}};
+    OrderedJson kept = !key.empty() && !command_.again ? results_.find(key) : OrderedJson();
+    if (kept.is_object())
+      json["kept"] = std::move(kept);
+    else
+      json["entry"] = scorer_.score(file(k));
+    return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  }
+
+  void take(int k, Result<std::string> text) {
+    OrderedJson& entry = entries_[static_cast<std::size_t>(k)];
+    entry = {{"file", file(k)}};
+    if (!text) {
+      Failure failure = text.failure();
+      for (Problem& problem : failure.problems) problem.place.file = file(k);
+      entry["failure"] = problems_json(failure);
+      entry["exit_code"] = static_cast<int>(exit_code(failure.kind));
+    } else {
+      add(OrderedJson::parse(text.value()), entry);
+    }
+    if (++done_; line_.due()) line_.show(fmt::format("{} of {} recordings", done_, files_.size()));
+  }
+
+  void add(const OrderedJson& answer, OrderedJson& entry) {
+    const bool kept = answer.contains("kept");
+    entry.update(kept ? answer["kept"] : answer["entry"]);
+    if (kept) ++taken_;
+    if (kept || answer["key"] == "" || entry.contains("failure")) return;
+    const Result<std::string> written = results_.keep(answer["key"].get<std::string>(), entry);
+    if (!written && !unwritten_) unwritten_ = written.failure();
+  }
+
+  const ScoreCommand& command_;
+  RecordingScorer scorer_;
+  std::vector<std::string> files_;
+  Results results_;
+  std::vector<OrderedJson> entries_;
+  int done_ = 0, taken_ = 0;
+  std::optional<Failure> unwritten_;
+  ProgressLine line_;
+};
+
+/// How many were simulated, for which reason.
+void tell_why(const std::vector<OrderedJson>& entries) {
+  std::map<std::string, int> reasons;
+  for (const OrderedJson& entry : entries)
+    if (entry.contains("why") && entry["why"].is_string()) ++reasons[entry["why"].get<std::string>()];
+  for (const auto& [why, count] : reasons)
+    if (why != "--replay") log_info(fmt::format("{} of {} simulated: {}.", count, entries.size(), why));
+}
+
+/// Says what a reader of the scores has to know of single recordings; the exit code that follows from them.
+ExitCode judge(const std::vector<OrderedJson>& entries, const ScoreCommand& command) {
+  std::optional<ExitCode> failed;
+  std::string next;
+  const std::string exercise = shell_word(command.exercise);
+  const auto tell = [&](const OrderedJson& entry, const std::string& what, const char* look) {
+    const auto& name = entry["file"].get_ref<const std::string&>();
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), what.c_str());
+    if (next.empty()) next = fmt::format(fmt::runtime(look), exercise, shell_word(name));
+  };
+  for (const OrderedJson& entry : entries) {
+    if (entry.contains("failure")) {
+      std::fprintf(stderr, "%s\n", failure_text(entry).c_str());
+      if (!failed) failed = static_cast<ExitCode>(entry["exit_code"].get<int>());
+      continue;
+    }
+    const double total = entry["score"]["total"].get<double>();
+    if (!entry["whole"].get<bool>())
+      tell(entry,
+           fmt::format("it did not come to its end ({}): scored up to {:.3f} s",
+                       entry["end"].get<std::string>(), entry["stopped_at_s"].get<double>()),
+           "calot replay {1} --scenario {0}");
+    else if (command.fail_below && total < *command.fail_below)
+      tell(entry, fmt::format("the score, {:.1f}, is below {:g}", total, *command.fail_below),
+           "calot score {0} {1}");
+    if (entry["verified"] == false)
+      for (const OrderedJson& difference : entry["differences"])
+        tell(entry, difference.get<std::string>(), "calot replay {1} --scenario {0}");
+  }
+  if (next.empty() && failed) next = "calot run " + exercise;
+  if (!next.empty()) std::fprintf(stderr, "Next: %s\n", next.c_str());
+  return failed.value_or(next.empty() ? ExitCode::ok : ExitCode::mismatch);
+}
+
+Result<ScoreRequest> read_request(const ScoreCommand& command) {
+  ScoreRequest request;
+  request.exercise = command.exercise;
+  request.verify = command.replay;
+  request.keyed = !command.output.empty();
+  if (command.benchmarks.empty()) return request;
+  Result<BenchmarkTable> table = read_benchmarks(command.benchmarks, project_part("scripts/lua"));
+  if (!table) return table.failure();
+  request.benchmarks = std::move(table).value();
+  return request;
+}
+
+std::optional<Failure> write_scores(const fs::path& folder, const ClassScores& scores) {
+  if (folder.empty()) return std::nullopt;
+  for (const auto& [name, text] :
+       {std::pair{"scores.json", scores_json(scores)}, {"scores.csv", scores_csv(scores)}}) {
+    const Result<std::string> written = write_text(folder / name, text);
+    if (!written) return written.failure();
+  }
+  return std::nullopt;
+}
+
+void print_scores(const ClassScores& scores, const ScoreCommand& command) {
+  const std::string text = command.json  ? scores_json(scores)
+                           : command.csv ? scores_csv(scores)
+                                         : scores_text(scores);
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+ExitCode score_command(const ScoreCommand& command) {
+  interrupt_flag();  // before a process is started: from here on an interruption ends in order
+  const std::string again = "calot score " + shell_word(command.exercise) + " ...";
+  std::vector<std::string> files = recordings_of(command.recordings);
+  if (files.empty()) {
+    print_failure(fail(FailureKind::usage, fmt::format("there is no recording (.jsonl) below {}",
+                                                       fmt::join(command.recordings, ", "))),
+                  "calot run " + shell_word(command.exercise), command.json);
+    return ExitCode::nothing_selected;
+  }
+  Result<ScoreRequest> request = read_request(command);
+  if (!request) return print_failure(request.failure(), "calot score --help", command.json);
+  const std::optional<BenchmarkTable> benchmarks = request->benchmarks;
+  Result<RecordingScorer> scorer = RecordingScorer::create(std::move(request).value());
+  if (!scorer) {
+    const bool usage = scorer.failure().kind == FailureKind::usage;
+    return print_failure(scorer.failure(),
+                         usage ? "calot score --help" : "calot check " + shell_word(command.exercise),
+                         command.json);
+  }
+  const ExerciseDefinition exercise = scorer->exercise();
+  std::optional<OutputFolder> folder;
+  if (!command.output.empty()) {
+    Result<OutputFolder> claimed = OutputFolder::claim(command.output);
+    if (!claimed) return print_failure(claimed.failure(), "calot score --help", command.json);
+    folder.emplace(std::move(claimed).value());
+  }
+  ClassScorer run(command, std::move(scorer).value(), std::move(files));
+  std::optional<Failure> failure = run.run();
+  const ClassScores scores{exercise, benchmarks, run.entries()};
+  if (!failure) failure = write_scores(command.output, scores);
+  if (failure) return print_failure(*failure, again, command.json);
+  if (run.taken() > 0)
+    log_info(fmt::format("{} of {} taken from {}; --again scores them anew.", run.taken(),
+                         scores.entries.size(), command.output));
+  tell_why(scores.entries);
+  print_scores(scores, command);
+  return judge(scores.entries, command);
+}
+
+}  // namespace calot

@@ -1,0 +1,203 @@
+#include "app/score_recording.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+
+#include "app/exit_code.h"
+#include "app/play.h"
+#include "app/replay_checks.h"
+#include "base/hash.h"
+#include "session/progress_json.h"
+
+namespace calot {
+namespace {
+
+constexpr const char* entry_version = "calot.scores/1";
+
+/// Adds a file's bytes; false where it cannot be read.
+bool add_file(Hash& hash, const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::array<char, 1 << 16> part;
+  while (in.good()) {
+    in.read(part.data(), part.size());
+    hash.add_bytes(part.data(), static_cast<std::size_t>(in.gcount()));
+  }
+  return in.eof() && !in.bad();
+}
+
+bool came_to_its_end(const std::string& end) {
+  return !end.empty() && end != to_text(SessionEnd::interrupted) && end != to_text(SessionEnd::failed);
+}
+
+/// How the recorded session ended, as far as its replay shows it.
+std::string end_of(const Recording& recording, const SessionResult& session) {
+  if (session.end != SessionEnd::source_ended) return to_text(session.end);
+  if (recording.end.empty()) return "cut";
+  return came_to_its_end(recording.end) ? to_text(session.end) : recording.end;
+}
+
+void add_measured(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
+                  const Progress& progress, const std::vector<std::string>& notes, OrderedJson& entry) {
+  Score total = score(exercise, metrics, progress);
+  const bool whole = entry["whole"].get<bool>();
+  total.passed = total.passed && whole;
+  entry["params"] = exercise.params;
+  entry["score"] = score_json(exercise, total, false);
+  entry["metrics"] = metrics;
+  entry["steps"] = steps_json(progress);
+  entry["notes"] = notes;
+}
+
+/// What a simulation measured otherwise than the recording says.
+std::vector<std::string> differences(const Measured& held, const SessionResult& session) {
+  std::vector<std::string> found;
+  for (const auto& [name, value] : held.metrics) {
+    const auto simulated = session.metrics.find(name);
+    if (simulated == session.metrics.end())
+      found.push_back(fmt::format("{} is {} in the recording, and was not measured now", name, value));
+    else if (simulated->second != value)
+      found.push_back(fmt::format("{} is {} in the recording, {} simulated", name, value, simulated->second));
+  }
+  for (const auto& [name, value] : session.metrics)
+    if (!held.metrics.contains(name))
+      found.push_back(fmt::format("{} = {} is not in the recording", name, value));
+  if (steps_json(held.progress) != steps_json(session.progress)) found.emplace_back("the steps differ");
+  if (events_json(held.progress) != events_json(session.progress)) found.emplace_back("the events differ");
+  if (notes_json(held.progress) != notes_json(session.progress)) found.emplace_back("what was noted differs");
+  return found;
+}
+
+void verify(const Recording& recording, const SessionResult& session, OrderedJson& entry) {
+  const StateComparison states = compare_states(recording, session);
+  std::vector<std::string> found;
+  if (!states.message.empty()) found.push_back(states.message);
+  const bool same_bits = states.differs || states.message.empty();
+  if (recording.measured && same_bits)
+    for (std::string& difference : differences(*recording.measured, session))
+      found.push_back(std::move(difference));
+  if (same_bits && (recording.header.state_hash || recording.measured)) entry["verified"] = found.empty();
+  entry["differences"] = found;
+}
+
+}  // namespace
+
+Result<RecordingScorer> RecordingScorer::create(ScoreRequest request) {
+  RecordingScorer scorer(std::move(request));
+  Result<Exercise> standard = scorer.load({}, PlayRequest().seed);
+  if (!standard) return standard.failure();
+  scorer.standard_ = std::move(standard).value();
+  if (!scorer.request_.keyed) return scorer;
+  Hash hash;
+  hash.add(std::string_view(entry_version));
+  hash.add(scorer.standard_.hash);
+  hash.add(scorer.request_.benchmarks ? scorer.request_.benchmarks->source_hash : 0);
+  hash.add(scorer.request_.verify);
+  hash.add(std::string_view(to_text(this_make())));
+  add_file(hash, "/proc/self/exe");
+  scorer.key_base_ = hash.value();
+  return scorer;
+}
+
+std::string RecordingScorer::key(const std::string& file) const {
+  Hash hash;
+  hash.add(key_base_);
+  return add_file(hash, file) ? hex(hash.value()) : std::string();
+}
+
+OrderedJson RecordingScorer::score(const std::string& file) {
+  OrderedJson entry = {{"file", file}};
+  const Result<Recording> recording = read_recording(file);
+  const std::optional<Failure> failure =
+      recording ? add_score(recording.value(), entry) : std::optional(recording.failure());
+  if (failure)
+    entry = {{"file", file},
+             {"failure", problems_json(*failure)},
+             {"exit_code", static_cast<int>(exit_code(failure->kind))}};
+  return entry;
+}
+
+Result<RecordingScorer::Exercise> RecordingScorer::load(const std::map<std::string, std::string>& params,
+                                                        std::uint64_t seed) const {
+  PlayRequest request;
+  request.scenario = request_.exercise;
+  request.params = params;
+  request.seed = seed;
+  Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
+  if (!script) return script.failure();
+  Exercise exercise{script.value()->definition(), exercise_hash(script.value()->definition())};
+  if (!request_.benchmarks) return exercise;
+  std::vector<Problem> problems = apply(*request_.benchmarks, exercise.definition);
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  return exercise;
+}
+
+Result<const RecordingScorer::Exercise*> RecordingScorer::exercise_of(const RecordingHeader& header) {
+  const ExerciseDefinition& standard = standard_.definition;
+  if (header.seed == standard.seed && (header.params.empty() || header.params == standard.params))
+    return &standard_;
+  std::string name = std::to_string(header.seed);
+  for (const auto& [key, value] : header.params) name += '\n' + key + '=' + value;
+  const auto known = known_.find(name);
+  if (known != known_.end()) return &known->second;
+  Result<Exercise> loaded = load(header.params, header.seed);
+  if (!loaded) return loaded.failure();
+  return &known_.emplace(name, std::move(loaded).value()).first->second;
+}
+
+std::optional<Failure> RecordingScorer::add_score(const Recording& recording, OrderedJson& entry) {
+  const Result<const Exercise*> found = exercise_of(recording.header);
+  if (!found) return found.failure();
+  const Exercise& exercise = *found.value();
+  if (std::optional<Failure> wrong =
+          check_replay(recording, exercise.definition, "name the exercise that it was made with"))
+    return wrong;
+  const std::optional<std::string> why = why_simulate(recording, exercise);
+  entry["from"] = why ? "simulation" : "recording";
+  entry["why"] = why ? OrderedJson(*why) : OrderedJson();
+  entry["verified"] = nullptr;
+  entry["differences"] = OrderedJson::array();
+  if (why) return simulate(recording, exercise, entry);
+  entry["end"] = recording.end;
+  entry["whole"] = came_to_its_end(recording.end);
+  entry["stopped_at_s"] = recording.steps.empty() ? 0.0 : recording.steps.back().time;
+  add_measured(exercise.definition, recording.measured->metrics, recording.measured->progress,
+               recording.measured->notes, entry);
+  return std::nullopt;
+}
+
+std::optional<std::string> RecordingScorer::why_simulate(const Recording& recording,
+                                                         const Exercise& exercise) const {
+  if (request_.verify) return "--replay";
+  if (recording.end.empty()) return "the recording was cut";
+  if (!recording.measured) return "the recording does not hold what was measured";
+  if (recording.measured->exercise_hash != exercise.hash)
+    return "the exercise has changed since it was recorded";
+  return std::nullopt;
+}
+
+std::optional<Failure> RecordingScorer::simulate(const Recording& recording, const Exercise& exercise,
+                                                 OrderedJson& entry) const {
+  PlayRequest request;
+  request.scenario = request_.exercise;
+  request.params = recording.header.params;
+  request.seed = recording.header.seed;
+  request.replay = &recording;
+  request.render = false;
+  request.show_progress = false;
+  Result<Played> played = play(request);
+  if (!played) return played.failure();
+  const SessionResult& session = played->session;
+  if (session.end == SessionEnd::interrupted) return fail(FailureKind::interrupted, "interrupted");
+  if (request_.verify) verify(recording, session, entry);
+  entry["end"] = end_of(recording, session);
+  entry["whole"] = !played->report.aborted;
+  entry["stopped_at_s"] = session.traces.time.back();
+  std::vector<std::string> notes = session.notes;
+  if (session.end == SessionEnd::failed) notes.push_back(to_text(session.failure));
+  add_measured(exercise.definition, session.metrics, session.progress, notes, entry);
+  return std::nullopt;
+}
+
+}  // namespace calot

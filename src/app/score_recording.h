@@ -1,0 +1,63 @@
+#pragma once
+// One recording's score: from what it holds where the exercise is still the one that was played, else by simulating.
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "session/benchmarks.h"
+#include "session/json.h"
+#include "session/recording.h"
+
+namespace calot {
+
+struct ScoreRequest {
+  std::filesystem::path exercise;
+  std::optional<BenchmarkTable> benchmarks;  ///< instead of the exercise's own
+  bool verify = false;                       ///< simulate, and compare with what the recording holds
+  bool keyed = false;                        ///< key() is going to be asked
+};
+
+/// Scores recordings of one exercise. An entry of calot.scores/1 is an object of
+///   file         as it was named
+///   failure      a list of problems where there is no score, with the exit_code of their kind; then nothing follows
+///   from         "recording" or "simulation"; why: why it was simulated, else null
+///   verified     with `verify`: true, false, or null where nothing can be said; differences: in words, what differs
+///   end          how the session ended, "cut" where the recording has no end
+///   whole        it came to its end; else it is scored up to stopped_at_s, and not passed
+///   stopped_at_s
+///   params       of the exercise, as it was played
+///   score, metrics, steps, notes   as in calot.report/1
+class RecordingScorer {
+ public:
+  /// Reads the exercise with its parameters' defaults. Fails as load_scenario does, or where the benchmarks do not fit.
+  static Result<RecordingScorer> create(ScoreRequest request);
+
+  const ExerciseDefinition& exercise() const { return standard_.definition; }
+  /// A hash of all that decides a recording's entry but its name: its text, the exercise, the benchmarks and this
+  /// program. Empty where it cannot be read.
+  std::string key(const std::string& file) const;
+  OrderedJson score(const std::string& file);
+
+ private:
+  struct Exercise {
+    ExerciseDefinition definition;  ///< with the benchmarks
+    std::uint64_t hash = 0;         ///< exercise_hash
+  };
+
+  explicit RecordingScorer(ScoreRequest request) : request_(std::move(request)) {}
+  Result<Exercise> load(const std::map<std::string, std::string>& params, std::uint64_t seed) const;
+  Result<const Exercise*> exercise_of(const RecordingHeader& header);
+  std::optional<Failure> add_score(const Recording& recording, OrderedJson& entry);
+  /// Why what the recording holds is not enough; none where it is.
+  std::optional<std::string> why_simulate(const Recording& recording, const Exercise& exercise) const;
+  std::optional<Failure> simulate(const Recording& recording, const Exercise& exercise,
+                                  OrderedJson& entry) const;
+
+  ScoreRequest request_;
+  Exercise standard_;
+  std::uint64_t key_base_ = 0;
+  std::map<std::string, Exercise> known_;  ///< by parameters and seed
+};
+
+}  // namespace calot

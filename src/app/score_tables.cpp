@@ -1,0 +1,271 @@
+#include "app/score_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "app/terminal.h"
+
+namespace calot {
+namespace {
+
+bool is_scored(const OrderedJson& entry) { return !entry.contains("failure"); }
+bool is_whole(const OrderedJson& entry) { return is_scored(entry) && entry["whole"].get<bool>(); }
+bool has_passed(const OrderedJson& entry) { return is_scored(entry) && entry["score"]["passed"].get<bool>(); }
+double total_of(const OrderedJson& entry) { return entry["score"]["total"].get<double>(); }
+
+/// The parts, in the order of the exercise's; null where a recording was made under parameters that give others.
+const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry) {
+  if (!is_scored(entry)) return nullptr;
+  const OrderedJson& parts = entry["score"]["parts"];
+  const std::vector<ScorePart>& expected = scores.exercise.score.parts;
+  const bool same =
+      std::equal(expected.begin(), expected.end(), parts.begin(), parts.end(),
+                 [](const ScorePart& part, const OrderedJson& json) { return json["name"] == part.name; });
+  return same ? &parts : nullptr;
+}
+
+/// The totals of those that came to their end, ascending.
+std::vector<double> whole_totals(const ClassScores& scores) {
+  std::vector<double> totals;
+  for (const OrderedJson& entry : scores.entries)
+    if (is_whole(entry)) totals.push_back(total_of(entry));
+  std::sort(totals.begin(), totals.end());
+  return totals;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Of all parts, in the score's order; nan of one that nobody has.
+std::vector<double> mean_points(const ClassScores& scores) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i) {
+    std::vector<double> points;
+    for (const OrderedJson& entry : scores.entries) {
+      const OrderedJson* parts = parts_of(scores, entry);
+      if (parts != nullptr && is_whole(entry)) points.push_back((*parts)[i]["points"].get<double>());
+    }
+    means.push_back(points.empty() ? std::numeric_limits<double>::quiet_NaN() : mean_of(points));
+  }
+  return means;
+}
+
+OrderedJson totals_json(const std::vector<double>& totals) {
+  OrderedJson json = {{"mean", nullptr},
+                      {"median", nullptr},
+                      {"standard_deviation", nullptr},
+                      {"least", nullptr},
+                      {"most", nullptr}};
+  if (totals.empty()) return json;
+  const std::size_t half = totals.size() / 2;
+  const double mean = mean_of(totals);
+  double squares = 0;
+  for (const double total : totals) squares += (total - mean) * (total - mean);
+  json["mean"] = mean;
+  json["median"] = totals.size() % 2 == 1 ? totals[half] : (totals[half - 1] + totals[half]) / 2;
+  if (totals.size() > 1)
+    json["standard_deviation"] = std::sqrt(squares / static_cast<double>(totals.size() - 1));
+  json["least"] = totals.front();
+  json["most"] = totals.back();
+  return json;
+}
+
+OrderedJson class_json(const ClassScores& scores) {
+  const auto count = [&](bool (*is)(const OrderedJson&)) {
+    return std::count_if(scores.entries.begin(), scores.entries.end(), is);
+  };
+  OrderedJson json = {{"recordings", scores.entries.size()},
+                      {"scored", count(is_scored)},
+                      {"whole", count(is_whole)},
+                      {"passed", count(has_passed)}};
+  json["total"] = totals_json(whole_totals(scores));
+  json["parts"] = OrderedJson::array();
+  const std::vector<double> means = mean_points(scores);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    const ScorePart& part = scores.exercise.score.parts[i];
+    json["parts"].push_back({{"name", part.name},
+                             {"weight", part.weight},
+                             {"mean_points", std::isnan(means[i]) ? OrderedJson() : OrderedJson(means[i])}});
+  }
+  return json;
+}
+
+OrderedJson benchmarks_json(const std::optional<BenchmarkTable>& table) {
+  if (!table) return {{"name", "the exercise's own"}, {"version", nullptr}, {"calibration", "uncalibrated"}};
+  return {{"name", table->name}, {"version", table->version}, {"calibration", table->calibration}};
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+/// A text as it is, another value as JSON has it; nothing for null.
+std::string csv_field(const OrderedJson& value) {
+  if (value.is_null()) return {};
+  return csv_field(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+std::string csv_row(const std::vector<std::string>& fields) {
+  return fmt::format("{}\r\n", fmt::join(fields, ","));
+}
+
+std::set<std::string> all_metrics(const ClassScores& scores) {
+  std::set<std::string> names;
+  for (const OrderedJson& entry : scores.entries)
+    if (is_scored(entry))
+      for (const auto& [name, value] : entry["metrics"].items()) names.insert(name);
+  return names;
+}
+
+std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson& entry,
+                                   const std::set<std::string>& metrics) {
+  const OrderedJson& score = entry["score"];
+  std::string critical;
+  for (const OrderedJson& event : score["critical"])
+    critical += (critical.empty() ? "" : " ") + event["event"].get<std::string>();
+  std::vector<std::string> fields;
+  for (const char* key : {"file", "from", "end", "whole", "stopped_at_s"})
+    fields.push_back(csv_field(entry[key]));
+  for (const char* key : {"total", "passed", "completed"}) fields.push_back(csv_field(score[key]));
+  fields.push_back(csv_field(critical));
+  const OrderedJson* parts = parts_of(scores, entry);
+  for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
+    for (const char* key : {"points", "measured"})
+      fields.push_back(parts != nullptr ? csv_field((*parts)[i][key]) : "");
+  for (const std::string& name : metrics)
+    fields.push_back(entry["metrics"].contains(name) ? csv_field(entry["metrics"][name]) : "");
+  fields.emplace_back();
+  return fields;
+}
+
+std::string class_verdict(const OrderedJson& entry) {
+  if (!is_scored(entry)) return red("no score");
+  if (!is_whole(entry))
+    return red(
+        fmt::format("{} at {:.2f} s", entry["end"].get<std::string>(), entry["stopped_at_s"].get<double>()));
+  if (has_passed(entry)) return green("passed");
+  const OrderedJson& score = entry["score"];
+  if (!score["critical"].empty()) return red("critical: " + score["critical"][0]["event"].get<std::string>());
+  return red(score["completed"].get<bool>() ? "not passed" : "steps missing");
+}
+
+std::string one_decimal(double value) { return fmt::format("{:.1f}", value); }
+
+std::string class_table(const ClassScores& scores) {
+  std::vector<std::vector<std::string>> rows{{"recording", "score", "verdict"}};
+  std::string alignment = "lrl";
+  for (const ScorePart& part : scores.exercise.score.parts) {
+    rows[0].push_back(fmt::format("{} ({:.0f})", part.name, 100 * part.weight));
+    alignment += 'r';
+  }
+  for (const OrderedJson& entry : scores.entries) {
+    std::vector<std::string> row{entry["file"].get<std::string>()};
+    row.push_back(is_scored(entry) ? one_decimal(total_of(entry)) : "");
+    row.push_back(class_verdict(entry));
+    const OrderedJson* parts = parts_of(scores, entry);
+    for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
+      row.push_back(parts != nullptr ? one_decimal((*parts)[i]["points"].get<double>()) : "");
+    rows.push_back(std::move(row));
+  }
+  const std::vector<double> totals = whole_totals(scores);
+  if (totals.size() > 1) {
+    rows.push_back({"mean", one_decimal(mean_of(totals)), ""});
+    for (const double points : mean_points(scores))
+      rows.back().push_back(std::isnan(points) ? "" : one_decimal(points));
+  }
+  return table(rows, alignment);
+}
+
+std::string explained(const OrderedJson& entry) {
+  std::vector<std::vector<std::string>> rows;
+  for (const OrderedJson& part : entry["score"]["parts"])
+    rows.push_back({one_decimal(part["points"].get<double>()),
+                    fmt::format("of {:.1f}", 100 * part["weight"].get<double>()),
+                    part["name"].get<std::string>(), part["explanation"].get<std::string>()});
+  return table(rows, "rrll");
+}
+
+std::string counts_text(const ClassScores& scores) {
+  const OrderedJson counted = class_json(scores);
+  const auto number = [&](const char* key) { return counted[key].get<std::size_t>(); };
+  std::string text = fmt::format("{} of {} passed (pass mark {:.0f})", number("passed"), number("recordings"),
+                                 scores.exercise.score.pass);
+  if (number("scored") > number("whole"))
+    text += fmt::format("; {} scored up to where they stop", number("scored") - number("whole"));
+  if (number("recordings") > number("scored"))
+    text += fmt::format("; {} without a score", number("recordings") - number("scored"));
+  return text + '\n';
+}
+
+}  // namespace
+
+std::string scores_json(const ClassScores& scores) {
+  OrderedJson json = {{"schema", "calot.scores/1"},
+                      {"scenario", scores.exercise.id},
+                      {"title", scores.exercise.title},
+                      {"file", scores.exercise.file},
+                      {"pass_mark", scores.exercise.score.pass},
+                      {"benchmarks", benchmarks_json(scores.benchmarks)},
+                      {"recordings", scores.entries}};
+  json["class"] = class_json(scores);
+  return json_text(json) + '\n';
+}
+
+std::string scores_csv(const ClassScores& scores) {
+  std::vector<std::string> head{"file",  "from",   "end",       "whole",   "stopped_at_s",
+                                "total", "passed", "completed", "critical"};
+  for (const ScorePart& part : scores.exercise.score.parts) {
+    head.push_back(csv_field(part.name + " points"));
+    head.push_back(csv_field(part.name + " measured"));
+  }
+  const std::set<std::string> metrics = all_metrics(scores);
+  for (const std::string& name : metrics) head.push_back(csv_field(name));
+  head.emplace_back("failure");
+  std::string text = csv_row(head);
+  for (const OrderedJson& entry : scores.entries) {
+    std::vector<std::string> fields(head.size());
+    if (is_scored(entry)) {
+      fields = csv_entry(scores, entry, metrics);
+    } else {
+      fields.front() = csv_field(entry["file"]);
+      fields.back() = csv_field(failure_text(entry));
+    }
+    text += csv_row(fields);
+  }
+  return text;
+}
+
+std::string scores_text(const ClassScores& scores) {
+  std::string text =
+      fmt::format("{} ({})\n\n{}", bold(scores.exercise.title), scores.exercise.id, class_table(scores));
+  if (scores.entries.size() == 1 && is_scored(scores.entries[0])) text += '\n' + explained(scores.entries[0]);
+  text += '\n' + counts_text(scores);
+  if (scores.benchmarks)
+    text += fmt::format("Benchmarks: {}, version {}, {}.\n", scores.benchmarks->name,
+                        scores.benchmarks->version, scores.benchmarks->calibration);
+  else
+    text += "Benchmarks are design values, uncalibrated.\n";
+  return text;
+}
+
+std::string failure_text(const OrderedJson& entry) {
+  std::string text;
+  for (const OrderedJson& problem : entry["failure"]) {
+    const Problem plain{{problem["file"].get<std::string>(), problem["line"].get<int>(), {}},
+                        problem["message"].get<std::string>(),
+                        problem["hint"].get<std::string>()};
+    text += (text.empty() ? "" : "\n") + to_text(plain);
+  }
+  return text;
+}
+
+}  // namespace calot

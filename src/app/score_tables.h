@@ -1,0 +1,33 @@
+#pragma once
+// The scores of a class as text, as JSON and as CSV, from the entries of score_recording.h.
+
+#include <string>
+#include <vector>
+
+#include "session/benchmarks.h"
+#include "session/json.h"
+
+namespace calot {
+
+struct ClassScores {
+  const ExerciseDefinition& exercise;  ///< with the benchmarks
+  const std::optional<BenchmarkTable>& benchmarks;
+  const std::vector<OrderedJson>& entries;  ///< in the order in which they are shown
+};
+
+/// One object of schema calot.scores/1, with a line end: exercise, benchmarks, recordings (the entries) and class: how
+/// many there are, were scored, came to their end and passed; of the totals of those that came to their end, mean,
+/// median, standard deviation (of a sample), least and most; and each part's mean points.
+std::string scores_json(const ClassScores& scores);
+
+/// RFC 4180, a row a recording: file, from, end, whole, stopped_at_s, total, passed, completed, critical, each part's
+/// points and what was measured, all metrics, failure. What is not known is empty.
+std::string scores_csv(const ClassScores& scores);
+
+/// A table; of a single recording its parts, explained.
+std::string scores_text(const ClassScores& scores);
+
+/// A failure's problems, "file:line: message (hint)" each, one a line.
+std::string failure_text(const OrderedJson& entry);
+
+}  // namespace calot

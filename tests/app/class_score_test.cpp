@@ -1,0 +1,271 @@
+// calot score: a class of recordings, what they hold, what is cut, other benchmarks, results that are kept.
+
+#include <fmt/format.h>
+
+#include "app/program.h"
+#include "base/hash.h"
+#include "session/json.h"
+
+namespace calot::test {
+namespace {
+
+/// The small exercise, a part more, so that a penalty can be given other figures too.
+std::string scored_scenario() {
+  std::string text = small_scenario("t:step('move', 'Move about'); t:wait(0.2 * s); t:note('seen', 1)");
+  const std::string part = "expert = 0 }, weight = 1 },";
+  text.replace(
+      text.find(part), part.size(),
+      "expert = 0 }, weight = 0.5 },\n    { calot.score.penalty { event = 'empty_grasp', each = 0.5 }, "
+      "weight = 0.5 },");
+  return text;
+}
+
+class ScoredClass : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    spill(folder_ / "small.lua", scored_scenario());
+    const Outcome played = calot({"run", "small.lua", "--no-render", "-o", "out"});
+    ASSERT_EQ(played.code, 0) << played.err;
+    text_ = slurp(folder_ / "out" / "recording.jsonl");
+  }
+
+  Outcome score(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"score", "small.lua"});
+    return calot(arguments);
+  }
+  /// The entry of one recording with this text.
+  Json entry(const std::string& text, std::vector<std::string> options = {}) {
+    spill(folder_ / "one.jsonl", text);
+    options.insert(options.end(), {"one.jsonl", "--json"});
+    outcome_ = score(std::move(options));
+    EXPECT_TRUE(Json::accept(outcome_.out)) << outcome_.err;
+    return Json::parse(outcome_.out)["recordings"][0];
+  }
+  /// The recording with the checksum of what it now is.
+  static std::string sealed(const std::string& text) {
+    const std::size_t last = text.rfind('\n', text.size() - 2) + 1,
+                      at = text.find("checksum\":\"", last) + 11;
+    Hash hash;
+    hash.add(std::string_view(text).substr(0, last));
+    return text.substr(0, at) + hex(hash.value()) + text.substr(at + 16);
+  }
+  static std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    return text.replace(text.find(from), from.size(), to);
+  }
+
+  std::string text_;  ///< of a whole recording
+  Outcome outcome_;
+};
+
+TEST_F(ScoredClass, TwoHundredRecordingsScoreTheSameWhateverTheNumberOfProcesses) {
+  for (int i = 0; i < 200; ++i) {
+    std::string text = text_;
+    if (i == 20) text.resize(text.size() / 2);
+    if (i == 30) text = replaced(text, "\"time_s\":0.1,", "\"time_s\":7,");
+    spill(folder_ / "class" / fmt::format("{:03}.jsonl", i), text);
+  }
+  const Outcome one = score({"class", "-j", "1", "--json"}), two = score({"class", "-j", "2", "--json"});
+  EXPECT_EQ(one.out, two.out);
+  EXPECT_EQ(one.err, two.err);
+  EXPECT_EQ(one.code, 4) << "one could not be read";
+  EXPECT_NE(one.err.find("class/030.jsonl:6: time_s is 7, not 0.1"), std::string::npos) << one.err;
+  EXPECT_NE(one.err.find("class/020.jsonl: it did not come to its end (cut)"), std::string::npos) << one.err;
+  expect_next_command(one);
+  const Json json = Json::parse(one.out);
+  EXPECT_EQ(json["schema"], "calot.scores/1");
+  ASSERT_EQ(json["recordings"].size(), 200u);
+  for (std::size_t i = 0; i < 200; ++i)
+    EXPECT_EQ(json["recordings"][i]["file"], fmt::format("class/{:03}.jsonl", i));
+  EXPECT_EQ(json["class"]["recordings"], 200);
+  EXPECT_EQ(json["class"]["scored"], 199);
+  EXPECT_EQ(json["class"]["whole"], 198);
+  const double total = json["recordings"][0]["score"]["total"];
+  EXPECT_NEAR(json["class"]["total"]["mean"].get<double>(), total, 1e-9);  // a sum of 198 rounds
+  EXPECT_EQ(json["class"]["total"]["median"], total);
+}
+
+TEST_F(ScoredClass, WhatARecordingHoldsIsWhatItsSimulationMeasures) {
+  const Json held = entry(text_), simulated = entry(text_, {"--replay"});
+  EXPECT_EQ(held["from"], "recording");
+  EXPECT_EQ(simulated["from"], "simulation");
+  EXPECT_EQ(simulated["verified"], true) << simulated["differences"];
+  for (const char* key : {"score", "metrics", "steps", "end", "whole", "stopped_at_s", "params"})
+    EXPECT_EQ(held[key], simulated[key]) << key;
+  const Json report = Json::parse(slurp(folder_ / "out" / "report.json"));
+  EXPECT_EQ(held["score"], report["score"]);
+  EXPECT_EQ(held["metrics"], report["metrics"]);
+
+  const Json lied = entry(sealed(replaced(text_, "\"note.seen\":1.0", "\"note.seen\":2.0")), {"--replay"});
+  EXPECT_EQ(outcome_.code, 1);
+  EXPECT_EQ(lied["verified"], false);
+  EXPECT_EQ(lied["differences"], Json::array({"note.seen is 2 in the recording, 1 simulated"}));
+  expect_next_command(outcome_);
+  entry(replaced(text_, "\"note.seen\":1.0", "\"note.seen\":2.0"));
+  EXPECT_EQ(outcome_.code, 4) << "the checksum no longer fits";
+}
+
+TEST_F(ScoredClass, ARecordingCutAnywhereIsScoredUpToThereAndSaysSo) {
+  const Json whole = entry(text_);
+  const std::size_t measured = text_.find("{\"measured\""), header = text_.find('\n') + 1;
+  for (const std::size_t size : {header, header + 10, text_.find('\n', measured / 2) + 1, measured,
+                                 measured + 40, text_.rfind("{\"end\""), text_.size() - 2}) {
+    const Json cut = entry(text_.substr(0, size));
+    EXPECT_EQ(cut["from"], "simulation");
+    EXPECT_NE(outcome_.err.find("1 of 1 simulated: the recording was cut"), std::string::npos)
+        << outcome_.err;
+    EXPECT_NE(cut["notes"].dump().find("the recording has no end: it was cut"), std::string::npos)
+        << cut["notes"];
+    const bool all_steps = size >= measured;
+    EXPECT_EQ(outcome_.code, all_steps ? 0 : 1) << outcome_.err;
+    EXPECT_EQ(cut["end"], all_steps ? "done" : "cut");
+    EXPECT_EQ(cut["whole"], all_steps);
+    const auto steps =
+        std::count(text_.begin(), text_.begin() + static_cast<long>(std::min(size, measured)), '\n') - 1;
+    EXPECT_NEAR(cut["stopped_at_s"].get<double>(), static_cast<double>(steps) / 50, 1e-12);
+    EXPECT_EQ(cut["metrics"]["total.time_s"], cut["stopped_at_s"]);
+    if (all_steps) {
+      EXPECT_EQ(cut["metrics"], whole["metrics"]) << "the cut lost nothing of the session";
+      continue;
+    }
+    EXPECT_FALSE(cut["score"]["passed"].get<bool>());
+    EXPECT_NE(
+        outcome_.err.find(fmt::format("(cut): scored up to {:.3f} s", cut["stopped_at_s"].get<double>())),
+        std::string::npos)
+        << outcome_.err;
+  }
+  entry(text_.substr(0, header - 1) + "oops");
+  EXPECT_EQ(outcome_.code, 4) << "without its first line it is no recording";
+}
+
+TEST_F(ScoredClass, OfAChangedExerciseRecordingsAreSimulatedAnewAndSaySo) {
+  const double before = entry(text_)["score"]["total"];
+  spill(folder_ / "small.lua", replaced(scored_scenario(), "novice = 20", "novice = 40"));
+  const Json changed = entry(text_);
+  EXPECT_EQ(outcome_.code, 0);
+  EXPECT_EQ(changed["from"], "simulation");
+  EXPECT_NE(outcome_.err.find("1 of 1 simulated: the exercise has changed since it was recorded"),
+            std::string::npos)
+      << outcome_.err;
+  EXPECT_NEAR(changed["score"]["total"].get<double>() - before, (100 - before) / 2, 1e-9);
+}
+
+constexpr const char* clinic_table = R"(return {
+  name = "The clinic's", version = 3, exercise = "small", pass = 90, calibration = "medians of nobody",
+  parts = {
+    { part = "left.path_length_mm", novice = 40 },
+    { part = "empty_grasp", each = 1 },
+  },
+}
+)";
+
+TEST_F(ScoredClass, OtherBenchmarksReplaceFiguresWithoutSimulatingAndAreNamed) {
+  spill(folder_ / "clinic.lua", clinic_table);
+  const Json other = entry(text_, {"--benchmarks", "clinic.lua"});
+  EXPECT_EQ(outcome_.code, 0) << outcome_.err;
+  EXPECT_EQ(other["from"], "recording");
+  EXPECT_EQ(Json::parse(outcome_.out)["benchmarks"],
+            Json({{"name", "The clinic's"}, {"version", 3}, {"calibration", "medians of nobody"}}));
+  const Json path = other["score"]["parts"][0];
+  const double measured = path["measured"];
+  EXPECT_NEAR(path["points"].get<double>(), 50 * (40 - measured) / 40, 1e-9);
+  EXPECT_EQ(path["benchmark"]["novice"], 40);
+  EXPECT_EQ(path["benchmark"]["expert"], 0) << "what the table does not name stays";
+  EXPECT_EQ(path["benchmark"]["calibration"], "medians of nobody");
+  EXPECT_EQ(other["score"]["pass_mark"], 90);
+  EXPECT_NE(score({"one.jsonl", "--benchmarks", "clinic.lua"})
+                .out.find("The clinic's, version 3, medians of nobody"),
+            std::string::npos);
+}
+
+TEST_F(ScoredClass, MistakesInBenchmarksAreNamedAtTheirLines) {
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    spill(folder_ / "clinic.lua", replaced(clinic_table, from, to));
+    const Outcome outcome = score({"out", "--benchmarks", "clinic.lua"});
+    EXPECT_EQ(outcome.code, 6) << outcome.err;
+    expect_next_command(outcome);
+    return outcome.err;
+  };
+  const auto starts = [](const std::string& text, const std::string& begin) {
+    EXPECT_EQ(text.substr(0, begin.size()), begin);
+  };
+  starts(complaint("empty_grasp\"", "empty_gasp\""),
+         "clinic.lua:5: parts[2]: the score has no part \"empty_gasp\" (did you mean \"empty_grasp\"?)");
+  starts(complaint("each = 1", "novice = 1"), "clinic.lua:5: parts[2]: empty_grasp is a penalty");
+  starts(complaint("novice = 40", "each = 1"), "clinic.lua:4: parts[1]: left.path_length_mm lies between");
+  starts(complaint("novice = 40", "novice = 0"),
+         "clinic.lua:4: parts[1]: left.path_length_mm: novice and expert are both 0");
+  starts(complaint("\"small\"", "\"other\""),
+         "clinic.lua:2: exercise: these are benchmarks of other, not of small");
+  starts(complaint("version = 3", "version = 'x'"),
+         "clinic.lua:2: version: version must be a number, got a text");
+  starts(complaint("novice = 40", "novize = 40"), "clinic.lua:4: parts[1].novize: unknown key \"novize\"");
+  starts(complaint("version = 3,", ""), "clinic.lua:1: \"version\" is missing");
+  starts(complaint("version = 3,", "version = = 3,"), "clinic.lua:2: unexpected symbol near '='");
+}
+
+TEST_F(ScoredClass, ASecondRunTakesWhatIsThereUnlessAnythingButTheNameIsOther) {
+  spill(folder_ / "class" / "a.jsonl", text_);
+  spill(folder_ / "class" / "b.jsonl", text_.substr(0, text_.size() / 2));
+  spill(folder_ / "class" / "c.jsonl", "no recording");
+  const Outcome first = score({"class", "-o", "kept", "--json"});
+  EXPECT_EQ(first.code, 4) << first.err;
+  EXPECT_EQ(first.err.find("taken"), std::string::npos) << first.err;
+  EXPECT_EQ(first.out, slurp(folder_ / "kept" / "scores.json"));
+  EXPECT_NE(slurp(folder_ / "kept" / "scores.csv").find("class/b.jsonl,simulation,cut,false"),
+            std::string::npos);
+
+  fs::rename(folder_ / "class" / "a.jsonl", folder_ / "class" / "d.jsonl");
+  const Outcome second = score({"class", "-o", "kept", "--json"});
+  EXPECT_NE(second.err.find("2 of 3 taken from kept"), std::string::npos) << second.err;
+  EXPECT_EQ(Json::parse(second.out)["recordings"][2]["file"], "class/d.jsonl");
+  EXPECT_EQ(Json::parse(second.out)["recordings"][2]["metrics"],
+            Json::parse(first.out)["recordings"][0]["metrics"]);
+
+  EXPECT_EQ(score({"class", "-o", "kept", "--again"}).err.find("taken"), std::string::npos);
+  spill(folder_ / "clinic.lua", clinic_table);
+  EXPECT_EQ(score({"class", "-o", "kept", "--benchmarks", "clinic.lua"}).err.find("taken"),
+            std::string::npos);
+  for (const fs::directory_entry& file : fs::directory_iterator(folder_ / "kept"))
+    spill(file.path(), replaced(slurp(file.path()), "e", "E"));
+  EXPECT_EQ(score({"class", "-o", "kept", "--json"}).out, second.out) << "a damaged result is not taken";
+}
+
+TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
+  const Outcome csv = score({"out", "out/recording.jsonl", "--csv"}), text = score({"out"});
+  EXPECT_EQ(csv.code, 0) << csv.err;
+  EXPECT_NE(csv.err.find("is named twice"), std::string::npos) << csv.err;
+  const std::size_t end = csv.out.find("\r\n");
+  const std::string head = csv.out.substr(0, end), row = csv.out.substr(end + 2);
+  EXPECT_TRUE(
+      head.starts_with("file,from,end,whole,stopped_at_s,total,passed,completed,critical,"
+                       "left.path_length_mm points,left.path_length_mm measured,empty_grasp points,"))
+      << head;
+  EXPECT_TRUE(row.starts_with("out/recording.jsonl,recording,done,true,0.2,")) << row;
+  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(row.begin(), row.end(), ','));
+  EXPECT_NE(text.out.find("  out/recording.jsonl "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("1 of 1 passed (pass mark 80)"), std::string::npos) << text.out;
+  EXPECT_EQ(score({"out", "--fail-below", "99"}).code, 1);
+}
+
+TEST_F(ScoredClass, WhatCannotBeScoredSaysWhatToDo) {
+  fs::create_directories(folder_ / "empty");
+  EXPECT_EQ(score({"empty"}).code, 5);
+  EXPECT_EQ(score({"nobody.jsonl"}).code, 4);
+  EXPECT_EQ(score({"out", "--benchmarks", "nowhere.lua"}).code, 4);
+  EXPECT_EQ(calot({"score", "small.lua"}).code, 4);
+  EXPECT_EQ(calot({"score", "nowhere.lua", "out"}).code, 4);
+  spill(folder_ / "broken.lua", "return 7");
+  EXPECT_EQ(calot({"score", "broken.lua", "out"}).code, 6);
+  const Json other = entry(sealed(replaced(text_, "\"scenario\":\"small\"", "\"scenario\":\"large\"")));
+  EXPECT_EQ(outcome_.code, 4);
+  EXPECT_NE(other["failure"][0]["message"].get<std::string>().find("the recording is of large"),
+            std::string::npos);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"empty"}, {"nobody.jsonl"}, {"out", "-j", "0"}})
+    expect_next_command(score(arguments));
+}
+
+}  // namespace
+}  // namespace calot::test
