@@ -24,6 +24,7 @@ struct Program {
   RunCommand run;
   ReplayCommand replay;
   ScoreCommand score;
+  ImportCommand import;
   CheckCommand check;
   ListCommand list;
   NewCommand fresh;
@@ -138,6 +139,23 @@ void add_score(Program& program) {
   command.callback([&program] { program.chosen = [&program] { return score_command(program.score); }; });
 }
 
+void add_import(Program& program) {
+  CLI::App& command =
+      *program.app.add_subcommand("import", "make recordings of motion that was recorded elsewhere");
+  ImportCommand& import = program.import;
+  command.add_option("exercise", import.exercise, "the scenario's .lua file")->required();
+  command.add_option("files", import.files, "CSV, JIGSAWS kinematics (.txt) or sequence files (.mha)")
+      ->required();
+  command
+      .add_option("--registration", import.registration,
+                  "a Lua table: format, units, axes, and which tool is which instrument")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("-o,--output", import.output, "folder for the recordings")->type_name("DIR")->required();
+  command.add_flag("--json", import.json, "print what was done as JSON, and nothing else, to stdout");
+  command.callback([&program] { program.chosen = [&program] { return import_command(program.import); }; });
+}
+
 void add_check(Program& program) {
   CLI::App& command =
       *program.app.add_subcommand("check", "find what is wrong with scenarios without playing them");
@@ -246,6 +264,7 @@ int parse_and_run(int argc, char** argv) {
   add_run(program);
   add_replay(program);
   add_score(program);
+  add_import(program);
   add_check(program);
   add_list(program);
   add_new(program);

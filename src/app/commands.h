@@ -54,6 +54,14 @@ struct ScoreCommand {
 };
 ExitCode score_command(const ScoreCommand& command);
 
+struct ImportCommand {
+  std::string exercise, registration;  ///< files
+  std::vector<std::string> files;      ///< of motion from elsewhere
+  std::string output;                  ///< folder for the recordings
+  bool json = false;
+};
+ExitCode import_command(const ImportCommand& command);
+
 struct CheckCommand {
   std::vector<std::string> scenarios;  ///< files, or folders with all below them
   bool build = false;                  ///< build the worlds too

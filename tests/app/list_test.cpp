@@ -53,7 +53,8 @@ TEST_F(List, OfAScenarioWithMistakesSaysThem) {
 }
 
 TEST_F(List, ARunReportsItsNotesAndDrawsFramesAtTheTimesAskedFor) {
-  spill(folder_ / "small.lua", small_scenario("t:step('move', 'Move'); t:wait(0.1 * s); t:note('reach', 3, 'mm')"));
+  spill(folder_ / "small.lua",
+        small_scenario("t:step('move', 'Move'); t:wait(0.1 * s); t:note('reach', 3, 'mm')"));
   const Outcome outcome = calot({"run", "small.lua", "-o", "out", "--size", "64x48", "--at", "0.04,0.08"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "out/t000.04s.png"));

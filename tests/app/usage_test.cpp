@@ -16,7 +16,8 @@ TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
   const Outcome outcome = calot({});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
-  for (const char* command : {"run", "replay", "score", "check", "list", "new", "golden", "bench", "doctor"}) {
+  for (const char* command :
+       {"run", "replay", "score", "import", "check", "list", "new", "golden", "bench", "doctor"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
   }
 }
@@ -25,6 +26,7 @@ TEST_F(Usage, EveryCommandHasHelp) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"run"},
                                                                                      {"replay"},
                                                                                      {"score"},
+                                                                                     {"import"},
                                                                                      {"check"},
                                                                                      {"list"},
                                                                                      {"new"},

@@ -1,0 +1,310 @@
+#include "session/registration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/suggest.h"
+#include "session/runner.h"
+#include "sim/tool.h"
+
+namespace calot {
+namespace {
+
+constexpr double waiting_insertion = 30e-3;  // m: of a tool that is in its trocar and no further
+constexpr double least_spread = 1e-4;        // smallest eigenvalue of a bundle of shafts, of its number
+
+struct TimedPose {
+  double time = 0;  ///< s
+  int row = 0;
+  InstrumentPose pose;
+};
+
+std::vector<std::string> names_of(const std::vector<InstrumentDefinition>& instruments) {
+  std::vector<std::string> names;
+  for (const InstrumentDefinition& instrument : instruments) names.push_back(instrument.name);
+  return names;
+}
+
+Vec3 place_of(const SceneDefinition& scene, const std::string& port) {
+  for (const PortDefinition& known : scene.ports.empty() ? default_ports() : scene.ports)
+    if (known.name == port) return known.position;
+  return Vec3::Zero();  // validate() knows no such scene
+}
+
+/// One file's motion on its way into one exercise.
+class Importer {
+ public:
+  Importer(const ForeignMotion& motion, const Registration& registration, const ExerciseDefinition& exercise)
+      : motion_(motion), registration_(registration), exercise_(exercise), rate_(exercise.scene.solver.rate) {
+    axes_.col(0) = registration.x_axis;
+    axes_.col(1) = registration.y_axis;
+    axes_.col(2) = registration.z_axis;
+    result_.notes = motion.notes;
+  }
+
+  Result<ImportedRecording> run() {
+    const std::vector<std::string> names = names_of(exercise_.scene.instruments);
+    std::vector<std::vector<TimedPose>> tracks(names.size());
+    for (std::size_t i = 0; i < registration_.instruments.size(); ++i) {
+      const auto at =
+          std::find(names.begin(), names.end(), registration_.instruments[i].name) - names.begin();
+      tracks[static_cast<std::size_t>(at)] =
+          poses(i, exercise_.scene.instruments[static_cast<std::size_t>(at)]);
+    }
+    keep_first(problems_);
+    if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
+    write_header(names);
+    resample(tracks);
+    if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
+    return std::move(result_);
+  }
+
+ private:
+  void problem(int row, const std::string& message, const std::string& hint) {
+    if (motion_.framed)
+      problems_.push_back({{motion_.file, 0, {}}, fmt::format("frame {}: {}", row, message), hint});
+    else
+      problems_.push_back({{motion_.file, row, {}}, message, hint});
+  }
+
+  void note(const std::string& who, const std::string& what) { result_.notes.push_back(who + ": " + what); }
+
+  std::vector<TimedPose> poses(std::size_t track, const InstrumentDefinition& definition) {
+    const std::vector<ForeignSample>& samples = motion_.tracks[track];
+    const ForeignInstrument& tool = registration_.instruments[track];
+    std::vector<TimedPose> result;
+    if (samples.size() < 2) {
+      problems_.push_back(
+          {{motion_.file, 0, {}},
+           fmt::format("{} rows of \"{}\", which is {}", samples.size(), tool.source, tool.name),
+           "name the tool as the file does: the registration's source"});
+      return result;
+    }
+    const std::optional<Vec3> port = samples.front().pivot ? Vec3(Vec3::Zero()) : port_of(tool, samples);
+    if (!port) return result;
+    double roll = 0;
+    int held_jaws = 0;
+    for (const ForeignSample& sample : samples) {
+      TimedPose pose{sample.time * registration_.time_unit, sample.row, {}};
+      check_time(result, pose);
+      pose.pose = pose_of(sample, tool, *port, definition, roll, held_jaws);
+      result.push_back(pose);
+    }
+    if (held_jaws > 0)
+      note(tool.name,
+           fmt::format("the jaws were beyond closed or fully open in {} of {} rows, and are taken as that",
+                       held_jaws, samples.size()));
+    return result;
+  }
+
+  void check_time(const std::vector<TimedPose>& before, const TimedPose& pose) {
+    if (before.empty()) return;
+    const double gap = pose.time - before.back().time;
+    if (!(gap > 0))
+      problem(pose.row,
+              fmt::format("its time, {:.6g} s, is not after that of the row before, {:.6g} s", pose.time,
+                          before.back().time),
+              "mend or remove the row");
+    else if (gap > registration_.longest_gap + 1e-9)
+      problem(pose.row, fmt::format("nothing is known of the {:.3g} s before it", gap),
+              fmt::format("cut the file there, or allow more than longest_gap = {:g} s",
+                          registration_.longest_gap));
+  }
+
+  /// Their trocar, in their frame and unit.
+  std::optional<Vec3> port_of(const ForeignInstrument& tool, const std::vector<ForeignSample>& samples) {
+    if (tool.port) return tool.port;
+    // The point nearest to all shafts: the sum of squared distances to their lines is least there.
+    Mat3 sum = Mat3::Zero();
+    Vec3 moment = Vec3::Zero();
+    int lines = 0;
+    for (const ForeignSample& sample : samples) {
+      if (!sample.along) continue;
+      const Mat3 across = Mat3::Identity() - *sample.along * sample.along->transpose();
+      sum += across;
+      moment += across * sample.tip;
+      ++lines;
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> spread(sum);
+    if (lines < 2 || spread.eigenvalues()[0] < least_spread * lines) {
+      problems_.push_back(
+          {tool.place,
+           fmt::format("{}: the place of its trocar cannot be found from {}", tool.name,
+                       lines < 2 ? "a file without shaft directions" : "shafts that hardly turn"),
+           "give port = { x, y, z } in the file's frame and unit"});
+      return std::nullopt;
+    }
+    const Vec3 port = sum.ldlt().solve(moment);
+    double squares = 0;
+    for (const ForeignSample& sample : samples)
+      if (sample.along) squares += sample.along->cross(sample.tip - port).squaredNorm();
+    note(tool.name,
+         fmt::format(
+             "its trocar was found at {{ {:.4g}, {:.4g}, {:.4g} }} of the file's frame; the shafts pass "
+             "it at {:.2f} mm (root mean square)",
+             port.x(), port.y(), port.z(), std::sqrt(squares / lines) * registration_.unit / 1e-3));
+    return port;
+  }
+
+  InstrumentPose pose_of(const ForeignSample& sample, const ForeignInstrument& tool, const Vec3& port,
+                         const InstrumentDefinition& definition, double& roll, int& held_jaws) {
+    const InstrumentGeometry geometry = instrument_geometry(definition.type);
+    const double jaw = jaw_of(sample, tool, geometry, held_jaws);
+    InstrumentPose pose;
+    if (sample.pivot) {
+      pose = *sample.pivot;
+      pose.pitch *= registration_.angle_unit;
+      pose.yaw *= registration_.angle_unit;
+      pose.insertion *= registration_.unit;
+      pose.jaw = jaw;
+    } else {
+      const Vec3 trocar = place_of(exercise_.scene, definition.port);
+      const Vec3 tip = trocar + axes_ * (sample.tip - port) * registration_.unit;
+      pose = pose_reaching(trocar, tip, 0, jaw, geometry);
+    }
+    roll = sample.roll ? *sample.roll * registration_.angle_unit : roll_of(sample, pose, geometry, roll);
+    pose.roll = roll;
+    if (!(pose.insertion >= 0 && pose.insertion <= geometry.max_insertion))
+      problem(sample.row,
+              fmt::format("{} would be {:.1f} mm deep in its trocar: it reaches {:g} mm", tool.name,
+                          pose.insertion / 1e-3, geometry.max_insertion / 1e-3),
+              "are the registration's unit, port and axes right?");
+    return pose;
+  }
+
+  /// Of the file's `across` about the shaft, within half a turn of the one before.
+  double roll_of(const ForeignSample& sample, const InstrumentPose& pose, const InstrumentGeometry& geometry,
+                 double before) const {
+    if (!sample.across) return before;
+    const Mat3 frame = hinge_frame(Vec3::Zero(), pose, geometry).linear();
+    const Vec3 across = axes_ * *sample.across;
+    const double x = across.dot(frame.col(0)), y = across.dot(frame.col(1));
+    if (std::hypot(x, y) < 1e-6) return before;  // it looks along the shaft
+    return before + std::remainder(std::atan2(y, x) - before, 2 * std::numbers::pi);
+  }
+
+  double jaw_of(const ForeignSample& sample, const ForeignInstrument& tool,
+                const InstrumentGeometry& geometry, int& held_jaws) const {
+    if (!sample.jaw || !geometry.has_jaws()) return 0;
+    const double jaw = tool.jaw_closed ? (*sample.jaw - *tool.jaw_closed) /
+                                             (*tool.jaw_open - *tool.jaw_closed) * geometry.jaw_opening
+                                       : *sample.jaw * registration_.angle_unit;
+    const double held = std::clamp(jaw, 0.0, geometry.jaw_opening);
+    if (std::abs(held - jaw) > 1e-9) ++held_jaws;
+    return held;
+  }
+
+  void write_header(const std::vector<std::string>& names) {
+    RecordingHeader& header = result_.recording.header;
+    header.scenario = exercise_.id;
+    header.rate = rate_;
+    header.instruments = names;
+    result_.recording.end = to_text(SessionEnd::source_ended);
+  }
+
+  static InstrumentPose at(const std::vector<TimedPose>& track, double time) {
+    const auto after = std::upper_bound(track.begin(), track.end(), time,
+                                        [](double t, const TimedPose& pose) { return t < pose.time; });
+    if (after == track.begin()) return track.front().pose;
+    if (after == track.end()) return track.back().pose;
+    const TimedPose& from = *(after - 1);
+    return interpolate(from.pose, after->pose, (time - from.time) / (after->time - from.time));
+  }
+
+  /// For as long as all instruments are known, after they have come in.
+  void resample(const std::vector<std::vector<TimedPose>>& tracks) {
+    double start = tracks.front().front().time, end = tracks.front().back().time, depth = 0;
+    for (const std::vector<TimedPose>& track : tracks) {
+      start = std::max(start, track.front().time);
+      end = std::min(end, track.back().time);
+    }
+    if (end <= start) {
+      problems_.push_back({{motion_.file, 0, {}},
+                           "the instruments' times have nothing in common",
+                           "check time_unit and sources"});
+      return;
+    }
+    for (const std::vector<TimedPose>& track : tracks)
+      depth = std::max(depth, at(track, start).insertion - waiting_insertion);
+    const int lead = static_cast<int>(std::ceil(depth / lead_in_speed * rate_ - 1e-6));
+    const int steps = static_cast<int>(std::floor((end - start) * rate_ + 1e-6));
+    for (int k = 0; k < lead; ++k) {
+      const double left = (lead - k) / rate_ * lead_in_speed;
+      add_step(tracks, start, [&](InstrumentPose& pose) {
+        pose.insertion = std::max(std::min(pose.insertion, waiting_insertion), pose.insertion - left);
+      });
+    }
+    for (int k = 0; k <= steps; ++k) add_step(tracks, start + k / rate_, [](InstrumentPose&) {});
+    if (lead > 0)
+      result_.notes.push_back(
+          fmt::format("the instruments first go in from their trocars, for {:.2f} s", lead / rate_));
+  }
+
+  template <class Change>
+  void add_step(const std::vector<std::vector<TimedPose>>& tracks, double time, const Change& change) {
+    RecordedStep step;
+    for (const std::vector<TimedPose>& track : tracks) {
+      step.input.instruments.push_back(at(track, time));
+      change(step.input.instruments.back());
+    }
+    step.time = static_cast<double>(result_.recording.steps.size() + 1) / rate_;
+    result_.recording.steps.push_back(std::move(step));
+  }
+
+  const ForeignMotion& motion_;
+  const Registration& registration_;
+  const ExerciseDefinition& exercise_;
+  double rate_;
+  Mat3 axes_;
+  std::vector<Problem> problems_;
+  ImportedRecording result_;
+};
+
+}  // namespace
+
+std::vector<Problem> problems_with(const Registration& registration, const ExerciseDefinition& exercise) {
+  if (registration.exercise != exercise.id)
+    return {{registration.place,
+             fmt::format("this registers for {}, not for {}", registration.exercise, exercise.id),
+             "import for that exercise, or name another table"}};
+  std::vector<Problem> problems;
+  const std::vector<std::string> names = names_of(exercise.scene.instruments);
+  std::vector<std::string> given;
+  for (const ForeignInstrument& instrument : registration.instruments) {
+    if (std::find(names.begin(), names.end(), instrument.name) == names.end())
+      problems.push_back({instrument.place,
+                          fmt::format("the exercise has no instrument \"{}\"", instrument.name),
+                          suggestion(instrument.name, names)});
+    if (std::find(given.begin(), given.end(), instrument.name) != given.end())
+      problems.push_back(
+          {instrument.place, fmt::format("\"{}\" is there twice", instrument.name), "name each once"});
+    given.push_back(instrument.name);
+  }
+  for (const std::string& name : names)
+    if (std::find(given.begin(), given.end(), name) == given.end())
+      problems.push_back({registration.place,
+                          fmt::format("the exercise's instrument \"{}\" is missing", name),
+                          "add { name = \"" + name + "\", source = ... } to instruments"});
+  return problems;
+}
+
+Result<ImportedRecording> to_recording(const ForeignMotion& motion, const Registration& registration,
+                                       const ExerciseDefinition& exercise) {
+  return Importer(motion, registration, exercise).run();
+}
+
+std::optional<Failure> write_recording(const std::string& path, const Recording& recording) {
+  Result<RecordingWriter> writer = RecordingWriter::create(path, recording.header);
+  if (!writer) return writer.failure();
+  bool written = true;
+  for (const RecordedStep& step : recording.steps) written = written && writer->write(step);
+  if (written && writer->finish(recording.end)) return std::nullopt;
+  return fail(FailureKind::usage, fmt::format("cannot write {}", path), "is the disk full?");
+}
+
+}  // namespace calot
