@@ -91,7 +91,6 @@ Result<RecordingScorer> RecordingScorer::create(ScoreRequest request) {
   if (!scorer.request_.keyed) return scorer;
   Hash hash;
   hash.add(std::string_view(entry_version));
-  hash.add(scorer.standard_.hash);
   hash.add(scorer.request_.benchmarks ? scorer.request_.benchmarks->source_hash : 0);
   hash.add(scorer.request_.verify);
   hash.add(std::string_view(to_text(this_make())));
@@ -100,10 +99,15 @@ Result<RecordingScorer> RecordingScorer::create(ScoreRequest request) {
   return scorer;
 }
 
-std::string RecordingScorer::key(const std::string& file) const {
+std::string RecordingScorer::key(const std::string& file) {
+  const Result<Recording> recording = read_recording(file);
+  if (!recording) return {};
+  const Result<const Exercise*> exercise = exercise_of(recording->header);
   Hash hash;
   hash.add(key_base_);
-  return add_file(hash, file) ? hex(hash.value()) : std::string();
+  if (!exercise || !add_file(hash, file)) return {};
+  hash.add(exercise.value()->hash);
+  return hex(hash.value());
 }
 
 OrderedJson RecordingScorer::score(const std::string& file) {

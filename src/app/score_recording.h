@@ -35,8 +35,8 @@ class RecordingScorer {
 
   const ExerciseDefinition& exercise() const { return standard_.definition; }
   /// A hash of all that decides a recording's entry but its name: its text, the exercise, the benchmarks and this
-  /// program. Empty where it cannot be read.
-  std::string key(const std::string& file) const;
+  /// program. Empty where it cannot be scored.
+  std::string key(const std::string& file);
   OrderedJson score(const std::string& file);
 
  private:

@@ -16,7 +16,7 @@ namespace calot {
 namespace {
 
 constexpr std::size_t longest_row = 1 << 16;  // bytes
-constexpr std::size_t most_rows = 5'000'000;  // of a file
+constexpr int most_rows = 5'000'000;          // of a file
 constexpr double rotation_slack = 1e-2;       // of R R^T - 1: files give few digits
 constexpr std::size_t jigsaws_numbers = 76, arm_numbers = 19;
 
@@ -93,10 +93,11 @@ class MotionReader {
   Result<ForeignMotion> read() {
     if (!in_)
       return fail(FailureKind::usage, fmt::format("cannot read {}", motion_.file), "give the path of a file");
-    while (problems_.size() <= 100 && next_line() && take_line(line_)) {
+    while (problems_.size() <= 100 && next_line() && take_line(std::string_view(line_).substr(0, length_))) {
     }
     if (in_.bad()) problem("this cannot be read", "");
     finish();
+    shorten_problems();
     keep_first(problems_);
     if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
     return std::move(motion_);
@@ -119,17 +120,32 @@ class MotionReader {
 
  private:
   bool next_line() {
-    if (!std::getline(in_, line_)) return false;
+    if (in_.peek() == std::ifstream::traits_type::eof()) return false;
     ++row_;
-    if (line_.size() <= longest_row && static_cast<std::size_t>(row_) <= most_rows) return true;
-    problem(
-        fmt::format("this line has more than {} bytes, or is one of more than {}", longest_row, most_rows),
-        "this is no file of this format");
+    in_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+    const bool last = in_.eof();  // without a line end
+    length_ = static_cast<std::size_t>(in_.gcount()) - (in_ && !last ? 1U : 0U);
+    if (!in_.fail() && row_ <= most_rows) return true;
+    problem(fmt::format("this line has {} bytes or more, or is one of more than {}", longest_row, most_rows),
+            "this is no file of this format");
     return false;
   }
 
+  /// Of a file of which nothing is right a few rows say enough.
+  void shorten_problems() {
+    constexpr std::size_t enough = 3;
+    const bool nothing = std::all_of(motion_.tracks.begin(), motion_.tracks.end(),
+                                     [](const std::vector<ForeignSample>& track) { return track.empty(); });
+    if (!nothing || problems_.size() <= enough) return;
+    problems_.resize(enough);
+    problem(fmt::format("not one row is right: is this a file of format {}?",
+                        motion_format_names()[static_cast<std::size_t>(registration_.format)]),
+            "see the registration's format");
+  }
+
   std::ifstream in_;
-  std::string line_;
+  std::string line_ = std::string(longest_row, '\0');
+  std::size_t length_ = 0;
 };
 
 class CsvReader final : public MotionReader {

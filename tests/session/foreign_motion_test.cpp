@@ -276,6 +276,21 @@ TEST_F(ForeignFile, EveryBrokenRowIsRefusedWithItsNumber) {
   expect_said("frame 2: LeftJaw is missing, or no number");
 }
 
+TEST_F(ForeignFile, AFileOfAnotherFormatIsSaidToBeOneInFewWords) {
+  write_csv();
+  registration_.format = MotionFormat::jigsaws;
+  registration_.instruments = {tool_};
+  const Result<ForeignMotion> rows = read_foreign_motion(path_, registration_);
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.failure().problems.size(), 4u);
+  EXPECT_NE(to_text(rows.failure()).find("not one row is right: is this a file of format jigsaws?"),
+            std::string::npos);
+  const Result<ForeignMotion> endless = read_foreign_motion("/dev/zero", registration_);
+  ASSERT_FALSE(endless);
+  EXPECT_NE(to_text(endless.failure()).find("/dev/zero:1: this line has 65536 bytes or more"),
+            std::string::npos);
+}
+
 TEST_F(ForeignFile, WhatTheTrackerLostIsLeftOutAndALongGapIsRefused) {
   write_sequence();
   for (int k = 10; k < 14; ++k) edit(3 + 4 * k + 1, "OK", "INVALID");
