@@ -28,7 +28,10 @@ void add_meshes(Hash& hash, const std::vector<OrganDefinition>& organs) {
 
 std::map<std::string, double> read_metrics(const Json& json, std::vector<std::string>& problems) {
   std::map<std::string, double> metrics;
-  if (!json.is_object()) problems.emplace_back("metrics must be an object of numbers");
+  if (!json.is_object()) {
+    problems.emplace_back("metrics must be an object of numbers");
+    return metrics;
+  }
   for (const auto& [name, value] : json.items()) {
     if (value.is_number())
       metrics[name] = value.get<double>();

@@ -237,7 +237,11 @@ TEST_F(RecordingFile, ALineThatIsMissingOrTwiceThereIsNoticed) {
 }
 
 TEST_F(RecordingFile, EveryFlippedBitIsNoticed) {
-  write(random_steps(30), "done");
+  {
+    Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
+    for (const RecordedStep& step : random_steps(20)) ASSERT_TRUE(writer->write(step));
+    ASSERT_TRUE(writer->write(small_measured()) && writer->finish("done"));
+  }
   const std::string whole = text_of(path_);
   Rng rng(11);
   for (int i = 0; i < 500; ++i) {
@@ -323,6 +327,10 @@ TEST_F(RecordingFile, AnErrorIsNeverThatOfALibrary) {
       {head + ",\"state_hash\":\"0000000000000000\"}\n" + step + "\n", 2, "state_hash is missing"},
       {head + "}\n" + step + "\n{\"end\":\"done\",\"steps\":-1}\n", 3, "steps must be a whole number"},
       {head + "}\n" + step + "\n{\"end\":\"gone\",\"steps\":1}\n", 3, "does not end as \"gone\""},
+      {head + "}\n" + step + "\n{\"measured\":7}\n", 3, "exercise_hash is missing"},
+      {head + "}\n" + step + "\n{\"measured\":{\"metrics\":" + std::string(deep, '[') +
+           std::string(deep, ']') + "}}\n",
+       3, "metrics must be an object of numbers"},
       {head + "}\n" + std::string(1 << 20, ' '), 2, "more than 1048575 bytes"},
       {"{\"schema\":" + std::string(deep, '[') + std::string(deep, ']') + "}\n", 1,
        "not a recording of schema"},
