@@ -86,10 +86,12 @@ class ClassScorer {
         entries_(files_.size()) {}
 
   std::optional<Failure> run() {
+    line_.emplace();
     const PoolOptions options{command_.jobs, &interrupt_flag()};
     const Result<int> done = work_in_processes(
         static_cast<int>(files_.size()), options, [this](int k) { return answer(k); },
         [this](int k, Result<std::string> text) { take(k, std::move(text)); });
+    line_.reset();
     if (!done) return done.failure();
     if (interrupt_flag())
       return fail(FailureKind::interrupted,
@@ -126,7 +128,7 @@ class ClassScorer {
     } else {
       add(OrderedJson::parse(text.value()), entry);
     }
-    if (++done_; line_.due()) line_.show(fmt::format("{} of {} recordings", done_, files_.size()));
+    if (++done_; line_->due()) line_->show(fmt::format("{} of {} recordings", done_, files_.size()));
   }
 
   void add(const OrderedJson& answer, OrderedJson& entry) {
@@ -145,7 +147,7 @@ class ClassScorer {
   std::vector<OrderedJson> entries_;
   int done_ = 0, taken_ = 0;
   std::optional<Failure> unwritten_;
-  ProgressLine line_;
+  std::optional<ProgressLine> line_;  ///< while it runs
 };
 
 /// How many were simulated, for which reason.

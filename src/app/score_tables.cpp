@@ -161,26 +161,26 @@ std::string class_verdict(const OrderedJson& entry) {
 std::string one_decimal(double value) { return fmt::format("{:.1f}", value); }
 
 std::string class_table(const ClassScores& scores) {
-  std::vector<std::vector<std::string>> rows{{"recording", "score", "verdict"}};
-  std::string alignment = "lrl";
-  for (const ScorePart& part : scores.exercise.score.parts) {
+  std::vector<std::vector<std::string>> rows{{"recording", "score"}};
+  for (const ScorePart& part : scores.exercise.score.parts)
     rows[0].push_back(fmt::format("{} ({:.0f})", part.name, 100 * part.weight));
-    alignment += 'r';
-  }
+  const std::string alignment = "lr" + std::string(scores.exercise.score.parts.size(), 'r') + 'l';
+  rows[0].emplace_back("verdict");
   for (const OrderedJson& entry : scores.entries) {
     std::vector<std::string> row{entry["file"].get<std::string>()};
     row.push_back(is_scored(entry) ? one_decimal(total_of(entry)) : "");
-    row.push_back(class_verdict(entry));
     const OrderedJson* parts = parts_of(scores, entry);
     for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
       row.push_back(parts != nullptr ? one_decimal((*parts)[i]["points"].get<double>()) : "");
+    row.push_back(class_verdict(entry));  // last: colours have a width for the table, and none on the screen
     rows.push_back(std::move(row));
   }
   const std::vector<double> totals = whole_totals(scores);
   if (totals.size() > 1) {
-    rows.push_back({"mean", one_decimal(mean_of(totals)), ""});
+    rows.push_back({"mean", one_decimal(mean_of(totals))});
     for (const double points : mean_points(scores))
       rows.back().push_back(std::isnan(points) ? "" : one_decimal(points));
+    rows.back().emplace_back();
   }
   return table(rows, alignment);
 }
