@@ -87,9 +87,24 @@ Workers* GroupProblem::workers() const {
   return assembly ? &assembly->workers() : nullptr;
 }
 
-void GroupProblem::find_joins(const VecX& x) const {
-  for_each_chunk(workers(), static_cast<int>(joins_.size()),
-                 [&](int j) noexcept { joins_[static_cast<std::size_t>(j)]->find(x); });
+std::vector<const Join*> GroupProblem::joins_at(const VecX& x, const VecX* step) const {
+  std::vector<const Join*> out;
+  if (joins_.empty()) return out;
+  std::vector<SkinBounds> bounds;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    bounds.push_back({skin_box(members_[k].body, part_of(k, x)), {}});
+    if (step) bounds.back().motion = skin_motion(members_[k].body, part_of(k, *step));
+  }
+  for (const JoinPointer& join : joins_)
+    if (!join->idle(bounds)) out.push_back(join.get());
+  return out;
+}
+
+std::vector<const Join*> GroupProblem::find_joins(const VecX& x) const {
+  std::vector<const Join*> out = joins_at(x);
+  for_each_chunk(workers(), static_cast<int>(out.size()),
+                 [&](int j) noexcept { out[static_cast<std::size_t>(j)]->find(x); });
+  return out;
 }
 
 double GroupProblem::value(const VecX& x) const {
@@ -98,8 +113,10 @@ double GroupProblem::value(const VecX& x) const {
   double sum = 0;
   for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k) sum += values[k];
   if (!std::isfinite(sum)) return sum;
-  find_joins(x);
-  for (std::size_t j = 0; j < joins_.size() && std::isfinite(sum); ++j) sum += joins_[j]->value(x);
+  for (const Join* join : find_joins(x)) {
+    sum += join->value(x);
+    if (!std::isfinite(sum)) return sum;
+  }
   return sum;
 }
 
@@ -111,8 +128,7 @@ double GroupProblem::cancelling() const {
 
 void GroupProblem::add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const {
   if (joins_.empty()) return;
-  find_joins(x);
-  for (const JoinPointer& join : joins_) join->add_gradient(x, gradient);
+  for (const Join* join : find_joins(x)) join->add_gradient(x, gradient);
   for (std::size_t k = 0; k < problems_.size(); ++k)
     largest_internal[static_cast<Eigen::Index>(k)] =
         force_scale(largest_internal[static_cast<Eigen::Index>(k)], part_of(k, gradient));
@@ -141,7 +157,7 @@ void GroupProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& 
     matrix.set_zero();
     for_each_member([&](std::size_t k) noexcept { add_own_hessian(k, x, multipliers, matrix); });
   }
-  for (const JoinPointer& join : joins_) join->add_hessian(x, matrix);
+  for (const Join* join : joins_at(x)) join->add_hessian(x, matrix);
 }
 
 void GroupProblem::add_own_hessian(std::size_t k, const VecX& x, const VecX& multipliers,
@@ -278,7 +294,7 @@ std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
   std::vector<std::vector<int>> out;
   if (joins_.empty()) return out;
   const VecX x = coordinates();
-  for (const JoinPointer& join : joins_) join->add_cliques(x, close, out);
+  for (const Join* join : joins_at(x)) join->add_cliques(x, close, out);
   return out;
 }
 
@@ -288,7 +304,7 @@ double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
       [&](std::size_t k) noexcept { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
   double share = 1;
   for (double own : shares) share = std::min(share, own);
-  for (const JoinPointer& join : joins_) share = join->safe_share(x, step, share);
+  for (const Join* join : joins_at(x, &step)) share = join->safe_share(x, step, share);
   return share;
 }
 

@@ -7,6 +7,7 @@
 
 #include "numerics/newton_workspace.h"
 #include "sim/body_problem.h"
+#include "sim/skin_bounds.h"
 
 namespace calot {
 
@@ -38,6 +39,9 @@ class Join {
   virtual const SkinJoin* skins() const { return nullptr; }
   /// A solve begins, of these bodies: they stay what they are until the next. Asked before anything else.
   virtual void begin(std::span<const GroupPlace> /*bodies*/) const {}
+  /// Whether, while the bodies' skins are in these bounds, nothing acts, couples or stops them: then nothing else needs to
+  /// be asked.
+  virtual bool idle(std::span<const SkinBounds> /*bodies*/) const { return false; }
   /// Finds what acts at x, which is then asked for; threads call it for several joins at a time.
   virtual void find(const VecX& /*x*/) const {}
   virtual double value(const VecX& x) const = 0;  ///< J
@@ -106,7 +110,10 @@ class GroupProblem : public ConstrainedEnergy {
   /// the other, each shared by all threads, then small ones whole.
   template <class Work>
   void for_each_member(const Work& work) const;
-  void find_joins(const VecX& x) const;
+  /// Those that may act at x, or on a step from there (null: none).
+  std::vector<const Join*> joins_at(const VecX& x, const VecX* step = nullptr) const;
+  /// Likewise; what acts is found.
+  std::vector<const Join*> find_joins(const VecX& x) const;
   Workers* workers() const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;

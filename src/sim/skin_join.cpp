@@ -16,15 +16,6 @@ constexpr double patch_reach = 3e-3;
 
 using Box = Eigen::AlignedBox3d;
 
-/// Of the skin's points where these lie beyond the nodes: as one piece, and what that leaves.
-Box motion_beyond(const Body& body, const VecX& dx) {
-  const Eigen::Map<const Eigen::Matrix3Xd> moves(dx.data(), 3, body.nodes());
-  const Vec3 mean = moves.rowwise().mean();
-  const Eigen::Matrix3Xd rest = moves.colwise() - mean;
-  const Vec3 further = Vec3::Constant(body.largest_motion(Eigen::Map<const VecX>(rest.data(), rest.size())));
-  return {mean - further, mean + further};
-}
-
 /// Nodes of patches, increasing.
 std::vector<int> nodes_of(const Body& body, const std::vector<int>& patches) {
   std::vector<char> hangs(body.nodes(), 0);
@@ -34,6 +25,10 @@ std::vector<int> nodes_of(const Body& body, const std::vector<int>& patches) {
   for (int node = 0; node < body.nodes(); ++node)
     if (hangs[node]) out.push_back(node);
   return out;
+}
+
+std::array<VecX, 2> less(const std::array<VecX, 2>& x, const std::array<VecX, 2>& from) {
+  return {x[0] - from[0], x[1] - from[1]};
 }
 
 }  // namespace
@@ -84,36 +79,33 @@ void SkinJoin::begin(std::span<const GroupPlace> bodies) const {
   }
 }
 
-double SkinJoin::approach(const VecX& dx, bool near) const {
-  Box coarse;
-  double sum = 0;
-  for (const Side& side : sides_) {
-    const Body& body = *side.body;
-    if (body.beyond_nodes() > 0) {
-      coarse.extend(motion_beyond(body, side.part(dx)));
-      continue;
-    }
-    std::vector<double> of_level(body.levels_used() + 1, 0.0);
-    const auto take = [&](int node) {
-      const Vec3 move = dx.segment<3>(side.first + Eigen::Index{3} * node);
-      if (node < body.coarse_nodes()) {
-        coarse.extend(move);
-      } else {
-        double& largest = of_level[body.level_of_detail(node - body.coarse_nodes())];
-        largest = std::max(largest, move.norm());
-      }
-    };
-    if (near)
-      for (int node : side.nodes) take(node);
-    else
-      for (int node = 0; node < body.nodes(); ++node) take(node);
-    for (double largest : of_level) sum += largest;
-  }
-  return sum + (coarse.isEmpty() ? 0.0 : coarse.sizes().norm());
+SkinJoin::Parts SkinJoin::parts_of(const VecX& x) const {
+  Parts out;
+  for (int k = 0; k < 2; ++k) out[k] = x.segment(sides_[k].first, sides_[k].body->rest().size());
+  return out;
 }
 
-void SkinJoin::refresh_patches(const VecX& x, double need) const {
-  if (patches_known_ && need + approach(x - patches_x_, false) <= patches_reach_) return;
+bool SkinJoin::idle(std::span<const SkinBounds> bodies) const {
+  const SkinBounds &one = bodies[bodies_[0]], &other = bodies[bodies_[1]];
+  // What safe_share() would look at.
+  const double far = approach_of(one.motion, other.motion) / (1.0 - contact_keep);
+  const double gap = one.box.exteriorDistance(other.box) - sides_[0].radius - sides_[1].radius;
+  if (!(gap >= std::max(far, uncouple_above))) return false;
+  lacking_ = false;
+  return true;
+}
+
+double SkinJoin::approach(const Parts& dx, bool near) const {
+  std::array<SkinMoves, 2> moves;
+  for (int k = 0; k < 2; ++k) {
+    const Side& side = sides_[k];
+    moves[k] = near ? skin_motion(*side.body, dx[k], side.nodes) : skin_motion(*side.body, dx[k]);
+  }
+  return approach_of(moves[0], moves[1]);
+}
+
+void SkinJoin::refresh_patches(const Parts& x, double need) const {
+  if (patches_known_ && need + approach(less(x, patches_x_), false) <= patches_reach_) return;
   patches_known_ = true;
   pairs_known_ = false;
   patches_x_ = x;
@@ -122,14 +114,13 @@ void SkinJoin::refresh_patches(const VecX& x, double need) const {
 }
 
 /// Patches of either skin that are near any of the other, by the boxes of their nodes.
-void SkinJoin::gather_patches(const VecX& x) const {
+void SkinJoin::gather_patches(const Parts& x) const {
   std::array<std::vector<Box>, 2> boxes;
   std::array<Box, 2> whole;
   for (int k = 0; k < 2; ++k) {
     const Side& side = sides_[k];
-    const VecX part = side.part(x);
     for (const std::vector<int>& nodes : side.body->face_nodes()) {
-      boxes[k].push_back(side.body->box_of(nodes, part, side.radius + side.body->beyond_nodes()));
+      boxes[k].push_back(side.body->box_of(nodes, x[k], side.radius + side.body->beyond_nodes()));
       whole[k].extend(boxes[k].back());
     }
   }
@@ -191,20 +182,19 @@ void SkinJoin::take_patches(Side& side) {
   side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
 }
 
-void SkinJoin::look_up(const VecX& x, bool motions) const {
-  for (Side& side : sides_) {
-    const VecX part = side.part(x);
-    for (int row : side.rows) (motions ? side.way : side.at)[row] = side.body->skin_point(row, part);
+void SkinJoin::look_up(const Parts& x, bool motions) const {
+  for (int k = 0; k < 2; ++k) {
+    Side& side = sides_[k];
+    for (int row : side.rows) (motions ? side.way : side.at)[row] = side.body->skin_point(row, x[k]);
   }
 }
 
-void SkinJoin::look_up(const VecX& x, bool motions, std::span<const SkinPair> pairs) const {
+void SkinJoin::look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const {
   ++looks_;
-  const std::array<VecX, 2> parts{sides_[0].part(x), sides_[1].part(x)};
   const auto look = [&](int skin, int point) {
     Side& side = sides_[skin];
     if (std::exchange(side.looked[point], looks_) != looks_)
-      (motions ? side.way : side.at)[point] = side.body->skin_point(point, parts[skin]);
+      (motions ? side.way : side.at)[point] = side.body->skin_point(point, x[skin]);
   };
   for (const SkinPair& pair : pairs) {
     look(pair.skin, pair.point);
@@ -218,10 +208,10 @@ std::array<PlacedSkin, 2> SkinJoin::placed(bool motions) const {
   return out;
 }
 
-void SkinJoin::refresh_pairs(const VecX& x, double need) const {
+void SkinJoin::refresh_pairs(const Parts& x, double need) const {
   refresh_patches(x, need);
   if (!near_) return pairs_.clear();
-  if (pairs_known_ && need + approach(x - pairs_x_, true) <= close_reach) return;
+  if (pairs_known_ && need + approach(less(x, pairs_x_), true) <= close_reach) return;
   refresh_patches(x, close_reach);
   if (!near_) return pairs_.clear();
   look_up(x, false);
@@ -233,11 +223,11 @@ void SkinJoin::refresh_pairs(const VecX& x, double need) const {
   ++searches_;
 }
 
-const std::vector<SkinPair>& SkinJoin::pairs_below(const VecX& x, double need) const {
+const std::vector<SkinPair>& SkinJoin::pairs_below(const Parts& x, double need) const {
   refresh_pairs(x, need);
   chosen_.clear();
   if (pairs_.empty()) return chosen_;
-  const double below = need + approach(x - pairs_x_, true);
+  const double below = need + approach(less(x, pairs_x_), true);
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (gaps_[k] < below) chosen_.push_back(pairs_[k]);
   look_up(x, false, chosen_);
@@ -254,16 +244,19 @@ double SkinJoin::gap_of(const SkinPair& pair) const {
 
 const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
   static const std::vector<SkinTouch> none;
-  if (!active() || !x.allFinite()) return none;
+  if (!active()) return none;
+  Parts parts = parts_of(x);
+  if (!parts[0].allFinite() || !parts[1].allFinite()) return none;
   for (std::size_t k = 0; k < found_.size(); ++k) {
-    if (found_[k].x.size() != x.size() || found_[k].x != x) continue;
+    const Parts& known = found_[k].x;
+    if (known[0].size() == 0 || known[0] != parts[0] || known[1] != parts[1]) continue;
     newest_ = k;
     return found_[k].touches;
   }
   newest_ = 1 - newest_;
   Touching& found = found_[newest_];
-  const std::vector<SkinPair>& pairs = pairs_below(x, self_barrier.range);
-  found.x = x;
+  const std::vector<SkinPair>& pairs = pairs_below(parts, self_barrier.range);
+  found.x = std::move(parts);
   found.touches.clear();
   if (!pairs.empty()) found.touches = skin_touches(placed(false), pairs, self_barrier.range);
   return found.touches;
@@ -272,7 +265,7 @@ const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
 double SkinJoin::gap(const VecX& x) const {
   double least = close_reach;
   if (!active()) return least;
-  for (const SkinPair& pair : pairs_below(x, close_reach)) least = std::min(least, gap_of(pair));
+  for (const SkinPair& pair : pairs_below(parts_of(x), close_reach)) least = std::min(least, gap_of(pair));
   return least;
 }
 
@@ -341,7 +334,7 @@ std::vector<SkinPress> SkinJoin::pressing(const VecX& x) const {
   const std::vector<SkinTouch> touches = touching(x);
   std::vector<SkinPress> out;
   if (touches.empty()) return out;
-  const std::vector<SkinPair>& pairs = pairs_below(x, self_barrier.range);
+  const std::vector<SkinPair>& pairs = pairs_below(parts_of(x), self_barrier.range);
   std::size_t at = 0;
   const auto nearest = [&](const SkinTouch& touch) {  // both are ordered by skin and point
     const auto before = [&](const SkinPair& pair) {
@@ -370,12 +363,14 @@ std::vector<SkinPress> SkinJoin::pressing(const VecX& x) const {
 
 void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   lacking_ = false;
-  for (const SkinTouch& touch : touching(x)) {
+  const std::vector<SkinTouch>& touches = touching(x);
+  if (touches.empty()) return;
+  const Parts parts = parts_of(x);
+  for (const SkinTouch& touch : touches) {
     const Side& other = sides_[touch.other];
-    const VecX& part = x;
     std::array<Vec3, 3> corners;
     for (int k = 0; k < touch.part.corners; ++k)
-      corners[k] = other.body->skin_point(touch.part.corner[k], other.part(part));
+      corners[k] = other.body->skin_point(touch.part.corner[k], parts[touch.other]);
     const bool complete = add_points_hessian(
         points_of(touch),
         touch_hessian(touch, {corners.data(), static_cast<std::size_t>(touch.part.corners)},
@@ -389,7 +384,7 @@ void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<in
   if (!active()) return;
   const double below = close ? couple_below : uncouple_above;
   std::set<std::array<int, 2>> patches;  // of the first body and of the other
-  for (const SkinPair& pair : pairs_below(x, below)) {
+  for (const SkinPair& pair : pairs_below(parts_of(x), below)) {
     if (gap_of(pair) >= below) continue;
     const Side &one = sides_[pair.skin], &other = sides_[pair.other];
     std::array<int, 2> both{one.body->skin().at[pair.point].face,
@@ -408,21 +403,27 @@ void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<in
 }
 
 double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const {
-  if (!active() || !step.allFinite() || !x.allFinite() || step.isZero(0)) return share;
+  if (!active()) return share;
+  const Parts from = parts_of(x), by = parts_of(step);
+  for (int k = 0; k < 2; ++k)
+    if (!from[k].allFinite() || !by[k].allFinite()) return share;
   // A pair that loses more than 1 - contact_keep of its gap had no more than this. What could meet on a longer way would
   // be everything: that is gone in parts.
-  const double far = share * approach(step, false) / (1.0 - contact_keep);
-  if (patches_known_ && far + approach(x - patches_x_, false) <= patches_reach_ && !near_) return share;
+  const double far = share * approach(by, false) / (1.0 - contact_keep);
+  if (far == 0) return share;
+  if (patches_known_ && far + approach(less(from, patches_x_), false) <= patches_reach_ && !near_)
+    return share;
   const int parts = 1 + static_cast<int>(far / (0.5 * patch_reach));
   const double part = share / parts;
   for (int k = 0; k < parts; ++k) {
-    const double safe = safe_part(x + k * part * step, part * step);
+    const Parts at{from[0] + k * part * by[0], from[1] + k * part * by[1]};
+    const double safe = safe_part(at, {part * by[0], part * by[1]});
     if (safe < 1.0) return (k + safe) * part;
   }
   return share;
 }
 
-double SkinJoin::safe_part(const VecX& x, const VecX& step) const {
+double SkinJoin::safe_part(const Parts& x, const Parts& step) const {
   constexpr double lost = 1.0 - contact_keep;
   refresh_patches(x, approach(step, false) / lost);
   if (!near_) return 1.0;

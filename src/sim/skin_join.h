@@ -38,6 +38,7 @@ class SkinJoin : public Join {
 
   const SkinJoin* skins() const override { return this; }
   void begin(std::span<const GroupPlace> bodies) const override;
+  bool idle(std::span<const SkinBounds> bodies) const override;
   void find(const VecX& x) const override { touching(x); }
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
@@ -74,27 +75,27 @@ class SkinJoin : public Join {
     std::vector<int> triangles;  ///< of the body's skin, one a simplex
     std::vector<Vec3> at, way;   ///< m, of the points that were looked up last; room
     std::vector<int> looked;     ///< when each was, by looks_
-
-    VecX part(const VecX& x) const { return x.segment(first, body->rest().size()); }
   };
+  using Parts = std::array<VecX, 2>;  ///< of the group's coordinates: either body's
+  Parts parts_of(const VecX& x) const;
   Side side_of(const Body& body, std::span<const JoinedPlace> joined) const;
   /// Bound on how much any two of the skins' points move against each other by dx, m: those that hang on the nodes near
   /// the other body, or on any.
-  double approach(const VecX& dx, bool near) const;
-  void gather_patches(const VecX& x) const;
+  double approach(const Parts& dx, bool near) const;
+  void gather_patches(const Parts& x) const;
   /// Sees to it that the patches hold all that has gaps below `need`.
-  void refresh_patches(const VecX& x, double need) const;
+  void refresh_patches(const Parts& x, double need) const;
   /// And pairs_ all pairs, at most close_reach.
-  void refresh_pairs(const VecX& x, double need) const;
+  void refresh_pairs(const Parts& x, double need) const;
   /// Pairs that may have gaps below `need` at x, at most close_reach; their points are looked up. Valid until the next
   /// call.
-  const std::vector<SkinPair>& pairs_below(const VecX& x, double need) const;
+  const std::vector<SkinPair>& pairs_below(const Parts& x, double need) const;
   /// Places, or motions, of all points near the other body, or of those of some pairs.
-  void look_up(const VecX& x, bool motions) const;
-  void look_up(const VecX& x, bool motions, std::span<const SkinPair> pairs) const;
+  void look_up(const Parts& x, bool motions) const;
+  void look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const;
   std::array<PlacedSkin, 2> placed(bool motions) const;
   double gap_of(const SkinPair& pair) const;  ///< where its points were looked up last
-  double safe_part(const VecX& x, const VecX& step) const;
+  double safe_part(const Parts& x, const Parts& step) const;
   bool active() const { return sides_[0].body != nullptr; }
   static void take_patches(Side& side);
   std::array<StencilPoint, 4> points_of(const SkinTouch& touch) const;
@@ -104,14 +105,14 @@ class SkinJoin : public Join {
   mutable std::array<Side, 2> sides_;
   mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
   mutable bool pairs_known_ = false, lacking_ = false;
-  mutable VecX patches_x_, pairs_x_;
+  mutable Parts patches_x_, pairs_x_;
   mutable double patches_reach_ = 0;
   mutable std::vector<SkinPair> pairs_, chosen_;
   mutable std::vector<double> gaps_;  ///< m, of pairs_ at pairs_x_
   mutable int looks_ = 0;
   mutable int searches_ = 0;
   struct Touching {
-    VecX x;
+    Parts x;
     std::vector<SkinTouch> touches;
   };
   mutable std::array<Touching, 2> found_;  ///< where a step began and where it is tried

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "field_rig.h"
 #include "geometry/self_touch.h"
 #include "group_rig.h"
@@ -183,6 +185,30 @@ TEST(SkinJoin, NoMotionTakesBodiesThroughEachOther) {
   }
 }
 
+bool same(const std::vector<SkinTouch>& a, const std::vector<SkinTouch>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SkinTouch& s, const SkinTouch& t) {
+    return s.skin == t.skin && s.point == t.point && s.other == t.other && s.part.corner == t.part.corner &&
+           s.part.times == t.part.times && s.gap == t.gap && s.area == t.area;
+  });
+}
+
+TEST(SkinJoin, WhatOtherBodiesDoIsNoNewState) {
+  const std::vector<BodyPointer> bodies{near_bodies()[0][0], near_bodies()[0][1], duct_along_x(-90e-3)};
+  GroupRig rig(bodies);
+  const SkinJoin join(*bodies[0], *bodies[1], {0, 1});
+  join.begin(rig.places());
+  VecX x = rig.x();
+  const std::vector<SkinTouch> touches = join.touching(x);
+  ASSERT_FALSE(touches.empty());
+  const int searched = join.searches();
+  // Far more than would have the two looked at anew, and nothing finite.
+  for (const double by : {0.5, std::numeric_limits<double>::infinity()}) {
+    x.tail(bodies[2]->rest().size()).array() += by;
+    EXPECT_TRUE(same(join.touching(x), touches));
+    EXPECT_EQ(join.searches(), searched);
+  }
+}
+
 TEST(SkinJoin, MotionsAsideAreFree) {
   const Near near(near_bodies()[0], 0);
   VecX step = VecX::Zero(near.x.size());
@@ -227,13 +253,6 @@ TEST(SkinJoin, ADuctDrawnAcrossADuctStaysOnItsSide) {
   draw_across(rig, 1, Vec3(0, 10e-3, 0), 4);
   const VecX &still = rig.bodies[0].state.x, &drawn = rig.bodies[1].state.x;
   EXPECT_GT(still[3 * (still.size() / 6) + 1], drawn[3 * (drawn.size() / 6) + 1]);
-}
-
-bool same(const std::vector<SkinTouch>& a, const std::vector<SkinTouch>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SkinTouch& s, const SkinTouch& t) {
-    return s.skin == t.skin && s.point == t.point && s.other == t.other && s.part.corner == t.part.corner &&
-           s.part.times == t.part.times && s.gap == t.gap && s.area == t.area;
-  });
 }
 
 TEST(SkinJoin, MemoryLeavesNoTrace) {
