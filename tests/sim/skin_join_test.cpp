@@ -142,6 +142,27 @@ GroupRig held_balls(double apart_by) {
   return rig;
 }
 
+/// Counts what it is asked; always idle.
+struct IdleJoin : Join {
+  mutable int asked = 0;
+  bool idle(std::span<const SkinBounds>) const override { return true; }
+  void find(const VecX&) const override { ++asked; }
+  double value(const VecX&) const override { return ++asked; }
+  void add_gradient(const VecX&, VecX&) const override { ++asked; }
+  void add_hessian(const VecX&, BlockMatrix&) const override { ++asked; }
+  void add_cliques(const VecX&, bool, std::vector<std::vector<int>>&) const override { ++asked; }
+  double safe_share(const VecX&, const VecX&, double) const override { return ++asked; }
+};
+
+TEST(SkinJoin, NothingIsAskedOfAnIdleJoin) {
+  GroupRig rig = held_balls(50e-3);
+  const auto join = std::make_shared<IdleJoin>();
+  rig.joins.push_back(join);
+  for (Vec3& target : rig.bodies[1].loads.grip.target) target.z() += 1e-3;
+  EXPECT_GT(rig.settle().iterations, 0);
+  EXPECT_EQ(join->asked, 0);
+}
+
 TEST(SkinJoin, BallsPressedTogetherMeetAndDoNotOverlap) {
   CALOT_SLOW_WHEN_SANITIZED("two balls pressed together");
   GroupRig rig = held_balls(0.3e-3);
@@ -190,6 +211,49 @@ bool same(const std::vector<SkinTouch>& a, const std::vector<SkinTouch>& b) {
     return s.skin == t.skin && s.point == t.point && s.other == t.other && s.part.corner == t.part.corner &&
            s.part.times == t.part.times && s.gap == t.gap && s.area == t.area;
   });
+}
+
+TEST(SkinJoin, IsIdleOnlyWhereAFullLookFindsNothing) {
+  Rng rng(11);
+  const auto random = [&](double most) {
+    return Vec3(rng.uniform(-most, most), rng.uniform(-most, most), rng.uniform(-most, most));
+  };
+  for (const std::vector<BodyPointer>& bodies : near_bodies()) {
+    const Near near(bodies, 0);
+    const Eigen::Index first = bodies[0]->rest().size(), size = near.x.size();
+    int idle = 0, busy = 0;
+    for (int k = 0; k < 200; ++k) {
+      // From nearly touching to far apart, resting or with a motion and a twist of either.
+      const double scale = std::pow(10.0, rng.uniform(-5, -1.5));
+      const Vec3 away = random(std::pow(10.0, rng.uniform(-4, -1))), one = random(scale),
+                 other = random(scale), twist = random(10 * scale);
+      VecX x = near.x, step(size);
+      for (Eigen::Index i = 0; i < size; i += 3) {
+        if (i >= first) x.segment<3>(i) += Vec3(away.x(), away.y(), std::abs(away.z()));
+        step.segment<3>(i) = (i < first ? one : other) + twist.cross(x.segment<3>(i));
+      }
+      if (k % 4 == 0) step.setZero();
+      const auto bounds = [&](int body) -> SkinBounds {
+        const Eigen::Index from = body == 0 ? 0 : first, own = bodies[body]->rest().size();
+        return {skin_box(*bodies[body], x.segment(from, own)),
+                skin_motion(*bodies[body], step.segment(from, own))};
+      };
+      if (!near.join->idle(std::vector{bounds(0), bounds(1)})) {
+        ++busy;
+        continue;
+      }
+      ++idle;
+      const SkinJoin look(*bodies[0], *bodies[1], {0, 1});
+      look.begin(near.rig.places());
+      EXPECT_GE(look.gap(x), uncouple_above);
+      EXPECT_EQ(look.value(x), 0);
+      EXPECT_EQ(look.safe_share(x, step, 1.0), 1.0);
+      std::vector<std::vector<int>> cliques;
+      look.add_cliques(x, false, cliques);
+      EXPECT_TRUE(cliques.empty());
+    }
+    EXPECT_GT(std::min(idle, busy), 20);
+  }
 }
 
 TEST(SkinJoin, WhatOtherBodiesDoIsNoNewState) {
