@@ -17,7 +17,7 @@
 //     distance^2 > (sum of radii)^2 - h^2 / 4        (line_clearance())
 // and lines whose points stand no further apart than their radius stay apart by 0.86 of it, and more from each other
 // (0.97 of the sum, if they are equally thick). Stretched to less than twice they still cannot pass.
-// Not covered: edges of two surfaces that cross with no point near; see collision/edge_crossing.h.
+// Nor does a point see the edges of two surfaces that cross beside it: see collision/skin_edges.h.
 
 #include <array>
 #include <span>

@@ -1,69 +1,91 @@
-// Which points of some skins may meet which simplices of others.
+// Which points of some skins may meet which simplices of others, and which edges which.
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 #include "collision/skin_contact.h"
+#include "collision/skin_edges.h"
 
 namespace calot {
 namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Of a tree's groups: where they are and how they move.
-struct GroupBoxes {
-  std::vector<Box> place, motion;
-
-  /// `points(item, visit)` visits the points of an item.
-  template <class Points>
-  GroupBoxes(const ItemTree& tree, const PlacedSkin& skin, const Points& points)
-      : place(tree.nodes.size()), motion(tree.nodes.size()) {
+/// What of a skin is looked at: its points, simplices or edges, in a tree. `corners(item)`: its points.
+template <class Corners>
+class Items {
+ public:
+  Items(const ItemTree& tree, const std::vector<Vec3>& points, const std::vector<Vec3>* motions,
+        Corners corners)
+      : tree_(&tree),
+        points_(&points),
+        motions_(motions),
+        corners_(std::move(corners)),
+        place_(tree.nodes.size()),
+        motion_(tree.nodes.size()) {
     for (int n = static_cast<int>(tree.nodes.size()) - 1; n >= 0; --n) {
       const ItemTree::Node& node = tree.nodes[n];
       if (node.left >= 0) {
-        place[n] = place[node.left].merged(place[node.right]);
-        motion[n] = motion[node.left].merged(motion[node.right]);
+        place_[n] = place_[node.left].merged(place_[node.right]);
+        motion_[n] = motion_[node.left].merged(motion_[node.right]);
         continue;
       }
-      for (int k = node.first; k < node.last; ++k) {
-        points(tree.order[k], [&](int point) {
-          place[n].extend((*skin.points)[point]);
-          motion[n].extend(skin.motions ? (*skin.motions)[point] : Vec3::Zero().eval());
-        });
-      }
+      for (int k = node.first; k < node.last; ++k)
+        for (int point : corners(tree.order[k]))
+          place_[n].extend(points[point]), motion_[n].extend(moves(point));
     }
   }
+
+  const ItemTree& tree() const { return *tree_; }
+  std::span<const int> corners(const int& item) const { return corners_(item); }
+  const Vec3& at(int point) const { return (*points_)[point]; }
+  Vec3 moves(int point) const { return motions_ ? (*motions_)[point] : Vec3::Zero().eval(); }
+  const Box& place(int node) const { return place_[node]; }  ///< of a group
+  const Box& motion(int node) const { return motion_[node]; }
+
+ private:
+  const ItemTree* tree_;
+  const std::vector<Vec3>*points_, *motions_;
+  Corners corners_;
+  std::vector<Box> place_, motion_;
 };
 
-struct SkinBoxes {
-  const PlacedSkin* skin;
-  GroupBoxes points, simplices;
+auto points_of(const PlacedSkin& placed) {
+  return Items(placed.skin->point_tree(), *placed.points, placed.motions,
+               [](const int& point) { return std::span<const int>(&point, 1); });
+}
+auto simplices_of(const PlacedSkin& placed) {
+  return Items(placed.skin->simplex_tree(), *placed.points, placed.motions,
+               [skin = placed.skin](const int& simplex) { return skin->corners(simplex); });
+}
+auto edges_of(const PlacedEdges& placed, const ItemTree& tree) {
+  return Items(tree, *placed.points, placed.motions,
+               [edges = placed.edges](const int& edge) { return std::span<const int>(edges->ends[edge]); });
+}
 
-  explicit SkinBoxes(const PlacedSkin& placed)
-      : skin(&placed),
-        points(placed.skin->point_tree(), placed, [](int point, const auto& visit) { visit(point); }),
-        simplices(placed.skin->simplex_tree(), placed, [&](int simplex, const auto& visit) {
-          for (int corner : placed.skin->corners(simplex)) visit(corner);
-        }) {}
-};
+/// Distance of a point and a simplex, or of two edges.
+double distance_of(const std::array<Vec3, 3>& one, std::size_t corners, const std::array<Vec3, 3>& other,
+                   std::size_t other_corners) {
+  if (corners == 1) return nearest_point(one[0], {other.data(), other_corners}).distance;
+  return nearest_of_edges({one[0], one[1], other[0], other[1]}).distance;
+}
 
-/// Points of one skin against simplices of another.
+/// Items of one skin against those of another: calls found(item, other item, their distance) for all that are looked for.
+template <class One, class Other, class Found>
 class Search {
  public:
-  Search(int skin, const SkinBoxes& one, int other, const SkinBoxes& two, const SkinReach& wanted,
-         std::vector<SkinPair>& out)
-      : skin_(skin),
-        other_(other),
-        one_(one),
-        two_(two),
-        wanted_(wanted),
-        radii_(one.skin->skin->radius() + two.skin->skin->radius()),
-        out_(out) {}
+  /// `radii`: sum of both, m.
+  Search(const One& one, const Other& other, const SkinReach& wanted, double radii, Found found)
+      : one_(one), other_(other), wanted_(wanted), radii_(radii), found_(std::move(found)) {
+    if (!one.tree().nodes.empty() && !other.tree().nodes.empty()) visit(0, 0);
+  }
 
+ private:
   void visit(int a, int b) {
-    const ItemTree::Node &p = one_.skin->skin->point_tree().nodes[a],
-                         &q = two_.skin->skin->simplex_tree().nodes[b];
+    const ItemTree::Node &p = one_.tree().nodes[a], &q = other_.tree().nodes[b];
     const double near = group_reach(a, b);
-    if (one_.points.place[a].squaredExteriorDistance(two_.simplices.place[b]) >= near * near) return;
+    if (one_.place(a).squaredExteriorDistance(other_.place(b)) >= near * near) return;
     if (p.left < 0 && q.left < 0) {
       compare(a, b);
     } else if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first)) {
@@ -75,53 +97,49 @@ class Search {
     }
   }
 
- private:
-  /// How far apart centres may be that are looked for, if they move by that against each other.
+  /// How far apart items may be that are looked for, if they move by that against each other.
   double reach(double motion) const { return radii_ + std::max(wanted_.reach, motion / wanted_.lost); }
 
   double group_reach(int a, int b) const {
-    return reach(one_.points.motion[a].merged(two_.simplices.motion[b]).sizes().norm());
+    return reach(one_.motion(a).merged(other_.motion(b)).sizes().norm());
   }
 
   void compare(int a, int b) {
-    const ItemTree &points = one_.skin->skin->point_tree(), &simplices = two_.skin->skin->simplex_tree();
-    const ItemTree::Node &p = points.nodes[a], &q = simplices.nodes[b];
+    const ItemTree::Node &p = one_.tree().nodes[a], &q = other_.tree().nodes[b];
     const double near = group_reach(a, b);
     for (int i = p.first; i < p.last; ++i) {
-      const int point = points.order[i];
-      if (two_.simplices.place[b].squaredExteriorDistance((*one_.skin->points)[point]) >= near * near)
-        continue;
-      for (int j = q.first; j < q.last; ++j)
-        if (meet(point, simplices.order[j])) out_.push_back({skin_, point, other_, simplices.order[j]});
+      const int& item = one_.tree().order[i];
+      Box box;
+      for (int point : one_.corners(item)) box.extend(one_.at(point));
+      if (other_.place(b).squaredExteriorDistance(box) >= near * near) continue;
+      for (int j = q.first; j < q.last; ++j) meet(item, box, other_.tree().order[j]);
     }
   }
 
-  bool meet(int point, int simplex) const {
-    const PlacedSkin &one = *one_.skin, &two = *two_.skin;
-    const std::span<const int> ids = two.skin->corners(simplex);
-    std::array<Vec3, 3> corners;
+  void meet(const int& item, const Box& around, const int& other) {
+    const std::span<const int> ids = one_.corners(item), other_ids = other_.corners(other);
+    std::array<Vec3, 3> corners, other_corners;
     Box box;
     double motion = 0;
-    for (std::size_t k = 0; k < ids.size(); ++k) {
-      corners[k] = (*two.points)[ids[k]];
-      box.extend(corners[k]);
-      Vec3 against = Vec3::Zero();
-      if (one.motions) against += (*one.motions)[point];
-      if (two.motions) against -= (*two.motions)[ids[k]];
-      motion = std::max(motion, against.squaredNorm());
+    for (std::size_t i = 0; i < ids.size(); ++i) corners[i] = one_.at(ids[i]);
+    for (std::size_t k = 0; k < other_ids.size(); ++k) {
+      other_corners[k] = other_.at(other_ids[k]);
+      box.extend(other_corners[k]);
+      for (int id : ids)
+        motion = std::max(motion, (one_.moves(id) - other_.moves(other_ids[k])).squaredNorm());
     }
-    const Vec3& p = (*one.points)[point];
     const double near = reach(std::sqrt(motion));
-    // Most are told apart by the box alone, which costs a tenth.
-    return box.squaredExteriorDistance(p) < near * near &&
-           nearest_point(p, {corners.data(), ids.size()}).distance < near;
+    // Most are told apart by the boxes alone, which costs a tenth.
+    if (box.squaredExteriorDistance(around) >= near * near) return;
+    const double distance = distance_of(corners, ids.size(), other_corners, other_ids.size());
+    if (distance < near) found_(item, other, distance);
   }
 
-  int skin_, other_;
-  const SkinBoxes &one_, &two_;
+  const One& one_;
+  const Other& other_;
   const SkinReach& wanted_;
   double radii_;
-  std::vector<SkinPair>& out_;
+  Found found_;
 };
 
 }  // namespace
@@ -152,17 +170,35 @@ ItemTree::ItemTree(const std::vector<Vec3>& centres, std::vector<int> items) : o
 }
 
 std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinReach& looked_for) {
-  std::vector<SkinBoxes> boxes;
-  for (const PlacedSkin& skin : skins) boxes.emplace_back(skin);
-  std::vector<SkinPair> out;
-  for (std::size_t a = 0; a < skins.size(); ++a) {
-    for (std::size_t b = 0; b < skins.size(); ++b) {
-      if (a == b || skins[a].skin->point_tree().nodes.empty() || skins[b].skin->simplex_tree().nodes.empty())
-        continue;
-      Search(static_cast<int>(a), boxes[a], static_cast<int>(b), boxes[b], looked_for, out).visit(0, 0);
-    }
+  std::vector<decltype(points_of(skins[0]))> points;
+  std::vector<decltype(simplices_of(skins[0]))> simplices;
+  for (const PlacedSkin& skin : skins) {
+    points.push_back(points_of(skin));
+    simplices.push_back(simplices_of(skin));
   }
+  std::vector<SkinPair> out;
+  for (std::size_t a = 0; a < skins.size(); ++a)
+    for (std::size_t b = 0; b < skins.size(); ++b) {
+      if (a == b) continue;
+      Search(points[a], simplices[b], looked_for, skins[a].skin->radius() + skins[b].skin->radius(),
+             [&](int point, int simplex, double /*distance*/) {
+               out.push_back({static_cast<int>(a), point, static_cast<int>(b), simplex});
+             });
+    }
   std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one, const PlacedEdges& other,
+                                  const ItemTree& of_other, const SkinReach& looked_for) {
+  std::vector<EdgesNear> out;
+  Search(edges_of(one, of_one), edges_of(other, of_other), looked_for, 0,
+         [&](int edge, int other_edge, double distance) {
+           out.push_back({edge, other_edge, one.motions || other.motions ? 0 : distance});
+         });
+  std::sort(out.begin(), out.end(), [](const EdgesNear& a, const EdgesNear& b) {
+    return std::tie(a.edge, a.other) < std::tie(b.edge, b.other);
+  });
   return out;
 }
 

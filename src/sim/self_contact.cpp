@@ -78,19 +78,6 @@ double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>&
                                    motions, keep);
 }
 
-double cut_by(const std::array<int, 4>& ends, const std::vector<Vec3>& at, const std::vector<Vec3>& motion,
-              double keep, double share) {
-  const EdgePair edges = edge_pair(ends, at);
-  EdgePair motions = edge_pair(ends, motion);
-  double longest = 0;
-  for (int i : {0, 1})
-    for (int k : {2, 3}) longest = std::max(longest, (motions[i] - motions[k]).squaredNorm());
-  const double reach = (edges[1] - edges[0]).norm() + (edges[3] - edges[2]).norm();
-  if (share * std::sqrt(longest) < (1.0 - keep) * ((edges[0] - edges[2]).norm() - reach)) return share;
-  for (Vec3& m : motions) m *= share;
-  return share * calot::safe_share(edges, motions, keep);
-}
-
 }  // namespace
 
 const SkinNet& SelfContact::net(const Body& body) {
@@ -212,15 +199,11 @@ std::vector<EdgeTouch> SelfContact::find_crossing(const Body& body, const VecX& 
   std::vector<EdgeTouch> out;
   if (edges_near_.empty() || nearest_edges_ >= near) return out;
   look_up(body, x, at_);
+  const PlacedEdges edges{&net_->edges, &at_};
   for (const EdgesNear& pair : edges_near_) {
     if (pair.distance >= near) continue;
-    const std::array<int, 4> ends = ends_of(*net_, pair);
-    const EdgeCrossing crossing{
-        self_edge_barrier,
-        EdgeCrossing::parallel_bound(net_->edge_lengths[pair.edge], net_->edge_lengths[pair.other], range)};
-    const EdgeCrossing::Sample sample = crossing.sample(edge_pair(ends, at_));
-    if (sample.energy == 0) continue;
-    out.push_back({ends, sample, std::sqrt(net_->edge_areas[pair.edge] * net_->edge_areas[pair.other])});
+    if (const std::optional<EdgeTouch> touch = edge_touch(edges, edges, pair, self_edge_barrier))
+      out.push_back(*touch);
   }
   return out;
 }
@@ -291,6 +274,7 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   refresh_groups(body, x, std::hypot(anywhere, beside));
   if (groups_.empty()) return 1.0;
   const double far = relative_motion(body, step, nodes_) / lost;
+  const PlacedEdges edges{&net_->edges, &at_, &way_};
   double share = 1.0;
   if (far <= close_reach) {
     const double near = far + refresh(body, x, far, far);
@@ -300,7 +284,7 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
     for (const SelfPair& pair : near_)
       if (pair.distance < near) share = cut_by(*net_, pair, at_, way_, keep, share);
     for (const EdgesNear& pair : edges_near_)
-      if (pair.distance < near) share = cut_by(ends_of(*net_, pair), at_, way_, keep, share);
+      if (pair.distance < near) share = calot::safe_share(edges, edges, pair, keep, share);
     return share;
   }
   look_up(body, x, at_);
@@ -310,7 +294,7 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   const std::vector<SelfPair> pairs = near_pairs(*net_, moving, groups_, workers);
   for (const SelfPair& pair : pairs) share = cut_by(*net_, pair, at_, way_, keep, share);
   for (const EdgesNear& pair : edges_at(*net_, pairs, moving))
-    share = cut_by(ends_of(*net_, pair), at_, way_, keep, share);
+    share = calot::safe_share(edges, edges, pair, keep, share);
   return share;
 }
 
@@ -321,6 +305,7 @@ bool SelfContact::any_nearer(const Body& body, const VecX& x, double distance) {
              at_edges = !edges_near_.empty() && nearest_edges_ < near_edges;
   if (!points && !at_edges) return false;
   look_up(body, x, at_);
+  const PlacedEdges placed{&net_->edges, &at_};
   return std::any_of(near_.begin(), near_.end(),
                      [&](const SelfPair& pair) {
                        return pair.distance < near &&
@@ -330,7 +315,7 @@ bool SelfContact::any_nearer(const Body& body, const VecX& x, double distance) {
                      }) ||
          std::any_of(edges_near_.begin(), edges_near_.end(), [&](const EdgesNear& pair) {
            return pair.distance < near_edges &&
-                  nearest_of_edges(edge_pair(ends_of(*net_, pair), at_)).distance < edges;
+                  nearest_of_edges(places_of(placed, placed, pair)).distance < edges;
          });
 }
 
@@ -354,9 +339,11 @@ std::optional<BlockMatrix> SelfContact::new_pattern(const Body& body, const VecX
       continue;
     groups.push_back({face_of(pair.skin_point), face_of(t[0]), face_of(t[1]), face_of(t[2])});
   }
+  const PlacedEdges placed{&net_->edges, &at_};
   for (const EdgesNear& pair : edges_near_) {
-    const std::array<int, 4> ends = ends_of(*net_, pair);
-    if (pair.distance >= edges + aged || nearest_of_edges(edge_pair(ends, at_)).distance >= edges) continue;
+    if (pair.distance >= edges + aged || nearest_of_edges(places_of(placed, placed, pair)).distance >= edges)
+      continue;
+    const std::array<int, 4> ends = ends_of(net_->edges, net_->edges, pair);
     groups.push_back({face_of(ends[0]), face_of(ends[1]), face_of(ends[2]), face_of(ends[3])});
   }
   std::sort(groups.begin(), groups.end());

@@ -15,8 +15,8 @@
 #include <optional>
 
 #include "collision/barrier.h"
-#include "collision/edge_crossing.h"
 #include "collision/simplex_distance.h"
+#include "collision/skin_edges.h"
 #include "collision/surface_parts.h"
 #include "sim/self_search.h"
 
@@ -40,13 +40,6 @@ struct SelfTouch {
   SurfacePart part;
   FlatSample sample;
   double area = 0;  ///< m^2 that it counts for; negative where the part counts so
-};
-
-/// Two edges of the skin that press on each other.
-struct EdgeTouch {
-  std::array<int, 4> ends{};  ///< skin points, as in EdgePair
-  EdgeCrossing::Sample sample;
-  double area = 0;  ///< m^2 that it counts for
 };
 
 /// Finds what is near and remembers it until other things could have come near; what it remembers is no part of any
@@ -87,7 +80,7 @@ class SelfContact {
   double refresh(const Body& body, const VecX& x, double need, double need_edges);
   void forget_pairs() { near_.clear(), edges_near_.clear(); }
   /// Half of the longest edge at rest, stretched by a quarter: how far a point may be beside edges that meet, m.
-  double beside_edges(const Body& body) { return 0.625 * net(body).longest_edge; }
+  double beside_edges(const Body& body) { return 0.625 * net(body).edges.longest; }
   /// safe_share() of a step no longer than groups are remembered.
   double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.

@@ -212,59 +212,41 @@ class Boxes {
 
 }  // namespace
 
+namespace {
+
+/// Which of `items`, each a list of points, are around each point: around[begin[p]] .. around[begin[p + 1] - 1].
+template <class Items>
+void gather_around(const Items& items, std::vector<int>& begin, std::vector<int>& around) {
+  for (const auto& item : items)
+    for (int p : item) ++begin[p + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  around.resize(static_cast<std::size_t>(begin.back()));
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (std::size_t k = 0; k < items.size(); ++k)
+    for (int p : items[k]) around[next[p]++] = static_cast<int>(k);
+}
+
+std::vector<Triangle> sorted(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+  return triangles;
+}
+
+}  // namespace
+
 SkinNet::SkinNet(const Body& body)
     : rest(body.skin_rest()),
-      triangles(body.skin().triangles),
+      triangles(sorted(body.skin().triangles)),
       begin(rest.size() + 1, 0),
+      edges(rest, triangles),
+      edge_begin(rest.size() + 1, 0),
       order(rest.size()) {
   constexpr double one_piece = 6e-3;  // m
   apart = std::max(one_piece, 2 * body.widest_skin_gap());
-  for (Triangle& t : triangles) {
-    std::sort(t.begin(), t.end());
-    for (int p : t) ++begin[p + 1];
-  }
-  for (std::size_t p = 1; p < begin.size(); ++p) begin[p] += begin[p - 1];
-  around.resize(3 * triangles.size());
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int p : triangles[t]) around[next[p]++] = static_cast<int>(t);
-  gather_edges();
+  gather_around(triangles, begin, around);
+  gather_around(edges.ends, edge_begin, edges_around);
   std::iota(order.begin(), order.end(), 0);
   nodes.push_back({0, static_cast<int>(rest.size()), -1, -1, {}});
   for (std::size_t n = 0; n < nodes.size(); ++n) split(static_cast<int>(n));
-}
-
-void SkinNet::gather_edges() {
-  struct Side {
-    std::array<int, 2> ends;
-    std::size_t triangle, index;
-    auto operator<=>(const Side&) const = default;
-  };
-  std::vector<Side> all;
-  for (std::size_t k = 0; k < triangles.size(); ++k) {
-    const Triangle& t = triangles[k];
-    all.insert(all.end(), {{{t[0], t[1]}, k, 0}, {{t[0], t[2]}, k, 1}, {{t[1], t[2]}, k, 2}});
-  }
-  std::sort(all.begin(), all.end());
-  edge_begin.assign(rest.size() + 1, 0);
-  sides.resize(triangles.size());
-  for (const auto& [ends, triangle, index] : all) {
-    if (edges.empty() || edges.back() != ends) {
-      edges.push_back(ends);
-      edge_lengths.push_back((rest[ends[1]] - rest[ends[0]]).norm());
-      edge_areas.push_back(0);
-      for (int p : ends) ++edge_begin[p + 1];
-    }
-    longest_edge = std::max(longest_edge, edge_lengths.back());
-    const Triangle& t = triangles[triangle];
-    edge_areas.back() += (rest[t[1]] - rest[t[0]]).cross(rest[t[2]] - rest[t[0]]).norm() / 6;
-    sides[triangle][index] = static_cast<int>(edges.size()) - 1;
-  }
-  std::partial_sum(edge_begin.begin(), edge_begin.end(), edge_begin.begin());
-  edges_around.resize(2 * edges.size());
-  std::vector<int> next(edge_begin.begin(), edge_begin.end() - 1);
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    for (int p : edges[e]) edges_around[next[p]++] = static_cast<int>(e);
 }
 
 void SkinNet::split(int n) {
@@ -293,8 +275,8 @@ bool SkinNet::neighbours(int row, int triangle) const {
 }
 
 bool SkinNet::edges_neighbour(int edge, int other) const {
-  for (int p : edges[edge])
-    for (int q : edges[other])
+  for (int p : edges.ends[edge])
+    for (int q : edges.ends[other])
       if (one_piece(*this, p, q)) return true;
   return false;
 }
@@ -375,27 +357,19 @@ std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
       [&](std::span<const Met> some, std::vector<SelfPair>& out) { measure(net, skin, some, out); });
 }
 
-std::array<int, 4> ends_of(const SkinNet& net, const EdgesNear& pair) {
-  const auto &a = net.edges[pair.edge], &b = net.edges[pair.other];
-  return {a[0], a[1], b[0], b[1]};
-}
-
-EdgePair edge_pair(const std::array<int, 4>& ends, const std::vector<Vec3>& points) {
-  return {points[ends[0]], points[ends[1]], points[ends[2]], points[ends[3]]};
-}
-
 std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin) {
   std::vector<std::pair<int, int>> found;
   for (const SelfPair& pair : pairs)
     for (int k = net.edge_begin[pair.skin_point]; k < net.edge_begin[pair.skin_point + 1]; ++k)
-      for (int other : net.sides[pair.triangle])
+      for (int other : net.edges.sides[pair.triangle])
         found.emplace_back(std::min(net.edges_around[k], other), std::max(net.edges_around[k], other));
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
+  const PlacedEdges edges{&net.edges, &skin.points};
   std::vector<EdgesNear> out;
   for (const auto& [edge, other] : found) {
     EdgesNear pair{edge, other, 0};
-    if (!skin.motion) pair.distance = nearest_of_edges(edge_pair(ends_of(net, pair), skin.points)).distance;
+    if (!skin.motion) pair.distance = nearest_of_edges(places_of(edges, edges, pair)).distance;
     if ((skin.motion || pair.distance < skin.reach) && !net.edges_neighbour(edge, other)) out.push_back(pair);
   }
   return out;

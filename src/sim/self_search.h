@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "collision/edge_distance.h"
+#include "collision/skin_edges.h"
 #include "sim/body.h"
 
 namespace calot {
@@ -16,12 +16,9 @@ struct SkinNet {
   std::vector<Vec3> rest;           ///< m, of each skin point
   std::vector<Triangle> triangles;  ///< corners increasing, so that two triangles see their edge alike
   std::vector<int> begin, around;  ///< triangles around point p: around[begin[p]] .. around[begin[p + 1] - 1]
-  std::vector<std::array<int, 2>> edges;         ///< ends increasing; ordered
-  std::vector<int> edge_begin, edges_around;     ///< edges at point p, as `begin` and `around`
-  std::vector<double> edge_lengths, edge_areas;  ///< m, at rest; m^2, a third of the triangles at it
-  double longest_edge = 0;                       ///< m, at rest
-  std::vector<std::array<int, 3>> sides;         ///< of each triangle: edges
-  double apart = 0;                              ///< m, see neighbours()
+  SurfaceEdges edges;
+  std::vector<int> edge_begin, edges_around;  ///< edges at point p, as `begin` and `around`
+  double apart = 0;                           ///< m, see neighbours()
 
   /// Points in groups of groups, by where they are at rest. The first node is the root; children follow their parent.
   struct Node {
@@ -42,7 +39,6 @@ struct SkinNet {
   bool edges_neighbour(int edge, int other) const;
 
  private:
-  void gather_edges();
   void split(int node);
 };
 
@@ -61,12 +57,6 @@ struct SelfPair {
   double distance = 0;  ///< m, when it was gathered; 0 of those on a way
 };
 
-/// Two edges of the same skin that are no neighbours, edge < other.
-struct EdgesNear {
-  int edge = 0, other = 0;
-  double distance = 0;  ///< m, when it was gathered; 0 of those on a way
-};
-
 using GroupPair = std::pair<int, int>;  ///< two of SkinNet::nodes without children, or one twice
 
 /// Groups with points that are nearer than `reach` (m) to a triangle around a point of the other, but for neighbours.
@@ -77,12 +67,9 @@ std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& 
 /// of the triangles around them are read.
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
                                  std::span<const GroupPair> groups, Workers* workers = nullptr);
-/// All edges at the points of those pairs with edges of their triangles; ordered. Where two edges come within d of each
+/// All edges at the points of those pairs with edges of their triangles, edge < other, but for neighbours; ordered. Where two edges come within d of each
 /// other an end of one is as near to a triangle at the other as hypot(d, half the shorter's length): what parts them is
 /// across both. Where `skin` stays these are measured, and only those nearer than its reach returned.
 std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin);
-/// The ends of two edges: skin points.
-std::array<int, 4> ends_of(const SkinNet& net, const EdgesNear& pair);
-EdgePair edge_pair(const std::array<int, 4>& ends, const std::vector<Vec3>& points);
 
 }  // namespace calot

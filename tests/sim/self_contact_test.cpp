@@ -158,7 +158,7 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
 /// Least distance of edges that are no neighbours, m, up to `most`.
 double nearest_edges(const SkinNet& net, const Organ& organ, const VecX& x, double most) {
   const std::vector<Vec3> skin = organ.body->skin_positions(x);
-  const double around = std::hypot(most, net.longest_edge);
+  const double around = std::hypot(most, net.edges.longest);
   const std::vector<SelfPair> pairs =
       near_pairs(net, {skin, nullptr, around, 1}, near_groups(net, skin, around));
   double out = most;
