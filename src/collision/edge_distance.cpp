@@ -1,5 +1,6 @@
 #include "collision/edge_distance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -50,6 +51,16 @@ NearestOfEdges meet_at_an_end(const EdgePair& ends) {
 NearestOfEdges nearest_of_edges(const EdgePair& ends) {
   NearestOfEdges out;
   return meet_between_ends(ends, out) ? out : meet_at_an_end(ends);
+}
+
+Vec3 between_edges(const EdgePair& ends) {
+  const auto share = [](double part, double whole) {
+    return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
+  };
+  const Vec3 u = ends[1] - ends[0], v = ends[3] - ends[2], w = ends[0] - ends[2];
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm(), uw = u.dot(w), vw = v.dot(w);
+  const double t = share(uv * share(uv * vw - vv * uw, uu * vv - uv * uv) + vw, vv);
+  return w + share(uv * t - uw, uu) * u - t * v;
 }
 
 double safe_share(const EdgePair& ends, const EdgePair& motions, double keep) {

@@ -27,6 +27,9 @@ struct NearestOfEdges {
                                        weight[k] * normal is the distance's gradient by the four ends */
 };
 NearestOfEdges nearest_of_edges(const EdgePair& ends);
+/// From the other's nearest place to the first's, m, at a tenth of the cost; of edges parallel to rounding from places
+/// nearly as near.
+Vec3 between_edges(const EdgePair& ends);
 
 /// The largest share (0 to 1, to 1e-9 of the motion) of the straight motions of the ends such that for every share s up
 /// to it distance(s) >= keep * distance(0), 0 < keep < 1, however the edges meet on the way. Touching at the start,

@@ -20,6 +20,7 @@
 // Nor does a point see the edges of two surfaces that cross beside it: see collision/skin_edges.h.
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -88,9 +89,9 @@ struct SkinPair {
 };
 
 /// Which pairs are looked for: those with a gap below `reach`, m, and those that could lose more than the share `lost`
-/// (0 to 1) of their gap on their way.
+/// (0 to 1) of their gap on their way; of both none that stays further apart than `nearer`, m.
 struct SkinReach {
-  double reach = 0, lost = 1;
+  double reach = 0, lost = 1, nearer = std::numeric_limits<double>::infinity();
 };
 /// All of them, in increasing order.
 std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinReach& looked_for);

@@ -11,6 +11,17 @@ EdgePair of_ends(const std::array<int, 4>& ends, const std::vector<Vec3>& one,
   return {one[ends[0]], one[ends[1]], other[ends[2]], other[ends[3]]};
 }
 
+/// Whether a plane across the `way` between the edges keeps them apart all along: few could meet at all.
+bool stay_apart(const EdgePair& at, const EdgePair& motions, const Vec3& way, double keep) {
+  const double target = keep * way.squaredNorm();
+  for (int i : {0, 1})
+    for (int k : {2, 3}) {
+      const double room = way.dot(at[i] - at[k]), approach = way.dot(motions[k] - motions[i]);
+      if (!(std::min(room, room - approach) > target)) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 SurfaceEdges::SurfaceEdges(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles,
@@ -47,6 +58,12 @@ SurfaceEdges::SurfaceEdges(const std::vector<Vec3>& rest, const std::vector<Tria
   }
 }
 
+std::vector<Vec3> SurfaceEdges::middles(const std::vector<Vec3>& points) const {
+  std::vector<Vec3> out;
+  for (const auto& [a, b] : ends) out.push_back(0.5 * (points[a] + points[b]));
+  return out;
+}
+
 std::array<int, 4> ends_of(const SurfaceEdges& one, const SurfaceEdges& other, const EdgesNear& pair) {
   const auto &a = one.ends[pair.edge], &b = other.ends[pair.other];
   return {a[0], a[1], b[0], b[1]};
@@ -58,26 +75,26 @@ EdgePair places_of(const PlacedEdges& one, const PlacedEdges& other, const Edges
 
 std::optional<EdgeTouch> edge_touch(const PlacedEdges& one, const PlacedEdges& other, const EdgesNear& pair,
                                     const Barrier& barrier) {
+  const EdgePair at = places_of(one, other, pair);
+  constexpr double beyond = 1.01;  // of what rounding could decide
+  if (between_edges(at).norm() >= beyond * barrier.range) return std::nullopt;
   const double bound = EdgeCrossing::parallel_bound(one.edges->lengths[pair.edge],
                                                     other.edges->lengths[pair.other], barrier.range);
-  const EdgeCrossing::Sample sample = EdgeCrossing{barrier, bound}.sample(places_of(one, other, pair));
+  const EdgeCrossing::Sample sample = EdgeCrossing{barrier, bound}.sample(at);
   if (sample.energy == 0) return std::nullopt;
   return EdgeTouch{ends_of(*one.edges, *other.edges, pair), sample,
                    std::sqrt(one.edges->areas[pair.edge] * other.edges->areas[pair.other])};
 }
 
 double safe_share(const PlacedEdges& one, const PlacedEdges& other, const EdgesNear& pair, double keep,
-                  double share) {
+                  double share, double most) {
   const EdgePair at = places_of(one, other, pair);
   EdgePair motions = of_ends(ends_of(*one.edges, *other.edges, pair), *one.motions, *other.motions);
-  // Few of those that are looked at could meet at all.
-  double longest = 0;
-  for (int i : {0, 1})
-    for (int k : {2, 3}) longest = std::max(longest, (motions[i] - motions[k]).squaredNorm());
-  const double reach = (at[1] - at[0]).norm() + (at[3] - at[2]).norm();
-  if (share * std::sqrt(longest) < (1.0 - keep) * ((at[0] - at[2]).norm() - reach)) return share;
   for (Vec3& m : motions) m *= share;
-  return share * safe_share(at, motions, keep);
+  const Vec3 way = between_edges(at);
+  const double distance = way.norm(), kept = distance > most ? keep * most / distance : keep;
+  if (stay_apart(at, motions, way, kept)) return share;
+  return share * safe_share(at, motions, kept);
 }
 
 }  // namespace calot

@@ -21,9 +21,7 @@ struct SurfaceEdges {
   /// `rest`: points, m; `counts`: 0 of triangles that are left out; empty: none is.
   SurfaceEdges(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles,
                std::span<const char> counts = {});
-  Vec3 middle(int edge, const std::vector<Vec3>& points) const {
-    return 0.5 * (points[ends[edge][0]] + points[ends[edge][1]]);
-  }
+  std::vector<Vec3> middles(const std::vector<Vec3>& points) const;
 };
 
 /// Where they are and, if given, how they are to move.
@@ -58,8 +56,9 @@ struct EdgeTouch {
 std::optional<EdgeTouch> edge_touch(const PlacedEdges& one, const PlacedEdges& other, const EdgesNear& pair,
                                     const Barrier& barrier);
 
-/// What is left of a share of the motions when the pair keeps the share `keep` (0 to 1) of its distance all the way.
+/// What is left of a share of the motions when the pair keeps the share `keep` (0 to 1) of its distance, or of `most` (m)
+/// if that is less, all the way.
 double safe_share(const PlacedEdges& one, const PlacedEdges& other, const EdgesNear& pair, double keep,
-                  double share);
+                  double share, double most = std::numeric_limits<double>::infinity());
 
 }  // namespace calot

@@ -68,7 +68,7 @@ auto edges_of(const PlacedEdges& placed, const ItemTree& tree) {
 double distance_of(const std::array<Vec3, 3>& one, std::size_t corners, const std::array<Vec3, 3>& other,
                    std::size_t other_corners) {
   if (corners == 1) return nearest_point(one[0], {other.data(), other_corners}).distance;
-  return nearest_of_edges({one[0], one[1], other[0], other[1]}).distance;
+  return between_edges({one[0], one[1], other[0], other[1]}).norm();
 }
 
 /// Items of one skin against those of another: calls found(item, other item, their distance) for all that are looked for.
@@ -86,6 +86,7 @@ class Search {
     const ItemTree::Node &p = one_.tree().nodes[a], &q = other_.tree().nodes[b];
     const double near = group_reach(a, b);
     if (one_.place(a).squaredExteriorDistance(other_.place(b)) >= near * near) return;
+    if (stay_apart(one_.place(a), one_.motion(a), other_.place(b), other_.motion(b))) return;
     if (p.left < 0 && q.left < 0) {
       compare(a, b);
     } else if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first)) {
@@ -98,7 +99,20 @@ class Search {
   }
 
   /// How far apart items may be that are looked for, if they move by that against each other.
-  double reach(double motion) const { return radii_ + std::max(wanted_.reach, motion / wanted_.lost); }
+  double reach(double motion) const {
+    return radii_ + std::min(std::max(wanted_.reach, motion / wanted_.lost), wanted_.nearer + motion);
+  }
+
+  /// Whether what is in the boxes, and moves by what is in the others, stays too far apart.
+  bool stay_apart(const Box& one, const Box& moves, const Box& other, const Box& other_moves) const {
+    if (std::isinf(wanted_.nearer)) return false;
+    const Vec3 common = moves.merged(other_moves).center();
+    const auto swept = [&](const Box& at, const Box& by) {
+      return Box(at.min() + (by.min() - common).cwiseMin(0), at.max() + (by.max() - common).cwiseMax(0));
+    };
+    const double near = radii_ + wanted_.nearer;
+    return swept(one, moves).squaredExteriorDistance(swept(other, other_moves)) >= near * near;
+  }
 
   double group_reach(int a, int b) const {
     return reach(one_.motion(a).merged(other_.motion(b)).sizes().norm());
@@ -109,28 +123,30 @@ class Search {
     const double near = group_reach(a, b);
     for (int i = p.first; i < p.last; ++i) {
       const int& item = one_.tree().order[i];
-      Box box;
-      for (int point : one_.corners(item)) box.extend(one_.at(point));
+      Box box, moves;
+      for (int point : one_.corners(item)) box.extend(one_.at(point)), moves.extend(one_.moves(point));
       if (other_.place(b).squaredExteriorDistance(box) >= near * near) continue;
-      for (int j = q.first; j < q.last; ++j) meet(item, box, other_.tree().order[j]);
+      for (int j = q.first; j < q.last; ++j) meet(item, box, moves, other_.tree().order[j]);
     }
   }
 
-  void meet(const int& item, const Box& around, const int& other) {
+  void meet(const int& item, const Box& around, const Box& moves, const int& other) {
     const std::span<const int> ids = one_.corners(item), other_ids = other_.corners(other);
     std::array<Vec3, 3> corners, other_corners;
-    Box box;
+    Box box, other_moves;
     double motion = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) corners[i] = one_.at(ids[i]);
     for (std::size_t k = 0; k < other_ids.size(); ++k) {
       other_corners[k] = other_.at(other_ids[k]);
       box.extend(other_corners[k]);
+      other_moves.extend(other_.moves(other_ids[k]));
       for (int id : ids)
         motion = std::max(motion, (one_.moves(id) - other_.moves(other_ids[k])).squaredNorm());
     }
     const double near = reach(std::sqrt(motion));
     // Most are told apart by the boxes alone, which costs a tenth.
     if (box.squaredExteriorDistance(around) >= near * near) return;
+    if (stay_apart(around, moves, box, other_moves)) return;
     const double distance = distance_of(corners, ids.size(), other_corners, other_ids.size());
     if (distance < near) found_(item, other, distance);
   }

@@ -17,11 +17,6 @@ namespace {
 constexpr double group_reach = 3e-3;
 /// Of edges.
 constexpr double least_edges_reach = 0.35e-3;
-/// Of edges: couple_below and uncouple_above in proportion.
-constexpr double edges_couple(double of_points) {
-  return of_points * (self_edge_barrier.range / self_barrier.range);
-}
-
 /// Bound on how much any two skin points that hang on `nodes` move against each other when the nodes move by `dx`, m:
 /// what the coarse nodes' motions differ by, and the details' of each level.
 double relative_motion(const Body& body, const VecX& dx, const std::vector<int>& nodes) {

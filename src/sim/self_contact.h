@@ -33,6 +33,10 @@ inline constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above
 
 /// Of edges that cross.
 inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, self_barrier.stiffness};
+/// Of these: couple_below and uncouple_above in proportion.
+constexpr double edges_couple(double of_points) {
+  return of_points * (self_edge_barrier.range / self_barrier.range);
+}
 
 /// A skin point and a part of the skin that press on each other.
 struct SelfTouch {

@@ -9,29 +9,6 @@
 #include "sim/self_contact.h"
 
 namespace calot {
-namespace {
-
-/// How far patches of skin are remembered, m: as groups of points of a skin with itself.
-constexpr double patch_reach = 3e-3;
-
-using Box = Eigen::AlignedBox3d;
-
-/// Nodes of patches, increasing.
-std::vector<int> nodes_of(const Body& body, const std::vector<int>& patches) {
-  std::vector<char> hangs(body.nodes(), 0);
-  for (int patch : patches)
-    for (int node : body.face_nodes()[patch]) hangs[node] = 1;
-  std::vector<int> out;
-  for (int node = 0; node < body.nodes(); ++node)
-    if (hangs[node]) out.push_back(node);
-  return out;
-}
-
-std::array<VecX, 2> less(const std::array<VecX, 2>& x, const std::array<VecX, 2>& from) {
-  return {x[0] - from[0], x[1] - from[1]};
-}
-
-}  // namespace
 
 SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> joined) const {
   Side side;
@@ -70,7 +47,7 @@ void SkinJoin::begin(std::span<const GroupPlace> bodies) const {
     const GroupPlace& place = bodies[bodies_[k]];
     const Eigen::Index first = Eigen::Index{3} * place.first_node;
     if (side.body == nullptr || side.first != first || side.details != place.body->details()) {
-      patches_known_ = pairs_known_ = false;
+      patches_known_ = pairs_known_ = edges_known_ = false;
       found_ = {};
     }
     side.body = place.body;
@@ -95,155 +72,8 @@ bool SkinJoin::idle(std::span<const SkinBounds> bodies) const {
   return true;
 }
 
-double SkinJoin::approach(const Parts& dx, bool near) const {
-  std::array<SkinMoves, 2> moves;
-  for (int k = 0; k < 2; ++k) {
-    const Side& side = sides_[k];
-    moves[k] = near ? skin_motion(*side.body, dx[k], side.nodes) : skin_motion(*side.body, dx[k]);
-  }
-  return approach_of(moves[0], moves[1]);
-}
-
-void SkinJoin::refresh_patches(const Parts& x, double need) const {
-  if (patches_known_ && need + approach(less(x, patches_x_), false) <= patches_reach_) return;
-  patches_known_ = true;
-  pairs_known_ = false;
-  patches_x_ = x;
-  patches_reach_ = std::max(patch_reach, need);
-  gather_patches(x);
-}
-
-/// Patches of either skin that are near any of the other, by the boxes of their nodes.
-void SkinJoin::gather_patches(const Parts& x) const {
-  std::array<std::vector<Box>, 2> boxes;
-  std::array<Box, 2> whole;
-  for (int k = 0; k < 2; ++k) {
-    const Side& side = sides_[k];
-    for (const std::vector<int>& nodes : side.body->face_nodes()) {
-      boxes[k].push_back(side.body->box_of(nodes, x[k], side.radius + side.body->beyond_nodes()));
-      whole[k].extend(boxes[k].back());
-    }
-  }
-  near_ = false;
-  const double between = whole[0].exteriorDistance(whole[1]);
-  if (between >= patches_reach_) {
-    patches_reach_ = between;
-    return;
-  }
-  const double reach_squared = patches_reach_ * patches_reach_;
-  std::array<std::vector<int>, 2> candidates;
-  for (int k = 0; k < 2; ++k)
-    for (std::size_t f = 0; f < boxes[k].size(); ++f)
-      if (boxes[k][f].squaredExteriorDistance(whole[1 - k]) < reach_squared)
-        candidates[k].push_back(static_cast<int>(f));
-  std::array<std::vector<int>, 2> patches;
-  for (int k = 0; k < 2; ++k)
-    for (int f : candidates[k])
-      if (std::any_of(candidates[1 - k].begin(), candidates[1 - k].end(), [&](int g) {
-            return boxes[k][f].squaredExteriorDistance(boxes[1 - k][g]) < reach_squared;
-          }))
-        patches[k].push_back(f);
-  near_ = !patches[0].empty();  // then the other's are not either
-  if (!near_) return;
-  for (int k = 0; k < 2; ++k) {
-    Side& side = sides_[k];
-    side.nodes = nodes_of(*side.body, patches[k]);
-    if (side.patches == patches[k]) continue;
-    side.patches = std::move(patches[k]);
-    take_patches(side);
-  }
-}
-
-/// The part of a skin that lies on its patches, as others meet it.
-void SkinJoin::take_patches(Side& side) {
-  const Body& body = *side.body;
-  std::vector<char> used(side.areas.size(), 0);
-  std::vector<Triangle> faces;
-  std::vector<Segment> segments;
-  side.triangles.clear();
-  for (int patch : side.patches) {
-    for (int t = patch * body.triangles_each(); t < (patch + 1) * body.triangles_each(); ++t) {
-      const Triangle& corners = body.skin().triangles[t];
-      for (int corner : corners) used[corner] = 1;
-      if (!side.counts[t]) continue;
-      if (corners[1] != corners[2])
-        faces.push_back(corners);
-      else if (corners[0] < corners[1])  // of the two triangles that a segment is
-        segments.push_back({corners[0], corners[1]});
-      else
-        continue;
-      side.triangles.push_back(t);
-    }
-  }
-  side.rows.clear();
-  std::vector<double> areas(side.areas.size(), 0.0);
-  for (std::size_t p = 0; p < used.size(); ++p)
-    if (used[p]) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
-  side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
-}
-
-void SkinJoin::look_up(const Parts& x, bool motions) const {
-  for (int k = 0; k < 2; ++k) {
-    Side& side = sides_[k];
-    for (int row : side.rows) (motions ? side.way : side.at)[row] = side.body->skin_point(row, x[k]);
-  }
-}
-
-void SkinJoin::look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const {
-  ++looks_;
-  const auto look = [&](int skin, int point) {
-    Side& side = sides_[skin];
-    if (std::exchange(side.looked[point], looks_) != looks_)
-      (motions ? side.way : side.at)[point] = side.body->skin_point(point, x[skin]);
-  };
-  for (const SkinPair& pair : pairs) {
-    look(pair.skin, pair.point);
-    for (int corner : sides_[pair.other].skin->corners(pair.simplex)) look(pair.other, corner);
-  }
-}
-
-std::array<PlacedSkin, 2> SkinJoin::placed(bool motions) const {
-  std::array<PlacedSkin, 2> out;
-  for (int k = 0; k < 2; ++k) out[k] = {&*sides_[k].skin, &sides_[k].at, motions ? &sides_[k].way : nullptr};
-  return out;
-}
-
-void SkinJoin::refresh_pairs(const Parts& x, double need) const {
-  refresh_patches(x, need);
-  if (!near_) return pairs_.clear();
-  if (pairs_known_ && need + approach(less(x, pairs_x_), true) <= close_reach) return;
-  refresh_patches(x, close_reach);
-  if (!near_) return pairs_.clear();
-  look_up(x, false);
-  pairs_ = skin_pairs(placed(false), {close_reach, 1});
-  gaps_.clear();
-  for (const SkinPair& pair : pairs_) gaps_.push_back(gap_of(pair));
-  pairs_x_ = x;
-  pairs_known_ = true;
-  ++searches_;
-}
-
-const std::vector<SkinPair>& SkinJoin::pairs_below(const Parts& x, double need) const {
-  refresh_pairs(x, need);
-  chosen_.clear();
-  if (pairs_.empty()) return chosen_;
-  const double below = need + approach(less(x, pairs_x_), true);
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    if (gaps_[k] < below) chosen_.push_back(pairs_[k]);
-  look_up(x, false, chosen_);
-  return chosen_;
-}
-
-double SkinJoin::gap_of(const SkinPair& pair) const {
-  const Side &one = sides_[pair.skin], &other = sides_[pair.other];
-  std::array<Vec3, 3> corners;
-  const std::span<const int> ids = other.skin->corners(pair.simplex);
-  for (std::size_t k = 0; k < ids.size(); ++k) corners[k] = other.at[ids[k]];
-  return nearest_point(one.at[pair.point], {corners.data(), ids.size()}).distance - one.radius - other.radius;
-}
-
-const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
-  static const std::vector<SkinTouch> none;
+const SkinJoin::Touching& SkinJoin::found_at(const VecX& x) const {
+  static const Touching none;
   if (!active()) return none;
   Parts parts = parts_of(x);
   if (!parts[0].allFinite() || !parts[1].allFinite()) return none;
@@ -251,21 +81,29 @@ const std::vector<SkinTouch>& SkinJoin::touching(const VecX& x) const {
     const Parts& known = found_[k].x;
     if (known[0].size() == 0 || known[0] != parts[0] || known[1] != parts[1]) continue;
     newest_ = k;
-    return found_[k].touches;
+    return found_[k];
   }
   newest_ = 1 - newest_;
   Touching& found = found_[newest_];
-  const std::vector<SkinPair>& pairs = pairs_below(parts, self_barrier.range);
-  found.x = std::move(parts);
   found.touches.clear();
+  found.crossings.clear();
+  const std::vector<SkinPair>& pairs = pairs_below(parts, self_barrier.range);
   if (!pairs.empty()) found.touches = skin_touches(placed(false), pairs, self_barrier.range);
-  return found.touches;
+  for (const EdgesNear& pair : edges_below(parts, self_edge_barrier.range)) {
+    const std::array<PlacedEdges, 2> at = placed_edges(false);
+    if (const std::optional<EdgeTouch> touch = edge_touch(at[0], at[1], pair, self_edge_barrier))
+      found.crossings.push_back(*touch);
+  }
+  found.x = std::move(parts);
+  return found;
 }
 
 double SkinJoin::gap(const VecX& x) const {
   double least = close_reach;
   if (!active()) return least;
-  for (const SkinPair& pair : pairs_below(parts_of(x), close_reach)) least = std::min(least, gap_of(pair));
+  const Parts parts = parts_of(x);
+  for (const SkinPair& pair : pairs_below(parts, close_reach)) least = std::min(least, gap_of(pair));
+  for (const EdgesNear& pair : edges_below(parts, close_reach)) least = std::min(least, edge_distance(pair));
   return least;
 }
 
@@ -277,31 +115,58 @@ double SkinJoin::value(const VecX& x) const {
     if (!std::isfinite(energy)) return energy;
     sum += touch.area * energy;
   }
+  for (const EdgeTouch& touch : crossing(x)) sum += touch.area * touch.sample.energy;
   return sum;
 }
 
+StencilPoint SkinJoin::stencil_point(int skin, int row) const {
+  const Side& side = sides_[skin];
+  return {&side.body->skin().stencils, row, static_cast<int>(side.first / 3)};
+}
+
 std::array<StencilPoint, 4> SkinJoin::points_of(const SkinTouch& touch) const {
-  const auto point = [&](int skin, int row) -> StencilPoint {
-    const Side& side = sides_[skin];
-    return {&side.body->skin().stencils, row, static_cast<int>(side.first / 3)};
-  };
-  std::array<StencilPoint, 4> out{point(touch.skin, touch.point)};
-  for (int k = 0; k < touch.part.corners; ++k) out[k + 1] = point(touch.other, touch.part.corner[k]);
+  std::array<StencilPoint, 4> out{stencil_point(touch.skin, touch.point)};
+  for (int k = 0; k < touch.part.corners; ++k) out[k + 1] = stencil_point(touch.other, touch.part.corner[k]);
   return out;
 }
+
+std::array<StencilPoint, 4> SkinJoin::points_of(const EdgeTouch& touch) const {
+  std::array<StencilPoint, 4> out;
+  for (int k = 0; k < 4; ++k) out[k] = stencil_point(k / 2, touch.ends[k]);
+  return out;
+}
+
+namespace {
+
+void spread(const StencilPoint& point, const Vec3& force, VecX& gradient) {
+  const StencilTable& table = *point.table;
+  for (int e = table.begin[point.row]; e < table.begin[point.row + 1]; ++e)
+    gradient.segment<3>(Eigen::Index{3} * (point.first_node + table.node[e])) += table.value[e] * force;
+}
+
+}  // namespace
 
 void SkinJoin::add_gradient(const VecX& x, VecX& gradient) const {
   for (const SkinTouch& touch : touching(x)) {
     const Eigen::Matrix<double, 12, 1> slope = touch_gradient(touch, self_barrier.sample(touch.gap));
     const std::array<StencilPoint, 4> points = points_of(touch);
-    for (int k = 0; k <= touch.part.corners; ++k) {
-      const StencilTable& table = *points[k].table;
-      for (int e = table.begin[points[k].row]; e < table.begin[points[k].row + 1]; ++e)
-        gradient.segment<3>(Eigen::Index{3} * (points[k].first_node + table.node[e])) +=
-            table.value[e] * slope.segment<3>(3 * k);
-    }
+    for (int k = 0; k <= touch.part.corners; ++k) spread(points[k], slope.segment<3>(3 * k), gradient);
+  }
+  for (const EdgeTouch& touch : crossing(x)) {
+    const std::array<StencilPoint, 4> points = points_of(touch);
+    for (int k = 0; k < 4; ++k)
+      spread(points[k], touch.area * touch.sample.gradient.segment<3>(3 * k), gradient);
   }
 }
+
+namespace {
+
+/// N, on the first of the two edges.
+Vec3 on_first(const EdgeTouch& touch) {
+  return -touch.area * (touch.sample.gradient.head<3>() + touch.sample.gradient.segment<3>(3));
+}
+
+}  // namespace
 
 Vec3 SkinJoin::force(const VecX& x) const {
   Vec3 sum = Vec3::Zero();
@@ -309,6 +174,7 @@ Vec3 SkinJoin::force(const VecX& x) const {
     const Vec3 on_point = -touch_gradient(touch, self_barrier.sample(touch.gap)).head<3>();
     sum += touch.skin == 0 ? Vec3(-on_point) : on_point;
   }
+  for (const EdgeTouch& touch : crossing(x)) sum -= on_first(touch);
   return sum;
 }
 
@@ -331,6 +197,30 @@ RubbingPlace SkinJoin::rubbing_place(const SkinPair& pair) const {
 }
 
 std::vector<SkinPress> SkinJoin::pressing(const VecX& x) const {
+  std::vector<SkinPress> out = points_pressing(x);
+  for (const EdgeTouch& touch : crossing(x)) {
+    const Parts parts = parts_of(x);
+    EdgePair at;
+    for (int k = 0; k < 4; ++k) at[k] = sides_[k / 2].body->skin_point(touch.ends[k], parts[k / 2]);
+    const bool first = nearest_of_edges(at).weight[0] >= 0.5;
+    const auto end = [&](int k) { return BodyPoint{bodies_[k / 2], touch.ends[k]}; };
+    const RubbingPair pair{end(first ? 0 : 1), bodies_[1]};
+    const auto found =
+        std::lower_bound(out.begin(), out.end(), pair.point.row, [&](const SkinPress& press, int row) {
+          return press.pair.point.body == bodies_[0] && press.pair.point.row < row;
+        });
+    if (found != out.end() && found->pair == pair)
+      found->force += on_first(touch);
+    else
+      out.insert(found, {pair,
+                         {{end(first ? 0 : 1), end(2), end(3), end(first ? 1 : 0)}, true},
+                         on_first(touch),
+                         touch.area});
+  }
+  return out;
+}
+
+std::vector<SkinPress> SkinJoin::points_pressing(const VecX& x) const {
   const std::vector<SkinTouch> touches = touching(x);
   std::vector<SkinPress> out;
   if (touches.empty()) return out;
@@ -363,6 +253,8 @@ std::vector<SkinPress> SkinJoin::pressing(const VecX& x) const {
 
 void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   lacking_ = false;
+  for (const EdgeTouch& touch : crossing(x))
+    lacking_ |= !add_points_hessian(points_of(touch), touch.area * touch.sample.hessian, matrix);
   const std::vector<SkinTouch>& touches = touching(x);
   if (touches.empty()) return;
   const Parts parts = parts_of(x);
@@ -384,13 +276,21 @@ void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<in
   if (!active()) return;
   const double below = close ? couple_below : uncouple_above;
   std::set<std::array<int, 2>> patches;  // of the first body and of the other
-  for (const SkinPair& pair : pairs_below(parts_of(x), below)) {
+  const Parts parts = parts_of(x);
+  for (const SkinPair& pair : pairs_below(parts, below)) {
     if (gap_of(pair) >= below) continue;
     const Side &one = sides_[pair.skin], &other = sides_[pair.other];
     std::array<int, 2> both{one.body->skin().at[pair.point].face,
                             other.triangles[pair.simplex] / other.body->triangles_each()};
     if (pair.skin == 1) std::swap(both[0], both[1]);
     patches.insert(both);
+  }
+  for (const EdgesNear& pair : edges_below(parts, edges_couple(below))) {
+    if (edge_distance(pair) >= edges_couple(below)) continue;
+    const auto patch = [&](const Side& side, int edge) {
+      return side.edges->triangle[edge] / side.body->triangles_each();
+    };
+    patches.insert({patch(sides_[0], pair.edge), patch(sides_[1], pair.other)});
   }
   for (const std::array<int, 2>& both : patches) {
     std::vector<int> clique;
@@ -400,43 +300,6 @@ void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<in
     std::sort(clique.begin(), clique.end());
     cliques.push_back(std::move(clique));
   }
-}
-
-double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const {
-  if (!active()) return share;
-  const Parts from = parts_of(x), by = parts_of(step);
-  for (int k = 0; k < 2; ++k)
-    if (!from[k].allFinite() || !by[k].allFinite()) return share;
-  // A pair that loses more than 1 - contact_keep of its gap had no more than this. What could meet on a longer way would
-  // be everything: that is gone in parts.
-  const double far = share * approach(by, false) / (1.0 - contact_keep);
-  if (far == 0) return share;
-  if (patches_known_ && far + approach(less(from, patches_x_), false) <= patches_reach_ && !near_)
-    return share;
-  const int parts = 1 + static_cast<int>(far / (0.5 * patch_reach));
-  const double part = share / parts;
-  for (int k = 0; k < parts; ++k) {
-    const Parts at{from[0] + k * part * by[0], from[1] + k * part * by[1]};
-    const double safe = safe_part(at, {part * by[0], part * by[1]});
-    if (safe < 1.0) return (k + safe) * part;
-  }
-  return share;
-}
-
-double SkinJoin::safe_part(const Parts& x, const Parts& step) const {
-  constexpr double lost = 1.0 - contact_keep;
-  refresh_patches(x, approach(step, false) / lost);
-  if (!near_) return 1.0;
-  const double far = approach(step, true) / lost;
-  if (far <= close_reach) {
-    const std::vector<SkinPair>& pairs = pairs_below(x, far);
-    if (pairs.empty()) return 1.0;
-    look_up(step, true, pairs);
-    return calot::safe_share(placed(true), pairs, contact_keep);
-  }
-  look_up(x, false);
-  look_up(step, true);
-  return calot::safe_share(placed(true), skin_pairs(placed(true), {0, lost}), contact_keep);
 }
 
 }  // namespace calot

@@ -7,9 +7,14 @@
 // where contact points lie eight times as close) would leave places between the points to which nothing answers. Nor is
 // it soft at the end: no state has skins in each other, and no step takes them there.
 //
+// Of two surfaces edges may cross where no point is near (two boxes'); they are kept apart beside, as those of one skin
+// are (self_edge_barrier): bodies that lie on each other press by their points alone. What is thick is as far from its
+// line between points as at them (line_clearance()).
+//
 // A rod is met by its centreline, as thick all along as where it is thickest; its section does not give way here.
 
 #include "collision/skin_contact.h"
+#include "collision/skin_edges.h"
 #include "sim/group_problem.h"
 #include "sim/skin_rubbing.h"
 
@@ -39,7 +44,7 @@ class SkinJoin : public Join {
   const SkinJoin* skins() const override { return this; }
   void begin(std::span<const GroupPlace> bodies) const override;
   bool idle(std::span<const SkinBounds> bodies) const override;
-  void find(const VecX& x) const override { touching(x); }
+  void find(const VecX& x) const override { found_at(x); }
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
@@ -49,8 +54,11 @@ class SkinJoin : public Join {
 
   const std::array<int, 2>& bodies() const { return bodies_; }
   /// All that presses at x, in the group's numbering; found once for a state. Valid until the next call.
-  const std::vector<SkinTouch>& touching(const VecX& x) const;
-  /// All that presses at x, summed over what each point touches; ordered by skin, then point.
+  const std::vector<SkinTouch>& touching(const VecX& x) const { return found_at(x).touches; }
+  /// And all edges that do, those of the first body first.
+  const std::vector<EdgeTouch>& crossing(const VecX& x) const { return found_at(x).crossings; }
+  /// All that presses at x, summed over what each point touches; ordered by skin, then point. What an edge does counts
+  /// as that of its end next to where it is met.
   std::vector<SkinPress> pressing(const VecX& x) const;
   /// The smallest gap of the two skins at x, m, or as far as is looked (0.8 mm): 0 or less where they are in each other.
   double gap(const VecX& x) const;
@@ -72,9 +80,11 @@ class SkinJoin : public Join {
     // Near the other, at patches_x_:
     std::vector<int> patches, rows, nodes;
     std::optional<ContactSkin> skin;
-    std::vector<int> triangles;  ///< of the body's skin, one a simplex
-    std::vector<Vec3> at, way;   ///< m, of the points that were looked up last; room
-    std::vector<int> looked;     ///< when each was, by looks_
+    std::vector<int> triangles;         ///< of the body's skin, one a simplex
+    std::optional<SurfaceEdges> edges;  ///< of all that is met of its skin; only of two surfaces
+    ItemTree edge_tree{{}, {}};         ///< of those on the patches
+    std::vector<Vec3> at, way;          ///< m, of the points that were looked up last; room
+    std::vector<int> looked;            ///< when each was, by looks_
   };
   using Parts = std::array<VecX, 2>;  ///< of the group's coordinates: either body's
   Parts parts_of(const VecX& x) const;
@@ -83,38 +93,56 @@ class SkinJoin : public Join {
   /// the other body, or on any.
   double approach(const Parts& dx, bool near) const;
   void gather_patches(const Parts& x) const;
+  Eigen::AlignedBox3d box_of_points(int k, int patch, const Parts& x) const;  ///< with what is about them
   /// Sees to it that the patches hold all that has gaps below `need`.
   void refresh_patches(const Parts& x, double need) const;
   /// And pairs_ all pairs, at most close_reach.
   void refresh_pairs(const Parts& x, double need) const;
+  /// Likewise edges_, at most as far as patches are remembered.
+  void refresh_edges(const Parts& x, double need) const;
+  bool edges_remembered(const Parts& x, double need) const;
   /// Pairs that may have gaps below `need` at x, at most close_reach; their points are looked up. Valid until the next
   /// call.
   const std::vector<SkinPair>& pairs_below(const Parts& x, double need) const;
+  /// Likewise edges.
+  const std::vector<EdgesNear>& edges_below(const Parts& x, double need) const;
   /// Places, or motions, of all points near the other body, or of those of some pairs.
   void look_up(const Parts& x, bool motions) const;
   void look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const;
+  void look_up(const Parts& x, bool motions, std::span<const EdgesNear> pairs) const;
+  void look_up(const Parts& x, bool motions, int skin, std::span<const int> points) const;
   std::array<PlacedSkin, 2> placed(bool motions) const;
+  std::array<PlacedEdges, 2> placed_edges(bool motions) const;
+  bool are_surfaces() const { return sides_[0].radius + sides_[1].radius == 0; }
   double gap_of(const SkinPair& pair) const;  ///< where its points were looked up last
+  double edge_distance(const EdgesNear& pair) const;
   double safe_part(const Parts& x, const Parts& step) const;
+  double safe_edges(const Parts& x, const Parts& step) const;
   bool active() const { return sides_[0].body != nullptr; }
-  static void take_patches(Side& side);
+  void take_patches(Side& side) const;
+  StencilPoint stencil_point(int skin, int row) const;
   std::array<StencilPoint, 4> points_of(const SkinTouch& touch) const;
+  std::array<StencilPoint, 4> points_of(const EdgeTouch& touch) const;
   RubbingPlace rubbing_place(const SkinPair& pair) const;
+  std::vector<SkinPress> points_pressing(const VecX& x) const;
 
   std::array<int, 2> bodies_;
   mutable std::array<Side, 2> sides_;
   mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
-  mutable bool pairs_known_ = false, lacking_ = false;
-  mutable Parts patches_x_, pairs_x_;
-  mutable double patches_reach_ = 0;
+  mutable bool pairs_known_ = false, edges_known_ = false, lacking_ = false;
+  mutable Parts patches_x_, pairs_x_, edges_x_;
+  mutable double patches_reach_ = 0, edges_reach_ = 0;
   mutable std::vector<SkinPair> pairs_, chosen_;
   mutable std::vector<double> gaps_;  ///< m, of pairs_ at pairs_x_
+  mutable std::vector<EdgesNear> edges_, chosen_edges_;
   mutable int looks_ = 0;
   mutable int searches_ = 0;
   struct Touching {
     Parts x;
     std::vector<SkinTouch> touches;
+    std::vector<EdgeTouch> crossings;
   };
+  const Touching& found_at(const VecX& x) const;
   mutable std::array<Touching, 2> found_;  ///< where a step began and where it is tried
   mutable std::size_t newest_ = 0;
 };

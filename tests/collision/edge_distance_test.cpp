@@ -69,6 +69,20 @@ TEST(EdgeDistance, NoPlacesOfTwoEdgesAreNearerThanTheNearest) {
 }
 
 /// So that a pair of edges and a pair of a point and a triangle never stand for the same nearest places.
+TEST(EdgeDistance, TheCheapWayIsTheNearestToo) {
+  Rng rng(21);
+  for (int trial = 0; trial < 2000; ++trial) {
+    EdgePair e = edges_of_all_kinds(rng, trial);
+    if (trial % 5 == 0) e[1] = e[0];
+    // Edges that run along each other to 1e-9 are as near as that at any place.
+    EXPECT_NEAR(between_edges(e).norm(), nearest_of_edges(e).distance, trial % 3 == 0 ? 1e-7 : 1e-12)
+        << trial;
+    if (trial % 3 == 0) continue;
+    const NearestOfEdges nearest = nearest_of_edges(e);
+    EXPECT_LT((between_edges(e) - nearest.distance * nearest.normal).norm(), 1e-9) << trial;
+  }
+}
+
 TEST(EdgeDistance, EdgesMeetBetweenTheirEndsOnlyWhereNoEndIsAsNear) {
   Rng rng(2);
   for (int trial = 0; trial < 600; ++trial) {

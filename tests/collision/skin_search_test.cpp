@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/skin_contact.h"
+#include "collision/skin_edges.h"
 #include "support/random.h"
 
 namespace calot {
@@ -130,6 +131,65 @@ TEST(SkinSearch, SkinsWithoutPointsThatActOrWithoutSimplicesMeetNothingOfTheirOw
                                         PlacedSkin{&nothing, &none, nullptr}};
   EXPECT_TRUE(skin_pairs(skins, {1e-3, 1}).empty());
   EXPECT_TRUE(skin_pairs({}, {1e-3, 1}).empty());
+}
+
+/// A cloud's edges but for every fifth.
+struct EdgeCloud {
+  Cloud cloud;
+  SurfaceEdges edges;
+  ItemTree tree{{}, {}};
+
+  EdgeCloud(Rng& rng, double speed) : cloud(rng, true, 0, speed), edges(cloud.points, Cloud::triangles(rng)) {
+    std::vector<int> some;
+    for (int e = 0; e < static_cast<int>(edges.ends.size()); ++e)
+      if (e % 5 > 0) some.push_back(e);
+    tree = ItemTree(edges.middles(cloud.points), some);
+  }
+  PlacedEdges placed(bool moving) const { return {&edges, &cloud.points, moving ? &cloud.motions : nullptr}; }
+};
+
+TEST(SkinSearch, FindsTheEdgesThatAreNear) {
+  Rng rng(5);
+  const EdgeCloud one(rng, 0), other(rng, 0);
+  constexpr double reach = 0.5e-3;
+  std::vector<EdgesNear> expected;
+  for (int a = 0; a < static_cast<int>(one.edges.ends.size()); ++a)
+    for (int b = 0; b < static_cast<int>(other.edges.ends.size()); ++b) {
+      if (a % 5 == 0 || b % 5 == 0) continue;
+      const double distance =
+          nearest_of_edges(places_of(one.placed(false), other.placed(false), {a, b})).distance;
+      if (distance < reach) expected.push_back({a, b, distance});
+    }
+  const std::vector<EdgesNear> found =
+      near_edges(one.placed(false), one.tree, other.placed(false), other.tree, {reach, 1});
+  ASSERT_EQ(found.size(), expected.size());
+  EXPECT_GT(found.size(), 20u);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(std::pair(found[k].edge, found[k].other), std::pair(expected[k].edge, expected[k].other));
+    EXPECT_NEAR(found[k].distance, expected[k].distance, 1e-12);
+  }
+}
+
+TEST(SkinSearch, NoEdgeThatIsNotFoundComesAsNearAsIsLookedFor) {
+  Rng rng(6);
+  constexpr double keep = 0.2, most = 0.1e-3;
+  for (const double speed : {0.2e-3, 4e-3}) {
+    const EdgeCloud one(rng, speed), other(rng, speed);
+    const PlacedEdges a = one.placed(true), b = other.placed(true);
+    const std::vector<EdgesNear> found = near_edges(a, one.tree, b, other.tree, {0, 1 - keep, keep * most});
+    double share = 1, share_of_all = 1;
+    for (const EdgesNear& pair : found) share = safe_share(a, b, pair, keep, share, most);
+    std::size_t all = 0;
+    for (int e = 0; e < static_cast<int>(one.edges.ends.size()); ++e)
+      for (int f = 0; f < static_cast<int>(other.edges.ends.size()); ++f) {
+        if (e % 5 == 0 || f % 5 == 0) continue;
+        share_of_all = safe_share(a, b, {e, f}, keep, share_of_all, most);
+        ++all;
+      }
+    EXPECT_NEAR(share, share_of_all, 1e-6);  // where several stop it, their order matters by rounding
+    EXPECT_LT(share, 1);
+    EXPECT_LT(found.size(), all / 4);
+  }
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ struct GroupRig {
   std::vector<JoinPointer> joins;
   NewtonWorkspace work{BlockMatrix(0, {})};
   GroupPatterns patterns;
+  Assembly* assembly = nullptr;
 
   explicit GroupRig(const std::vector<BodyPointer>& of) {
     for (const BodyPointer& body : of) {
@@ -60,7 +61,7 @@ struct GroupRig {
   }
   std::vector<Member> members() {
     std::vector<Member> out;
-    for (One& one : bodies) out.push_back({*one.body, one.loads, one.search, one.state});
+    for (One& one : bodies) out.push_back({*one.body, one.loads, one.search, one.state, assembly});
     return out;
   }
   VecX x() const {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 #include "field_rig.h"
 #include "geometry/self_touch.h"
@@ -75,6 +76,20 @@ BodyPointer stone(double z) {
       RigidBody::create({"stone", rounded_box(Vec3::Zero(), 6e-3, Vec3(0, 0, z), 1.5e-3), 1000}).value());
 }
 
+/// A box of 10 mm without any rounding, its points 2.5 mm apart.
+BodyPointer sharp_box(const Pose& pose) {
+  TriMesh surface = rounded_box(Vec3::Constant(10e-3), 0, Vec3::Zero(), 2.5e-3);
+  for (Vec3& p : surface.points) p = pose * p;
+  return std::make_shared<const RigidBody>(RigidBody::create({"box", surface, 1000}).value());
+}
+
+/// Two boxes, an edge of one across one of the other, with a gap between them, x and y from points of either.
+std::vector<BodyPointer> crossing_boxes(double gap, double x = 1.2e-3, double y = 1.3e-3) {
+  const double up = std::sqrt(2.0) * 10e-3 + gap, quarter = 0.25 * std::numbers::pi;
+  return {sharp_box(Pose(Eigen::AngleAxisd(quarter, Vec3::UnitX()))),
+          sharp_box(Eigen::Translation3d(x, y, up) * Eigen::AngleAxisd(quarter, Vec3::UnitY()))};
+}
+
 /// Ball on ball, duct on ball, duct across duct, a stone on a duct.
 std::vector<std::vector<BodyPointer>> near_bodies() {
   return {{ball(0), ball(2 * radius + apart)},
@@ -101,6 +116,125 @@ TEST(SkinJoin, SlopesAreRightAndForcesBalanceInEitherOrder) {
       std::swap(bodies[0], bodies[1]);
     }
   }
+}
+
+TEST(SkinJoin, EdgesThatCrossPressWithSlopesAndBalance) {
+  for (const double gap : {0.02e-3, 0.06e-3}) {
+    std::vector<BodyPointer> bodies = crossing_boxes(gap);
+    for (int order = 0; order < 2; ++order) {
+      const Near near(bodies);  // shaken by as much as the gap
+      ASSERT_EQ(near.join->crossing(near.x).size(), 1U);
+      EXPECT_TRUE(near.join->touching(near.x).empty());
+      const VecX g = test::gradient_of(*near.join, near.x);
+      EXPECT_LT(test::net_force(g).norm(), 1e-12 * g.lpNorm<1>());
+      EXPECT_LT(test::net_torque(near.x, g, Vec3::Zero()).norm(), 1e-13 * g.lpNorm<1>());
+      test::expect_derivatives(near.rig, *near.join, near.x, 1e-9, 1e-4);
+      const Vec3 force = near.join->force(near.x), first = -test::net_force(g.head(g.size() / 2));
+      EXPECT_LT((force + first).norm(), 1e-12 * force.norm());
+      EXPECT_GT((order == 0 ? 1 : -1) * force.z(), 1e-3);
+      std::swap(bodies[0], bodies[1]);
+    }
+  }
+  const Near beyond(crossing_boxes(1.05 * self_edge_barrier.range), 0);
+  EXPECT_EQ(beyond.join->value(beyond.x), 0);
+}
+
+/// Sum over what presses on points of the first body, less what presses on the other's: N.
+Vec3 pressed(const SkinJoin& join, const VecX& x) {
+  Vec3 sum = Vec3::Zero();
+  for (const SkinPress& press : join.pressing(x)) sum += (press.pair.point.body == 0 ? 1 : -1) * press.force;
+  return sum;
+}
+
+TEST(SkinJoin, WhatRubsIsPressedAsMuchAsTheBodies) {
+  for (const std::vector<BodyPointer>& bodies :
+       {near_bodies()[3], crossing_boxes(0.05e-3), crossing_boxes(0.05e-3, 0.2e-3, 0.3e-3)}) {
+    const Near near(bodies);
+    const std::vector<SkinPress> presses = near.join->pressing(near.x);
+    ASSERT_FALSE(presses.empty());
+    EXPECT_TRUE(std::is_sorted(presses.begin(), presses.end(), [](const SkinPress& a, const SkinPress& b) {
+      return a.pair <= b.pair;  // each point once
+    }));
+    const Vec3 force = near.join->force(near.x);
+    EXPECT_LT((pressed(*near.join, near.x) + force).norm(), 1e-12 * force.norm());
+  }
+}
+
+/// By springs, every second body softly.
+void hold_all(GroupRig& rig) {
+  for (std::size_t k = 0; k < rig.bodies.size(); ++k) {
+    const std::vector<Vec3>& skin = rig.bodies[k].body->skin_rest();
+    for (int row = 0; row < static_cast<int>(skin.size()); ++row)
+      rig.hold(static_cast<int>(k), row, skin[row], k % 2 == 0 ? 20 : 2);
+  }
+}
+void push_down(GroupRig& rig, std::size_t body) {
+  for (Vec3& target : rig.bodies[body].loads.grip.target) target.z() -= 0.5e-3;
+}
+
+TEST(SkinJoin, BoxesPushedEdgeOnEdgeDoNotPass) {
+  GroupRig rig(crossing_boxes(0.5e-3));
+  hold_all(rig);
+  const auto join = std::make_shared<SkinJoin>(*rig.bodies[0].body, *rig.bodies[1].body, std::array{0, 1});
+  rig.joins.push_back(join);
+  for (int step = 0; step < 4; ++step) {
+    push_down(rig, 1);
+    ASSERT_TRUE(rig.settle().converged()) << step;
+    EXPECT_EQ(crossings(rig), 0U) << step;
+  }
+  // 98 springs of 2 N/m, and those below, are pressed by 1.5 mm less the gap that is left.
+  EXPECT_NEAR(join->force(rig.x()).z(), 98 * 1.5e-3 / (1 / 2.0 + 1 / 20.0), 0.01);
+}
+
+/// Places of two pairs of boxes, pushed onto each other, when so many threads look for what presses.
+VecX pushed_boxes(int threads) {
+  std::vector<BodyPointer> bodies = crossing_boxes(0.2e-3);
+  for (const BodyPointer& body : crossing_boxes(0.1e-3, 0.2e-3, 0.3e-3)) bodies.push_back(body);
+  GroupRig rig(bodies);
+  hold_all(rig);
+  Workers workers(threads);
+  Assembly assembly(workers);
+  rig.assembly = &assembly;
+  for (const std::array<int, 2> pair : {std::array{0, 1}, {2, 3}})
+    rig.joins.push_back(std::make_shared<SkinJoin>(*bodies[pair[0]], *bodies[pair[1]], pair));
+  for (int step = 0; step < 2; ++step) {
+    push_down(rig, 1);
+    push_down(rig, 3);
+    EXPECT_TRUE(rig.settle().converged()) << step;
+  }
+  for (const JoinPointer& join : rig.joins) EXPECT_FALSE(join->skins()->crossing(rig.x()).empty());
+  return rig.x();
+}
+
+TEST(SkinJoin, EdgesPressToTheSameBitsByTwoThreads) { EXPECT_EQ(pushed_boxes(1), pushed_boxes(2)); }
+
+TEST(SkinJoin, NoMotionTakesBoxesThroughEachOther) {
+  Rng rng(5);
+  int stopped = 0;
+  for (int k = 0; k < 60; ++k) {
+    const auto box = [&](double z) {
+      const Eigen::AngleAxisd turn(rng.uniform(0, 3), test::random_vector(rng, 1.0).normalized());
+      return sharp_box(Eigen::Translation3d(test::random_vector(rng, 6e-3) + Vec3(0, 0, z)) * turn);
+    };
+    Near near({box(0), box(30e-3)}, 0);
+    VecX step = VecX::Zero(near.x.size());
+    const Vec3 way(rng.uniform(-5e-3, 5e-3), rng.uniform(-5e-3, 5e-3), -45e-3);
+    const Vec3 spin = test::random_vector(rng, 0.5);
+    for (Eigen::Index i = near.x.size() / 2; i < near.x.size(); i += 3)
+      step.segment<3>(i) = way + spin.cross(near.x.segment<3>(i));
+    for (int part = 0; part < 3; ++part) {  // a short one after a long one, too
+      const double share = near.join->safe_share(near.x, step, 1.0);
+      for (int at = 1; at <= 10; ++at) {
+        const VecX x = near.x + 0.1 * at * share * step;
+        for (std::size_t b = 0; b < 2; ++b)
+          near.rig.bodies[b].state.x = b == 0 ? x.head(x.size() / 2) : x.tail(x.size() / 2);
+        ASSERT_EQ(crossings(near.rig), 0U) << k;
+      }
+      near.x += share * step;
+      stopped += share < 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(stopped, 90);
 }
 
 TEST(SkinJoin, ReachesAsFarAsItsRange) {
@@ -319,8 +453,16 @@ TEST(SkinJoin, ADuctDrawnAcrossADuctStaysOnItsSide) {
   EXPECT_GT(still[3 * (still.size() / 6) + 1], drawn[3 * (drawn.size() / 6) + 1]);
 }
 
+bool same(const std::vector<EdgeTouch>& a, const std::vector<EdgeTouch>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const EdgeTouch& s, const EdgeTouch& t) {
+    return s.ends == t.ends && s.sample.energy == t.sample.energy && s.area == t.area;
+  });
+}
+
 TEST(SkinJoin, MemoryLeavesNoTrace) {
-  for (const std::vector<BodyPointer>& bodies : near_bodies()) {
+  std::vector<std::vector<BodyPointer>> all = near_bodies();
+  all.push_back(crossing_boxes(0.06e-3));
+  for (const std::vector<BodyPointer>& bodies : all) {
     const Near near(bodies);
     Rng rng(7);
     VecX x = near.x;
@@ -336,12 +478,13 @@ TEST(SkinJoin, MemoryLeavesNoTrace) {
       const SkinJoin fresh(*bodies[0], *bodies[1], {0, 1});
       fresh.begin(near.rig.places());
       ASSERT_TRUE(same(near.join->touching(x), fresh.touching(x))) << k;
+      ASSERT_TRUE(same(near.join->crossing(x), fresh.crossing(x))) << k;
       ASSERT_EQ(near.join->safe_share(x, 3 * step, 1.0), fresh.safe_share(x, 3 * step, 1.0));
       std::vector<std::vector<int>> remembered, found;
       near.join->add_cliques(x, true, remembered);
       fresh.add_cliques(x, true, found);
       ASSERT_EQ(remembered, found);
-      touched += fresh.touching(x).empty() ? 0 : 1;
+      touched += fresh.touching(x).empty() && fresh.crossing(x).empty() ? 0 : 1;
       x += step;
     }
     EXPECT_GT(touched, 10);
