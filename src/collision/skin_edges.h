@@ -46,6 +46,15 @@ EdgePair places_of(const PlacedEdges& one, const PlacedEdges& other, const Edges
 std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one, const PlacedEdges& other,
                                   const ItemTree& of_other, const SkinReach& looked_for);
 
+/// An edge of one skin that goes through a triangle of another: a simplex of that.
+struct PiercedTriangle {
+  int edge = 0, simplex = 0;
+  Vec3 place = Vec3::Zero();  ///< m, where
+};
+/// All of them among the edges in the tree; ordered by edge.
+std::vector<PiercedTriangle> pierced_triangles(const PlacedEdges& one, const ItemTree& of_one,
+                                               const PlacedSkin& other);
+
 /// Two edges that press on each other.
 struct EdgeTouch {
   std::array<int, 4> ends{};  ///< points, as in EdgePair

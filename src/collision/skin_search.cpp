@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <tuple>
 
 #include "collision/skin_contact.h"
@@ -64,11 +66,23 @@ auto edges_of(const PlacedEdges& placed, const ItemTree& tree) {
                [edges = placed.edges](const int& edge) { return std::span<const int>(edges->ends[edge]); });
 }
 
-/// Distance of a point and a simplex, or of two edges.
+/// Where an edge goes through a triangle.
+std::optional<Vec3> pierced_at(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& t) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double begin = normal.dot(from - t[0]), end = normal.dot(to - t[0]);
+  if ((begin > 0) == (end > 0)) return std::nullopt;
+  const Vec3 place = from + begin / (begin - end) * (to - from);
+  for (std::size_t k = 0; k < 3; ++k)
+    if ((t[(k + 1) % 3] - t[k]).cross(place - t[k]).dot(normal) < 0) return std::nullopt;
+  return place;
+}
+
+/// Distance of a point and a simplex, or of two edges; of an edge and a triangle that it goes through, 0.
 double distance_of(const std::array<Vec3, 3>& one, std::size_t corners, const std::array<Vec3, 3>& other,
                    std::size_t other_corners) {
   if (corners == 1) return nearest_point(one[0], {other.data(), other_corners}).distance;
-  return between_edges({one[0], one[1], other[0], other[1]}).norm();
+  if (other_corners == 2) return between_edges({one[0], one[1], other[0], other[1]}).norm();
+  return pierced_at(one[0], one[1], other) ? 0 : std::numeric_limits<double>::infinity();
 }
 
 /// Items of one skin against those of another: calls found(item, other item, their distance) for all that are looked for.
@@ -214,6 +228,25 @@ std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one
          });
   std::sort(out.begin(), out.end(), [](const EdgesNear& a, const EdgesNear& b) {
     return std::tie(a.edge, a.other) < std::tie(b.edge, b.other);
+  });
+  return out;
+}
+
+std::vector<PiercedTriangle> pierced_triangles(const PlacedEdges& one, const ItemTree& of_one,
+                                               const PlacedSkin& other) {
+  constexpr double reach = 1e-9;  // m: more than none
+  std::vector<PiercedTriangle> out;
+  const auto at = [&](int point) { return (*other.points)[point]; };
+  Search(edges_of(one, of_one), simplices_of(other), {reach, 1}, 0,
+         [&](int edge, int simplex, double /*distance*/) {
+           const auto [from, to] = one.edges->ends[edge];
+           const Triangle& t = other.skin->triangle(simplex);
+           if (const auto place =
+                   pierced_at((*one.points)[from], (*one.points)[to], {at(t[0]), at(t[1]), at(t[2])}))
+             out.push_back({edge, simplex, *place});
+         });
+  std::sort(out.begin(), out.end(), [](const PiercedTriangle& a, const PiercedTriangle& b) {
+    return std::tie(a.edge, a.simplex) < std::tie(b.edge, b.simplex);
   });
   return out;
 }

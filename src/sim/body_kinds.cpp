@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace calot {
 
 const std::vector<BodyKind>& body_kinds() {
@@ -17,18 +19,26 @@ Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactL
 }
 
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads) {
-  for (const Shape& shape : loads.shapes)
+  Failure failure{FailureKind::scenario, {}};
+  for (const Shape& shape : loads.shapes) {
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 place = Vec3::Zero();
     for (std::size_t row = 0; row < body.skin_rest().size(); ++row) {
       const double radius = body.skin_radii().empty() ? 0 : body.skin_radii()[row];
       const double distance = signed_distance(shape, body.skin_rest()[row]) - radius;
-      if (distance > 0) continue;
-      return fail(FailureKind::scenario,
-                  fmt::format("organ '{}' starts {:.2g} mm inside the {}", body.name(),
-                              1e3 * (contact_inset - distance),
-                              std::holds_alternative<Plane>(shape) ? "supporting plane" : "ground"),
-                  "move the organ up or the plane down", {"", 0, "scene.anatomy.support.point"});
+      if (distance < least) least = distance, place = 1e3 * body.skin_rest()[row];
     }
-  return std::nullopt;
+    if (least > 0) continue;
+    Problem problem;
+    problem.message = fmt::format("organ '{}' starts {:.2g} mm inside the {}, at ({:.0f}, {:.0f}, {:.0f}) mm",
+                                  body.name(), 1e3 * (contact_inset - least),
+                                  std::holds_alternative<Plane>(shape) ? "supporting plane" : "ground",
+                                  place.x(), place.y(), place.z());
+    problem.hint = "move the organ, or what it lies on, by as much and a little more";
+    failure.problems.push_back(std::move(problem));
+  }
+  if (failure.problems.empty()) return std::nullopt;
+  return failure;
 }
 
 }  // namespace calot

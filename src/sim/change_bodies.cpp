@@ -354,7 +354,7 @@ Result<bool> remove_body(Field& field, int index, const std::string& why, double
 
 namespace {
 
-/// Of the body that would join: it may be inside another one, but not cross its skin.
+/// Of the body that would join.
 std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
   for (const Organ& organ : field.organs) {
     VecX x(fresh.state.x.size() + organ.state.x.size());
@@ -362,9 +362,8 @@ std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
     const SkinJoin join(*fresh.body, *organ.body, {0, 1});
     join.begin(
         std::array{GroupPlace{fresh.body.get(), 0}, GroupPlace{organ.body.get(), fresh.body->nodes()}});
-    if (join.gap(x) > 0) continue;
-    return fail(FailureKind::scenario, fmt::format("{} would begin inside {}", quoted(fresh), quoted(organ)),
-                "move it away");
+    if (std::optional<Problem> problem = overlap_problem(join, fresh, organ, x))
+      return Failure{FailureKind::scenario, {std::move(*problem)}};
   }
   for (const Tool& tool : field.tools)
     for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry))

@@ -46,6 +46,47 @@ void renew_joins(Field& field) {
     }
 }
 
+std::optional<Problem> overlap_problem(const SkinJoin& join, const Organ& one, const Organ& other,
+                                       const VecX& x) {
+  const auto hollow = [](const Organ& organ) { return is_hollow(organ.definition.shape); };
+  const std::optional<SkinOverlap> found = join.overlap(x, {hollow(one), hollow(other)});
+  if (!found) return std::nullopt;
+  const Vec3 at = 1e3 * found->place;
+  return Problem{
+      {},
+      fmt::format(
+          "organ '{}' and organ '{}' are {:.2g} mm deep in each other, at ({:.0f}, {:.0f}, {:.0f}) mm",
+          one.definition.name, other.definition.name, 1e3 * found->depth, at.x(), at.y(), at.z()),
+      "move one away by as much and a little more; where one grows out of the other, tie them "
+      "there by a joint"};
+}
+
+namespace {
+
+std::vector<Problem> overlap_problems(const Field& field) {
+  std::vector<Problem> problems;
+  std::vector<GroupPlace> places;
+  std::vector<double> all;
+  for (const Organ& organ : field.organs) {
+    places.push_back({organ.body.get(), static_cast<int>(all.size()) / 3});
+    all.insert(all.end(), organ.state.x.begin(), organ.state.x.end());
+  }
+  const VecX x = Eigen::Map<const VecX>(all.data(), static_cast<Eigen::Index>(all.size()));
+  for (const JoinPointer& join : field.group.joins) {
+    const SkinJoin* skins = join->skins();
+    if (skins == nullptr) continue;
+    skins->begin(places);
+    const auto [one, other] = skins->bodies();
+    std::optional<Problem> problem = overlap_problem(*skins, field.organs[one], field.organs[other], x);
+    if (!problem) continue;
+    problem->place.path = fmt::format("scene.anatomy.organs[{}]", other + 1);
+    problems.push_back(std::move(*problem));
+  }
+  return problems;
+}
+
+}  // namespace
+
 Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field) {
   field.group.friction = anatomy.friction;
   for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
@@ -57,6 +98,8 @@ Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field) {
     return failure;
   }
   renew_joins(field);
+  std::vector<Problem> problems = overlap_problems(field);
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   return true;
 }
 

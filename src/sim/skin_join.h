@@ -35,6 +35,12 @@ struct SkinPress {
   double area = 0;            ///< m^2 that it stands for
 };
 
+/// How two bodies are in each other.
+struct SkinOverlap {
+  double depth = 0;           ///< m, the deepest found of some hundred points
+  Vec3 place = Vec3::Zero();  ///< m, there
+};
+
 class SkinJoin : public Join {
  public:
   /// `bodies`: their places in the group.
@@ -62,6 +68,9 @@ class SkinJoin : public Join {
   std::vector<SkinPress> pressing(const VecX& x) const;
   /// The smallest gap of the two skins at x, m, or as far as is looked (0.8 mm): 0 or less where they are in each other.
   double gap(const VecX& x) const;
+  /// Where their skins cross at x, or one is inside the other; `hollow`: whether each may hold another inside, as a
+  /// gallbladder a stone. None: they are beside each other, or may be where they are joined.
+  std::optional<SkinOverlap> overlap(const VecX& x, const std::array<bool, 2>& hollow) const;
   /// N, of the first body on the other.
   Vec3 force(const VecX& x) const;
   /// Searches done so far: what that costs is no part of any result.
@@ -125,6 +134,9 @@ class SkinJoin : public Join {
   std::array<StencilPoint, 4> points_of(const EdgeTouch& touch) const;
   RubbingPlace rubbing_place(const SkinPair& pair) const;
   std::vector<SkinPress> points_pressing(const VecX& x) const;
+  struct Crossing;
+  void find_crossings(const Parts& x, Crossing& out) const;
+  std::optional<SkinOverlap> deepest_inside(const Crossing& crossing, int k, bool hollow) const;
 
   std::array<int, 2> bodies_;
   mutable std::array<Side, 2> sides_;

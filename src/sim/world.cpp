@@ -408,12 +408,19 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
   FillingLimits limits{stop};
   limits.sinks = scene.solver.motion == SolverMotion::dynamics;
-  for (const OrganDefinition& definition : scene.anatomy.organs) {
+  for (std::size_t k = 0; k < scene.anatomy.organs.size(); ++k) {
+    const OrganDefinition& definition = scene.anatomy.organs[k];
     Result<RestedOrgan> made = make_organ(definition, still, impl->up, scene.solver.tolerance,
                                           definition.extensions ? scene.solver.extension_levels : 0, &limits);
-    if (!made) return at_organ(made.failure(), impl->field.organs.size());
-    impl->field.add(std::move(made).value());
+    if (made) {
+      impl->field.add(std::move(made).value());
+      continue;
+    }
+    Failure failure = at_organ(made.failure(), k);
+    if (failure.kind != FailureKind::scenario) return failure;
+    problems.insert(problems.end(), failure.problems.begin(), failure.problems.end());
   }
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   if (Result<bool> joined = join_bodies(scene.anatomy, impl->field); !joined) return joined.failure();
   if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
     return rested.failure();

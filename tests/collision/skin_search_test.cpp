@@ -192,6 +192,34 @@ TEST(SkinSearch, NoEdgeThatIsNotFoundComesAsNearAsIsLookedFor) {
   }
 }
 
+TEST(SkinSearch, FindsEachTriangleThatAnEdgeGoesThrough) {
+  Rng rng(7);
+  const EdgeCloud one(rng, 0);
+  const Cloud other(rng, true, 0, 0);
+  std::vector<std::pair<int, int>> expected, found;
+  for (int e = 0; e < static_cast<int>(one.edges.ends.size()); ++e)
+    for (int s = 0; s < other.skin.simplices(); ++s) {
+      if (e % 5 == 0) continue;
+      const auto [from, to] = one.edges.ends[e];
+      const Triangle& t = other.skin.triangle(s);
+      // from + a (to - from) = corner + b u + c v.
+      Mat3 sides;
+      sides << one.cloud.points[from] - one.cloud.points[to], other.points[t[1]] - other.points[t[0]],
+          other.points[t[2]] - other.points[t[0]];
+      const Vec3 at = sides.inverse() * (one.cloud.points[from] - other.points[t[0]]);
+      if (at.minCoeff() >= 0 && at.x() <= 1 && at.y() + at.z() <= 1) expected.emplace_back(e, s);
+    }
+  for (const PiercedTriangle& p :
+       pierced_triangles(one.placed(false), one.tree, {&other.skin, &other.points, nullptr})) {
+    found.emplace_back(p.edge, p.simplex);
+    const auto [from, to] = one.edges.ends[p.edge];
+    EXPECT_LT(nearest_point(p.place, std::array{one.cloud.points[from], one.cloud.points[to]}).distance,
+              1e-12);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(found.size(), 20u);
+}
+
 }  // namespace
 }  // namespace skin_search_test
 }  // namespace calot

@@ -246,9 +246,9 @@ std::vector<Mistake> mistakes() {
        with_demo("t:together(function() t.left:close() end,\n function() local x = nil + 1 end)"), "nil + 1",
        "arithmetic", ""},
       {"TooManyOrgans",
-       with_scene(
-           "local o = {} for i = 1, 25 do o[i] = { name = 'o' .. i, nodes = 30, shape = { type = 'sphere' } } "
-           "end\nreturn {\n laparoscope = { look_at = 'o1.fundus' }, anatomy = { organs = o } }"),
+       with_scene("local o = {} for i = 1, 25 do o[i] = { name = 'o' .. i, nodes = 30, shape = { type = "
+                  "'sphere' } } "
+                  "end\nreturn {\n laparoscope = { look_at = 'o1.fundus' }, anatomy = { organs = o } }"),
        "organs = o", "25 organs", "at most 24"},
       {"TooManyNodesTogether",
        with_anatomy("{\n organs = { { nodes = 900 }, { name = 'other', nodes = 900 } } }"), "nodes = 900",
@@ -530,7 +530,14 @@ TEST(AuthorErrors, ThatShowWhileTheWorldIsBuiltNameOrganFileAndLine) {
                  "neck = { 0, 0, 0 }, fundus = { 0, 0, 40 * mm } } },\n support = { point = { 0, 0, "
                  "20 * mm }, normal = { 0, 0, 1 } } }, " +
                  rest,
-             "support =", "organ 'ball' starts"},
+             "organs =", "organ 'ball' starts"},
+        Case{"return { " + ball +
+                 " neck = { 0, 0, 0 }, fundus = { 0, 0, 40 * mm }, held = { { landmark = 'bed' } } },\n { "
+                 "name = 'stone', shape = { type = 'rigid',\n "
+                 "rounding = 5 "
+                 "* mm, centre = { 18 * mm, 0, 20 * mm } } } } }, " +
+                 rest,
+             "name = 'stone'", "organ 'ball' and organ 'stone' are "},
         Case{"return { " + ball + "\n held = { { landmark = 'bed', radius = 0.5 * mm } } } } }, " + rest,
              "held =", "of organ 'ball'"}}) {
     const Folder folder;

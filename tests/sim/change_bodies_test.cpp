@@ -456,7 +456,7 @@ TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
   says(world.divide("artery", 0.02), "shorter than it is thick (4 mm)");
   says(world.divide("arterie", 0.5), "unknown organ \"arterie\" (did you mean \"artery\"?)");
   says(world.add(stone("stone", Vec3(-60e-3, 60e-3, -60e-3))), "there is 'stone' already");
-  says(world.add(stone("second", world.landmark("artery.middle"))), "'second' would begin inside 'artery'");
+  says(world.add(stone("second", world.landmark("artery.middle"))), "'second' and organ 'artery' are ");
   says(world.add(stone("second", world.report().instruments[0].tip)),
        "'second' would begin inside instrument 'left'");
   says(world.untie("stone", "artery"), "'stone' and 'artery' are not tied to each other");

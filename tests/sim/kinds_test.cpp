@@ -107,12 +107,55 @@ TEST(Kinds, AJointHoldsADuctThatNothingElseHolds) {
   EXPECT_LT(x.tail<3>().z(), -130e-3 - 1e-7) << "by its weight";
 }
 
-TEST(Kinds, WhatStartsInTheGroundIsRefusedByName) {
-  SceneDefinition scene = scene_of({duct({{-100e-3, 90e-3, -100e-3}, {-70e-3, 90e-3, -100e-3}})});
+TEST(Kinds, AllThatAreInEachOtherAreRefusedAtOnceUnlessTheyAreJoinedThere) {
+  const auto at = [](const char* name, double y) {
+    OrganDefinition organ = duct({{-100e-3, y, -100e-3}, {-60e-3, y, -100e-3}});
+    organ.held = {{"start", "start", 6e-3, 1e6}, {"end", "end", 6e-3, 1e6}};
+    organ.name = name;
+    return organ;
+  };
+  SceneDefinition scene =
+      scene_of({at("one", 90e-3), at("two", 95e-3), at("far", 60e-3), at("three", 99e-3)});
+  const Result<World> world = World::create(scene);
+  ASSERT_FALSE(world);
+  EXPECT_EQ(world.failure().kind, FailureKind::scenario);
+  const std::vector<Problem>& problems = world.failure().problems;
+  ASSERT_EQ(problems.size(), 2U) << to_text(world.failure());
+  EXPECT_EQ(problems[0].place.path, "scene.anatomy.organs[2]");
+  EXPECT_EQ(problems[0].message.find("organ 'one' and organ 'two' are 1 mm deep in each other, at (-"), 0U)
+      << problems[0].message;
+  EXPECT_EQ(problems[1].place.path, "scene.anatomy.organs[4]");
+  EXPECT_EQ(problems[1].message.find("organ 'two' and organ 'three' are 2 mm deep in each other"), 0U)
+      << problems[1].message;
+  EXPECT_NE(problems[1].hint.find("joint"), std::string::npos);
+
+  OrganDefinition branch = duct({{-80e-3, 90e-3, -100e-3}, {-80e-3, 110e-3, -100e-3}});
+  branch.name = "branch";
+  branch.held = {{"end", "end", 6e-3, 1e6}};
+  scene = scene_of({at("one", 90e-3), branch});
+  EXPECT_FALSE(World::create(scene));
+  scene.anatomy.joints = {{.from = "branch.start", .to = "one.middle", .radius = 4e-3}};
+  EXPECT_TRUE(World::create(scene)) << to_text(World::create(scene).failure());
+}
+
+TEST(Kinds, AllThatStartInTheGroundAreRefusedAtOnce) {
+  OrganDefinition one = duct({{-100e-3, 90e-3, -100e-3}, {-70e-3, 90e-3, -100e-3}}), other = one, above = one;
+  other.shape = TubeShape{.points = {{-100e-3, 60e-3, -101e-3}, {-70e-3, 60e-3, -100e-3}}, .radius = 3e-3};
+  above.shape = TubeShape{.points = {{-100e-3, 30e-3, -90e-3}, {-70e-3, 30e-3, -90e-3}}, .radius = 3e-3};
+  other.name = "other";
+  above.name = "above";
+  SceneDefinition scene = scene_of({one, above, other});
   scene.anatomy.ground = {{.point = Vec3(0, 0, -101e-3)}};
   const Result<World> world = World::create(scene);
   ASSERT_FALSE(world);
-  EXPECT_NE(to_text(world.failure()).find("'duct' starts 2"), std::string::npos) << to_text(world.failure());
+  const std::vector<Problem>& problems = world.failure().problems;
+  ASSERT_EQ(problems.size(), 2U) << to_text(world.failure());
+  EXPECT_EQ(problems[0].place.path, "scene.anatomy.organs[1]");
+  EXPECT_EQ(problems[1].place.path, "scene.anatomy.organs[3]");
+  EXPECT_EQ(
+      problems[1].message.find("organ 'other' starts 3 mm inside the supporting plane, at (-100, 60, -10"),
+      0U)
+      << problems[1].message;
 }
 
 }  // namespace

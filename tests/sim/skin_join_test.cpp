@@ -263,6 +263,62 @@ TEST(SkinJoin, NothingPressesNearAJoint) {
   EXPECT_GT(rest.gap(x), self_barrier.range);
 }
 
+constexpr std::array solid{false, false}, hollow{true, true};
+
+std::optional<SkinOverlap> overlap_of(const std::vector<BodyPointer>& bodies,
+                                      const std::array<bool, 2>& may_hold = solid,
+                                      std::span<const JoinedPlace> joined = {}) {
+  const GroupRig rig(bodies);
+  const SkinJoin join(*bodies[0], *bodies[1], {0, 1}, joined);
+  join.begin(rig.places());
+  return join.overlap(rig.x(), may_hold);
+}
+
+TEST(SkinJoin, BodiesThatAreInEachOtherAreFoundWithDepthAndPlace) {
+  const auto box = [](double z) { return sharp_box(Pose(Eigen::Translation3d(1e-3, 2e-3, z))); };
+  struct Case {
+    std::vector<BodyPointer> bodies;
+    double depth, within;  // m
+    Vec3 place;            // m, to 3 mm
+  };
+  const Vec3 top(0, 0, 20e-3);
+  for (const Case& one :
+       {Case{{ball(0), ball(2 * radius - 3e-3)}, 3e-3, 1e-3, top},  // drawn they are a little smaller
+        {{ball(0), duct_along_x(radius + thin - 2e-3)}, 2e-3, 1e-3, top},
+        {{duct_along_y(0), duct_along_x(2 * thin - 1e-3)}, 1e-3, 0.3e-3, Vec3(0, 0, thin)},
+        {{ball(0), box(radius + 4e-3)}, 1e-3, 0.5e-3, top},
+        {{duct_along_x(0), box(0)},
+         3e-3 + thin,
+         0.1e-3,
+         Vec3(1e-3, 0, 0)},                               // through it, 2 mm off its middle
+        {{box(0), ball(0)}, 16e-3, 3e-3, Vec3(0, 0, 0)},  // all inside
+        {crossing_boxes(-1e-3), std::sqrt(0.5) * 1e-3, 1e-6, Vec3(1.2e-3, 0, 7e-3)}}) {  // no point is inside
+    std::vector<BodyPointer> bodies = one.bodies;
+    for (int order = 0; order < 2; ++order) {
+      const std::optional<SkinOverlap> found = overlap_of(bodies);
+      ASSERT_TRUE(found);
+      EXPECT_NEAR(found->depth, one.depth, one.within);
+      EXPECT_LT((found->place - one.place).norm(), 8e-3);
+      std::swap(bodies[0], bodies[1]);
+    }
+  }
+}
+
+TEST(SkinJoin, BodiesBesideEachOtherInAHollowOneOrJoinedThereAreNotInEachOther) {
+  for (const std::vector<BodyPointer>& bodies : near_bodies()) EXPECT_FALSE(overlap_of(bodies));
+  EXPECT_FALSE(overlap_of(crossing_boxes(0.02e-3)));
+  const std::vector<BodyPointer> inside{ball(0), sharp_box(Pose::Identity())},
+      poking{ball(0), sharp_box(Pose(Eigen::Translation3d(0, 0, radius - 4e-3)))};
+  EXPECT_FALSE(overlap_of(inside, hollow));
+  EXPECT_TRUE(overlap_of(inside, solid));
+  EXPECT_TRUE(overlap_of(poking, hollow)) << "it goes through the wall";
+  EXPECT_LT(overlap_of(poking, hollow)->depth, 2.5e-3) << "by its corners";
+  const Vec3 top(0, 0, radius);
+  const std::vector<BodyPointer> grown{ball(0), test::straight_duct(top, top + Vec3(0, 5e-3, 30e-3), thin)};
+  EXPECT_TRUE(overlap_of(grown));
+  EXPECT_FALSE(overlap_of(grown, solid, std::vector<JoinedPlace>{{top, 3 * thin}}));
+}
+
 /// Two balls, held by springs on their far caps.
 GroupRig held_balls(double apart_by) {
   GroupRig rig({test::soft_ball(Vec3::Zero()), test::soft_ball(Vec3(0, 0, 2 * radius + apart_by))});
