@@ -89,6 +89,8 @@ class Body {
   int nodes() const { return static_cast<int>(rest().size()) / 3; }
   /// The first nodes, which are places; the others are the details, displacements added to them.
   virtual int coarse_nodes() const { return nodes(); }
+  /// The first nodes, onto which the others are condensed (numerics/condense.h).
+  virtual int kept_nodes() const { return coarse_nodes(); }
   virtual double size() const = 0;  ///< m, diagonal of the rest shape's box
   /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe step
   /// there.

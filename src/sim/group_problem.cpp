@@ -284,8 +284,8 @@ void GroupProblem::prepare(NewtonWorkspace& work) const {
 std::vector<char> GroupProblem::kept_nodes() const {
   std::vector<char> kept;
   for (const Member& member : members_) {
-    kept.insert(kept.end(), member.body.coarse_nodes(), 1);
-    kept.insert(kept.end(), member.body.nodes() - member.body.coarse_nodes(), 0);
+    kept.insert(kept.end(), member.body.kept_nodes(), 1);
+    kept.insert(kept.end(), member.body.nodes() - member.body.kept_nodes(), 0);
   }
   return kept;
 }

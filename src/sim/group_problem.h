@@ -117,7 +117,7 @@ class GroupProblem : public ConstrainedEnergy {
   Workers* workers() const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
-  /// One a node: details are condensed onto their bodies' places.
+  /// One a node: what is not kept is condensed.
   std::vector<char> kept_nodes() const;
   void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
   /// Adds what joins the bodies; residuals are judged beside these forces, too.

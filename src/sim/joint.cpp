@@ -118,6 +118,18 @@ Result<JointLinks> joint_links(const Body& one, const Body& other, const std::ar
   return out;
 }
 
+void append_place(const CarriedPlace& place, const StencilTable& skin, int first_node, StencilTable& rows) {
+  std::map<int, double> weights;
+  for (std::size_t i = 0; i < place.points.size(); ++i)
+    for (int e = skin.begin[place.points[i]]; e < skin.begin[place.points[i] + 1]; ++e)
+      weights[first_node + skin.node[e]] += place.weights[i] * skin.value[e];
+  for (const auto& [node, weight] : weights) {
+    rows.node.push_back(node);
+    rows.value.push_back(weight);
+  }
+  rows.begin.push_back(static_cast<int>(rows.node.size()));
+}
+
 void Joint::begin(std::span<const GroupPlace> bodies) const {
   if (std::max(links_.bodies[0], links_.bodies[1]) >= static_cast<int>(bodies.size())) {
     rows_ = {};
@@ -136,17 +148,8 @@ void Joint::begin(std::span<const GroupPlace> bodies) const {
   rows_ = {};
   for (const JointLinks::Link& link : links_.links) {
     for (int k = 0; k < 2; ++k) {
-      const CarriedPlace& place = k == 0 ? link.one : link.other;
       const StencilTable& skin = bodies[links_.bodies[k]].body->skin().stencils;
-      std::map<int, double> weights;
-      for (std::size_t i = 0; i < place.points.size(); ++i)
-        for (int e = skin.begin[place.points[i]]; e < skin.begin[place.points[i] + 1]; ++e)
-          weights[first_[k] + skin.node[e]] += place.weights[i] * skin.value[e];
-      for (const auto& [node, weight] : weights) {
-        rows_.node.push_back(node);
-        rows_.value.push_back(weight);
-      }
-      rows_.begin.push_back(static_cast<int>(rows_.node.size()));
+      append_place(k == 0 ? link.one : link.other, skin, first_[k], rows_);
     }
   }
   nodes_ = rows_.node;

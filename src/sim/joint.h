@@ -21,6 +21,8 @@ struct CarriedPlace {
   std::vector<int> points;
   std::vector<double> weights;
 };
+/// Adds a row of the nodes that it depends on, counted from `first_node`; `skin`: the body's.
+void append_place(const CarriedPlace& place, const StencilTable& skin, int first_node, StencilTable& rows);
 
 /// 1/2 stiffness (|one - other| - length)^2 a link.
 struct JointLinks {

@@ -1,0 +1,64 @@
+#pragma once
+// The strands of a tissue (fem/strand.h), each from a place on one body by way of its own node, a third body's
+// (tissue_body.h), to a place on another.
+//
+// Neighbours are coupled by the skins that they end on, not by their nodes: these then are condensed one by one, where a
+// sheet of linked nodes takes several times as long.
+
+#include "fem/strand.h"
+#include "sim/joint.h"
+
+namespace calot {
+
+/// A strand and the places of its ends.
+struct PlacedStrand {
+  Strand strand;
+  CarriedPlace one, other;
+};
+
+class StrandJoin : public Join {
+ public:
+  /// `bodies`: places in the group of the two that it ends on, and of that whose nodes its strands have, in their order.
+  StrandJoin(std::array<int, 3> bodies, std::vector<PlacedStrand> strands);
+
+  /// What the strands bring into the solves that follow: how far each has been opened, and the time that passes, s
+  /// (0: none).
+  void set_past(const std::vector<double>& opened, double duration);
+
+  void begin(std::span<const GroupPlace> bodies) const override;
+  double value(const VecX& x) const override;
+  void add_gradient(const VecX& x, VecX& gradient) const override;
+  void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
+
+  const std::array<int, 3>& bodies() const { return bodies_; }
+  const std::vector<PlacedStrand>& strands() const { return strands_; }
+  /// Strain of each at x, in the group's numbering.
+  std::vector<double> strains(const VecX& x) const;
+  /// N, of all strands on the first body.
+  Vec3 force(const VecX& x) const;
+
+ private:
+  StrandVector places(std::size_t strand, const VecX& x) const;
+  /// Rows of a strand, of increasing nodes.
+  std::array<int, 3> ordered_rows(std::size_t strand) const;
+  void find_blocks(const BlockMatrix& matrix) const;
+  bool active() const { return rows_.rows() > 0; }
+
+  std::array<int, 3> bodies_;
+  std::vector<PlacedStrand> strands_;
+  std::vector<StrandPast> pasts_;
+  /// Three rows a strand, for a, m and b, in the group's numbering; none where a body is not in the group.
+  mutable StencilTable rows_;
+  /// What they were made for.
+  mutable std::array<int, 3> first_{-1, -1, -1};
+  mutable std::array<std::vector<int>, 2> details_;
+  /// Where the blocks of each strand's nodes are in a matrix: of each column those below it.
+  struct Blocks {
+    BlockMatrix pattern{0, {}};
+    std::vector<int> slots;
+  };
+  mutable Blocks blocks_;
+};
+
+}  // namespace calot
