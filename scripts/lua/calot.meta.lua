@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
@@ -96,6 +96,7 @@
 ---@field base? "standard"|"hydrops" named anatomy to start from; calot.anatomy(name) sets it
 ---@field organs? calot.organ[] the organs; with a base, the first overrides the base's first, and so on
 ---@field joints? calot.joint[] what ties organs to each other: where a duct grows out of a gallbladder
+---@field tissue? calot.tissue[] connective tissue between organs, which may be dissected: the cystic plate
 ---@field ground? calot.ground[] shapes that stay and are touched
 ---@field support? calot.support a plane that carries the organs
 ---@field friction? number coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated; default 0; 0 to 1
@@ -114,6 +115,22 @@
 ---@field to string "organ.landmark", what it is tied to
 ---@field radius? number of what is held at either side; default 4 * mm; 0.5 to 50 mm
 ---@field stiffness? number of all of it, N/m; default 2000; 1 to 1e+06
+
+---Connective tissue: strands from one organ's surface to the nearest place of another's, slack until they are stretched. Pulled past their strength they give way one after another.
+---@class calot.tissue
+---@field name? string its name, unique; default "tissue"
+---@field from string the organ whose surface it covers
+---@field to string the organ that it hangs on
+---@field within? number it is where their surfaces are nearer than this at rest; default 5 * mm; 0.1 to 40 mm
+---@field start? number where it begins, as a share of a tube's length, or of the way from neck to fundus; default 0; 0 to 1
+---@field stop? number where it ends; default 1; 0 to 1
+---@field strands? number at most; how many share the area changes nothing but how finely it tears; default 100; 1 to 1500
+---@field slack? number by which share of its length at rest a strand is longer; default 0.1; 0 to 3
+---@field stiffness? number tension by area and strain as strands become taut; default 10 * kPa; 0.1 to 10000 kPa
+---@field stiffening? number exponent of the tension a strain; 0: it does not stiffen; default 1.5; 0 to 20
+---@field strength? number largest tension by area; uncalibrated; default 30 * kPa; 0.1 to 10000 kPa
+---@field break_energy? number to tear it, J/m^2: as a peel's force by width, N/m; uncalibrated; default 100; 0.1 to 100000
+---@field density? number kg/m^3; default 1000; 100 to 2000 kg/m^3
 
 ---A shape that stays and is touched.
 ---@class calot.ground
@@ -290,6 +307,11 @@ function Session:pressure(organ) end
 ---@param organ string an organ's name
 ---@return number
 function Session:volume(organ) end
+
+---Share of a tissue's strands that are torn, 0 to 1; 1 as well where an organ that it held on to is gone.
+---@param tissue string its name
+---@return number
+function Session:torn(tissue) end
 
 ---Where a landmark is now on the skin, {x, y, z} in m.
 ---@param landmark string a landmark such as "gallbladder.fundus"

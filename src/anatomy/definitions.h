@@ -145,6 +145,23 @@ struct JointDefinition {
   double stiffness = 2e3;  ///< N/m, of all of it (d)
 };
 
+/// Connective tissue between two organs, which may be dissected: strands from the surface of one to the nearest place of
+/// the other, slack until they are stretched, each standing for a part of the area. By area so that its number of strands
+/// changes nothing but how finely it tears.
+struct TissueDefinition {
+  std::string name = "tissue";
+  std::string from, to;        ///< organs
+  double within = 5e-3;        ///< m: where their surfaces are nearer than this at rest
+  double start = 0, stop = 1;  ///< of the way of `from`: a tube's length, else from neck to fundus
+  int strands = 100;           ///< at most
+  double slack = 0.1;          ///< by how much of its length at rest a strand is longer than that
+  double stiffness = 10e3;     ///< Pa, tension by area and strain as they become taut (d)
+  double stiffening = 1.5;     ///< exponent of tension a strain (d)
+  double strength = 30e3;      ///< Pa, largest tension by area (d, uncalibrated)
+  double break_energy = 100;   ///< J/m^2 to tear it: the force of a peel by width, N/m (d, uncalibrated)
+  double density = 1000;       ///< kg/m^3
+};
+
 enum class GroundType { plane, capsule, box };
 
 /// What stays, and is touched: the liver before there is one, a bone, a table.
@@ -169,12 +186,15 @@ struct SupportDefinition {
 inline constexpr int lobe_nodes = 90;
 /// Control nodes of all organs together: more take over half a minute to come to rest.
 inline constexpr int most_nodes = 1000;
+/// Of all tissues together: 600 take some 3 ms of an iteration.
+inline constexpr int most_strands = 1500;
 inline constexpr std::size_t most_organs = 24;
 inline constexpr std::size_t most_instruments = 16;
 
 struct AnatomyDefinition {
   std::vector<OrganDefinition> organs;
   std::vector<JointDefinition> joints;
+  std::vector<TissueDefinition> tissue;
   std::vector<GroundDefinition> ground;
   std::optional<SupportDefinition> support;
   double friction = 0;  ///< Coulomb's, of the organs on each other (d); the rest state is found without

@@ -207,6 +207,33 @@ void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
   }
 }
 
+void check_tissue(FieldCheck& check, const AnatomyDefinition& anatomy) {
+  std::vector<std::string> organs;
+  for (const OrganDefinition& organ : anatomy.organs) organs.push_back(organ.name);
+  UniqueNames names(check, "tissue");
+  int strands = 0;
+  for (std::size_t i = 0; i < anatomy.tissue.size(); ++i) {
+    const TissueDefinition& tissue = anatomy.tissue[i];
+    const std::string at = fmt::format("scene.anatomy.tissue[{}]", i + 1);
+    names.add(at + ".name", tissue.name);
+    if (std::find(organs.begin(), organs.end(), tissue.name) != organs.end())
+      check.problem(at + ".name", fmt::format("an organ is called \"{}\" too", tissue.name),
+                    "give the tissue another name");
+    const bool known = check.known(at + ".from", tissue.from, organs, "organ") &
+                       check.known(at + ".to", tissue.to, organs, "organ");
+    check_limits(check, at, "tissue", tissue);
+    if (known && tissue.from == tissue.to)
+      check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");
+    if (tissue.start >= tissue.stop && check.is_fine(at + ".start") && check.is_fine(at + ".stop"))
+      check.problem(at + ".stop", fmt::format("it ends at {:.3g}, before it begins", tissue.stop),
+                    fmt::format("give more than its start, {:.3g}", tissue.start));
+    strands += tissue.strands;
+  }
+  if (strands > most_strands && anatomy.tissue.size() > 1)
+    check.problem("scene.anatomy.tissue", fmt::format("the tissues have {} strands together", strands),
+                  fmt::format("give them at most {}", most_strands));
+}
+
 void check_ground(FieldCheck& check, const AnatomyDefinition& anatomy) {
   UniqueNames names(check, "ground");
   for (std::size_t i = 0; i < anatomy.ground.size(); ++i) {
@@ -246,6 +273,7 @@ void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
     check_compared(check, at + ".compared_with", anatomy.organs[i], anatomy.organs);
   }
   check_joints(check, anatomy);
+  check_tissue(check, anatomy);
   check_ground(check, anatomy);
   if (anatomy.support)
     check.unit_direction(path + ".support.normal", anatomy.support->normal, "a unit normal");

@@ -76,6 +76,12 @@ std::vector<ApiFunction> session_functions() {
        "number"},
       {"Session", "volume", "Volume the organ encloses, m^3.", {organ(true)}, "number"},
       {"Session",
+       "torn",
+       "Share of a tissue's strands that are torn, 0 to 1; 1 as well where an organ that it held on to is "
+       "gone.",
+       {required(text("tissue", "", "its name"))},
+       "number"},
+      {"Session",
        "place",
        "Where a landmark is now on the skin, {x, y, z} in m.",
        {landmark()},

@@ -76,6 +76,13 @@ int volume(lua_State* L) {
   return 1;
 }
 
+int torn(lua_State* L) {
+  ScriptSession& session = session_target(L, "torn");
+  const Arguments arguments(L, session, "Session", "torn");
+  lua_pushnumber(L, arguments.good() ? session.torn(L, arguments.text("tissue")) : 0.0);
+  return 1;
+}
+
 /// {x, y, z}
 int push_vector(lua_State* L, const Vec3& vector) {
   lua_createtable(L, 3, 0);
@@ -458,6 +465,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "time", guarded<time>},
                           {"Session", "pressure", guarded<pressure>},
                           {"Session", "volume", guarded<volume>},
+                          {"Session", "torn", guarded<torn>},
                           {"Session", "place", guarded<place>},
                           {"Steps", "step", guarded<step>},
                           {"Steps", "hold", guarded<hold>},

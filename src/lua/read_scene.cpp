@@ -56,6 +56,7 @@ class SceneReader {
       }
     }
     read_list(reader, "joints", "joint", anatomy.joints);
+    read_list(reader, "tissue", "tissue", anatomy.tissue);
     read_list(reader, "ground", "ground", anatomy.ground);
     return anatomy;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 
@@ -22,6 +23,7 @@ constexpr std::size_t longest_message = 500;  // bytes
 constexpr int levels = 3;
 constexpr double force_at[levels] = {0, 2, 10};  // N
 constexpr double share_of_filling[levels] = {0.5, 1, 2};
+constexpr double share_torn[levels] = {0, 0.5, 1};
 constexpr double usual_pressure = 12 * units::mmHg;
 constexpr double usual_volume = 40 * units::mL;
 
@@ -92,6 +94,19 @@ int ScriptSession::organ(lua_State* L, const std::string& name) {
   }
   complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
   return -1;
+}
+
+double ScriptSession::torn(lua_State* L, const std::string& name) {
+  std::vector<std::string> names;
+  for (const TissueDefinition& tissue : scene().anatomy.tissue) names.push_back(tissue.name);
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    complain(L, fmt::format("unknown tissue \"{}\"", name), suggestion(name, names));
+    return 0;
+  }
+  if (checking()) return share_torn[next_level()];
+  for (const TissueState& tissue : world(L).report().tissues)
+    if (tissue.name == name) return static_cast<double>(tissue.torn) / tissue.strands;
+  return 1;
 }
 
 std::vector<OrganDefinition> ScriptSession::known_organs() const {

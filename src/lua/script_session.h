@@ -58,6 +58,8 @@ class ScriptSession {
   void complain(lua_State* L, const Failure& failure);
   /// Index of the organ among those of the world's report, in a dry run among known_organs(); or -1 after a complaint.
   int organ(lua_State* L, const std::string& name);
+  /// Share of a tissue's strands that are torn; complains where there is none of that name.
+  double torn(lua_State* L, const std::string& name);
   /// "organ.landmark" of this scene; complains when it is none.
   bool is_landmark(lua_State* L, const std::string& name);
   /// Complains about what needs jaws, of an instrument that has none.

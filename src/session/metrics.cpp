@@ -133,6 +133,9 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
       for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
         for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
       return names;
+    case MetricOwner::tissue:
+      for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
+      return names;
     case MetricOwner::compared_organ:
       for (const OrganDefinition& organ : exercise.scene.anatomy.organs)
         if (!organ.compared_with.empty()) names.push_back(organ.name);
@@ -177,6 +180,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
       {"lowest_frequency_Hz", organ,
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
+      {"torn_pct", tissue, "share of its strands that were torn", EventKind::tear},
       {"mean_difference_pct", compared_organ,
        "mean departure from the motion of the organ it is compared with, when the session ends"},
       {"largest_difference_pct", compared_organ, "the largest such departure"},
@@ -196,6 +200,8 @@ std::string pattern(const MetricRow& row) {
     case MetricOwner::organ:
     case MetricOwner::compared_organ:
       return of("<organ>");
+    case MetricOwner::tissue:
+      return of("<tissue>");
     case MetricOwner::step:
       return of("<step>");
     case MetricOwner::hold:
@@ -249,6 +255,8 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
       if (!fresh) known->second = std::max(known->second, value);
     }
   }
+  for (const TissueState& tissue : traces.tissues)
+    metrics[tissue.name + ".torn_pct"] = 100.0 * tissue.torn / tissue.strands;
   for (const StepRecord& step : progress.steps()) {
     if (step.ended >= 0) metrics[step.name + ".time_s"] = step.ended - step.started;
   }

@@ -15,7 +15,7 @@
 
 namespace calot {
 
-enum class MetricOwner { instrument, organ, compared_organ, step, hold, note, total };
+enum class MetricOwner { instrument, organ, tissue, compared_organ, step, hold, note, total };
 
 struct MetricRow {
   const char* name;  ///< without its owner's: "path_length_mm" of "left.path_length_mm"

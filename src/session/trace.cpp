@@ -66,6 +66,14 @@ void append_sample(const World& world, Traces& traces) {
     traces.organ_names[row] = organ.name;
     traces.organs[row].push_back({organ.pressure, organ.max_stretch});
   }
+  for (const TissueState& tissue : report.tissues) {
+    const auto same = [&](const TissueState& known) { return known.name == tissue.name; };
+    const auto at = std::find_if(traces.tissues.begin(), traces.tissues.end(), same);
+    if (at == traces.tissues.end())
+      traces.tissues.push_back(tissue);
+    else
+      *at = tissue;
+  }
 }
 
 std::vector<MotionSample> processed_motion(const std::vector<double>& time,

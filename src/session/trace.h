@@ -34,6 +34,7 @@ struct Traces {
   /// [organ][sample], in the order in which organs came; of one that came later or went, those of its time.
   std::vector<std::vector<OrganSample>> organs;
   std::vector<std::string> organ_names;
+  std::vector<TissueState> tissues;  ///< as they were last, by their names
 };
 
 /// Appends the world's present report.

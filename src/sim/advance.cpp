@@ -9,6 +9,7 @@
 #include "base/timed.h"
 #include "numerics/response.h"
 #include "sim/body_rubbing.h"
+#include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/inertia.h"
@@ -154,12 +155,28 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
   return share;
 }
 
-/// The next part of each organ's motion, from where it is as it moves there; none where the field is static.
+/// What masses move: organs, then the nodes of tissues.
+std::size_t moving_bodies(const Field& field) { return field.organs.size() + field.tissues.size(); }
+BodyState& state_of(Field& field, std::size_t k) {
+  const std::size_t organs = field.organs.size();
+  return k < organs ? field.organs[k].state : field.tissues[k - organs].now.state;
+}
+const BodyState& state_of(const Field& field, std::size_t k) {
+  const std::size_t organs = field.organs.size();
+  return k < organs ? field.organs[k].state : field.tissues[k - organs].now.state;
+}
+const Body& body_of(const Field& field, std::size_t k) {
+  const std::size_t organs = field.organs.size();
+  if (k < organs) return *field.organs[k].body;
+  return *field.tissues[k - organs].body;
+}
+
+/// The next part of each body's motion, from where it is as it moves there; none where the field is static.
 Result<std::vector<MotionPart>> next_parts(const Field& field) {
   std::vector<MotionPart> out;
-  for (const Organ& organ : field.organs) {
-    if (field.step_time == 0) break;
-    Result<MotionPart> part = motion_part(*organ.body, present_motion(*organ.body, organ.state), 0);
+  for (std::size_t k = 0; k < moving_bodies(field) && field.step_time > 0; ++k) {
+    const Body& body = body_of(field, k);
+    Result<MotionPart> part = motion_part(body, present_motion(body, state_of(field, k)), 0);
     if (!part) return part.failure();
     out.push_back(std::move(part).value());
   }
@@ -169,7 +186,7 @@ Result<std::vector<MotionPart>> next_parts(const Field& field) {
 void begin(const std::vector<MotionPart>& parts, double duration, Field& field) {
   constexpr double alike = 0.1;  // another share than this of the time, and the factor is of another matrix
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    MotionPart& part = field.organs[k].state.motion;
+    MotionPart& part = state_of(field, k).motion;
     if (!(std::abs(duration - part.duration) < alike * part.duration)) field.group.work.factored = false;
     part = parts[k];
     part.duration = duration;
@@ -177,9 +194,11 @@ void begin(const std::vector<MotionPart>& parts, double duration, Field& field) 
 }
 
 bool all_stand_still(const Field& field) {
-  return std::all_of(field.organs.begin(), field.organs.end(), [](const Organ& organ) {
-    return organ.state.motion.duration == 0 || stands_still(organ.state.motion.begin);
-  });
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) {
+    const MotionPart& motion = state_of(field, k).motion;
+    if (motion.duration > 0 && !stands_still(motion.begin)) return false;
+  }
+  return true;
 }
 
 /// What moves the organs beside the tools: adds to `load` what is not in balance yet at the beginning of the part.
@@ -220,28 +239,34 @@ MissedMotion missed_by(const Prediction& answer, double share, const GroupSnapsh
     out.dpressures[static_cast<Eigen::Index>(k)] += is.datum_pressure - was.datum_pressure;
     first += is.x.size();
   }
+  for (std::size_t t = 0; t < field.tissues.size(); ++t) {
+    const VecX &was = before.tissues[t].state.x, &is = field.tissues[t].now.state.x;
+    out.dx.segment(first, is.size()) += is - was;
+    first += is.size();
+  }
   return out;
 }
 
 /// Whether the last factor answered the last motion well: a new one takes as long as three iterations.
 bool factor_serves(const Group& group) { return group.missed.dx.size() > 0 && group.missed.iterations <= 3; }
 
-/// What of dx is an organ's.
-class OrganParts {
+/// What of dx is a body's: organs, then tissues.
+class BodyParts {
  public:
-  explicit OrganParts(const Field& field) {
-    for (const Organ& organ : field.organs) {
+  explicit BodyParts(const Field& field) {
+    for (std::size_t k = 0; k < moving_bodies(field); ++k) {
       first_.push_back(total_);
-      sizes_.push_back(organ.state.x.size());
+      sizes_.push_back(state_of(field, k).x.size());
       total_ += sizes_.back();
     }
   }
   Eigen::Index total() const { return total_; }
-  auto of(std::size_t organ, VecX& dx) const { return dx.segment(first_[organ], sizes_[organ]); }
-  auto of(std::size_t organ, const VecX& dx) const { return dx.segment(first_[organ], sizes_[organ]); }
-  VecX joined(const std::vector<VecX>& organs) const {
+  auto of(std::size_t body, VecX& dx) const { return dx.segment(first_[body], sizes_[body]); }
+  auto of(std::size_t body, const VecX& dx) const { return dx.segment(first_[body], sizes_[body]); }
+  /// Where all nodes are, m.
+  VecX present(const Field& field) const {
     VecX out(total_);
-    for (std::size_t k = 0; k < organs.size(); ++k) of(k, out) = organs[k];
+    for (std::size_t k = 0; k < sizes_.size(); ++k) of(k, out) = state_of(field, k).x;
     return out;
   }
 
@@ -254,6 +279,8 @@ std::vector<double> all_edge_lengths(const Field& field) {
   std::vector<double> out;
   for (const Organ& organ : field.organs)
     out.insert(out.end(), organ.body->edge_lengths().begin(), organ.body->edge_lengths().end());
+  for (const Tissue& tissue : field.tissues)
+    out.insert(out.end(), tissue.body->edge_lengths().begin(), tissue.body->edge_lengths().end());
   return out;
 }
 
@@ -261,7 +288,7 @@ std::vector<double> all_edge_lengths(const Field& field) {
 void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
                 const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
                 Prediction& out) {
-  const OrganParts parts(field);
+  const BodyParts parts(field);
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     out.share = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),
@@ -269,7 +296,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
   }
   // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
   if (out.loaded && !field.group.joins.empty()) {
-    const VecX x = parts.joined(present_places(field));
+    const VecX x = parts.present(field);
     for (const JoinPointer& join : field.group.joins) out.share = join->safe_share(x, out.dx, out.share);
   }
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
@@ -283,7 +310,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
 /// tangent is factorised anew, else the last factor serves if there is one.
 Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, bool fresh,
                            SolveStatistics& statistics) {
-  const OrganParts parts(field);
+  const BodyParts parts(field);
   Prediction out;
   out.dx = out.first_order = VecX::Zero(parts.total());
   out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
@@ -292,7 +319,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   out.travel = largest_travel(field, to);
   std::vector<ContactLoads> loads;
   std::vector<std::vector<ContactPair>> pairs;
-  VecX load(parts.total());
+  VecX load = VecX::Zero(parts.total());
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     Organ& organ = field.organs[k];
     loads.push_back(solve_loads(field, organ, from));
@@ -304,9 +331,11 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   }
   out.loaded |= moving;
   if (out.loaded) {
-    const std::vector<Member> members = members_of(field, loads);
+    std::vector<Member> members = members_of(field, loads);
+    TissueMembers tissues(field);
+    tissues.add_to(members);
     Group& group = field.group;
-    const std::vector<JoinPointer> joins = joins_with(group.joins, group.rubbing);
+    const std::vector<JoinPointer> joins = joins_with(all_joins(field), group.rubbing);
     const GroupProblem problem(members, joins, group.patterns);
     const VecX multipliers = problem.resting_multipliers();
     VecX values;
@@ -315,8 +344,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
                                                  load, all_edge_lengths(field), fresh, values);
     count(answer.result, statistics);
     if (!answer.result.converged())
-      return solve_failure(answer.result, field.organs[answer.result.part].definition.name,
-                           "under its instruments");
+      return solve_failure(answer.result, member_name(field, answer.result.part), "under its instruments");
     out.first_order = std::move(answer.dx);
     out.first_order_pressures = problem.pressures(answer.dmultipliers);
     out.share = answer.share;
@@ -380,12 +408,14 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
 
 /// Moves the organs by a share of what is predicted.
 void move_by(double share, const Prediction& prediction, Field& field) {
-  const OrganParts parts(field);
+  const BodyParts parts(field);
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     BodyState& state = field.organs[k].state;
     state.x += share * parts.of(k, prediction.dx);
     state.datum_pressure += share * prediction.dpressures[static_cast<Eigen::Index>(k)];
   }
+  for (std::size_t k = field.organs.size(); k < moving_bodies(field); ++k)
+    state_of(field, k).x += share * parts.of(k, prediction.dx);
 }
 
 /// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
@@ -397,6 +427,7 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
   NewtonResult last;  // of the solve that failed last, if any did in this part
   for (int part = 0; done < 1.0; ++part) {
     const Poses from = present_poses(field);
+    grow_damage(field);
     const Result<std::vector<MotionPart>> parts = next_parts(field);
     if (!parts) return parts.failure();
     const double time_left = (1.0 - done) * duration;
@@ -468,10 +499,22 @@ std::vector<double> all_stops(const std::vector<std::vector<double>>& holding_st
   return stops;
 }
 
+/// What of a tissue was torn in a step.
+void judge_tearing(Tissue& tissue, int torn_before, std::vector<WorldEvent>& events) {
+  const int torn = tissue.torn(), strands = static_cast<int>(tissue.now.opened.size());
+  const bool was_tearing = std::exchange(tissue.now.tearing, torn > torn_before);
+  const std::string& name = tissue.definition.name;
+  if (tissue.now.tearing && !was_tearing)
+    events.push_back({EventKind::tear, 0, {}, name, static_cast<double>(torn) / strands});
+  if (torn == strands && torn_before < strands) events.push_back({EventKind::parted, 0, {}, name, 0});
+}
+
 }  // namespace
 
 Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
   std::vector<WorldEvent> events;
+  std::vector<int> torn_before;
+  for (const Tissue& tissue : field.tissues) torn_before.push_back(tissue.torn());
   std::vector<char> slipped_before;
   for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -521,6 +564,9 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       events.push_back({EventKind::grasp, 0, tool.definition.name, held_organ(field, index), 0});
     }
   }
+  grow_damage(field);
+  for (std::size_t t = 0; t < field.tissues.size(); ++t)
+    judge_tearing(field.tissues[t], torn_before[t], events);
   return events;
 }
 

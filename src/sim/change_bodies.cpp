@@ -57,6 +57,12 @@ class Renumbering {
     for (TiedPlace place : field.membership.tied)
       if (apply(place.bodies)) tied.push_back(place);
     field.membership.tied = std::move(tied);
+    std::vector<Tissue> tissues;
+    for (const Tissue& tissue : field.tissues) {
+      std::array<int, 2> bodies = tissue.strands->bodies();
+      if (apply(bodies)) tissues.push_back(tissue.between(bodies));
+    }
+    field.tissues = std::move(tissues);
     if (field.viewed && (field.viewed->organ = now_[field.viewed->organ]) < 0) field.viewed.reset();
   }
 
@@ -173,6 +179,25 @@ std::vector<FieldJoint> divide_joint(const FieldJoint& joint, int side, const Cu
   return made;
 }
 
+/// The strands of a tissue that end on one half of a rod; none do: none.
+std::optional<Tissue> half_of(const Tissue& tissue, int side, const Cut& cut, bool first, int half,
+                              std::array<int, 2> bodies) {
+  bodies[side] = half;
+  std::vector<int> which;
+  std::vector<PlacedStrand> strands;
+  for (std::size_t i = 0; i < tissue.strands->strands().size(); ++i) {
+    PlacedStrand strand = tissue.strands->strands()[i];
+    CarriedPlace& place = side == 0 ? strand.one : strand.other;
+    const int nearest = nearest_of(cut.rest, place_at(place, cut.rest));
+    if (cut.in_first(nearest) != first) continue;
+    place = on_half(place, cut, first, nearest);
+    which.push_back(static_cast<int>(i));
+    strands.push_back(std::move(strand));
+  }
+  if (which.empty()) return std::nullopt;
+  return tissue.part(bodies, std::move(strands), which);
+}
+
 /// How far about the cut the pieces may not press on each other, that they do not anywhere.
 double within_of_cut(const Organ& one, const Organ& other, const Vec3& place) {
   constexpr double wider = 1.25;
@@ -216,6 +241,17 @@ void replace(Field& field, int organ, std::array<Organ, 2> pieces, bool start_fi
     for (FieldJoint& half : divide_joint(joint, side, cut, halves, field.organs, links.bodies))
       out.push_back(std::move(half));
   }
+  std::vector<Tissue> tissues;
+  for (const Tissue& tissue : field.tissues) {
+    std::array<int, 2> bodies = tissue.strands->bodies();
+    const int side = bodies[0] == organ ? 0 : bodies[1] == organ ? 1 : -1;
+    renumbering.apply(bodies);
+    if (side < 0) tissues.push_back(tissue.between(bodies));
+    for (int half = 0; side >= 0 && half < 2; ++half)
+      if (std::optional<Tissue> part = half_of(tissue, side, cut, half == 0, halves[half], bodies))
+        tissues.push_back(std::move(*part));
+  }
+  field.tissues = std::move(tissues);
   field.membership.tied.clear();
   for (const TiedPlace& one : tied)
     for (int half = 0; half < 2; ++half) {
@@ -415,8 +451,9 @@ Result<bool> untie_bodies(Field& field, int one, int other) {
 }
 
 void keep_members(Field& field) {
-  FieldMembers now{field.organs, field.group.joins, field.viewed, field.membership,
-                   field.members ? field.members->world : std::make_shared<const int>(0)};
+  FieldMembers now{field.organs,      field.tissues,
+                   field.group.joins, field.viewed,
+                   field.membership,  field.members ? field.members->world : std::make_shared<const int>(0)};
   for (Organ& organ : now.organs) {
     const bool meets_itself = organ.search.own.active;
     organ.search = {};
@@ -430,6 +467,7 @@ void restore_members(Field& field, const std::shared_ptr<const FieldMembers>& me
   if (field.members == members) return;
   field.members = members;
   field.organs = members->organs;
+  field.tissues = members->tissues;
   field.group.forget_bodies();
   field.group.joins = members->joins;
   field.viewed = members->viewed;

@@ -19,6 +19,9 @@ const std::vector<EventRow>& event_rows() {
        true},
       {overstretch, "overstretch", "an organ's wall is stretched beyond its overstretch", "stretch", false,
        true},
+      {tear, "tear", "strands of a tissue begin to tear; with the share of them that is torn", "share", false,
+       true},
+      {parted, "parted", "the last strand of a tissue is torn", "", false, true},
       {step_done, "step_done", "a step of the exercise ends as done", "duration_s", false, false},
       {step_timeout, "step_timeout", "a step of the exercise reaches its limit", "duration_s", false, false},
   };

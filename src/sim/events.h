@@ -17,6 +17,8 @@ enum class EventKind {
   activation,
   overforce,
   overstretch,
+  tear,
+  parted,
   step_done,
   step_timeout,
 };
@@ -44,7 +46,7 @@ struct WorldEvent {
   EventKind kind = EventKind::contact;
   double time = 0;         ///< s
   std::string instrument;  ///< may be empty
-  std::string organ;       ///< may be empty
+  std::string organ;       ///< or tissue; may be empty
   double value = 0;        ///< as the kind's row says, else 0
 };
 

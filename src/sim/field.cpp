@@ -43,14 +43,16 @@ void Field::enrol(Organ& organ) {
 
 GroupSnapshot snapshot(const Field& field) {
   const Group& group = field.group;
-  GroupSnapshot out{{}, group.work.keep(), {{}, group.patterns.joined}, group.missed, group.rubbing};
+  GroupSnapshot out{{}, {}, group.work.keep(), {{}, group.patterns.joined}, group.missed, group.rubbing};
   for (const Organ& organ : field.organs) out.organs.push_back(snapshot(organ));
+  for (const Tissue& tissue : field.tissues) out.tissues.push_back(tissue.now);
   for (const BlockMatrix& own : group.patterns.own) out.patterns.own.push_back(own.pattern_only());
   return out;
 }
 
 void restore(Field& field, const GroupSnapshot& snapshot) {
   for (std::size_t k = 0; k < field.organs.size(); ++k) restore(field.organs[k], snapshot.organs[k]);
+  for (std::size_t t = 0; t < field.tissues.size(); ++t) field.tissues[t].now = snapshot.tissues[t];
   Group& group = field.group;
   group.work.restore(snapshot.factor);
   group.missed = snapshot.missed;

@@ -8,6 +8,7 @@
 #include "sim/members.h"
 #include "sim/skin_rubbing.h"
 #include "sim/step_report.h"
+#include "sim/tissue.h"
 #include "sim/tool.h"
 
 namespace calot {
@@ -15,7 +16,7 @@ namespace calot {
 /// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
 /// the second order in the way.
 struct MissedMotion {
-  VecX dx;             ///< m, 3 a node of all organs; empty: none known
+  VecX dx;             ///< m, 3 a node of all members; empty: none known
   VecX dpressures;     ///< Pa, one an organ
   double travel = 0;   ///< of the tool that travelled furthest, m
   int iterations = 0;  ///< that it took to make good
@@ -48,6 +49,7 @@ struct Ground {
 
 struct Field {
   std::vector<Organ> organs;
+  std::vector<Tissue> tissues;  ///< between them
   Group group;
   std::vector<Tool> tools;
   std::vector<Ground> ground;
@@ -76,6 +78,7 @@ std::vector<Ground> ground_of(const AnatomyDefinition& anatomy);
 /// All that moves of the organs, cheap to copy: what failed is undone by it.
 struct GroupSnapshot {
   std::vector<OrganSnapshot> organs;
+  std::vector<TissueMotion> tissues;
   NewtonWorkspace::Kept factor = NewtonWorkspace(BlockMatrix(0, {})).keep();
   GroupPatterns patterns;  ///< without values
   MissedMotion missed;

@@ -12,6 +12,7 @@
 #include "sim/joint.h"
 #include "sim/organ.h"
 #include "sim/skin_join.h"
+#include "sim/tissue.h"
 
 namespace calot {
 
@@ -62,7 +63,8 @@ struct Membership {
 
 /// All of it at one time.
 struct FieldMembers {
-  std::vector<Organ> organs;  ///< as they were when it began
+  std::vector<Organ> organs;    ///< as they were when it began
+  std::vector<Tissue> tissues;  ///< likewise
   std::vector<JoinPointer> joins;
   std::optional<ViewedPlace> viewed;
   Membership membership;

@@ -2,6 +2,7 @@
 
 #include "sim/body_rubbing.h"
 #include "sim/detail_fading.h"
+#include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/rubbing.h"
 
@@ -50,6 +51,18 @@ std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& lo
   return out;
 }
 
+std::string member_name(const Field& field, int part) {
+  const auto index = static_cast<std::size_t>(part);
+  if (index < field.organs.size()) return field.organs[index].definition.name;
+  return field.tissues[index - field.organs.size()].definition.name;
+}
+
+std::vector<JoinPointer> all_joins(const Field& field) {
+  std::vector<JoinPointer> out = field.group.joins;
+  add_strands(field, static_cast<int>(field.organs.size()), out);
+  return out;
+}
+
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to) {
   double travel = 0;
   for (std::size_t i = 0; i < to.size(); ++i)
@@ -82,12 +95,14 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     fade_details(largest_travel(field, poses), organ.state);
     loads.push_back(solve_loads(field, organ, poses));
   }
-  const std::vector<Member> members = members_of(field, loads);
+  std::vector<Member> members = members_of(field, loads);
+  TissueMembers tissues(field);
+  tissues.add_to(members);
   Group& group = field.group;
   std::vector<SkinHold> rubbing = group.rubbing;
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {
-    const std::vector<JoinPointer> joins = joins_with(group.joins, rubbing);
+    const std::vector<JoinPointer> joins = joins_with(all_joins(field), rubbing);
     total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
     if (!total.converged() || !has_friction(field)) break;
     std::vector<FrictionLoad> used;
@@ -114,7 +129,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
   const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
                                            NewtonSettings{}.max_iterations, statistics);
-  if (!result.converged()) return solve_failure(result, field.organs[result.part].definition.name, when);
+  if (!result.converged()) return solve_failure(result, member_name(field, result.part), when);
   return true;
 }
 
@@ -124,11 +139,13 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
   std::vector<ContactLoads> loads;
   for (const Organ& organ : field.organs) loads.push_back(contact_loads(field, organ, present_poses(field)));
   Group& group = field.group;
-  const NewtonResult result =
-      sink(members_of(field, loads), group.joins, group.patterns, settings, group.work);
+  std::vector<Member> members = members_of(field, loads);
+  TissueMembers tissues(field);
+  tissues.add_to(members);
+  const NewtonResult result = sink(members, all_joins(field), group.patterns, settings, group.work);
   count(result, statistics);
   if (!result.converged())
-    return solve_failure(result, field.organs[result.part].definition.name, "as it sank to rest");
+    return solve_failure(result, member_name(field, result.part), "as it sank to rest");
   return true;
 }
 

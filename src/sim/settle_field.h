@@ -17,6 +17,11 @@ ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vect
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);
 
+/// What such a group's part is called, the tissues behind the organs.
+std::string member_name(const Field& field, int part);
+/// All joins of the field's group: organs', then tissues'.
+std::vector<JoinPointer> all_joins(const Field& field);
+
 /// The organs as members of one group under `loads`, one an organ.
 std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads);
 

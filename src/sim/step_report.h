@@ -43,6 +43,11 @@ struct OrganState {
   int details = 0;         ///< nodes that they add
 };
 
+struct TissueState {
+  std::string name;
+  int strands = 0, torn = 0;
+};
+
 struct SolveStatistics {
   int substeps = 0;
   int newton_iterations = 0;
@@ -57,6 +62,7 @@ struct StepReport {
   double time = 0;  ///< s, at the end of the step
   std::vector<InstrumentState> instruments;
   std::vector<OrganState> organs;
+  std::vector<TissueState> tissues;
   std::vector<WorldEvent> events;
   SolveStatistics statistics;
   std::uint64_t state_hash = 0;

@@ -4,7 +4,7 @@
 
 namespace calot {
 
-StrandJoin::StrandJoin(std::array<int, 3> bodies, std::vector<PlacedStrand> strands)
+StrandJoin::StrandJoin(std::array<int, 2> bodies, std::vector<PlacedStrand> strands)
     : bodies_(bodies), strands_(std::move(strands)), pasts_(strands_.size()) {}
 
 void StrandJoin::set_past(const std::vector<double>& opened, double duration) {
@@ -13,14 +13,15 @@ void StrandJoin::set_past(const std::vector<double>& opened, double duration) {
 }
 
 void StrandJoin::begin(std::span<const GroupPlace> bodies) const {
-  if (*std::max_element(bodies_.begin(), bodies_.end()) >= static_cast<int>(bodies.size())) {
+  const std::array<int, 3> of{bodies_[0], bodies_[1], nodes_body_};
+  if (nodes_body_ < 0 || *std::max_element(of.begin(), of.end()) >= static_cast<int>(bodies.size())) {
     rows_ = {};
     first_.fill(-1);
     return;
   }
   bool same = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    const GroupPlace& place = bodies[bodies_[k]];
+    const GroupPlace& place = bodies[of[k]];
     same &= first_[k] == place.first_node;
     first_[k] = place.first_node;
     if (k == 2) continue;
@@ -117,6 +118,19 @@ void StrandJoin::add_cliques(const VecX&, bool close, std::vector<std::vector<in
                                                    rows_.node.begin() + rows_.begin[row + 3]);
     std::sort(nodes.begin(), nodes.end());
   }
+}
+
+double StrandJoin::safe_share(const VecX& x, const VecX& step, double share) const {
+  for (std::size_t i = 0; active() && i < strands_.size(); ++i) {
+    const Strand& strand = strands_[i].strand;
+    if (strand.law.torn(pasts_[i].opened)) continue;
+    const StrandVector from = places(i, x), motion = places(i, step);
+    const double before = strand.law.strain(strand.way(from)),
+                 after = strand.law.strain(strand.way(from + share * motion));
+    const double most = std::max(before, strand.law.peak()) + 0.5 * strand.law.tail();
+    if (after > most) share *= (most - before) / (after - before);  // a way is convex along the step
+  }
+  return share;
 }
 
 std::vector<double> StrandJoin::strains(const VecX& x) const {

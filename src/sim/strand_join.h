@@ -18,8 +18,13 @@ struct PlacedStrand {
 
 class StrandJoin : public Join {
  public:
-  /// `bodies`: places in the group of the two that it ends on, and of that whose nodes its strands have, in their order.
-  StrandJoin(std::array<int, 3> bodies, std::vector<PlacedStrand> strands);
+  /// `bodies`: places in the group of the two that it ends on.
+  StrandJoin(std::array<int, 2> bodies, std::vector<PlacedStrand> strands);
+  StrandJoin(const StrandJoin&) = delete;
+  StrandJoin& operator=(const StrandJoin&) = delete;
+
+  /// The place in the group of the body whose nodes the strands have, in their order.
+  void set_nodes(int body) { nodes_body_ = body; }
 
   /// What the strands bring into the solves that follow: how far each has been opened, and the time that passes, s
   /// (0: none).
@@ -31,7 +36,10 @@ class StrandJoin : public Join {
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
 
-  const std::array<int, 3>& bodies() const { return bodies_; }
+  /// No step takes a strand beyond half of the way on which it tears: it would end behind what it resists.
+  double safe_share(const VecX& x, const VecX& step, double share) const override;
+
+  const std::array<int, 2>& bodies() const { return bodies_; }
   const std::vector<PlacedStrand>& strands() const { return strands_; }
   /// Strain of each at x, in the group's numbering.
   std::vector<double> strains(const VecX& x) const;
@@ -45,7 +53,8 @@ class StrandJoin : public Join {
   void find_blocks(const BlockMatrix& matrix) const;
   bool active() const { return rows_.rows() > 0; }
 
-  std::array<int, 3> bodies_;
+  std::array<int, 2> bodies_;
+  int nodes_body_ = -1;
   std::vector<PlacedStrand> strands_;
   std::vector<StrandPast> pasts_;
   /// Three rows a strand, for a, m and b, in the group's numbering; none where a body is not in the group.

@@ -26,6 +26,17 @@ TissueBody::TissueBody(const Setup& setup)
   size_ = std::max(box.diagonal().norm(), longest_strand_step);
 }
 
+TissueBody TissueBody::part(const std::vector<int>& which) const {
+  Setup setup = setup_;
+  setup.nodes.clear();
+  setup.masses.clear();
+  for (int node : which) {
+    setup.nodes.push_back(setup_.nodes[node]);
+    setup.masses.push_back(setup_.masses[node]);
+  }
+  return TissueBody(setup);
+}
+
 void TissueBody::add_gradient(const VecX& /*x*/, VecX& /*gradient*/, double& largest_internal) const {
   largest_internal = setup_.strength;
 }

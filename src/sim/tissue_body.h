@@ -18,6 +18,9 @@ class TissueBody : public Body {
   };
   explicit TissueBody(const Setup& setup);
 
+  /// Some of its nodes, increasing, as a body of their own.
+  TissueBody part(const std::vector<int>& which) const;
+
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }
   int kept_nodes() const override { return 0; }

@@ -13,6 +13,7 @@
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
 #include "sim/field_state.h"
+#include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/join_bodies.h"
 #include "sim/settle_field.h"
@@ -108,6 +109,13 @@ void add_body_state(Hash& hash, const Organ& organ) {
   hash.add(organ.refused_details.has_value());
   if (organ.refused_details)
     for (int detail : *organ.refused_details) hash.add(detail);
+}
+
+void add_tissue(Hash& hash, const Tissue& tissue) {
+  add_vector(hash, tissue.now.state.x);
+  if (tissue.now.state.motion.duration > 0) add_motion(hash, tissue.now.state.motion);
+  for (double opened : tissue.now.opened) hash.add(opened);
+  hash.add(tissue.now.tearing);
 }
 
 void add_stick_slip(Hash& hash, const StickSlip& hold) {
@@ -213,6 +221,7 @@ std::uint64_t World::Impl::hash_field() const {
     add_body_state(hash, organ);
     add_holds(hash, organ);
   }
+  for (const Tissue& tissue : field.tissues) add_tissue(hash, tissue);
   add_missed(hash, field.group.missed);
   add_rubbing(hash, field.group.rubbing);
   add_factor(hash, field.group.work);
@@ -278,6 +287,23 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
   return state;
 }
 
+namespace {
+
+/// Those of one name are pieces of one tissue, whose organ was divided.
+std::vector<TissueState> tissue_states(const Field& field) {
+  std::vector<TissueState> out;
+  for (const Tissue& tissue : field.tissues) {
+    const auto same = [&](const TissueState& state) { return state.name == tissue.definition.name; };
+    auto at = std::find_if(out.begin(), out.end(), same);
+    if (at == out.end()) at = out.insert(out.end(), {tissue.definition.name, 0, 0});
+    at->strands += static_cast<int>(tissue.now.opened.size());
+    at->torn += tissue.torn();
+  }
+  return out;
+}
+
+}  // namespace
+
 void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions) {
   const std::vector<ToolLoad> loads = tool_loads(field);
   report.time = time();
@@ -286,6 +312,7 @@ void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<Inst
     report.instruments.push_back(instrument_state(i, loads[i]));
   const std::vector<OrganState> before = std::exchange(report.organs, {});
   for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
+  report.tissues = tissue_states(field);
 
   // Events are raised when a condition begins, not while it lasts.
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -359,7 +386,7 @@ namespace {
 /// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on. Without
 /// friction, whose anchors belong to shapes that the tools' will come before.
 Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy, bool dynamic) {
-  const bool alone = anatomy.joints.empty() &&
+  const bool alone = anatomy.joints.empty() && field.tissues.empty() &&
                      std::all_of(field.organs.begin(), field.organs.end(),
                                  [](const Organ& organ) { return is_hollow(organ.definition.shape); });
   if (alone) return true;
@@ -422,6 +449,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   }
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   if (Result<bool> joined = join_bodies(scene.anatomy, impl->field); !joined) return joined.failure();
+  if (Result<bool> made = add_tissues(scene.anatomy, impl->up, impl->field); !made) return made.failure();
   if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
     return rested.failure();
   World world(std::move(impl));
@@ -596,6 +624,7 @@ auto World::Impl::change(const std::string& what, const Change& change) -> declt
   }
   report.organs.clear();
   for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
+  report.tissues = tissue_states(field);
   const std::vector<ToolLoad> loads = tool_loads(field);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     report.instruments[i] = instrument_state(i, loads[i]);

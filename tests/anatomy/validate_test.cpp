@@ -20,6 +20,16 @@ OrganDefinition duct(std::vector<Vec3> points) {
   return organ;
 }
 
+/// Another one between the gallbladder and a duct.
+TissueDefinition& tissue_in(SceneDefinition& scene) {
+  if (scene.anatomy.organs.size() < 2)
+    scene.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+  TissueDefinition& tissue = scene.anatomy.tissue.emplace_back();
+  tissue.from = "gallbladder";
+  tissue.to = "duct";
+  return tissue;
+}
+
 using test::sound_scene;
 using testing::HasSubstr;
 using units::deg;
@@ -252,6 +262,26 @@ const std::vector<Refusal>& refusals() {
       {"JointToItself",
        [](auto& s) { s.anatomy.joints = {{.from = "gallbladder.neck", .to = "gallbladder.fundus"}}; },
        "scene.anatomy.joints[1].to", "tied to itself", "another organ"},
+      {"TissueToNowhere", [](auto& s) { tissue_in(s).to = "dcut"; }, "scene.anatomy.tissue[1].to",
+       "unknown organ \"dcut\"", "duct"},
+      {"TissueToItself", [](auto& s) { tissue_in(s).to = "gallbladder"; }, "scene.anatomy.tissue[1].to",
+       "an organ and itself", "another organ"},
+      {"TissueCalledAsAnOrgan", [](auto& s) { tissue_in(s).name = "duct"; }, "scene.anatomy.tissue[1].name",
+       "an organ is called", "another name"},
+      {"TissueTwice", [](auto& s) { tissue_in(s), tissue_in(s); }, "scene.anatomy.tissue[2].name",
+       "\"tissue\" is given twice", "rename"},
+      {"TissueOfNegativeStrength", [](auto& s) { tissue_in(s).strength = -30e3; },
+       "scene.anatomy.tissue[1].strength", "not a tissue's strength", "kPa"},
+      {"TissueThatEndsBeforeItBegins",
+       [](auto& s) { tissue_in(s).start = 0.8, s.anatomy.tissue[0].stop = 0.2; },
+       "scene.anatomy.tissue[1].stop", "before it begins", "more than its start"},
+      {"TissuesOfTooManyStrands",
+       [](auto& s) {
+         tissue_in(s).strands = 1000;
+         tissue_in(s).strands = 1000;
+         s.anatomy.tissue[1].name = "more";
+       },
+       "scene.anatomy.tissue", "2000 strands", "at most"},
       {"GroundTwice", [](auto& s) { s.anatomy.ground.resize(2); }, "scene.anatomy.ground[2].name",
        "\"ground\" is given twice", "rename"},
       {"GroundNormal", [](auto& s) { s.anatomy.ground = {{.normal = Vec3(0, 0, 2)}}; },

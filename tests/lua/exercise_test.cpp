@@ -216,6 +216,30 @@ TEST(Exercise, OverridesOfAnAnatomyKeepTheRest) {
   EXPECT_NEAR(*anatomy.organs[0].bile.fill_volume, 45e-6, 1e-18);  // rounding of 45 * 1e-6
 }
 
+TEST(Exercise, TissueIsReadWithItsDefaults) {
+  const Folder folder;
+  const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(
+      folder,
+      with_anatomy("calot.anatomy('standard', { organs = { {}, { name = 'duct', shape = { type = 'tube', "
+                   "points = { { 0, 0, 0 }, { 30 * mm, 0, 0 } } }, held = { { landmark = 'start' } } } },\n"
+                   "tissue = { { name = 'plate', from = 'duct', to = 'gallbladder', within = 4 * mm, start = "
+                   "0.2, stop = 0.8, strands = 250, strength = 20 * calot.units.kPa } } })")
+          .text());
+  ASSERT_TRUE(loaded) << to_text(loaded.failure());
+  const AnatomyDefinition& anatomy = loaded.value()->definition().scene.anatomy;
+  ASSERT_EQ(anatomy.tissue.size(), 1u);
+  const TissueDefinition &tissue = anatomy.tissue[0], standard;
+  EXPECT_EQ(tissue.name, "plate");
+  EXPECT_EQ(tissue.from, "duct");
+  EXPECT_EQ(tissue.to, "gallbladder");
+  EXPECT_EQ(tissue.within, 4e-3);
+  EXPECT_EQ(tissue.start, 0.2);
+  EXPECT_EQ(tissue.stop, 0.8);
+  EXPECT_EQ(tissue.strands, 250);
+  EXPECT_EQ(tissue.strength, 20e3);
+  EXPECT_EQ(tissue.break_energy, standard.break_energy);
+}
+
 TEST(Exercise, InstrumentsAreInTheOrderOfTheirNamesAndPortsAreAdded) {
   const Folder folder;
   const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(

@@ -447,6 +447,28 @@ TEST(Steps, SeeTheWorldAsItIs) {
   EXPECT_LT((tip - played.moments.front().tips[0]).norm(), rounding);
 }
 
+TEST(Steps, SeeWhatIsTorn) {
+  ScenarioText text = with_steps(
+      "t:step('a', 'A') print(t:torn('stalk')) t:wait(0.1 * s) t:remove('stone') "
+      "print(t:torn('stalk'))");
+  text.scene =
+      "return { anatomy = { organs = { { name = 'duct', shape = { type = 'tube', points = { { -100 * mm, 70 "
+      "* mm, "
+      "-100 * mm }, { -60 * mm, 70 * mm, -100 * mm } }, radius = 3 * mm }, held = { { landmark = 'start' }, "
+      "{ "
+      "name = 'far', landmark = 'end' } } },\n"
+      "{ name = 'stone', shape = { type = 'rigid', size = { 20 * mm, 4 * mm, 2 * mm }, rounding = 4 * mm, "
+      "centre = { "
+      "-80 * mm, 70 * mm, -109 * mm } } } },\n"
+      "tissue = { { name = 'stalk', from = 'duct', to = 'stone', start = 0.3, stop = 0.7, strands = 30 } } "
+      "},\n"
+      "solver = { motion = 'dynamic', rate = 50 }, laparoscope = { look_at = 'duct.middle' },\n"
+      "instruments = { left = { port = 'right_subcostal' } } }";
+  const Played played = play_own(text, 50, 0.3);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("0.0", "1.0"));
+}
+
 TEST(Steps, ErrorsWhileTheyRunNameTheScriptsLines) {
   const ScenarioText text = with_steps(
       "t:step('a', 'A') t:wait_until(function()\n local x = t:time() > 0.1 and nil\n return x + 1 end)");

@@ -59,9 +59,9 @@ struct StrandRig : GroupRig {
     std::vector<PlacedStrand> strands;
     TissueBody::Setup middle;
     middle.strength = tissue.strength * area;
+    const SkinFinder first(*of[0], of[0]->skin_rest()), second(*of[1], of[1]->skin_rest());
     for (const Vec3& at : places_of) {
-      const NearestSkin one = nearest_on_skin(*of[0], of[0]->skin_rest(), at),
-                        other = nearest_on_skin(*of[1], of[1]->skin_rest(), at);
+      const NearestSkin one = first.nearest(at), other = second.nearest(at);
       StrandLaw::Setup setup;
       setup.taut = one.distance + other.distance;
       setup.length = tissue.length;
@@ -72,7 +72,8 @@ struct StrandRig : GroupRig {
       middle.nodes.push_back(at);
       middle.masses.push_back(1000 * area * tissue.length);
     }
-    Made out{of, std::make_shared<StrandJoin>(std::array{0, 1, 2}, std::move(strands))};
+    Made out{of, std::make_shared<StrandJoin>(std::array{0, 1}, std::move(strands))};
+    out.join->set_nodes(2);
     out.bodies.push_back(std::make_shared<const TissueBody>(middle));
     return out;
   }
