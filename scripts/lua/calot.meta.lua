@@ -129,7 +129,7 @@
 ---@field stiffness? number tension by area and strain as strands become taut; default 10 * kPa; 0.1 to 10000 kPa
 ---@field stiffening? number exponent of the tension a strain; 0: it does not stiffen; default 1.5; 0 to 20
 ---@field strength? number largest tension by area; uncalibrated; default 30 * kPa; 0.1 to 10000 kPa
----@field break_energy? number to tear it, J/m^2: as a peel's force by width, N/m; uncalibrated; default 100; 0.1 to 100000
+---@field break_energy? number to tear it, J/m^2: as a peel's force by width, N/m; uncalibrated; default 150; 0.1 to 100000
 ---@field density? number kg/m^3; default 1000; 100 to 2000 kg/m^3
 
 ---A shape that stays and is touched.
@@ -217,6 +217,7 @@
 ---@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed"|"start"|"middle"|"end"|"centre"|"back"|"edge"|"underside"|"upper_side" the landmark it surrounds
 ---@field radius? number how far it reaches; default 10 * mm; 0.5 to 250 mm
 ---@field stiffness? number N/m per m^2 of skin; default 300000; 1 to 1e+10 N/m^3
+---@field while_filled? boolean true: only until the organ is filled; then it is held by what it is tied to, such as tissue; default false
 
 ---A gallbladder: round fundus, tapering body, slim neck.
 ---@class calot.shape_pear

@@ -121,6 +121,8 @@ struct HeldRegion {
   std::string landmark;    ///< a landmark of the organ, see landmark_rows()
   double radius = 10e-3;   ///< m, geodesically coarse: straight distance at rest
   double stiffness = 3e5;  ///< N/m per m^2 of skin (d)
+  /// Until the organ is filled; then what it is tied to holds it, such as tissue.
+  bool while_filled = false;
 };
 
 struct OrganDefinition {
@@ -158,7 +160,7 @@ struct TissueDefinition {
   double stiffness = 10e3;     ///< Pa, tension by area and strain as they become taut (d)
   double stiffening = 1.5;     ///< exponent of tension a strain (d)
   double strength = 30e3;      ///< Pa, largest tension by area (d, uncalibrated)
-  double break_energy = 100;   ///< J/m^2 to tear it: the force of a peel by width, N/m (d, uncalibrated)
+  double break_energy = 150;    ///< J/m^2 to tear it: the force of a peel by width, N/m (d, uncalibrated)
   double density = 1000;       ///< kg/m^3
 };
 

@@ -244,7 +244,10 @@ std::vector<KeyTable> organ_tables() {
            number("radius", &HeldRegion::radius, quantity::length, 0.5 * mm, 250 * mm,
                   "a held region's radius", "how far it reaches"),
            number("stiffness", &HeldRegion::stiffness, quantity::foundation, 1, 1e10,
-                  "a foundation's stiffness a unit area", "N/m per m^2 of skin")}),
+                  "a foundation's stiffness a unit area", "N/m per m^2 of skin"),
+           flag("while_filled", &HeldRegion::while_filled,
+                "true: only until the organ is filled; then it is held by what it is tied to, such as "
+                "tissue")}),
   };
 }
 

@@ -160,6 +160,9 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
     const HeldRegion& held = organ.held[i];
     const std::string at = fmt::format("{}.held[{}]", path, i + 1);
     names.add(at + ".name", held.name);
+    if (held.while_filled && !is_hollow(organ.shape))
+      check.problem(at + ".while_filled", fmt::format("a {} is not filled", shape_name(organ.shape)),
+                    "leave it out");
     check.known(at + ".landmark", held.landmark, landmarks_of(organ.shape), "landmark");
     check_limits(check, at, "held", held);
   }

@@ -61,6 +61,8 @@ Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kin
 std::vector<Problem> mesh_problems(const SceneDefinition& scene);
 
 Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting);
+/// Takes away what held an organ only while it was filled, and leaves it where it is; whether there was any.
+Result<bool> release_filled(Organ& organ);
 /// Where a tube's landmarks lie on the line at rest: skin points.
 std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& body);
 Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting);

@@ -220,6 +220,27 @@ bool swells(const Organ& organ) {
                             : bile.fill_volume.value_or(organ.state.volume) >= organ.state.volume;
 }
 
+using Places = std::map<std::string, Vec3>;  ///< m, of the landmarks
+
+Result<Places> places_on(const OrganDefinition& definition, const TriMesh& control) {
+  const Result<LoopSurface> surface = LoopSurface::create(control);
+  if (!surface) return surface.failure();
+  const Tessellation corners = surface->tessellate(1);
+  return landmark_places(definition,
+                         blend_all(corners.stencils, corners.stencils.value, to_coordinates(control.points)));
+}
+
+/// N/m per m^2, at a place of the wall.
+std::function<double(const Vec3& x)> foundation_of(const std::vector<HeldRegion>& held,
+                                                   const Places& places) {
+  return [held, places](const Vec3& x) {
+    double stiffness = 0;
+    for (const HeldRegion& region : held)
+      if ((x - places.at(region.landmark)).norm() < region.radius) stiffness += region.stiffness;
+    return stiffness;
+  };
+}
+
 /// Contact is felt at skin points: they must stand closer than half a jaw is wide, or it would slip in
 /// between.
 std::optional<Failure> check_skin_spacing(const ShellBody& body) {
@@ -281,18 +302,10 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   setup.up = setting.up;
   setup.levels = setting.levels;
   setup.wall_density = definition.wall.density;
-  Result<LoopSurface> surface = LoopSurface::create(control.value());
-  if (!surface) return of_organ(surface.failure(), definition);
-  const Tessellation corners = surface->tessellate(1);
-  const std::vector<Vec3> skin =
-      blend_all(corners.stencils, corners.stencils.value, to_coordinates(control->points));
-  const std::map<std::string, Vec3> places = landmark_places(definition, skin);
-  setup.foundation = [held = definition.held, places](const Vec3& x) {
-    double stiffness = 0;
-    for (const HeldRegion& region : held)
-      if ((x - places.at(region.landmark)).norm() < region.radius) stiffness += region.stiffness;
-    return stiffness;
-  };
+  const Result<Places> found = places_on(definition, control.value());
+  if (!found) return of_organ(found.failure(), definition);
+  const Places& places = found.value();
+  setup.foundation = foundation_of(definition.held, places);
   Result<ShellBody> body = ShellBody::create(setup);
   if (!body) return of_organ(body.failure(), definition);
   for (const HeldRegion& region : definition.held) {
@@ -329,6 +342,18 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   if (!filled) return filled.failure();
   shell->keep_in_equilibrium(organ.state);
   return made;
+}
+
+Result<bool> release_filled(Organ& organ) {
+  std::vector<HeldRegion> left = organ.definition.held;
+  if (std::erase_if(left, [](const HeldRegion& region) { return region.while_filled; }) == 0) return false;
+  const ShellBody& shell = *shell_of(organ);
+  const Result<Places> places = places_on(organ.definition, shell.control());
+  if (!places) return places.failure();
+  Result<ShellBody> released = shell.with_foundation(foundation_of(left, places.value()));
+  if (!released) return released.failure();
+  organ.body = std::make_shared<const ShellBody>(std::move(released).value());
+  return true;
 }
 
 }  // namespace calot

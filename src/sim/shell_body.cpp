@@ -115,6 +115,12 @@ void ShellBody::lay_bed(const VecX& rest, Base& base) {
   }
 }
 
+Result<ShellBody> ShellBody::with_foundation(std::function<double(const Vec3& x)> foundation) const {
+  Setup setup = base_->setup;
+  setup.foundation = std::move(foundation);
+  return create(setup);
+}
+
 Result<ShellBody> ShellBody::with_details(std::vector<int> details) const {
   ShellBody out(base_, std::move(details));
   if (std::optional<Failure> failure = out.build(this)) return *failure;

@@ -386,7 +386,14 @@ namespace {
 /// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on. Without
 /// friction, whose anchors belong to shapes that the tools' will come before.
 Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy, bool dynamic) {
-  const bool alone = anatomy.joints.empty() && field.tissues.empty() &&
+  bool released = false;
+  for (Organ& organ : field.organs) {
+    const Result<bool> let_go = release_filled(organ);
+    if (!let_go) return let_go.failure();
+    released |= let_go.value();
+  }
+  if (released) field.group.forget_bodies();
+  const bool alone = anatomy.joints.empty() && field.tissues.empty() && !released &&
                      std::all_of(field.organs.begin(), field.organs.end(),
                                  [](const Organ& organ) { return is_hollow(organ.definition.shape); });
   if (alone) return true;

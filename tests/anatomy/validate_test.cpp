@@ -262,6 +262,12 @@ const std::vector<Refusal>& refusals() {
       {"JointToItself",
        [](auto& s) { s.anatomy.joints = {{.from = "gallbladder.neck", .to = "gallbladder.fundus"}}; },
        "scene.anatomy.joints[1].to", "tied to itself", "another organ"},
+      {"FilledHoldOfATube",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+         s.anatomy.organs[1].held = {{"root", "start", 5e-3, 1e5, true}};
+       },
+       "scene.anatomy.organs[2].held[1].while_filled", "a tube is not filled", "leave it out"},
       {"TissueToNowhere", [](auto& s) { tissue_in(s).to = "dcut"; }, "scene.anatomy.tissue[1].to",
        "unknown organ \"dcut\"", "duct"},
       {"TissueToItself", [](auto& s) { tissue_in(s).to = "gallbladder"; }, "scene.anatomy.tissue[1].to",

@@ -212,6 +212,36 @@ TEST(Tissue, OfADividedDuctGoesWithItsHalves) {
   wait(world, 3);
 }
 
+TEST(Tissue, HoldsAnOrganWhereItWasFilled) {
+  SceneDefinition scene = test::ball_scene();
+  OrganDefinition& ball = scene.anatomy.organs[0];
+  ball.wall.density = 1050;
+  ball.held = {{"top", "fundus", 22e-3, 1e6, true}};
+  OrganDefinition rail = ball;
+  rail.name = "rail";
+  rail.shape = TubeShape{.points = {ball.fundus + Vec3(-30e-3, 0, 5e-3), ball.fundus + Vec3(30e-3, 0, 5e-3)},
+                         .radius = 3e-3};
+  rail.bile = {};
+  rail.wall.thickness = 3e-3;
+  rail.wall.shear_modulus = 2e6;
+  rail.held = {{"start", "start", 5e-3, 1e7}, {"end", "end", 5e-3, 1e7}};
+  scene.anatomy.organs.push_back(rail);
+  scene.solver.motion = SolverMotion::dynamics;
+  TissueDefinition tissue;
+  tissue.from = "ball";
+  tissue.to = "rail";
+  tissue.within = 8e-3;
+  tissue.slack = 0;
+  tissue.stiffness = 100e3;
+  tissue.break_energy = 500;
+  scene.anatomy.tissue = {tissue};
+  World world = world_of(scene);
+  EXPECT_TRUE(shell_of(world.field().organs[0])->foundation().row.empty());
+  const Vec3 begin = world.landmark("ball.fundus");
+  wait(world, 3);
+  EXPECT_LT((world.landmark("ball.fundus") - begin).norm(), 0.5e-3) << "at rest on its strands";
+}
+
 TEST(Tissue, WhatCannotBeMadeIsSaidWithItsPlace) {
   SceneDefinition scene = hanging_stone(20e3);
   std::get<RigidShape>(scene.anatomy.organs[1].shape).centre.z() -= 78e-3;
