@@ -113,12 +113,15 @@ std::string RecordingScorer::key(const std::string& file) {
 OrderedJson RecordingScorer::score(const std::string& file) {
   OrderedJson entry = {{"file", file}};
   const Result<Recording> recording = read_recording(file);
-  const std::optional<Failure> failure =
+  std::optional<Failure> failure =
       recording ? add_score(recording.value(), entry) : std::optional(recording.failure());
-  if (failure)
+  if (failure) {
+    for (Problem& problem : failure->problems)
+      if (problem.place.file.empty()) problem.place.file = file;
     entry = {{"file", file},
              {"failure", problems_json(*failure)},
              {"exit_code", static_cast<int>(exit_code(failure->kind))}};
+  }
   return entry;
 }
 
@@ -151,12 +154,14 @@ Result<const RecordingScorer::Exercise*> RecordingScorer::exercise_of(const Reco
 }
 
 std::optional<Failure> RecordingScorer::add_score(const Recording& recording, OrderedJson& entry) {
+  constexpr const char* hint = "name the exercise that it was made with";
+  // Another exercise may not know its parameters.
+  if (recording.header.scenario != standard_.definition.id)
+    return check_replay(recording, standard_.definition, hint);
   const Result<const Exercise*> found = exercise_of(recording.header);
   if (!found) return found.failure();
   const Exercise& exercise = *found.value();
-  if (std::optional<Failure> wrong =
-          check_replay(recording, exercise.definition, "name the exercise that it was made with"))
-    return wrong;
+  if (std::optional<Failure> wrong = check_replay(recording, exercise.definition, hint)) return wrong;
   const std::optional<std::string> why = why_simulate(recording, exercise);
   entry["from"] = why ? "simulation" : "recording";
   entry["why"] = why ? OrderedJson(*why) : OrderedJson();

@@ -151,6 +151,15 @@ TEST_F(ScoredClass, OfAChangedExerciseRecordingsAreSimulatedAnewAndSaySo) {
   EXPECT_NEAR(changed["score"]["total"].get<double>() - before, (100 - before) / 2, 1e-9);
 }
 
+TEST_F(ScoredClass, ARecordingOfAnotherExerciseIsNamedWithBoth) {
+  std::string other = replaced(text_, "\"scenario\":\"small\"", "\"scenario\":\"other\"");
+  other = replaced(other, "\"params\":{", "\"params\":{\"unknown\":\"here\",");
+  entry(sealed(other));
+  EXPECT_EQ(outcome_.code, 4);
+  EXPECT_NE(outcome_.err.find("one.jsonl: the recording is of other"), std::string::npos) << outcome_.err;
+  EXPECT_NE(outcome_.err.find("the scenario is small"), std::string::npos) << outcome_.err;
+}
+
 constexpr const char* clinic_table = R"(return {
   name = "The clinic's", version = 3, exercise = "small", pass = 90, calibration = "medians of nobody",
   parts = {

@@ -114,6 +114,7 @@ Vec3 peel(int count, double rate) {
 }
 
 TEST(StrandJoin, AStripIsPeeledOffAtItsBreakEnergyTimesItsWidth) {
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
   constexpr double expected = 100 * strip_width;
   for (const auto& [count, rate] : {std::pair{100, 50.0}, {100, 400.0}, {400, 50.0}, {400, 400.0}}) {
     const Vec3 pull = peel(count, rate);
