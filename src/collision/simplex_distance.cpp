@@ -13,26 +13,25 @@ namespace {
 struct Edges {
   std::array<Vec3, 2> edge{Vec3::Zero(), Vec3::Zero()};
   Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();  ///< zero where there is no edge
-  bool span = true;
 
   explicit Edges(std::span<const Vec3> corners) {
-    constexpr double flattest = 1e-12;  // squared sine of an angle that rounding would decide
     if (corners.size() < 2) return;
     edge[0] = corners[1] - corners[0];
     const double aa = edge[0].squaredNorm();
-    span = aa > 0;
     if (corners.size() == 2) {
       inverse(0, 0) = 1 / aa;
       return;
     }
     edge[1] = corners[2] - corners[0];
     const double ab = edge[0].dot(edge[1]), bb = edge[1].squaredNorm(), det = aa * bb - ab * ab;
-    span = det > flattest * aa * bb;
     inverse << bb / det, -ab / det, -ab / det, aa / det;
   }
 };
 
-FlatSample sample_with(const Vec3& p, std::span<const Vec3> corners, const Edges& edges) {
+}  // namespace
+
+FlatSample sample_flat(const Vec3& p, std::span<const Vec3> corners) {
+  const Edges edges(corners);
   const Vec3 from = p - corners[0];
   const Eigen::Vector2d along =
       edges.inverse * Eigen::Vector2d(edges.edge[0].dot(from), edges.edge[1].dot(from));
@@ -44,39 +43,69 @@ FlatSample sample_with(const Vec3& p, std::span<const Vec3> corners, const Edges
   return out;
 }
 
-}  // namespace
+namespace {
 
-FlatSample sample_flat(const Vec3& p, std::span<const Vec3> corners) {
-  return sample_with(p, corners, Edges(corners));
+NearestPoint at_weights(const Vec3& from_first, const Vec3& ab, const Vec3& ac, double b, double c) {
+  return {{1 - b - c, b, c}, (from_first - b * ab - c * ac).norm()};
 }
 
-NearestPoint nearest_point(const Vec3& p, std::span<const Vec3> corners) {
-  const Edges edges(corners);
-  const int count = static_cast<int>(corners.size());
-  if (edges.span) {
-    const FlatSample flat = sample_with(p, corners, edges);
-    NearestPoint out{{}, flat.distance};
-    bool between = true;
-    for (int k = 0; k < count; ++k) {
-      out.weight[k] = -flat.weight[k + 1];
-      between &= count == 1 || out.weight[k] > 0;
-    }
-    if (between) return out;
-  }
+/// Share of the way `along` that is nearest to the place `from` its beginning: 0 to 1.
+double share_along(const Vec3& along, const Vec3& from) {
+  const double way = along.dot(from), all = along.squaredNorm();
+  if (!(way > 0)) return 0;
+  return way < all ? way / all : 1;
+}
+
+NearestPoint nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  return at_weights(p - a, b - a, Vec3::Zero(), share_along(b - a, p - a), 0);
+}
+
+/// Of a triangle's sides.
+NearestPoint nearest_of_sides(const Vec3& p, std::span<const Vec3> corners) {
   NearestPoint best;
   best.distance = std::numeric_limits<double>::infinity();
-  for (int left_out = count - 1; left_out >= 0; --left_out) {
-    std::array<Vec3, 3> side;
-    int n = 0;
-    for (int k = 0; k < count; ++k)
-      if (k != left_out) side[n++] = corners[k];
-    const NearestPoint there = nearest_point(p, std::span<const Vec3>(side.data(), n));
-    if (there.distance >= best.distance) continue;
-    best.distance = there.distance;
-    n = 0;
-    for (int k = 0; k < count; ++k) best.weight[k] = k == left_out ? 0 : there.weight[n++];
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const NearestPoint side = nearest_of_segment(p, corners[k], corners[next]);
+    if (side.distance >= best.distance) continue;
+    best = {{}, side.distance};
+    best.weight[k] = side.weight[0];
+    best.weight[next] = side.weight[1];
   }
   return best;
+}
+
+/// By the regions about a triangle in which a corner, a side or its inside is nearest (Ericson 2005, Real-time collision
+/// detection, 5.1.5).
+NearestPoint nearest_of_triangle(const Vec3& p, std::span<const Vec3> corners) {
+  constexpr double flattest = 1e-12;  // squared sine of an angle that rounding would decide
+  const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], from = p - corners[0];
+  const double bb = ab.squaredNorm(), bc = ab.dot(ac), cc = ac.squaredNorm(), det = bb * cc - bc * bc;
+  if (!(det > flattest * bb * cc)) return nearest_of_sides(p, corners);
+  const double b = ab.dot(from), c = ac.dot(from);
+  const auto at = [&](double of_b, double of_c) { return at_weights(from, ab, ac, of_b, of_c); };
+  if (b <= 0 && c <= 0) return at(0, 0);
+  if (b >= bb && c - bc <= b - bb) return at(1, 0);
+  if (c >= cc && b - bc <= c - cc) return at(0, 1);
+  const double of_b = cc * b - bc * c, of_c = bb * c - bc * b;  // weights in the plane, times det
+  if (of_c <= 0 && b >= 0 && b <= bb) return at(b / bb, 0);
+  if (of_b <= 0 && c >= 0 && c <= cc) return at(0, c / cc);
+  const double from_b = (c - bc) - (b - bb), from_c = (b - bc) - (c - cc);
+  if (det - of_b - of_c <= 0 && from_b >= 0 && from_c >= 0) {
+    const double share = from_b / (from_b + from_c);
+    NearestPoint out = at(1 - share, share);
+    out.weight[0] = 0;  // not what rounding leaves of it
+    return out;
+  }
+  return at(of_b / det, of_c / det);
+}
+
+}  // namespace
+
+NearestPoint nearest_point(const Vec3& p, std::span<const Vec3> corners) {
+  if (corners.size() == 3) return nearest_of_triangle(p, corners);
+  if (corners.size() == 2) return nearest_of_segment(p, corners[0], corners[1]);
+  return {{1, 0, 0}, (p - corners[0]).norm()};
 }
 
 // With f = 1/2 distance^2 and the weights s of the edges, which minimise it, the Hessian of the least value is

@@ -145,6 +145,8 @@ class Body {
     return barrier.sample(distance);
   }
   virtual const std::vector<Vec3>& skin_rest() const = 0;
+  /// Into how many parts the edges of each patch are split evenly (split_faces in skin/tessellate.h); 1: they are not.
+  virtual int skin_parts() const { return 1; }
   /// Longest edge of the skin's triangles at rest, m.
   double widest_skin_gap() const { return widest_gap(skin_rest(), skin().triangles); }
   /// Nodes that each patch of skin depends on. As the weights are not negative it lies in the box of the coarse ones

@@ -30,9 +30,12 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest, double spa
     Tessellation skin = surface.tessellate(parts);
     const double gap = widest_gap(blend_all(skin.stencils, skin.stencils.value, rest), skin.triangles);
     if (parts == finest || gap <= spacing) return skin;
-    parts = std::clamp(static_cast<int>(std::ceil(parts * gap / spacing)), parts + 1, finest);
+    const int wanted = static_cast<int>(std::ceil(parts * gap / spacing));
+    parts = std::clamp(wanted + wanted % 2, parts + 2, finest);
   }
 }
+
+int parts_of(int triangles_each) { return static_cast<int>(std::lround(std::sqrt(triangles_each))); }
 
 void add_nodes(const StencilTable& skin, const std::vector<int>& points, int first, std::vector<char>& seen,
                std::vector<int>& nodes) {

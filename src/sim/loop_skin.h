@@ -5,9 +5,12 @@
 
 namespace calot {
 
-/// The coarsest tessellation whose points stand no further apart than `spacing` (m) at rest, or the finest that is
-/// allowed.
+/// The coarsest tessellation of an even number of parts whose points stand no further apart than `spacing` (m) at rest, or
+/// the finest that is allowed.
 Tessellation close_skin(const LoopSurface& surface, const VecX& rest, double spacing);
+
+/// Into how many parts each edge is split where each face has so many triangles.
+int parts_of(int triangles_each);
 
 /// m^2, of each triangle.
 std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);

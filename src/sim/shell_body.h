@@ -13,6 +13,7 @@
 #include "fem/shell.h"
 #include "geometry/tri_mesh.h"
 #include "sim/body.h"
+#include "sim/loop_skin.h"
 #include "skin/shared_rows.h"
 
 namespace calot {
@@ -132,6 +133,7 @@ class ShellBody : public Body {
     return base_->triangle_areas[point / contacts_each] / contacts_each;
   }
   const std::vector<Vec3>& skin_rest() const override { return base_->skin_rest; }
+  int skin_parts() const override { return parts_of(triangles_each()); }
   const std::vector<std::vector<int>>& face_nodes() const override { return refined_->face_nodes; }
   std::vector<Vec3> skin_normals(const VecX& x) const override;
   /// About the wall's own resistance to a detail (by its place among details()), N/m.

@@ -19,9 +19,10 @@ SkinJoin::Side SkinJoin::side_of(const Body& body, std::span<const JoinedPlace> 
       return (rest[point] - joint.place).norm() <= joint.within;
     });
   };
-  const std::vector<Triangle>& triangles = body.skin().triangles;
+  side.met = met_skin(body);
+  const std::vector<Triangle>& triangles = side.met.triangles;
   for (std::size_t p = 0; p < rest.size(); ++p)
-    side.areas.push_back(left_out(static_cast<int>(p)) ? 0.0 : 0.5 * body.skin_areas()[p]);
+    side.areas.push_back(left_out(static_cast<int>(p)) ? 0.0 : 0.5 * side.met.areas[p]);
   for (const Triangle& t : triangles) side.counts.push_back(std::none_of(t.begin(), t.end(), left_out));
   side.around.assign(rest.size(), -1);
   for (std::size_t t = triangles.size(); t-- > 0;)
@@ -186,7 +187,7 @@ RubbingPlace SkinJoin::rubbing_place(const SkinPair& pair) const {
   const std::span<const int> corners = other.skin->corners(pair.simplex);
   if (other.skin->is_triangle(pair.simplex))
     return {{of_one(pair.point), of_other(corners[0]), of_other(corners[1]), of_other(corners[2])}, false};
-  const Triangle& t = one.body->skin().triangles[one.around[pair.point]];
+  const Triangle& t = one.met.triangles[one.around[pair.point]];
   if (t[1] == t[2]) {  // a line, too
     const int beside = t[0] == pair.point ? t[1] : t[0];
     return {{of_one(pair.point), of_other(corners[0]), of_other(corners[1]), of_one(beside)}, true};
@@ -281,15 +282,13 @@ void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<in
     if (gap_of(pair) >= below) continue;
     const Side &one = sides_[pair.skin], &other = sides_[pair.other];
     std::array<int, 2> both{one.body->skin().at[pair.point].face,
-                            other.triangles[pair.simplex] / other.body->triangles_each()};
+                            other.triangles[pair.simplex] / other.met.each};
     if (pair.skin == 1) std::swap(both[0], both[1]);
     patches.insert(both);
   }
   for (const EdgesNear& pair : edges_below(parts, edges_couple(below))) {
     if (edge_distance(pair) >= edges_couple(below)) continue;
-    const auto patch = [&](const Side& side, int edge) {
-      return side.edges->triangle[edge] / side.body->triangles_each();
-    };
+    const auto patch = [&](const Side& side, int edge) { return side.edges->triangle[edge] / side.met.each; };
     patches.insert({patch(sides_[0], pair.edge), patch(sides_[1], pair.other)});
   }
   for (const std::array<int, 2>& both : patches) {

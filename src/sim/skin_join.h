@@ -16,6 +16,7 @@
 #include "collision/skin_contact.h"
 #include "collision/skin_edges.h"
 #include "sim/group_problem.h"
+#include "sim/met_skin.h"
 #include "sim/skin_rubbing.h"
 
 namespace calot {
@@ -83,6 +84,7 @@ class SkinJoin : public Join {
     Eigen::Index first = 0;    ///< coordinate
     std::vector<int> details;  ///< that it had
     double radius = 0;         ///< m, about its skin
+    MetSkin met;
     std::vector<double> areas;
     std::vector<char> counts;  ///< triangles of its skin that are met
     std::vector<int> around;   ///< a triangle at each point

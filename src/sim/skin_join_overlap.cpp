@@ -50,7 +50,7 @@ std::optional<SkinOverlap> SkinJoin::deepest_inside(const Crossing& crossing, in
   const Side &one = sides_[k], &other = sides_[1 - k];
   if (other.radius > 0) return std::nullopt;
   const std::vector<Vec3>& around = crossing.at[1 - k];
-  const std::vector<Triangle>& triangles = other.body->skin().triangles;
+  const std::vector<Triangle>& triangles = other.met.triangles;
   std::vector<Vec3> all, in_box = crossing.between[k];
   for (std::size_t p = 0; p < one.areas.size(); ++p)
     if (one.areas[p] > 0) all.push_back(crossing.at[k][p]);

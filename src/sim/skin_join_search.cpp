@@ -118,10 +118,10 @@ void SkinJoin::gather_patches(const Parts& x) const {
 
 Eigen::AlignedBox3d SkinJoin::box_of_points(int k, int patch, const Parts& x) const {
   const Side& side = sides_[k];
-  const int each = side.body->triangles_each();
+  const int each = side.met.each;
   Box box;
   for (int t = patch * each; t < (patch + 1) * each; ++t) {
-    const Triangle& corners = side.body->skin().triangles[t];
+    const Triangle& corners = side.met.triangles[t];
     look_up(x, false, k, corners);
     for (int corner : corners) box.extend(side.at[corner]);
   }
@@ -137,8 +137,8 @@ void SkinJoin::take_patches(Side& side) const {
   std::vector<Segment> segments;
   side.triangles.clear();
   for (int patch : side.patches) {
-    for (int t = patch * body.triangles_each(); t < (patch + 1) * body.triangles_each(); ++t) {
-      const Triangle& corners = body.skin().triangles[t];
+    for (int t = patch * side.met.each; t < (patch + 1) * side.met.each; ++t) {
+      const Triangle& corners = side.met.triangles[t];
       for (int corner : corners) used[corner] = 1;
       if (!side.counts[t]) continue;
       if (corners[1] != corners[2])
@@ -155,7 +155,7 @@ void SkinJoin::take_patches(Side& side) const {
   for (std::size_t p = 0; p < used.size(); ++p)
     if (used[p]) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
   if (are_surfaces()) {
-    if (!side.edges) side.edges.emplace(body.skin_rest(), body.skin().triangles, side.counts);
+    if (!side.edges) side.edges.emplace(body.skin_rest(), side.met.triangles, side.counts);
     std::vector<int> edges;
     for (int t : side.triangles)
       edges.insert(edges.end(), side.edges->sides[t].begin(), side.edges->sides[t].end());

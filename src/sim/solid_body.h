@@ -8,6 +8,7 @@
 #include "geometry/box_surface.h"
 #include "geometry/tri_mesh.h"
 #include "sim/body.h"
+#include "sim/loop_skin.h"
 
 namespace calot {
 
@@ -56,6 +57,7 @@ class SolidBody : public Body {
   const std::vector<double>& skin_areas() const override { return skin_areas_; }
   double contact_area(int point) const override { return areas_[point / contacts_each] / contacts_each; }
   const std::vector<Vec3>& skin_rest() const override { return skin_rest_; }
+  int skin_parts() const override { return parts_of(triangles_each()); }
   const std::vector<std::vector<int>>& face_nodes() const override { return face_nodes_; }
   std::vector<Vec3> skin_normals(const VecX& x) const override;
 
