@@ -68,8 +68,8 @@ bool PageMoments::add_errors(const Progress& progress) {
     }
     of_kind = {event.time, pictures.size(), of_kind.count + 1};
     std::string words = to_text(event.kind);
-    for (const std::string& who : {event.instrument, event.organ})
-      if (!who.empty()) words += (&who == &event.instrument ? " of " : ", ") + who;
+    if (!event.instrument.empty()) words += ", " + event.instrument;
+    if (!event.organ.empty()) words += ", " + event.organ;
     moment_.words.push_back(words);
     any = true;
   }

@@ -90,10 +90,10 @@ std::vector<PagePlot> page_plots(const SceneDefinition& scene, const Traces& tra
   add_force(
       "Force felt at the handle", scene, traces, [](const InstrumentSample& s) { return s.handle_force; },
       false, plots);
-  add_way("Way of the tip, seen from in front of the patient", "to the patient's left, mm",
-          "towards the head, mm", 0, 1, scene, traces, plots);
-  add_way("Way of the tip, seen from the patient's feet", "to the patient's left, mm",
-          "out of the abdomen, mm", 0, 2, scene, traces, plots);
+  add_way("Way of the tip, from the front", "to the patient's left, mm", "towards the head, mm", 0, 1, scene,
+          traces, plots);
+  add_way("Way of the tip, from the feet", "to the patient's left, mm", "out of the abdomen, mm", 0, 2, scene,
+          traces, plots);
   add_organs(
       "Largest stretch of the wall", "stretch", traces, [](const OrganSample& s) { return s.max_stretch; },
       plots);

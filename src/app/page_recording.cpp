@@ -64,7 +64,7 @@ std::vector<std::size_t> events_at(const OrderedJson& times, const PageRecording
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < page.events.size(); ++i) {
     const auto same = [&](const OrderedJson& time) { return time.get<double>() == page.events[i].time; };
-    if (is_meant(page.events[i].kind) && std::any_of(times.begin(), times.end(), same)) found.push_back(i);
+    if (is_meant(page.events[i]) && std::any_of(times.begin(), times.end(), same)) found.push_back(i);
   }
   return found;
 }
@@ -82,15 +82,16 @@ PagePart part_of(const OrderedJson& json, const PageRecording& page) {
     const auto event = benchmark["event"].get<std::string>();
     part.rule = fmt::format("Each {} costs {:.4g} of the part.", event, benchmark["each"].get<double>());
     part.events =
-        events_at(json["event_times_s"], page, [&](const std::string& kind) { return kind == event; });
+        events_at(json["event_times_s"], page, [&](const PageEvent& found) { return found.kind == event; });
     return part;
   }
   part.novice_expert = {benchmark["novice"].get<double>(), benchmark["expert"].get<double>()};
   const auto metric = benchmark["metric"].get<std::string>();
   const std::optional<EventKind> behind = event_behind(metric.substr(metric.rfind('.') + 1));
-  part.events = events_at(json["event_times_s"], page, [&](const std::string& name) {
-    const std::optional<EventKind> kind = event_called(name);
-    return kind == behind || (kind && ends_a_step(*kind));
+  const std::string owner = metric.substr(0, metric.find('.'));
+  part.events = events_at(json["event_times_s"], page, [&](const PageEvent& event) {
+    const std::optional<EventKind> kind = event_called(event.kind);
+    return kind && (ends_a_step(*kind) ? event.step == owner : kind == behind);
   });
   return part;
 }
@@ -108,7 +109,7 @@ void add_score(const OrderedJson& entry, PageRecording& page) {
     const auto event = critical["event"].get<std::string>();
     page.score.critical.push_back(
         {event, critical["cap"].get<double>(),
-         events_at(critical["times_s"], page, [&](const std::string& kind) { return kind == event; })});
+         events_at(critical["times_s"], page, [&](const PageEvent& found) { return found.kind == event; })});
   }
 }
 

@@ -43,9 +43,11 @@ PlanePoints thinned_over_x(const PlanePoints& points, std::size_t columns) {
 PlanePoints thinned_way(const PlanePoints& points, double least, std::size_t most) {
   const PlanePoints all = finite(points);
   if (all.empty()) return all;
-  PlanePoints out = kept_apart(all, least);
-  for (; out.size() > std::max<std::size_t>(most, 2) && least > 0; least *= 2)
-    out = kept_apart(all, 2 * least);
+  const PlanePoints apart = kept_apart(all, least);
+  const std::size_t room = std::max<std::size_t>(most, 2) - 1, stride = (apart.size() + room - 1) / room;
+  PlanePoints out;
+  for (std::size_t i = 0; i + 1 < apart.size(); i += stride) out.push_back(apart[i]);
+  out.push_back(apart.back());
   return out;
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+
 namespace calot {
 
 std::string escaped(std::string_view text) {
@@ -48,16 +50,28 @@ std::string data_uri(const std::string& media_type, std::string_view bytes) {
   return "data:" + media_type + ";base64," + base64(bytes);
 }
 
+std::string breakable(std::string_view name) {
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    result += escaped(name.substr(i, 1));
+    const bool joint = name[i] == '.' || name[i] == '_';
+    if (joint && i + 1 < name.size() && std::isalpha(static_cast<unsigned char>(name[i + 1])) != 0)
+      result += "<wbr>";
+  }
+  return result;
+}
+
 std::string html(const HtmlTable& table) {
   const auto of_numbers = [&](std::size_t column) {
     return column < table.numbers.size() && table.numbers[column] == 'r' ? " class=\"n\"" : "";
   };
   std::string out = fmt::format(
-      "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><table><caption>{0}</caption>"
+      "<div class=\"wide\" role=\"region\" tabindex=\"0\" "
+      "aria-label=\"{0}\"><table><caption><span>{0}</span></caption>"
       "<thead><tr>",
       escaped(table.caption));
   for (std::size_t i = 0; i < table.heads.size(); ++i)
-    out += fmt::format("<th scope=\"col\"{}>{}</th>", of_numbers(i), escaped(table.heads[i]));
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", of_numbers(i), breakable(table.heads[i]));
   out += "</tr></thead><tbody>\n";
   for (const HtmlTable::Row& row : table.rows) {
     out += fmt::format("<tr{}>", row.attributes);

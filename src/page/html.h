@@ -10,6 +10,8 @@ namespace calot {
 
 /// Text as an element's content or an attribute's value in double quotes; bytes that HTML cannot hold are dropped.
 std::string escaped(std::string_view text);
+/// The same, which may go on in the next line between words that a dot or an underline joins.
+std::string breakable(std::string_view name);
 std::string base64(std::string_view bytes);
 /// "data:image/jpeg;base64,..."
 std::string data_uri(const std::string& media_type, std::string_view bytes);

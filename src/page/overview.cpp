@@ -32,34 +32,37 @@ HtmlTable::Row row_html(const Page& page, const PageRow& row, std::size_t number
   out.cells.push_back(fmt::format("{}", number));
   if (!row.problem.empty()) {
     out.cells.push_back(escaped(row.name));
-    out.cells.insert(out.cells.end(), page.parts.size() + 3, "");
-    out.cells.push_back(verdict_html("no score: " + row.problem, false));
+    out.cells.emplace_back();
+    out.cells.push_back(verdict_html(row.verdict, false) + "<br>" + escaped(row.problem));
+    out.cells.insert(out.cells.end(), page.parts.size() + 2, "");
     return out;
   }
   out.cells.push_back(fmt::format("<a href=\"#{}recording\">{}</a>", row.prefix, escaped(row.name)));
   out.cells.push_back("<b>" + points_text(row.total) + "</b>");
+  out.cells.push_back(verdict_html(row.verdict, row.passed));
   for (std::size_t i = 0; i < page.parts.size(); ++i)
     out.cells.push_back(i < row.points.size() && row.points[i] ? points_text(*row.points[i]) : "");
   out.cells.push_back(fmt::format("{}", row.errors));
   out.cells.push_back(seconds(row.stopped_at));
-  out.cells.push_back(verdict_html(row.verdict, row.passed));
   return out;
 }
 
-void add_summaries(const Page& page, HtmlTable& table) {
+/// Whether there were any.
+bool add_summaries(const Page& page, HtmlTable& table) {
   const std::optional<ClassTotals> totals = class_totals(page);
-  if (!totals || totals->count < 2) return;
+  if (!totals || totals->count < 2) return false;
   const std::pair<const char*, double ClassTotals::*> kinds[] = {
       {"best", &ClassTotals::best}, {"median", &ClassTotals::median}, {"worst", &ClassTotals::worst}};
   for (const auto& [name, member] : kinds) {
-    HtmlTable::Row row{" class=\"sum\"", {"", name, points_text(*totals.*member)}};
+    HtmlTable::Row row{" class=\"sum\"", {name, "", points_text(*totals.*member), ""}};
     for (std::size_t i = 0; i < page.parts.size(); ++i) {
       const std::optional<ClassTotals> part = part_summary(page, i);
       row.cells.push_back(part ? points_text(*part.*member) : "");
     }
-    row.cells.insert(row.cells.end(), 3, "");
+    row.cells.insert(row.cells.end(), 2, "");
     table.rows.push_back(std::move(row));
   }
+  return true;
 }
 
 std::string counts(const Page& page) {
@@ -93,22 +96,24 @@ std::string overview_html(const Page& page) {
   HtmlTable table;
   table.caption = page.of_a_class ? "Recordings of the class, as they were named"
                                   : "Attempts of one trainee, in the order in which they were named";
-  table.heads = {page.of_a_class ? "no." : "attempt", "recording", "score"};
-  table.numbers = "rlr";
+  table.heads = {page.of_a_class ? "no." : "attempt", "recording", "score", "verdict"};
+  table.numbers = "rlrl";
   for (const PageFact& part : page.parts) {
     table.heads.push_back(fmt::format("{} (of {})", part.name, part.value));
     table.numbers += 'r';
   }
-  for (const char* head : {"errors", "time", "verdict"}) table.heads.emplace_back(head);
-  table.numbers += "rrl";
+  for (const char* head : {"errors", "time"}) table.heads.emplace_back(head);
+  table.numbers += "rr";
   std::size_t number = 0;
   for (const PageRow& row : page.rows) table.rows.push_back(row_html(page, row, ++number));
-  add_summaries(page, table);
+  const char* about =
+      add_summaries(page, table)
+          ? "<p class=\"soft\">Best, median and worst are of the recordings that came to their end, "
+            "column by column.</p>"
+          : "";
   return fmt::format("<section aria-labelledby=\"overview\"><h2 id=\"overview\">Overview</h2><p>{}</p>\n",
                      counts(page)) +
-         totals_html(page) + html(table) +
-         "<p class=\"soft\">Best, median and worst are of the recordings that came to their end, column by "
-         "column.</p></section>\n";
+         totals_html(page) + "<div class=\"overview\">" + html(table) + "</div>" + about + "</section>\n";
 }
 
 }  // namespace calot

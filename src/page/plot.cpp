@@ -12,7 +12,7 @@ namespace {
 
 constexpr double width = 400, height = 260, left = 46, right = 12, top = 10, bottom = 40;
 constexpr double inner_width = width - left - right, inner_height = height - top - bottom;
-constexpr std::size_t columns = 350, most_of_a_way = 1500, most_marks = 100;
+constexpr std::size_t columns = 350, most_of_a_way = 4000, most_marks = 100;
 constexpr double least_way = 0.7;  // drawing units
 constexpr std::size_t colours = 5;
 

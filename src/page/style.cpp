@@ -28,7 +28,7 @@ nav a{display:inline-block;padding:.35rem 0;overflow-wrap:anywhere}
 .good{color:var(--good)}.bad{color:var(--bad)}
 .total{font-size:1.15rem}.total>b{font-size:2.4rem;line-height:1}.total>span{margin-left:.6rem;font-weight:600}
 .warning{border-left:5px solid var(--bad);background:var(--card);padding:.5rem .8rem}
-.cards{list-style:none;margin:0;padding:0;display:grid;gap:.8rem;grid-template-columns:repeat(auto-fit,minmax(min(19rem,100%),1fr))}
+.cards{list-style:none;margin:0;padding:0;display:grid;gap:.8rem;grid-template-columns:repeat(auto-fit,minmax(min(17rem,100%),1fr))}
 .cards>li{background:var(--card);border:1px solid var(--line);border-radius:6px;padding:.8rem}
 .cards svg{max-width:22rem;margin-top:.3rem}
 .pictures,.plots{display:grid;gap:1rem;grid-template-columns:repeat(auto-fill,minmax(min(21rem,100%),1fr))}
@@ -39,8 +39,9 @@ svg{display:block;width:100%;height:auto}
 table{border-collapse:collapse;min-width:min(100%,24rem);font-variant-numeric:tabular-nums}
 caption{text-align:left;color:var(--soft);font-size:.9rem;padding:.2rem 0}
 th,td{text-align:left;padding:.3rem .7rem;border-bottom:1px solid var(--line);vertical-align:top;font-weight:400}
-thead th{font-weight:600}th:first-child,td:first-child{padding-left:.4rem}.n{text-align:right;white-space:nowrap}
-td a,.n{white-space:nowrap}
+thead th{font-weight:600}th:first-child,td:first-child{padding-left:.4rem}.n{text-align:right}
+td a,td.n,th.n[scope=row]{white-space:nowrap}
+.overview thead th{max-width:9rem;vertical-align:bottom}.overview th:nth-child(n+5){min-width:7rem}.overview td:nth-child(4){min-width:11rem;max-width:24rem;overflow-wrap:anywhere}
 .sum td,.sum th{background:var(--card)}
 tr:target,figure:target{background:var(--mark)}
 figure:target{box-shadow:0 0 0 6px var(--mark)}
@@ -62,6 +63,7 @@ svg .mid{text-anchor:middle}svg .end{text-anchor:end}
 .error-mark{fill:var(--bad)}.mark{fill:var(--bg);stroke:var(--fg);stroke-width:1.5}
 a:target .mark,a:target .error-mark{stroke:var(--link);stroke-width:4}
 .disc{fill:var(--c0);stroke:var(--c0);stroke-width:2}.ring{fill:var(--bg);stroke:var(--c1);stroke-width:2.5}
+.ring.cut{stroke-dasharray:3 2}.narrow{max-width:34rem}caption>span{display:block;max-width:calc(100vw - 3rem)}
 @media print{nav,.skip{display:none}body{max-width:none;padding:0}.wide{overflow:visible}}
 )";
 }

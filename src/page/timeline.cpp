@@ -40,12 +40,12 @@ class Timeline {
   std::string html() const {
     const auto errors = std::count_if(recording_.events.begin(), recording_.events.end(),
                                       [](const PageEvent& event) { return event.error; });
-    std::string out =
-        svg_begin(recording_.prefix + "timeline", width, height_, "Timeline",
-                  fmt::format("{} steps and {} events in {}, {} of them errors. All are in the tables below.",
-                              recording_.steps.size(), recording_.events.size(),
-                              seconds(recording_.stopped_at), errors),
-                  true);
+    std::string out = svg_begin(
+        recording_.prefix + "timeline", width, height_, "Timeline",
+        fmt::format("Steps: {}; events in {}: {}, of which errors: {}. All are in the tables below.",
+                    recording_.steps.size(), seconds(recording_.stopped_at), recording_.events.size(),
+                    errors),
+        true);
     out += ticks();
     for (std::size_t i = 0; i < recording_.steps.size(); ++i) out += step(i);
     for (std::size_t i = 0; i < kinds_.size(); ++i) out += svg_text(left - 10, y_of(i) + 4, kinds_[i], "end");
