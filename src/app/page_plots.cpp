@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <set>
+#include <map>
 
 #include "base/units.h"
 
@@ -13,6 +13,19 @@ namespace {
 using PerSample = std::function<double(const InstrumentSample&)>;
 
 constexpr const char* time_label = "time, s";
+
+/// Those of the instruments up to `most`, N.
+std::vector<PageLevel> force_limits(const SceneDefinition& scene, double most) {
+  std::map<double, std::string> names;
+  for (const InstrumentDefinition& instrument : scene.instruments) {
+    std::string& all = names[instrument.force_limit];
+    all += (all.empty() ? "" : ", ") + instrument.name;
+  }
+  std::vector<PageLevel> levels;
+  for (const auto& [limit, who] : names)
+    if (limit < most) levels.push_back({"force limit of " + who, limit});
+  return levels;
+}
 
 /// None where it is never above zero.
 void add_force(const char* title, const SceneDefinition& scene, const Traces& traces, const PerSample& force,
@@ -31,10 +44,7 @@ void add_force(const char* title, const SceneDefinition& scene, const Traces& tr
     }
   }
   if (!(most > 0)) return;
-  std::set<double> limits;
-  for (const InstrumentDefinition& instrument : scene.instruments) limits.insert(instrument.force_limit);
-  for (const double limit : limits)
-    if (with_limits && limit < 3 * most) plot.levels.push_back({"force limit", limit});
+  if (with_limits) plot.levels = force_limits(scene, 3 * most);
   plots.push_back(std::move(plot));
 }
 

@@ -29,8 +29,9 @@ std::string contents(const Page& page) {
 
 std::string about(const Page& page) {
   return fmt::format(
-      "<p>Exercise <b>{}</b> (<span class=\"path\">{}</span>). Benchmarks: {}; their figures are "
-      "<strong>{}</strong>.</p>\n",
+      "<p>Exercise <b>{}</b> (<span class=\"path\">{}</span>). Benchmarks: {} (<strong>{}</strong>); each "
+      "part of "
+      "the score says where its figures come from.</p>\n",
       escaped(page.scenario), escaped(page.file), escaped(page.benchmarks), escaped(page.calibration));
 }
 

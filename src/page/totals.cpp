@@ -9,86 +9,105 @@
 namespace calot {
 namespace {
 
-constexpr double totals_width = 420, totals_height = 240, totals_left = 40, totals_right = 16,
-                 totals_top = 14, totals_bottom = 40;
-constexpr double totals_inner_width = totals_width - totals_left - totals_right,
-                 totals_inner_height = totals_height - totals_top - totals_bottom;
-constexpr std::size_t most_labels = 20, most_on_a_phone = 8;
+/// The totals as points over the numbers of their rows.
+class TotalsChart {
+ public:
+  explicit TotalsChart(const Page& page) : page_(page) {
+    for (std::size_t i = 0; i < page.rows.size(); ++i)
+      if (page.rows[i].problem.empty()) scored_.push_back({&page.rows[i], i + 1});
+    if (scored_.size() > most_on_a_phone) width_ = 900;
+  }
 
-double y_of(double points) { return totals_top + totals_inner_height * (1 - points / 100); }
+  std::size_t size() const { return scored_.size(); }
 
-std::string level(double points, const std::string& words, const char* classes) {
-  return fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" class=\"{}\"/>", totals_left, y_of(points),
-                     totals_left + totals_inner_width, classes) +
-         svg_text(totals_left + totals_inner_width, y_of(points) - 4, words, "end");
-}
+  std::string html() const {
+    const bool narrow = width_ < 900;
+    const char* title =
+        page_.of_a_class ? "Scores of the class" : "Learning curve: score from attempt to attempt";
+    return fmt::format(
+               "<figure{0}><figcaption><b>{1}</b></figcaption>"
+               "<div class=\"wide{2}\" role=\"region\" tabindex=\"0\" aria-label=\"{1}\">\n",
+               narrow ? " class=\"narrow\"" : "", title, narrow ? "" : " drawing") +
+           svg_begin("totals", width_, height, title, description(), true) + levels() + way() + marks() +
+           "</svg></div><p class=\"soft\">Discs passed, rings did not; dashed rings were cut, and have the "
+           "score up to there.</p></figure>\n";
+  }
 
-/// A row that has a score, and its number among all.
-struct Numbered {
-  const PageRow* row;
-  std::size_t number;
+ private:
+  struct Scored {
+    const PageRow* row;
+    std::size_t number;
+  };
+
+  static constexpr double height = 240, left = 40, right = 16, top = 14, inner_height = 186;
+  static constexpr std::size_t most_on_a_phone = 8, most_labels = 30;
+
+  double x_of(std::size_t i) const {
+    return left +
+           (width_ - left - right) * (static_cast<double>(i) + 0.5) / static_cast<double>(scored_.size());
+  }
+  static double y_of(double points) { return top + inner_height * (1 - points / 100); }
+
+  std::string description() const {
+    std::string text = fmt::format("{} recordings, pass mark {:g}:", scored_.size(), page_.pass_mark);
+    for (const Scored& each : scored_) text += fmt::format(" {} {:.1f};", each.row->name, each.row->total);
+    return text;
+  }
+
+  std::string level(double points, const char* classes) const {
+    return fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" class=\"{}\"/>", left, y_of(points), width_ - right,
+                       classes);
+  }
+  std::string levels() const {
+    std::string out;
+    for (int points = 0; points <= 100; points += 20)
+      out += level(points, "grid") + svg_text(left - 6, y_of(points) + 4, fmt::format("{}", points), "end");
+    out += level(page_.pass_mark, "level") +
+           svg_text(width_ - right, y_of(page_.pass_mark) - 4, "pass mark", "end");
+    const std::optional<ClassTotals> totals = class_totals(page_);
+    if (page_.of_a_class && totals)  // below its line, as the pass mark is above its own
+      out += level(totals->median, "step") +
+             svg_text(width_ - right, y_of(totals->median) + 13, "median", "end");
+    return out + svg_text((width_ + left - right) / 2, height - 6, page_.of_a_class ? "recording" : "attempt",
+                          "mid");
+  }
+
+  /// From attempt to attempt; what was cut is none to compare.
+  std::string way() const {
+    if (page_.of_a_class) return {};
+    std::string d;
+    for (std::size_t i = 0; i < scored_.size(); ++i)
+      if (scored_[i].row->whole)
+        d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? "M" : "L", x_of(i), y_of(scored_[i].row->total));
+    return fmt::format("<path d=\"{}\" class=\"curve c0\"/>", d);
+  }
+
+  /// A disc where it was passed, a ring where not, a dashed one of what was cut: no colour is needed to tell.
+  std::string marks() const {
+    std::string out;
+    for (std::size_t i = 0; i < scored_.size(); ++i) {
+      const PageRow& row = *scored_[i].row;
+      const char* shape = row.passed ? "disc" : row.whole ? "ring" : "ring cut";
+      out += fmt::format(
+          "<a href=\"#{0}recording\" aria-label=\"{1}: {2:.1f}, {3}\"><title>{1}: {2:.1f}, {3}</title>"
+          "<circle cx=\"{4:.1f}\" cy=\"{5:.1f}\" r=\"6\" class=\"{6}\"/></a>\n",
+          row.prefix, escaped(row.name), row.total, escaped(row.verdict), x_of(i), y_of(row.total), shape);
+      if (scored_.size() <= most_labels)
+        out += svg_text(x_of(i), top + inner_height + 16, fmt::format("{}", scored_[i].number), "mid");
+    }
+    return out;
+  }
+
+  const Page& page_;
+  std::vector<Scored> scored_;
+  double width_ = 420;
 };
-
-std::vector<Numbered> scored(const Page& page) {
-  std::vector<Numbered> rows;
-  for (std::size_t i = 0; i < page.rows.size(); ++i)
-    if (page.rows[i].problem.empty()) rows.push_back({&page.rows[i], i + 1});
-  return rows;
-}
-
-/// A disc where it was passed, a ring where not, a dashed one of what was cut: no colour is needed to tell.
-std::string mark(const PageRow& row, double x) {
-  return fmt::format(
-      "<a href=\"#{0}recording\" aria-label=\"{1}: {2:.1f}, {3}\"><title>{1}: {2:.1f}, {3}</title><circle "
-      "cx=\"{4:.1f}\" cy=\"{5:.1f}\" r=\"6\" class=\"{6}\"/></a>\n",
-      row.prefix, escaped(row.name), row.total, escaped(row.verdict), x, y_of(row.total),
-      row.passed  ? "disc"
-      : row.whole ? "ring"
-                  : "ring cut");
-}
 
 }  // namespace
 
 std::string totals_html(const Page& page) {
-  const std::vector<Numbered> rows = scored(page);
-  if (rows.size() < 2) return {};
-  const auto x_of = [&](std::size_t i) {
-    return totals_left +
-           totals_inner_width * (static_cast<double>(i) + 0.5) / static_cast<double>(rows.size());
-  };
-  const std::optional<ClassTotals> totals = class_totals(page);
-  const char* title =
-      page.of_a_class ? "Scores of the class" : "Learning curve: score from attempt to attempt";
-  std::string about = fmt::format("{} recordings, pass mark {:g}:", rows.size(), page.pass_mark);
-  for (const Numbered& each : rows) about += fmt::format(" {} {:.1f};", each.row->name, each.row->total);
-  std::string out = fmt::format(
-      "<figure class=\"narrow\"><figcaption><b>{}</b></figcaption>"
-      "<div class=\"wide{}\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n",
-      title, rows.size() > most_on_a_phone ? " drawing" : "", title);
-  out += svg_begin("totals", totals_width, totals_height, title, about, true);
-  for (int points = 0; points <= 100; points += 20) {
-    out += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" class=\"grid\"/>", totals_left, y_of(points),
-                       totals_left + totals_inner_width);
-    out += svg_text(totals_left - 6, y_of(points) + 4, fmt::format("{}", points), "end");
-  }
-  out += level(page.pass_mark, "pass mark", "level");
-  if (page.of_a_class && totals) out += level(totals->median, "median", "step");
-  std::string way;  // what was cut is no attempt to compare
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (rows[i].row->whole)
-      way += fmt::format("{}{:.1f} {:.1f}", way.empty() ? "M" : "L", x_of(i), y_of(rows[i].row->total));
-  if (!page.of_a_class) out += fmt::format("<path d=\"{}\" class=\"curve c0\"/>", way);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    out += mark(*rows[i].row, x_of(i));
-    if (rows.size() <= most_labels)
-      out +=
-          svg_text(x_of(i), totals_top + totals_inner_height + 16, fmt::format("{}", rows[i].number), "mid");
-  }
-  out += svg_text(totals_left + totals_inner_width / 2, totals_height - 6,
-                  page.of_a_class ? "recording" : "attempt", "mid");
-  return out +
-         "</svg></div><p class=\"soft\">Discs passed, rings did not; dashed rings were cut, and have the "
-         "score up to there.</p></figure>\n";
+  const TotalsChart chart(page);
+  return chart.size() < 2 ? "" : chart.html();
 }
 
 }  // namespace calot

@@ -12,6 +12,8 @@
 
 namespace calot::test {
 
+inline constexpr std::size_t instruments = 4;
+
 /// Every text that may come from outside is, or contains, `word`.
 inline PageRecording made_up(const std::string& prefix, std::size_t samples, std::size_t events,
                              std::size_t pictures, std::size_t picture_bytes,
@@ -38,10 +40,10 @@ inline PageRecording made_up(const std::string& prefix, std::size_t samples, std
   r.score = {40, 60, {part, part}, {{word, 40, part.events}}};
   r.score.parts[1].novice_expert.reset();
   r.score.parts[1].rule = word;
-  for (const bool is_path : {false, false, false, true, true}) {
+  for (const bool is_path : {false, false, false, false, false, false, true, true}) {
     PagePlot plot{word, word, word, is_path, {}, {}};
     if (!is_path) plot.levels = {{word, 5}};
-    for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t c = 0; c < instruments; ++c) {
       PageCurve& curve = plot.curves.emplace_back(PageCurve{word, {}});
       for (std::size_t k = 0; k < samples; ++k) {
         const double t = static_cast<double>(k) / 50, wild = std::sin(37.0 * t * t) + static_cast<double>(c);

@@ -80,7 +80,7 @@ TEST(ThePage, EscapesTextFromOutside) {
 }
 
 TEST(ThePage, OfALongRunStaysUnderFiveMegabytes) {
-  // Five minutes at 50 Hz with two instruments, all pictures that are ever drawn, each larger than any seen, and all
+  // Five minutes at 50 Hz with four instruments, all pictures that are ever drawn, each larger than any seen, and all
   // events that are ever listed.
   const std::string html =
       page_html(page_of({row("", 40)}), {recording_html(made_up("", 15000, 1000, 40, 50'000))});
