@@ -23,7 +23,8 @@ std::string value_text(const SessionEvent& event) {
 }
 
 /// The events that are listed, by their index, in the order of time.
-std::vector<std::size_t> listed(const std::vector<SessionEvent>& events, const std::set<EventKind>& errors) {
+std::vector<std::size_t> listed_events(const std::vector<SessionEvent>& events,
+                                       const std::set<EventKind>& errors) {
   std::vector<std::size_t> chosen;
   for (const bool error : {true, false})
     for (std::size_t i = 0; i < events.size() && chosen.size() < most_page_events; ++i)
@@ -35,7 +36,7 @@ std::vector<std::size_t> listed(const std::vector<SessionEvent>& events, const s
 void add_events(const Watched& watched, PageRecording& page) {
   const std::vector<SessionEvent>& events = watched.played.session.progress.events();
   const std::set<EventKind> errors = error_kinds(watched.played.exercise);
-  for (const std::size_t i : listed(events, errors)) {
+  for (const std::size_t i : listed_events(events, errors)) {
     const SessionEvent& event = events[i];
     const EventRow& row = event_row(event.kind);
     const auto picture = watched.moments.events.find(i);
