@@ -24,6 +24,7 @@ struct Program {
   RunCommand run;
   ReplayCommand replay;
   ScoreCommand score;
+  PageCommand page;
   ImportCommand import;
   CheckCommand check;
   ListCommand list;
@@ -137,6 +138,34 @@ void add_score(Program& program) {
       ->excludes(json);
   add_fail_below(command, score.fail_below, "exit with 1 when any score is below this");
   command.callback([&program] { program.chosen = [&program] { return score_command(program.score); }; });
+}
+
+void add_page(Program& program) {
+  CLI::App& command = *program.app.add_subcommand(
+      "page", "write one HTML page about recordings: score, timeline, pictures, plots");
+  PageCommand& page = program.page;
+  command
+      .add_option("recordings", page.recordings,
+                  "recordings, or folders with all recordings (.jsonl) below them: one trainee's attempts, "
+                  "first to last")
+      ->required();
+  command.add_flag("--class", page.of_a_class, "they are of different people: no learning curve is drawn");
+  command
+      .add_option("-o,--output", page.output,
+                  "the page (default: beside a single recording, else <exercise id>.html)")
+      ->type_name("FILE");
+  command.add_option("--scenario", page.scenario, "the scenario's file (default: as the first one recorded)")
+      ->type_name("FILE");
+  command
+      .add_option("--benchmarks", page.benchmarks,
+                  "a Lua table of novice's and expert's figures, used instead of the exercise's own")
+      ->type_name("FILE");
+  command.add_flag("--no-pictures", page.no_pictures, "draw no pictures, which takes about half of the time");
+  command.add_option("-j,--jobs", page.jobs, "recordings played at once; the page does not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, most_threads))
+      ->capture_default_str();
+  command.callback([&program] { program.chosen = [&program] { return page_command(program.page); }; });
 }
 
 void add_import(Program& program) {
@@ -264,6 +293,7 @@ int parse_and_run(int argc, char** argv) {
   add_run(program);
   add_replay(program);
   add_score(program);
+  add_page(program);
   add_import(program);
   add_check(program);
   add_list(program);

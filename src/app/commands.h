@@ -54,6 +54,17 @@ struct ScoreCommand {
 };
 ExitCode score_command(const ScoreCommand& command);
 
+struct PageCommand {
+  std::vector<std::string> recordings;  ///< files, or folders with all below them
+  std::string scenario;                 ///< empty: the one named in the first recording
+  std::string benchmarks;               ///< a table's file; empty: the exercise's own
+  std::string output;       ///< the HTML file; empty: beside the recording, or <exercise's id>.html
+  int jobs = usual_jobs();  ///< processes
+  bool no_pictures = false;
+  bool of_a_class = false;  ///< recordings of different people, not one's attempts
+};
+ExitCode page_command(const PageCommand& command);
+
 struct ImportCommand {
   std::string exercise, registration;  ///< files
   std::vector<std::string> files;      ///< of motion from elsewhere

@@ -6,50 +6,13 @@
 
 #include "app/project.h"
 #include "base/hash.h"
+#include "page/html.h"
 #include "render/png.h"
 
 namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string base64(const std::string& bytes) {
-  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63u] : '=';
-    }
-  }
-  return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 /// A picture as an <img> of a data URI; the PNG goes through a scratch file, as the writer knows only files.
 Result<std::string> figure(const std::string& caption, const Image& image, const fs::path& scratch) {
@@ -59,9 +22,8 @@ Result<std::string> figure(const std::string& caption, const Image& image, const
   if (!written) return written.failure();
   const Result<std::string> bytes = read_text(scratch);
   if (!bytes) return bytes.failure();
-  return fmt::format(
-      "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>",
-      caption, base64(bytes.value()));
+  return fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>", caption,
+                     data_uri("image/png", bytes.value()));
 }
 
 Result<std::string> section(const GoldenResult& result, const fs::path& scratch) {

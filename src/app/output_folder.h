@@ -19,7 +19,7 @@ class OutputFolder {
   ~OutputFolder();
 
   const std::filesystem::path& path() const { return path_; }
-  /// Removes what an earlier session wrote: recording, table, report and pictures. Nothing else is touched.
+  /// Removes what an earlier session wrote, and the page about it: recording, table, report and pictures. Nothing else is touched.
   void clear() const;
 
  private:

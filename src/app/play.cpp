@@ -28,10 +28,10 @@ class FrameCapture {
         request_(request),
         output_(output),
         source_hash_(exercise.source_hash),
-        times_(golden_frames(exercise, request.at)),
+        times_(request.golden_times ? golden_frames(exercise, request.at) : std::vector<GoldenFrame>()),
         half_step_(0.5 / exercise.scene.solver.rate) {}
 
-  void observe(const World& world, bool last) {
+  void observe(const World& world, const Progress& progress, bool last) {
     if (!builder_) builder_.emplace(world);  // at rest: the laparoscope is held still from then on
     builder_->follow(world);
     // Many times may fall between two steps: an interruption need not wait for all of them.
@@ -40,6 +40,8 @@ class FrameCapture {
       if (request_.on_scene) request_.on_scene(builder_->build(world), times_[next_].name);
       draw(world, times_[next_].name);
     }
+    if (request_.moment && !interrupt_flag())
+      if (const std::string name = request_.moment(progress); !name.empty()) draw(world, name);
     if (last && request_.end_frame) draw(world, "end");
   }
 
@@ -130,7 +132,7 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
   options.observer = [&](const World& present, const Progress& progress, bool last) {
     if (request.show_progress) show_progress(line, present, progress, script.definition().time_limit);
     if (request.on_state && !last) request.on_state(present);
-    if (capture != nullptr) capture->observe(present, last);
+    if (capture != nullptr) capture->observe(present, progress, last);
   };
   // The recording is on disk already, line by line; what is left to say is where to go from here.
   script.set_emergency_flush([next = "Next: calot run " + shell_word(request.scenario.string()) + "\n"] {

@@ -31,6 +31,7 @@ struct PlayRequest {
   std::uint64_t seed = 1;
   int threads = 1;  ///< that share the work of a step: no bit depends on it
   bool render = true, end_frame = true;
+  bool golden_times = true;       ///< draw at those of the exercise
   int width = 960, height = 540;  ///< px
   std::vector<double> at;         ///< s, of pictures besides the golden ones
   bool write = false;             ///< write report, frames, table and recording into `output`
@@ -42,6 +43,8 @@ struct PlayRequest {
   std::function<void(const World&)> on_state;  ///< called at rest and after each step
   /// Called with the scene of each golden frame, before it is drawn.
   std::function<void(const Scene&, const std::string& frame)> on_scene;
+  /// Asked at rest, after each step and at the end: what a picture of that state is to be called; empty: none is drawn.
+  std::function<std::string(const Progress&)> moment;
   /// Called with each picture when it has been drawn; after a failure none is drawn, and play fails with it.
   std::function<std::optional<Failure>(const Frame&)> on_picture;
 };

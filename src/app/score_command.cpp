@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <map>
-#include <set>
-
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/output_folder.h"
@@ -11,6 +8,7 @@
 #include "app/project.h"
 #include "app/score_recording.h"
 #include "app/score_tables.h"
+#include "app/score_verdicts.h"
 #include "app/terminal.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -21,27 +19,6 @@ namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Each once, though it may have been named twice: a trainee counts once in a class.
-std::vector<std::string> recordings_of(const std::vector<std::string>& names) {
-  std::vector<std::string> files;
-  std::set<fs::path> seen;
-  std::error_code error;
-  const auto add = [&](const std::string& file) {
-    if (seen.insert(fs::weakly_canonical(file, error)).second)
-      files.push_back(file);
-    else
-      log_info(fmt::format("{} is named twice; it is scored once.", file));
-  };
-  for (const std::string& name : names) {
-    if (!fs::is_directory(name, error)) {
-      add(name);
-      continue;
-    }
-    for (const fs::path& file : files_below(name, ".jsonl")) add(file.string());
-  }
-  return files;
-}
 
 /// What was scored before, one file an entry: "hash of the second line" and the entry without its file's name.
 class Results {
@@ -123,8 +100,7 @@ class ClassScorer {
     if (!text) {
       Failure failure = text.failure();
       for (Problem& problem : failure.problems) problem.place.file = file(k);
-      entry["failure"] = problems_json(failure);
-      entry["exit_code"] = static_cast<int>(exit_code(failure.kind));
+      entry = failed_entry(file(k), failure);
     } else {
       add(OrderedJson::parse(text.value()), entry);
     }
@@ -149,49 +125,6 @@ class ClassScorer {
   std::optional<Failure> unwritten_;
   std::optional<ProgressLine> line_;  ///< while it runs
 };
-
-/// How many were simulated, for which reason.
-void tell_why(const std::vector<OrderedJson>& entries) {
-  std::map<std::string, int> reasons;
-  for (const OrderedJson& entry : entries)
-    if (entry.contains("why") && entry["why"].is_string()) ++reasons[entry["why"].get<std::string>()];
-  for (const auto& [why, count] : reasons)
-    if (why != "--replay") log_info(fmt::format("{} of {} simulated: {}.", count, entries.size(), why));
-}
-
-/// Says what a reader of the scores has to know of single recordings; the exit code that follows from them.
-ExitCode judge(const std::vector<OrderedJson>& entries, const ScoreCommand& command) {
-  std::optional<ExitCode> failed;
-  std::string next;
-  const std::string exercise = shell_word(command.exercise);
-  const auto tell = [&](const OrderedJson& entry, const std::string& what, const char* look) {
-    const auto& name = entry["file"].get_ref<const std::string&>();
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), what.c_str());
-    if (next.empty()) next = fmt::format(fmt::runtime(look), exercise, shell_word(name));
-  };
-  for (const OrderedJson& entry : entries) {
-    if (entry.contains("failure")) {
-      std::fprintf(stderr, "%s\n", failure_text(entry).c_str());
-      if (!failed) failed = static_cast<ExitCode>(entry["exit_code"].get<int>());
-      continue;
-    }
-    const double total = entry["score"]["total"].get<double>();
-    if (!entry["whole"].get<bool>())
-      tell(entry,
-           fmt::format("it did not come to its end ({}): scored up to {:.3f} s",
-                       entry["end"].get<std::string>(), entry["stopped_at_s"].get<double>()),
-           "calot replay {1} --scenario {0}");
-    else if (command.fail_below && total < *command.fail_below)
-      tell(entry, fmt::format("the score, {:.1f}, is below {:g}", total, *command.fail_below),
-           "calot score {0} {1}");
-    if (entry["verified"] == false)
-      for (const OrderedJson& difference : entry["differences"])
-        tell(entry, difference.get<std::string>(), "calot replay {1} --scenario {0}");
-  }
-  if (next.empty() && failed) next = "calot run " + exercise;
-  if (!next.empty()) std::fprintf(stderr, "Next: %s\n", next.c_str());
-  return failed.value_or(next.empty() ? ExitCode::ok : ExitCode::mismatch);
-}
 
 Result<ScoreRequest> read_request(const ScoreCommand& command) {
   ScoreRequest request;
@@ -230,9 +163,8 @@ ExitCode score_command(const ScoreCommand& command) {
   const std::string again = "calot score " + shell_word(command.exercise) + " ...";
   std::vector<std::string> files = recordings_of(command.recordings);
   if (files.empty()) {
-    print_failure(fail(FailureKind::usage, fmt::format("there is no recording (.jsonl) below {}",
-                                                       fmt::join(command.recordings, ", "))),
-                  "calot run " + shell_word(command.exercise), command.json);
+    print_failure(no_recordings(command.recordings), "calot run " + shell_word(command.exercise),
+                  command.json);
     return ExitCode::nothing_selected;
   }
   Result<ScoreRequest> request = read_request(command);
@@ -262,7 +194,7 @@ ExitCode score_command(const ScoreCommand& command) {
                          scores.entries.size(), command.output));
   tell_why(scores.entries);
   print_scores(scores, command);
-  return judge(scores.entries, command);
+  return judge(scores.entries, command.exercise, command.fail_below);
 }
 
 }  // namespace calot

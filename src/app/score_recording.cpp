@@ -83,6 +83,12 @@ void verify(const Recording& recording, const SessionResult& session, OrderedJso
 
 }  // namespace
 
+OrderedJson failed_entry(const std::string& file, const Failure& failure) {
+  return {{"file", file},
+          {"failure", problems_json(failure)},
+          {"exit_code", static_cast<int>(exit_code(failure.kind))}};
+}
+
 Result<RecordingScorer> RecordingScorer::create(ScoreRequest request) {
   RecordingScorer scorer(std::move(request));
   Result<Exercise> standard = scorer.load({}, PlayRequest().seed);
@@ -118,9 +124,7 @@ OrderedJson RecordingScorer::score(const std::string& file) {
   if (failure) {
     for (Problem& problem : failure->problems)
       if (problem.place.file.empty()) problem.place.file = file;
-    entry = {{"file", file},
-             {"failure", problems_json(*failure)},
-             {"exit_code", static_cast<int>(exit_code(failure->kind))}};
+    entry = failed_entry(file, *failure);
   }
   return entry;
 }
@@ -173,7 +177,9 @@ std::optional<Failure> RecordingScorer::add_score(const Recording& recording, Or
   entry["stopped_at_s"] = recording.steps.empty() ? 0.0 : recording.steps.back().time;
   add_measured(exercise.definition, recording.measured->metrics, recording.measured->progress,
                recording.measured->notes, entry);
-  return std::nullopt;
+  if (!request_.watcher) return std::nullopt;
+  const Result<Played> watched = replay(recording, exercise);
+  return watched ? std::nullopt : std::optional(watched.failure());
 }
 
 std::optional<std::string> RecordingScorer::why_simulate(const Recording& recording,
@@ -186,8 +192,7 @@ std::optional<std::string> RecordingScorer::why_simulate(const Recording& record
   return std::nullopt;
 }
 
-std::optional<Failure> RecordingScorer::simulate(const Recording& recording, const Exercise& exercise,
-                                                 OrderedJson& entry) const {
+Result<Played> RecordingScorer::replay(const Recording& recording, const Exercise& exercise) const {
   PlayRequest request;
   request.scenario = request_.exercise;
   request.params = recording.header.params;
@@ -195,10 +200,19 @@ std::optional<Failure> RecordingScorer::simulate(const Recording& recording, con
   request.replay = &recording;
   request.render = false;
   request.show_progress = false;
+  if (request_.watcher) request_.watcher->begin(exercise.definition, request);
   Result<Played> played = play(request);
+  if (!played) return played;
+  if (played->session.end == SessionEnd::interrupted) return fail(FailureKind::interrupted, "interrupted");
+  if (request_.watcher) request_.watcher->end(recording, played.value());
+  return played;
+}
+
+std::optional<Failure> RecordingScorer::simulate(const Recording& recording, const Exercise& exercise,
+                                                 OrderedJson& entry) const {
+  const Result<Played> played = replay(recording, exercise);
   if (!played) return played.failure();
   const SessionResult& session = played->session;
-  if (session.end == SessionEnd::interrupted) return fail(FailureKind::interrupted, "interrupted");
   if (request_.verify) verify(recording, session, entry);
   entry["end"] = end_of(recording, session);
   entry["whole"] = !played->report.aborted;

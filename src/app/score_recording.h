@@ -5,17 +5,26 @@
 #include <map>
 #include <string>
 
+#include "app/play.h"
 #include "session/benchmarks.h"
 #include "session/json.h"
 #include "session/recording.h"
 
 namespace calot {
 
+/// Looks on while recordings are simulated.
+struct ScoreWatcher {
+  std::function<void(const ExerciseDefinition&, PlayRequest&)> begin;  ///< may ask for pictures
+  std::function<void(const Recording&, const Played&)> end;            ///< of one that was not interrupted
+};
+
 struct ScoreRequest {
   std::filesystem::path exercise;
   std::optional<BenchmarkTable> benchmarks;  ///< instead of the exercise's own
   bool verify = false;                       ///< simulate, and compare with what the recording holds
   bool keyed = false;                        ///< key() is going to be asked
+  /// Every recording is then simulated too, though it be scored from what it holds.
+  std::optional<ScoreWatcher> watcher;
 };
 
 /// Scores recordings of one exercise. An entry of calot.scores/1 is an object of
@@ -51,6 +60,8 @@ class RecordingScorer {
   std::optional<Failure> add_score(const Recording& recording, OrderedJson& entry);
   /// Why what the recording holds is not enough; none where it is.
   std::optional<std::string> why_simulate(const Recording& recording, const Exercise& exercise) const;
+  /// Fails (interrupted) too.
+  Result<Played> replay(const Recording& recording, const Exercise& exercise) const;
   std::optional<Failure> simulate(const Recording& recording, const Exercise& exercise,
                                   OrderedJson& entry) const;
 
@@ -59,5 +70,8 @@ class RecordingScorer {
   std::uint64_t key_base_ = 0;
   std::map<std::string, Exercise> known_;  ///< by parameters and seed
 };
+
+/// The entry of a recording that has no score.
+OrderedJson failed_entry(const std::string& file, const Failure& failure);
 
 }  // namespace calot

@@ -16,17 +16,6 @@ bool is_whole(const OrderedJson& entry) { return is_scored(entry) && entry["whol
 bool has_passed(const OrderedJson& entry) { return is_scored(entry) && entry["score"]["passed"].get<bool>(); }
 double total_of(const OrderedJson& entry) { return entry["score"]["total"].get<double>(); }
 
-/// The parts, in the order of the exercise's; null where a recording was made under parameters that give others.
-const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry) {
-  if (!is_scored(entry)) return nullptr;
-  const OrderedJson& parts = entry["score"]["parts"];
-  const std::vector<ScorePart>& expected = scores.exercise.score.parts;
-  const bool same =
-      std::equal(expected.begin(), expected.end(), parts.begin(), parts.end(),
-                 [](const ScorePart& part, const OrderedJson& json) { return json["name"] == part.name; });
-  return same ? &parts : nullptr;
-}
-
 /// The totals of those that came to their end, ascending.
 std::vector<double> whole_totals(const ClassScores& scores) {
   std::vector<double> totals;
@@ -148,14 +137,7 @@ std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson&
 }
 
 std::string class_verdict(const OrderedJson& entry) {
-  if (!is_scored(entry)) return red("no score");
-  if (!is_whole(entry))
-    return red(
-        fmt::format("{} at {:.2f} s", entry["end"].get<std::string>(), entry["stopped_at_s"].get<double>()));
-  if (has_passed(entry)) return green("passed");
-  const OrderedJson& score = entry["score"];
-  if (!score["critical"].empty()) return red("critical: " + score["critical"][0]["event"].get<std::string>());
-  return red(score["completed"].get<bool>() ? "not passed" : "steps missing");
+  return has_passed(entry) && is_whole(entry) ? green(verdict_text(entry)) : red(verdict_text(entry));
 }
 
 std::string one_decimal(double value) { return fmt::format("{:.1f}", value); }
@@ -207,6 +189,27 @@ std::string counts_text(const ClassScores& scores) {
 }
 
 }  // namespace
+
+const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry) {
+  if (!is_scored(entry)) return nullptr;
+  const OrderedJson& parts = entry["score"]["parts"];
+  const std::vector<ScorePart>& expected = scores.exercise.score.parts;
+  const bool same =
+      std::equal(expected.begin(), expected.end(), parts.begin(), parts.end(),
+                 [](const ScorePart& part, const OrderedJson& json) { return json["name"] == part.name; });
+  return same ? &parts : nullptr;
+}
+
+std::string verdict_text(const OrderedJson& entry) {
+  if (!is_scored(entry)) return "no score";
+  if (!is_whole(entry))
+    return fmt::format("{} at {:.2f} s", entry["end"].get<std::string>(),
+                       entry["stopped_at_s"].get<double>());
+  if (has_passed(entry)) return "passed";
+  const OrderedJson& score = entry["score"];
+  if (!score["critical"].empty()) return "critical: " + score["critical"][0]["event"].get<std::string>();
+  return score["completed"].get<bool>() ? "not passed" : "steps missing";
+}
 
 std::string scores_json(const ClassScores& scores) {
   OrderedJson json = {{"schema", "calot.scores/1"},

@@ -27,6 +27,12 @@ std::string scores_csv(const ClassScores& scores);
 /// A table; of a single recording its parts, explained.
 std::string scores_text(const ClassScores& scores);
 
+/// The score's parts, in the order of the exercise's; null of an entry without, or with others (other parameters).
+const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry);
+
+/// "passed", or why not, of an entry that may have failed.
+std::string verdict_text(const OrderedJson& entry);
+
 /// A failure's problems, "file:line: message (hint)" each, one a line.
 std::string failure_text(const OrderedJson& entry);
 

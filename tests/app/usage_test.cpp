@@ -17,7 +17,7 @@ TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
   for (const char* command :
-       {"run", "replay", "score", "import", "check", "list", "new", "golden", "bench", "doctor"}) {
+       {"run", "replay", "score", "page", "import", "check", "list", "new", "golden", "bench", "doctor"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
   }
 }
@@ -26,6 +26,7 @@ TEST_F(Usage, EveryCommandHasHelp) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"run"},
                                                                                      {"replay"},
                                                                                      {"score"},
+                                                                                     {"page"},
                                                                                      {"import"},
                                                                                      {"check"},
                                                                                      {"list"},

@@ -1,0 +1,244 @@
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/page_recording.h"
+#include "app/process_pool.h"
+#include "app/project.h"
+#include "app/replay_checks.h"
+#include "app/score_recording.h"
+#include "app/score_tables.h"
+#include "app/score_verdicts.h"
+#include "app/terminal.h"
+#include "lua/read_benchmarks.h"
+#include "page/page.h"
+
+namespace calot {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int picture_width = 640, picture_height = 360;  // px
+
+std::string prefix_of(std::size_t index, std::size_t count) {
+  return count == 1 ? "" : fmt::format("r{}-", index + 1);
+}
+
+/// The exercise of the first recording that can be read; where none can be, the first one's failure.
+Result<fs::path> find_exercise(const PageCommand& command, const std::vector<std::string>& files) {
+  if (!command.scenario.empty()) return fs::path(command.scenario);
+  std::optional<Failure> first;
+  for (const std::string& file : files) {
+    const Result<Recording> recording = read_recording(file);
+    if (recording) return find_scenario(recording->header, file, {});
+    if (!first) first = recording.failure();
+  }
+  return *first;
+}
+
+/// A page beside a single recording, else one of the exercise in the present folder.
+fs::path page_file(const PageCommand& command, const std::vector<std::string>& files,
+                   const std::string& exercise) {
+  if (!command.output.empty()) return command.output;
+  return files.size() == 1 ? fs::path(files[0]).replace_extension(".html") : fs::path(exercise + ".html");
+}
+
+std::optional<Failure> check_page_file(const fs::path& page, const std::vector<std::string>& files) {
+  std::error_code ignored;
+  if (fs::is_directory(page, ignored))
+    return fail(FailureKind::usage, fmt::format("{} is a folder", page.string()),
+                "name a file: -o FILE.html");
+  for (const std::string& file : files)
+    if (fs::equivalent(page, file, ignored))
+      return fail(FailureKind::usage, fmt::format("{} is a recording that is to be shown", page.string()),
+                  "choose another file with -o FILE.html");
+  return std::nullopt;
+}
+
+/// What a process says of one recording.
+struct Answer {
+  OrderedJson entry;
+  std::string section;  ///< HTML; empty where there is no score
+  std::size_t errors = 0;
+};
+
+/// Plays and scores the recordings, each in a process of its own.
+class PageMaker {
+ public:
+  PageMaker(const PageCommand& command, std::vector<std::string> files)
+      : command_(command), files_(std::move(files)), answers_(files_.size()) {}
+
+  /// Fails as RecordingScorer does.
+  std::optional<Failure> prepare(ScoreRequest request) {
+    request.watcher = ScoreWatcher{
+        [this](const ExerciseDefinition& exercise, PlayRequest& play) { begin(exercise, play); },
+        [this](const Recording& recording, const Played& played) {
+          watched_ = Watched{played, std::move(*moments_), compare_states(recording, played.session).message};
+        }};
+    Result<RecordingScorer> scorer = RecordingScorer::create(std::move(request));
+    if (!scorer) return scorer.failure();
+    scorer_.emplace(std::move(scorer).value());
+    return std::nullopt;
+  }
+
+  std::optional<Failure> run() {
+    ProgressLine line;
+    int finished = 0;
+    const PoolOptions options{command_.jobs, &interrupt_flag()};
+    const Result<int> done = work_in_processes(
+        static_cast<int>(files_.size()), options,
+        [this](int k) { return answer(static_cast<std::size_t>(k)); },
+        [&](int k, Result<std::string> text) {
+          take(static_cast<std::size_t>(k), std::move(text));
+          if (++finished; line.due()) line.show(fmt::format("{} of {} recordings", finished, files_.size()));
+        });
+    if (!done) return done.failure();
+    if (interrupt_flag())
+      return fail(FailureKind::interrupted,
+                  fmt::format("interrupted when {} of {} recordings were done", done.value(), files_.size()));
+    return std::nullopt;
+  }
+
+  const ExerciseDefinition& exercise() const { return scorer_->exercise(); }
+  const std::vector<Answer>& answers() const { return answers_; }
+
+ private:
+  void begin(const ExerciseDefinition& exercise, PlayRequest& play) {
+    moments_.emplace(error_kinds(exercise));
+    play.render = !command_.no_pictures;
+    play.golden_times = play.end_frame = false;
+    play.width = picture_width;
+    play.height = picture_height;
+    play.moment = [this](const Progress& progress) { return moments_->wanted(progress); };
+    play.on_picture = [this](const Frame& frame) { return moments_->take(frame); };
+  }
+
+  std::string answer(std::size_t k) {
+    OrderedJson json = {{"entry", scorer_->score(files_[k])}};
+    const OrderedJson& entry = json["entry"];
+    if (!entry.contains("failure")) {
+      const PageRecording page = page_recording(entry, *watched_, prefix_of(k, files_.size()));
+      json["section"] = recording_html(page);
+      json["errors"] = std::count_if(page.events.begin(), page.events.end(),
+                                     [](const PageEvent& event) { return event.error; });
+    }
+    return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  }
+
+  void take(std::size_t k, Result<std::string> text) {
+    Answer& answer = answers_[k];
+    if (!text) {
+      Failure failure = text.failure();
+      for (Problem& problem : failure.problems) problem.place.file = files_[k];
+      answer.entry = failed_entry(files_[k], failure);
+      return;
+    }
+    const OrderedJson json = OrderedJson::parse(text.value());
+    answer.entry = json["entry"];
+    if (!json.contains("section")) return;
+    answer.section = json["section"].get<std::string>();
+    answer.errors = json["errors"].get<std::size_t>();
+  }
+
+  const PageCommand& command_;
+  std::vector<std::string> files_;
+  std::vector<Answer> answers_;
+  std::optional<RecordingScorer> scorer_;
+  std::optional<PageMoments> moments_;  ///< of the recording that is being played
+  std::optional<Watched> watched_;      ///< the recording that was played last
+};
+
+PageRow row_of(const ClassScores& scores, const Answer& answer, const std::string& prefix) {
+  const OrderedJson& entry = answer.entry;
+  PageRow row;
+  row.prefix = prefix;
+  row.name = recording_name(entry["file"].get<std::string>());
+  row.verdict = verdict_text(entry);
+  if (entry.contains("failure")) {
+    row.problem = failure_text(entry);
+    return row;
+  }
+  row.whole = entry["whole"].get<bool>();
+  row.passed = entry["score"]["passed"].get<bool>();
+  row.total = entry["score"]["total"].get<double>();
+  row.stopped_at = entry["stopped_at_s"].get<double>();
+  row.errors = answer.errors;
+  if (const OrderedJson* parts = parts_of(scores, entry))
+    for (const OrderedJson& part : *parts) row.points.emplace_back(part["points"].get<double>());
+  return row;
+}
+
+std::string page_text(const PageCommand& command, const ClassScores& scores,
+                      const std::vector<Answer>& answers) {
+  Page page;
+  page.title = scores.exercise.title;
+  page.scenario = scores.exercise.id;
+  page.file = portable_path(scores.exercise.file);
+  page.of_a_class = command.of_a_class;
+  page.pass_mark = scores.exercise.score.pass;
+  page.benchmarks = "the exercise's own, which are design values";
+  page.calibration = "uncalibrated";
+  if (scores.benchmarks) {
+    page.benchmarks = fmt::format("{}, version {}", scores.benchmarks->name, scores.benchmarks->version);
+    page.calibration = scores.benchmarks->calibration;
+  }
+  for (const ScorePart& part : scores.exercise.score.parts)
+    page.parts.push_back({part.name, fmt::format("{:.1f}", 100 * part.weight)});
+  std::vector<std::string> sections;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    page.rows.push_back(row_of(scores, answers[i], prefix_of(i, answers.size())));
+    if (!answers[i].section.empty()) sections.push_back(answers[i].section);
+  }
+  return page_html(page, sections);
+}
+
+Result<ScoreRequest> read_page_request(const PageCommand& command, const fs::path& exercise) {
+  ScoreRequest request;
+  request.exercise = exercise;
+  if (command.benchmarks.empty()) return request;
+  Result<BenchmarkTable> table = read_benchmarks(command.benchmarks, project_part("scripts/lua"));
+  if (!table) return table.failure();
+  request.benchmarks = std::move(table).value();
+  return request;
+}
+
+}  // namespace
+
+ExitCode page_command(const PageCommand& command) {
+  interrupt_flag();  // before a process is started: from here on an interruption ends in order
+  const std::vector<std::string> files = recordings_of(command.recordings);
+  if (files.empty()) {
+    print_failure(no_recordings(command.recordings), "calot run --help");
+    return ExitCode::nothing_selected;
+  }
+  const char* help = "calot page --help";
+  const Result<fs::path> exercise = find_exercise(command, files);
+  if (!exercise) return print_failure(exercise.failure(), help);
+  Result<ScoreRequest> request = read_page_request(command, exercise.value());
+  if (!request) return print_failure(request.failure(), help);
+  const std::optional<BenchmarkTable> benchmarks = request->benchmarks;
+  PageMaker maker(command, files);
+  if (const std::optional<Failure> wrong = maker.prepare(std::move(request).value()))
+    return print_failure(*wrong, wrong->kind == FailureKind::usage
+                                     ? help
+                                     : "calot check " + shell_word(exercise.value().string()));
+  const fs::path file = page_file(command, files, maker.exercise().id);
+  if (const std::optional<Failure> wrong = check_page_file(file, files)) return print_failure(*wrong, help);
+  if (const std::optional<Failure> failed = maker.run())
+    return print_failure(*failed, fmt::format("calot page {}{}", shell_word(command.recordings[0]),
+                                              command.recordings.size() > 1 ? " ..." : ""));
+
+  std::vector<OrderedJson> entries;
+  for (const Answer& answer : maker.answers()) entries.push_back(answer.entry);
+  const bool any = std::any_of(entries.begin(), entries.end(),
+                               [](const OrderedJson& entry) { return !entry.contains("failure"); });
+  if (any) {
+    const Result<std::string> written =
+        write_text(file, page_text(command, {maker.exercise(), benchmarks, entries}, maker.answers()));
+    if (!written) return print_failure(written.failure(), help);
+    print("Written to " + file.string());
+  }
+  return judge(entries, exercise->string(), std::nullopt);
+}
+
+}  // namespace calot

@@ -1,0 +1,175 @@
+#include "app/page_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/page_plots.h"
+#include "app/score_tables.h"
+#include "page/html.h"
+#include "session/metrics.h"
+#include "session/progress_json.h"
+
+namespace calot {
+namespace {
+
+/// "force 5.2 N" of 5.2 and "force_N".
+std::string value_text(const SessionEvent& event) {
+  const std::string key = event_row(event.kind).value;
+  if (key.empty()) return {};
+  const std::size_t bar = key.rfind('_');
+  const std::string unit = bar == std::string::npos ? "" : " " + key.substr(bar + 1);
+  return fmt::format("{} {:.4g}{}", key.substr(0, bar), event.value, unit);
+}
+
+/// The events that are listed, by their index, in the order of time.
+std::vector<std::size_t> listed_events(const std::vector<SessionEvent>& events,
+                                       const std::set<EventKind>& errors) {
+  std::vector<std::size_t> chosen;
+  for (const bool error : {true, false})
+    for (std::size_t i = 0; i < events.size() && chosen.size() < most_page_events; ++i)
+      if (errors.contains(events[i].kind) == error) chosen.push_back(i);
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+void add_events(const Watched& watched, PageRecording& page) {
+  const std::vector<SessionEvent>& events = watched.played.session.progress.events();
+  const std::set<EventKind> errors = error_kinds(watched.played.exercise);
+  for (const std::size_t i : listed_events(events, errors)) {
+    const SessionEvent& event = events[i];
+    const EventRow& row = event_row(event.kind);
+    const auto picture = watched.moments.events.find(i);
+    page.events.push_back(
+        {row.name, row.doc, event.time, event.step, event.instrument, event.organ, value_text(event),
+         errors.contains(event.kind),
+         picture == watched.moments.events.end() ? std::nullopt : std::optional(picture->second)});
+  }
+  page.events_left_out = events.size() - page.events.size();
+}
+
+void add_steps(const Watched& watched, PageRecording& page) {
+  const auto picture = [](const std::map<std::size_t, std::size_t>& pictures, std::size_t step) {
+    const auto found = pictures.find(step);
+    return found == pictures.end() ? std::nullopt : std::optional(found->second);
+  };
+  const std::vector<StepRecord>& steps = watched.played.session.progress.steps();
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    page.steps.push_back({steps[i].name, steps[i].title, steps[i].outcome, steps[i].started, steps[i].ended,
+                          picture(watched.moments.step_begins, i), picture(watched.moments.step_ends, i)});
+}
+
+/// Those at these times that `is_meant` takes: where the replay has other events than the recording, none.
+template <class IsMeant>
+std::vector<std::size_t> events_at(const OrderedJson& times, const PageRecording& page, IsMeant is_meant) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < page.events.size(); ++i) {
+    const auto same = [&](const OrderedJson& time) { return time.get<double>() == page.events[i].time; };
+    if (is_meant(page.events[i]) && std::any_of(times.begin(), times.end(), same)) found.push_back(i);
+  }
+  return found;
+}
+
+PagePart part_of(const OrderedJson& json, const PageRecording& page) {
+  PagePart part;
+  part.name = json["name"].get<std::string>();
+  part.explanation = json["explanation"].get<std::string>();
+  part.weight = json["weight"].get<double>();
+  part.points = json["points"].get<double>();
+  if (json["measured"].is_number()) part.measured = json["measured"].get<double>();
+  const OrderedJson& benchmark = json["benchmark"];
+  part.calibration = benchmark["calibration"].get<std::string>();
+  if (benchmark.contains("event")) {
+    const auto event = benchmark["event"].get<std::string>();
+    part.rule = fmt::format("Each {} costs {:.4g} of the part.", event, benchmark["each"].get<double>());
+    part.events =
+        events_at(json["event_times_s"], page, [&](const PageEvent& found) { return found.kind == event; });
+    return part;
+  }
+  part.novice_expert = {benchmark["novice"].get<double>(), benchmark["expert"].get<double>()};
+  const auto metric = benchmark["metric"].get<std::string>();
+  const std::optional<EventKind> behind = event_behind(metric.substr(metric.rfind('.') + 1));
+  const std::string owner = metric.substr(0, metric.find('.'));
+  part.events = events_at(json["event_times_s"], page, [&](const PageEvent& event) {
+    const std::optional<EventKind> kind = event_called(event.kind);
+    return kind && (ends_a_step(*kind) ? event.step == owner : kind == behind);
+  });
+  return part;
+}
+
+void add_score(const OrderedJson& entry, PageRecording& page) {
+  const OrderedJson& score = entry["score"];
+  page.score.total = score["total"].get<double>();
+  page.score.uncapped = score["uncapped_total"].get<double>();
+  page.pass_mark = score["pass_mark"].get<double>();
+  page.passed = score["passed"].get<bool>();
+  page.verdict = verdict_text(entry);
+  page.stopped_at = entry["stopped_at_s"].get<double>();
+  for (const OrderedJson& part : score["parts"]) page.score.parts.push_back(part_of(part, page));
+  for (const OrderedJson& critical : score["critical"]) {
+    const auto event = critical["event"].get<std::string>();
+    page.score.critical.push_back(
+        {event, critical["cap"].get<double>(),
+         events_at(critical["times_s"], page, [&](const PageEvent& found) { return found.kind == event; })});
+  }
+}
+
+void add_warnings(const OrderedJson& entry, const Watched& watched, PageRecording& page) {
+  const SessionResult& session = watched.played.session;
+  if (!entry["whole"].get<bool>())
+    page.warnings.push_back(
+        fmt::format("The session did not come to its end ({}): what follows ends at {}, is scored "
+                    "up to there, and counts as not passed.",
+                    entry["end"].get<std::string>(), seconds(page.stopped_at)));
+  if (entry["why"].is_string())
+    page.warnings.push_back("Scored by playing it again: " + entry["why"].get<std::string>() + ".");
+  if (session.end == SessionEnd::failed) page.warnings.push_back(to_text(session.failure));
+  if (!watched.differs.empty())
+    page.warnings.push_back(
+        watched.differs + " Timeline, pictures and curves are of the replay" +
+        (entry["why"].is_null() ? "; the score is the recording's." : ", and so is the score."));
+}
+
+std::string text_of(const std::variant<double, bool, std::string>& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
+  if (const double* number = std::get_if<double>(&value)) return figure_text(*number);
+  return std::get<std::string>(value);
+}
+
+void add_facts(const OrderedJson& entry, const Watched& watched, PageRecording& page) {
+  for (const auto& [name, value] : entry["params"].items())
+    page.parameters.push_back({name, value.get<std::string>()});
+  for (const auto& [name, value] : entry["metrics"].items())
+    page.metrics.push_back({name, value.is_number() ? figure_text(value.get<double>()) : "not a number"});
+  for (const Note& note : watched.played.session.progress.notes())
+    page.noted.push_back({note.name, text_of(note.value) + (note.unit.empty() ? "" : " " + note.unit) +
+                                         " at " + seconds(note.time)});
+  for (const OrderedJson& note : entry["notes"]) page.notes.push_back(note.get<std::string>());
+}
+
+}  // namespace
+
+PageRecording page_recording(const OrderedJson& entry, const Watched& watched, const std::string& prefix) {
+  PageRecording page;
+  page.prefix = prefix;
+  page.file = entry["file"].get<std::string>();
+  page.name = recording_name(page.file);
+  add_events(watched, page);
+  add_steps(watched, page);
+  add_score(entry, page);
+  add_warnings(entry, watched, page);
+  page.pictures = watched.moments.pictures;
+  page.pictures_left_out = watched.moments.left_out;
+  page.drawn = watched.played.rendered;
+  page.plots = page_plots(watched.played.exercise.scene, watched.played.session.traces);
+  add_facts(entry, watched, page);
+  return page;
+}
+
+std::string recording_name(const std::string& file) {
+  const std::filesystem::path path(file);
+  const std::string folder = path.parent_path().filename().string();
+  return path.filename() == "recording.jsonl" && !folder.empty() ? folder : path.stem().string();
+}
+
+}  // namespace calot

@@ -1,0 +1,117 @@
+#pragma once
+// What a page about recordings shows, as plain data: page.h makes it HTML. Texts are as they came from outside.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace calot {
+
+struct PagePicture {
+  double time = 0;         ///< s
+  std::string caption;     ///< what is seen, and why it was drawn
+  std::string media_type;  ///< "image/jpeg"
+  std::string bytes;       ///< of the picture's file
+  int width = 0, height = 0;
+};
+
+struct PageStep {
+  std::string name, title, outcome;  ///< outcome as in StepRecord
+  double started = 0, ended = 0;     ///< s
+  std::optional<std::size_t> begin_picture, end_picture;
+};
+
+struct PageEvent {
+  std::string kind, meaning;  ///< "overforce", and what that is
+  double time = 0;            ///< s
+  std::string step, instrument, organ, value;
+  bool error = false;
+  std::optional<std::size_t> picture;
+};
+
+struct PagePart {
+  std::string name, explanation;
+  double weight = 0, points = 0;
+  std::optional<double> measured;
+  std::optional<std::array<double, 2>> novice_expert;  ///< none of a penalty
+  std::string rule;                                    ///< of a penalty: what each event costs
+  std::string calibration;
+  std::vector<std::size_t> events;  ///< behind it, ascending
+};
+
+struct PageCritical {
+  std::string event;
+  double cap = 0;  ///< points
+  std::vector<std::size_t> events;
+};
+
+struct PageScore {
+  double total = 0, uncapped = 0;
+  std::vector<PagePart> parts;
+  std::vector<PageCritical> critical;
+};
+
+struct PageCurve {
+  std::string name;
+  std::vector<std::array<double, 2>> points;
+};
+
+struct PageLevel {
+  std::string name;
+  double y = 0;
+};
+
+struct PagePlot {
+  std::string title, x_label, y_label;
+  bool is_path = false;  ///< both axes to one scale; else x is time, s
+  std::vector<PageCurve> curves;
+  std::vector<PageLevel> levels;  ///< not of a path
+};
+
+/// A name and what it is, such as a metric's.
+struct PageFact {
+  std::string name, value;
+};
+
+/// A recording that was scored. Indices are into its own lists.
+struct PageRecording {
+  std::string prefix;  ///< of all its ids: empty where it is alone on the page, else such as "r2-"
+  std::string name, file, verdict;
+  bool passed = false;
+  double pass_mark = 0;   ///< points
+  double stopped_at = 0;  ///< s
+  PageScore score;
+  std::vector<std::string> warnings;  ///< what a reader must know before all else
+  std::vector<PageStep> steps;
+  std::vector<PageEvent> events;
+  std::size_t events_left_out = 0;
+  std::vector<PagePicture> pictures;
+  bool drawn = true;  ///< pictures were asked for
+  std::size_t pictures_left_out = 0;
+  std::vector<PagePlot> plots;
+  std::vector<PageFact> parameters, metrics, noted;
+  std::vector<std::string> notes;
+};
+
+/// A recording's line in the overview.
+struct PageRow {
+  std::string prefix, name, verdict;
+  std::string problem;  ///< why it has no score; then nothing follows
+  bool whole = false, passed = false;
+  double total = 0, stopped_at = 0;           ///< points, s
+  std::vector<std::optional<double>> points;  ///< by part; none of a part that it does not have
+  std::size_t errors = 0;
+};
+
+/// All but the recordings' own sections.
+struct Page {
+  std::string title, scenario, file;
+  std::string benchmarks, calibration;  ///< whose figures, and where they come from
+  double pass_mark = 0;                 ///< points
+  bool of_a_class = false;  ///< recordings of different people; else of one, in the order of their attempts
+  std::vector<PageFact> parts;  ///< name, and the points that it may earn
+  std::vector<PageRow> rows;
+};
+
+}  // namespace calot

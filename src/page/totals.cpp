@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "page/html.h"
+#include "page/page.h"
+#include "page/svg.h"
+
+namespace calot {
+namespace {
+
+/// The totals as points over the numbers of their rows.
+class TotalsChart {
+ public:
+  explicit TotalsChart(const Page& page) : page_(page) {
+    for (std::size_t i = 0; i < page.rows.size(); ++i)
+      if (page.rows[i].problem.empty()) scored_.push_back({&page.rows[i], i + 1});
+    if (scored_.size() > most_on_a_phone) width_ = 900;
+  }
+
+  std::size_t size() const { return scored_.size(); }
+
+  std::string html() const {
+    const bool narrow = width_ < 900;
+    const char* title =
+        page_.of_a_class ? "Scores of the class" : "Learning curve: score from attempt to attempt";
+    return fmt::format(
+               "<figure{0}><figcaption><b>{1}</b></figcaption>"
+               "<div class=\"wide{2}\" role=\"region\" tabindex=\"0\" aria-label=\"{1}\">\n",
+               narrow ? " class=\"narrow\"" : "", title, narrow ? "" : " drawing") +
+           svg_begin("totals", width_, height, title, description(), true) + levels() + way() + marks() +
+           "</svg></div><p class=\"soft\">Discs passed, rings did not; dashed rings were cut, and have the "
+           "score up to there.</p></figure>\n";
+  }
+
+ private:
+  struct Scored {
+    const PageRow* row;
+    std::size_t number;
+  };
+
+  static constexpr double height = 240, left = 40, right = 16, top = 14, inner_height = 186;
+  static constexpr std::size_t most_on_a_phone = 8, most_labels = 30;
+
+  double x_of(std::size_t i) const {
+    return left +
+           (width_ - left - right) * (static_cast<double>(i) + 0.5) / static_cast<double>(scored_.size());
+  }
+  static double y_of(double points) { return top + inner_height * (1 - points / 100); }
+
+  std::string description() const {
+    std::string text = fmt::format("{} recordings, pass mark {:g}:", scored_.size(), page_.pass_mark);
+    for (const Scored& each : scored_) text += fmt::format(" {} {:.1f};", each.row->name, each.row->total);
+    return text;
+  }
+
+  std::string level(double points, const char* classes) const {
+    return fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" class=\"{}\"/>", left, y_of(points), width_ - right,
+                       classes);
+  }
+  std::string levels() const {
+    std::string out;
+    for (int points = 0; points <= 100; points += 20)
+      out += level(points, "grid") + svg_text(left - 6, y_of(points) + 4, fmt::format("{}", points), "end");
+    out += level(page_.pass_mark, "level") +
+           svg_text(width_ - right, y_of(page_.pass_mark) - 4, "pass mark", "end");
+    const std::optional<ClassTotals> totals = class_totals(page_);
+    if (page_.of_a_class && totals)  // below its line, as the pass mark is above its own
+      out += level(totals->median, "step") +
+             svg_text(width_ - right, y_of(totals->median) + 13, "median", "end");
+    return out + svg_text((width_ + left - right) / 2, height - 6, page_.of_a_class ? "recording" : "attempt",
+                          "mid");
+  }
+
+  /// From attempt to attempt; what was cut is none to compare.
+  std::string way() const {
+    if (page_.of_a_class) return {};
+    std::string d;
+    for (std::size_t i = 0; i < scored_.size(); ++i)
+      if (scored_[i].row->whole)
+        d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? "M" : "L", x_of(i), y_of(scored_[i].row->total));
+    return fmt::format("<path d=\"{}\" class=\"curve c0\"/>", d);
+  }
+
+  /// A disc where it was passed, a ring where not, a dashed one of what was cut: no colour is needed to tell.
+  std::string marks() const {
+    std::string out;
+    for (std::size_t i = 0; i < scored_.size(); ++i) {
+      const PageRow& row = *scored_[i].row;
+      const char* shape = row.passed ? "disc" : row.whole ? "ring" : "ring cut";
+      out += fmt::format(
+          "<a href=\"#{0}recording\" aria-label=\"{1}: {2:.1f}, {3}\"><title>{1}: {2:.1f}, {3}</title>"
+          "<circle cx=\"{4:.1f}\" cy=\"{5:.1f}\" r=\"6\" class=\"{6}\"/></a>\n",
+          row.prefix, escaped(row.name), row.total, escaped(row.verdict), x_of(i), y_of(row.total), shape);
+      if (scored_.size() <= most_labels)
+        out += svg_text(x_of(i), top + inner_height + 16, fmt::format("{}", scored_[i].number), "mid");
+    }
+    return out;
+  }
+
+  const Page& page_;
+  std::vector<Scored> scored_;
+  double width_ = 420;
+};
+
+}  // namespace
+
+std::string totals_html(const Page& page) {
+  const TotalsChart chart(page);
+  return chart.size() < 2 ? "" : chart.html();
+}
+
+}  // namespace calot

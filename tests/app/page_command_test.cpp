@@ -1,0 +1,149 @@
+// calot page: what is on it is what was scored and replayed; what is cut, bad or hostile.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "app/page_moments.h"
+#include "app/program.h"
+#include "session/json.h"
+
+namespace calot::test {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+class PageOfSmall : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    std::string text = small_scenario("t:step('move', '<script>alert(1)</script>'); t:wait(0.2 * s)");
+    text.replace(text.find("A small exercise"), 16, "<script>alert(2)</script>");
+    spill(folder_ / "small.lua", text);
+    static std::string recording;  // played once for all tests
+    if (recording.empty()) {
+      const Outcome played = calot({"run", "small.lua", "--no-render", "-o", "out"});
+      ASSERT_EQ(played.code, 0) << played.err;
+      recording = slurp(folder_ / "out" / "recording.jsonl");
+    }
+    text_ = recording;
+    spill(folder_ / "out" / "recording.jsonl", text_);
+  }
+
+  /// Without the line that says what to run next.
+  static std::string said(const Outcome& outcome) {
+    return outcome.err.substr(0, outcome.err.rfind("Next: "));
+  }
+
+  std::string text_;  ///< of a whole recording
+};
+
+TEST_F(PageOfSmall, HasItsScoreAndPicturesWhereStepsBeginAndEndAndNoForeignMarkup) {
+  const Outcome made = calot({"page", "out/recording.jsonl"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(made.out, "Written to out/recording.html\n");
+  EXPECT_EQ(made.err, "");
+  const std::string html = slurp(folder_ / "out" / "recording.html");
+  const Json score =
+      Json::parse(calot({"score", "small.lua", "out/recording.jsonl", "--json"}).out)["recordings"][0];
+  EXPECT_THAT(html,
+              HasSubstr(fmt::format("<b>{:.1f}</b> of 100 points", score["score"]["total"].get<double>())));
+  EXPECT_THAT(html, HasSubstr("uncalibrated"));
+  EXPECT_THAT(html, HasSubstr("id=\"picture-2\"><img src=\"data:image/jpeg;base64,/9j/"));
+  EXPECT_THAT(html, Not(HasSubstr("id=\"picture-3\""))) << "one where the step begins, one where it ends";
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(1)"));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(2)"));
+}
+
+TEST_F(PageOfSmall, GoesToTheCutAndListsWhatIsBadAsScoreDoes) {
+  const std::string half = text_.substr(0, text_.size() / 2);
+  spill(folder_ / "cut.jsonl", half);
+  spill(folder_ / "foreign.jsonl", std::string(half).replace(half.find("\"small\""), 7, "\"other\""));
+  const std::vector<std::string> files{"out/recording.jsonl", "cut.jsonl", "missing.jsonl", "foreign.jsonl"};
+  std::vector<std::string> page{"page", "--no-pictures", "-o", "p.html", "-j", "1"},
+      score{"score", "small.lua"};
+  page.insert(page.end(), files.begin(), files.end());
+  score.insert(score.end(), files.begin(), files.end());
+  const Outcome made = calot(page), scored = calot(score);
+  EXPECT_EQ(made.code, 4);
+  EXPECT_EQ(made.code, scored.code);
+  EXPECT_THAT(said(scored), EndsWith(said(made))) << "but for how many were simulated";
+  EXPECT_THAT(said(made), HasSubstr("cut.jsonl: it did not come to its end (cut)"));
+  expect_next_command(made);
+  const std::string html = slurp(folder_ / "p.html");
+  EXPECT_THAT(html, HasSubstr("The session did not come to its end (cut)"));
+  EXPECT_THAT(html, HasSubstr("1 did not come to the end"));
+  EXPECT_THAT(html, HasSubstr("cannot read missing.jsonl"));
+  EXPECT_THAT(html, HasSubstr("the recording is of other"));
+  EXPECT_THAT(html, HasSubstr("id=\"r2-recording\""));
+  EXPECT_THAT(html, Not(HasSubstr("id=\"r3-recording\"")));
+  EXPECT_THAT(html, Not(HasSubstr("<img")));
+}
+
+TEST_F(PageOfSmall, IsNotWrittenWhereNothingIsScoredNorOverARecording) {
+  const Outcome missing = calot({"page", "missing.jsonl"});
+  EXPECT_EQ(missing.code, 4);
+  expect_next_command(missing);
+  EXPECT_FALSE(fs::exists(folder_ / "missing.html"));
+  const Outcome over = calot({"page", "out/recording.jsonl", "-o", "out/recording.jsonl"});
+  EXPECT_EQ(over.code, 4);
+  EXPECT_EQ(slurp(folder_ / "out" / "recording.jsonl"), text_);
+  fs::create_directories(folder_ / "empty");
+  EXPECT_EQ(calot({"page", "empty"}).code, 5);
+}
+
+/// Asks as a session does, and draws a small picture where that is wanted.
+struct Drawn {
+  explicit Drawn(PageMoments& moments) : moments_(moments) {}
+  void at(double time) {
+    if (moments_.wanted(progress).empty()) return;
+    Frame frame;
+    frame.time = time;
+    frame.image = {16, 16, std::vector<unsigned char>(16 * 16 * 3)};
+    EXPECT_FALSE(moments_.take(frame));
+  }
+  void event(EventKind kind, double time) {
+    progress.add_event({kind, time, "left", "", 0});
+    at(time);
+  }
+  Progress progress;
+
+ private:
+  PageMoments& moments_;
+};
+
+TEST(PageMoments, ErrorsThatFollowEachOtherFastShareAPicture) {
+  PageMoments moments({EventKind::slip, EventKind::overforce});
+  Drawn drawn(moments);
+  drawn.event(EventKind::contact, 0.5);
+  EXPECT_TRUE(moments.pictures.empty()) << "no error";
+  drawn.event(EventKind::slip, 1);
+  drawn.event(EventKind::slip, 1.2);
+  drawn.event(EventKind::overforce, 1.3);
+  drawn.event(EventKind::slip, 2);
+  ASSERT_EQ(moments.pictures.size(), 3u);
+  EXPECT_EQ(moments.events, (std::map<std::size_t, std::size_t>{{1, 0}, {2, 0}, {3, 1}, {4, 2}}));
+  EXPECT_EQ(moments.left_out, 0u);
+}
+
+TEST(PageMoments, ThereAreOnlySoManyPicturesAndTheRestIsCounted) {
+  PageMoments moments(
+      {EventKind::slip, EventKind::overforce, EventKind::empty_grasp, EventKind::overstretch});
+  Drawn drawn(moments);
+  for (int i = 0; i < 30; ++i) {
+    drawn.progress.begin_step(10 * i, "s", "Step", 0);
+    drawn.at(10 * i);
+    drawn.event(EventKind::slip, 10 * i + 1);
+    drawn.event(EventKind::overforce, 10 * i + 2);
+    drawn.event(EventKind::empty_grasp, 10 * i + 3);
+  }
+  EXPECT_EQ(moments.step_begins.size(), PageMoments::most_of_steps);
+  EXPECT_EQ(moments.events.size(), PageMoments::most_of_errors);
+  EXPECT_EQ(moments.pictures.size(), PageMoments::most_of_steps + PageMoments::most_of_errors);
+  EXPECT_EQ(moments.left_out, 120 - moments.pictures.size());
+}
+
+}  // namespace
+}  // namespace calot::test
