@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "rig.h"
 #include "sim/settle_field.h"
 #include "support/bodies.h"
@@ -61,6 +63,47 @@ TEST(Kinds, ADuctHeldAtBothEndsGivesWayToARodAndComesBack) {
   ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 10e-3), 0, 4)) << driver.why();
   for (std::size_t k = 0; k < before.size(); ++k)
     EXPECT_LT((world.skin_positions(0)[k] - before[k]).norm(), 1e-6);  // m, of 40 mm: the solver's tolerance
+}
+
+/// A tool with an upright shaft, its tip below a duct, is drawn across it at 500 mm/s: it takes the duct along, or the step
+/// is reported, but never passes.
+void draw_across(double radius, double thickness, SolverMotion motion) {
+  OrganDefinition organ = duct({{-110e-3, 90e-3, -100e-3}, {-50e-3, 90e-3, -100e-3}});
+  std::get<TubeShape>(organ.shape).radius = radius;
+  organ.wall.thickness = thickness;
+  organ.wall.density = 1050;
+  organ.held = {{"start", "start", 6e-3, 1e6}, {"end", "end", 6e-3, 1e6}};
+  SceneDefinition scene = scene_of({organ});
+  scene.solver.motion = motion;
+  scene.ports = {{"umbilical", Vec3::Zero()}, {"right_subcostal", Vec3(-80e-3, 90e-3, 100e-3)}};
+  World world = made(scene);
+  test::Driver driver(world);
+  double carried = 0;
+  driver.watch = [&](const StepReport& report) {
+    const Vec3 tip = report.instruments[0].tip, up = (driver.trocar() - tip).normalized();
+    double ahead = std::numeric_limits<double>::infinity(), nearest = ahead;
+    for (const Vec3& p : world.skin_positions(0)) {
+      const Vec3 beside = p - tip - (p - tip).dot(up) * up;
+      if (beside.norm() < nearest) nearest = beside.norm(), ahead = beside.y();
+      carried = std::max(carried, p.y() - 90e-3);
+    }
+    EXPECT_GT(ahead, 0) << "the line is before the shaft, tip at " << tip.transpose();
+    EXPECT_LT(world.deepest_penetration(), 0.1e-3);
+  };
+  const double below = -112e-3;
+  ASSERT_TRUE(driver.go({-80e-3, 70e-3, below}, 0, 40)) << driver.why();
+  const bool followed = driver.go({-80e-3, 110e-3, below}, 0, 4);  // 10 mm a step at 50 Hz
+  if (!followed) {
+    EXPECT_EQ(driver.failure->kind, FailureKind::simulation) << driver.why();
+  }
+  EXPECT_GT(carried, 5e-3);
+}
+
+TEST(Kinds, AToolDrawnAcrossADuctAt500MillimetresASecondNeverPasses) {
+  for (SolverMotion motion : {SolverMotion::statics, SolverMotion::dynamics}) {
+    draw_across(3e-3, 1e-3, motion);
+    draw_across(0.8e-3, 0.4e-3, motion);  // as thin as an artery
+  }
 }
 
 TEST(Kinds, WhatLiesLooseOnTheGroundPressesOnItWithItsWeight) {
