@@ -86,6 +86,15 @@ std::vector<ApiFunction> session_functions() {
        "Where a landmark is now on the skin, {x, y, z} in m.",
        {landmark()},
        "calot.point"},
+      {"Session",
+       "seen_area",
+       "How much of a triangle the laparoscope sees past organs and instruments, m^2, across its line of "
+       "sight: from its "
+       "edge it is seen as none.",
+       {required(point("a", quantity::length, 1.0, "", "a corner, {x, y, z} in m")),
+        required(point("b", quantity::length, 1.0, "", "the next")),
+        required(point("c", quantity::length, 1.0, "", "the last"))},
+       "number"},
       {"Steps",
        "step",
        "Ends the running step as done and starts the next.",

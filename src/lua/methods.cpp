@@ -107,6 +107,17 @@ int place(lua_State* L) {
   return push_vector(L, landmark_argument(L, session, arguments).value_or(Vec3::Zero()));
 }
 
+int seen_area(lua_State* L) {
+  ScriptSession& session = session_target(L, "seen_area");
+  Arguments arguments(L, session, "Session", "seen_area");
+  std::array<Vec3, 3> corners{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  arguments.read().take("a", corners[0]);
+  arguments.read().take("b", corners[1]);
+  arguments.read().take("c", corners[2]);
+  lua_pushnumber(L, arguments.finish() ? session.seen_area(L, corners) : 0.0);
+  return 1;
+}
+
 // ---- instruments
 
 InstrumentState instrument_state(lua_State* L, const HandleTarget& target) {
@@ -467,6 +478,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "volume", guarded<volume>},
                           {"Session", "torn", guarded<torn>},
                           {"Session", "place", guarded<place>},
+                          {"Session", "seen_area", guarded<seen_area>},
                           {"Steps", "step", guarded<step>},
                           {"Steps", "hold", guarded<hold>},
                           {"Steps", "note", guarded<note>},

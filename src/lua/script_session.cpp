@@ -24,6 +24,7 @@ constexpr int levels = 3;
 constexpr double force_at[levels] = {0, 2, 10};  // N
 constexpr double share_of_filling[levels] = {0.5, 1, 2};
 constexpr double share_torn[levels] = {0, 0.5, 1};
+constexpr double share_seen[levels] = {0, 0.5, 1};
 constexpr double usual_pressure = 12 * units::mmHg;
 constexpr double usual_volume = 40 * units::mL;
 
@@ -94,6 +95,11 @@ int ScriptSession::organ(lua_State* L, const std::string& name) {
   }
   complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
   return -1;
+}
+
+double ScriptSession::seen_area(lua_State* L, const std::array<Vec3, 3>& corners) {
+  if (!checking()) return world(L).seen_area(corners);
+  return share_seen[next_level()] * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
 }
 
 double ScriptSession::torn(lua_State* L, const std::string& name) {

@@ -60,6 +60,8 @@ class ScriptSession {
   int organ(lua_State* L, const std::string& name);
   /// Share of a tissue's strands that are torn; complains where there is none of that name.
   double torn(lua_State* L, const std::string& name);
+  /// Of a triangle, m^2 (World::seen_area); in a dry run none, half or all of it.
+  double seen_area(lua_State* L, const std::array<Vec3, 3>& corners);
   /// "organ.landmark" of this scene; complains when it is none.
   bool is_landmark(lua_State* L, const std::string& name);
   /// Complains about what needs jaws, of an instrument that has none.

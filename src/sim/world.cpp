@@ -16,6 +16,7 @@
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/join_bodies.h"
+#include "sim/laparoscope.h"
 #include "sim/settle_field.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
@@ -47,6 +48,7 @@ struct World::Impl {
   Assembly assembly;
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
+  Vec3 eye = Vec3::Zero();  ///< m, the laparoscope's lens
   Field field;
   StepReport report;
   long steps = 0;
@@ -478,6 +480,9 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     SolveStatistics statistics;
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
+  world.impl_->eye = laparoscope_pose(scene.laparoscope, world.port_position(scene.laparoscope.port),
+                                      world.landmark(scene.laparoscope.look_at))
+                         .position;
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
   world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
   world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
@@ -581,6 +586,11 @@ SkinPlace skin_place(const Field& field, const std::string& name) {
 
 Vec3 World::landmark(const std::string& name) const { return skin_place(impl_->field, name).at; }
 Vec3 World::landmark_normal(const std::string& name) const { return skin_place(impl_->field, name).normal; }
+
+double World::seen_area(const std::array<Vec3, 3>& corners) const {
+  constexpr double margin = 2e-3;  // m: as thick as what such a triangle is stretched between
+  return calot::seen_area(impl_->field, impl_->eye, corners, margin);
+}
 
 const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }
 std::vector<Vec3> World::skin_positions(int organ) const {
