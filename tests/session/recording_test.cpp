@@ -111,7 +111,7 @@ TEST_F(RecordingFile, OfAnOperatedSessionNamesItsModeAndAnUnknownOneIsRefused) {
   ASSERT_TRUE(RecordingWriter::create(path_, exam));
   ASSERT_TRUE(read_recording(path_)) << complaint();
   EXPECT_EQ(read_recording(path_)->header.mode, "exam");
-  exam.mode = "exma";
+  exam.mode = "exams";
   ASSERT_TRUE(RecordingWriter::create(path_, exam));
   EXPECT_NE(complaint().find("did you mean \"exam\"?"), std::string::npos) << complaint();
 }
