@@ -109,14 +109,14 @@ void add_operate(Program& program) {
   CLI::App& command = *program.app.add_subcommand(
       "operate", "move the instruments of a scenario while it runs, and be scored");
   OperateCommand& operate = program.operate;
-  command.add_option("scenario", operate.scenario, "the scenario's .lua file")->required();
+  command.add_option("scenario", operate.scenario, "the scenario's .lua file");
+  command.add_flag("--no-window", operate.no_window, "open no window: lines of input move the instruments");
   command
       .add_option(
           "--input", operate.input,
           "where lines of input come from: a file or named pipe, - for standard input, unix:PATH for a "
-          "local socket that is made there")
-      ->type_name("SOURCE")
-      ->capture_default_str();
+          "local socket that is made there (default: mouse, keyboard and gamepad; without a window -)")
+      ->type_name("SOURCE");
   command.add_flag(
       "--stamped", operate.stamped,
       "wait for nothing: the time in each line decides its step (default: real time, in which the "
@@ -125,6 +125,13 @@ void add_operate(Program& program) {
       command.add_flag("--practice")->description("show hints; may be paused and begun again (default)");
   command.add_flag("--exam", operate.exam, "no hints, no pause; scored as it stands when it is given up")
       ->excludes(practice);
+  command.add_option("--device", operate.device, "a file that says what a gamepad does: see --devices")
+      ->type_name("FILE");
+  command.add_flag("--devices", operate.devices,
+                   "list what is plugged in, and print a device file to start from");
+  command.add_option("--size", operate.size, "size of the picture before it is scaled to the window, px")
+      ->type_name("WxH")
+      ->capture_default_str();
   add_new_session_options(command, operate);
   add_report_options(command, operate);
   command.footer(

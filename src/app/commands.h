@@ -42,8 +42,10 @@ struct OperateCommand : SessionCommand {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> params;  ///< "key=value"
   bool overwrite = false;           ///< see PlayRequest
-  std::string input = "-";          ///< see LineFeed::open
-  bool exam = false, stamped = false;
+  std::string input;   ///< see LineFeed::open; empty: the window's, or without one standard input
+  std::string device;  ///< file that says what a gamepad does; empty: the usual
+  bool exam = false, stamped = false, no_window = false;
+  bool devices = false;  ///< list them, and no more
 };
 ExitCode operate_command(const OperateCommand& command);
 

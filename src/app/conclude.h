@@ -8,6 +8,8 @@
 
 namespace calot {
 
+/// "WIDTHxHEIGHT"; a failure (usage) where it is none that can be drawn.
+std::optional<Failure> read_size(const std::string& text, PlayRequest& request);
 /// "key=value" each; a failure (usage) names the first that is not.
 std::optional<Failure> read_params(const std::vector<std::string>& pairs, PlayRequest& request);
 

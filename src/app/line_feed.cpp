@@ -65,6 +65,8 @@ Result<std::unique_ptr<LineFeed>> LineFeed::open(const std::string& input,
   if (!wrong && pipe2(feed->wake_, O_CLOEXEC) != 0)
     wrong = fail(FailureKind::resource, "no pipe can be made: " + why());
   if (wrong) return *wrong;
+  struct stat status = {};
+  feed->is_file_ = feed->file_ >= 0 && fstat(feed->file_, &status) == 0 && S_ISREG(status.st_mode);
   feed->thread_ = std::thread([raw = feed.get()] { raw->run(); });
   return feed;
 }
@@ -93,7 +95,7 @@ std::optional<Failure> LineFeed::listen_at(const std::string& path) {
   listener_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const mode_t others = umask(0077);  // whoever may move the instruments is whoever may read the user's files
   const bool bound = listener_ >= 0 && ::bind(listener_, reinterpret_cast<const sockaddr*>(&address.value()),
-                                            sizeof(sockaddr_un)) == 0;
+                                              sizeof(sockaddr_un)) == 0;
   umask(others);
   if (bound) socket_path_ = path;
   if (!bound || ::listen(listener_, 1) != 0)

@@ -18,6 +18,8 @@ class LineFeed {
   static Result<std::unique_ptr<LineFeed>> open(const std::string& input,
                                                 std::vector<LiveInstrument> instruments,
                                                 LiveMailbox& mailbox);
+  /// Whether all there will be is there already: lines that come in no time of their own.
+  bool is_file() const { return is_file_; }
   /// Closes the mailbox too.
   ~LineFeed();
   LineFeed(const LineFeed&) = delete;
@@ -37,7 +39,7 @@ class LineFeed {
   int file_ = -1, listener_ = -1;
   int wake_[2] = {-1, -1};   ///< a pipe: written to, it ends the thread
   std::string socket_path_;  ///< to be removed
-  bool owns_file_ = false;
+  bool owns_file_ = false, is_file_ = false;
   std::thread thread_;
 };
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "app/commands.h"
 #include "app/conclude.h"
 #include "app/play.h"
@@ -12,19 +10,6 @@ namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<Failure> read_size(const std::string& text, PlayRequest& request) {
-  const auto number = [&](std::size_t from, std::size_t to, int& value) {
-    const auto [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
-    return error == std::errc() && end == text.data() + to && value >= 16 && value <= 4096;
-  };
-  const std::size_t x = text.find('x');
-  if (x != std::string::npos && number(0, x, request.width) && number(x + 1, text.size(), request.height)) {
-    return std::nullopt;
-  }
-  return fail(FailureKind::usage, fmt::format("--size {} is no picture size", text),
-              "give WIDTHxHEIGHT in pixels, 16 to 4096 each, such as 960x540");
-}
 
 }  // namespace
 

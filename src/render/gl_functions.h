@@ -4,6 +4,8 @@
 
 #include <GL/glcorearb.h>
 
+#include <functional>
+
 #include "base/status.h"
 
 namespace calot {
@@ -14,7 +16,7 @@ namespace calot {
   X(ATTACHSHADER, AttachShader)                                                                              \
   X(BINDBUFFER, BindBuffer)                                                                                  \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                                        \
-  X(BINDRENDERBUFFER, BindRenderbuffer)                                                                      \
+  X(BINDRENDERBUFFER, BindRenderbuffer) X(BLENDEQUATION, BlendEquation) X(BLENDFUNC, BlendFunc) X(SCISSOR, Scissor)                                                                      \
   X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(BLITFRAMEBUFFER, BlitFramebuffer)        \
       X(BUFFERDATA, BufferData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear) X(         \
           CLEARCOLOR, ClearColor) X(COLORMASK, ColorMask) X(COMPILESHADER, CompileShader)                    \
@@ -49,7 +51,7 @@ struct GlFunctions {
 #undef CALOT_GL_MEMBER
 };
 
-using GlLoader = void (*(*)(const char* name))();
+using GlLoader = std::function<void (*(const char* name))()>;
 
 /// Fails (resource) naming the functions that the loader does not know.
 Result<GlFunctions> load_gl(GlLoader loader);

@@ -105,10 +105,13 @@ TEST_F(Operate, ARestartKeepsTheAttemptBefore) {
 TEST_F(Operate, WhatCannotBeReadIsAUsageError) {
   spill(folder_ / "file.txt", "");
   for (const std::string input : {"none.txt", ".", "unix:", "unix:none/socket", "unix:file.txt"}) {
-    const Outcome outcome = calot({"operate", "small.lua", "--input", input});
+    const Outcome outcome = calot({"operate", "small.lua", "--no-window", "--input", input});
     EXPECT_EQ(outcome.code, 4) << input << "\n" << outcome.err;
     expect_next_command(outcome);
   }
+  const Outcome file = calot({"operate", "small.lua", "--no-window", "--input", "file.txt"});
+  EXPECT_EQ(file.code, 4);
+  EXPECT_NE(file.err.find("--stamped"), std::string::npos) << file.err;
   EXPECT_EQ(calot({"operate", "small.lua", "--exam", "--practice"}).code, 4);
 }
 
@@ -131,17 +134,18 @@ void send_text(int file, const std::string& text) {
 }
 
 TEST_F(Operate, ASocketMovesItInRealTimeAndASecondSenderGoesOnWhereTheFirstWasLost) {
-  const Outcome outcome = calot({"operate", "small.lua", "--input", "unix:s", "-o", "here"}, [&](pid_t) {
-    const int first = connect_to(folder_ / "s");
-    ASSERT_GE(first, 0);
-    send_text(first, "tip 0 left -0.08 0.06 -0.03 0 0\n");
-    ASSERT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 5));
-    close(first);
-    const int second = connect_to(folder_ / "s");
-    send_text(second, "tip 0 left -0.08 0.06 -0.035 0 0\n");
-    ASSERT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 33));
-    close(second);
-  });
+  const Outcome outcome =
+      calot({"operate", "small.lua", "--no-window", "--input", "unix:s", "-o", "here"}, [&](pid_t) {
+        const int first = connect_to(folder_ / "s");
+        ASSERT_GE(first, 0);
+        send_text(first, "tip 0 left -0.08 0.06 -0.03 0 0\n");
+        ASSERT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 5));
+        close(first);
+        const int second = connect_to(folder_ / "s");
+        send_text(second, "tip 0 left -0.08 0.06 -0.035 0 0\n");
+        ASSERT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 33));
+        close(second);
+      });
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json json = report("here");
   EXPECT_EQ(json["end"], "done");
@@ -156,10 +160,11 @@ TEST_F(Operate, AKilledSessionLosesNothingThatWasRecorded) {
   const fs::path recording = folder_ / "here" / "recording.jsonl";
   spill(folder_ / "lines.txt", moving_lines(3) + "tip 3600 left -0.08 0.06 -0.03 0 0\n");
   const Outcome outcome =
-      calot({"operate", "small.lua", "--input", "lines.txt", "--stamped", "-o", "here"}, [&](pid_t pid) {
-        EXPECT_TRUE(wait_for_lines(recording, 20));
-        kill(pid, SIGKILL);
-      });
+      calot({"operate", "small.lua", "--no-window", "--input", "lines.txt", "--stamped", "-o", "here"},
+            [&](pid_t pid) {
+              EXPECT_TRUE(wait_for_lines(recording, 20));
+              kill(pid, SIGKILL);
+            });
   EXPECT_EQ(outcome.code, 128 + SIGKILL);
   const Outcome replay = calot({"replay", "here/recording.jsonl"});
   EXPECT_EQ(replay.code, 1) << "cut, and played as far as it goes: " << replay.err;
@@ -177,10 +182,11 @@ TEST_F(Operate, AFloodWithoutEndKeepsNoStepFromItsTurn) {
     }
     close(file);
   });
-  const Outcome outcome = calot({"operate", "small.lua", "--input", "unix:s", "-o", "here"}, [&](pid_t pid) {
-    EXPECT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 10));
-    kill(pid, SIGINT);
-  });
+  const Outcome outcome =
+      calot({"operate", "small.lua", "--no-window", "--input", "unix:s", "-o", "here"}, [&](pid_t pid) {
+        EXPECT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 10));
+        kill(pid, SIGINT);
+      });
   enough = true;
   sender.join();
   EXPECT_EQ(outcome.code, 2) << outcome.err;
