@@ -111,7 +111,10 @@ Result<OperateWindow> open_window(const Operation& operation, LiveMailbox& mailb
 Result<Played> operate_in_window(Operation& operation) {
   Result<OperateWindow> window = open_window(operation, operation.mailbox);
   if (!window) return window.failure();
-  log_info("Drawn by " + window->description() + ".");
+  log_info(fmt::format("Drawn by {}.", window->description()));
+  if (window->description().starts_with("llvmpipe"))
+    log_info(
+        "That is software: hands are asked once a picture, and a smaller one is faster: --size 480x270.");
   std::future<Result<Played>> session = std::async(std::launch::async, [&] { return attempts(operation); });
   std::optional<Result<Played>> played;
   std::optional<Failure> broken;

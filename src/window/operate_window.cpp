@@ -21,6 +21,7 @@ constexpr double wheel_notch = 2e-3;                                           /
 constexpr double finely = 0.25;                                                // with Shift
 constexpr double jaw_speed = 120 * units::deg, roll_speed = 120 * units::deg;  // rad/s
 constexpr double longest_turn = 0.1;  // s that held keys count for at once
+constexpr double still_after = 1;     // s without a new state: time stands still
 constexpr double idle_wait = 5e-3;    // s
 
 std::string last_error() {
@@ -304,6 +305,9 @@ void OperateWindow::Impl::draw_frame() {
   ImGui::NewFrame();
   static const LiveView nothing;
   if (hands) state.selected = hands->selected(), state.out_of_reach = hands->out_of_reach();
+  const bool goes_on = state.started && (!state.menu || options.mode == LiveMode::exam);
+  // A program may move the instruments too, whatever is done here.
+  state.runs = goes_on || (view && view->time > 0 && glfwGetTime() - last_picture < still_after);
   const std::optional<MenuChoice> chosen =
       lay_out(state, view ? *view : nothing, ImGui::GetIO().DisplaySize.y);
   ImGui::Render();

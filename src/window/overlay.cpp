@@ -28,6 +28,17 @@ std::string clock_text(double time) {
   return fmt::format("{:d}:{:04.1f}", static_cast<int>(time / 60), time - 60 * static_cast<int>(time / 60));
 }
 
+/// The recording's: red while steps are taken.
+void lay_out_light(bool runs) {
+  const float side = ImGui::GetTextLineHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddCircleFilled(ImVec2(at.x + side / 2, at.y + side / 2), 0.4f * side,
+                                              ImGui::GetColorU32(runs ? red : grey));
+  ImGui::Dummy(ImVec2(side, side));
+  ImGui::SameLine();
+  coloured(runs ? red : grey, runs ? "recording" : "time stands still");
+}
+
 void lay_out_hand(const HandView& hand, bool selected) {
   const double share = hand.limit > 0 ? hand.force / hand.limit : 0;
   coloured(selected ? ImVec4(1, 1, 1, 1) : grey,
@@ -74,9 +85,7 @@ std::optional<MenuChoice> lay_out(const OverlayState& state, const LiveView& vie
   ImGui::SetNextWindowSize(ImVec2(panel_width, height));
   ImGui::Begin("panel", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-  const bool runs = state.started && !state.menu && state.result.empty();
-  if (state.result.empty())
-    coloured(red, runs || (state.started && state.mode == LiveMode::exam) ? "(o) recording" : "( ) paused");
+  if (state.result.empty()) lay_out_light(state.runs);
   wrapped(state.title);
   coloured(grey, to_text(state.mode));
   ImGui::Separator();

@@ -30,8 +30,8 @@ class Operate : public ProgramTest {
   }
   Outcome operate(const std::string& lines, std::vector<std::string> more = {}) {
     spill(folder_ / "lines.txt", lines);
-    std::vector<std::string> words = {"operate",   "small.lua", "--input", "lines.txt",
-                                      "--stamped", "-o",        "here"};
+    std::vector<std::string> words = {"operate",   "small.lua", "--no-window", "--input",
+                                      "lines.txt", "--stamped", "-o",          "here"};
     words.insert(words.end(), more.begin(), more.end());
     return calot(words);
   }
