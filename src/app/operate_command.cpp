@@ -126,7 +126,7 @@ Result<Played> operate_in_window(Operation& operation) {
     played = session.get();
     window->set_result(result_lines(*played));
   }
-  if (broken) operation.mailbox.put(LiveCommand::abandon);
+  if (!played) operation.mailbox.put(LiveCommand::abandon);  // a window offers, and a full mailbox may refuse
   if (!played) played = session.get();
   if (broken) return *broken;
   return *std::move(played);
@@ -136,6 +136,8 @@ Result<Played> operate(PlayRequest& request, const OperateCommand& command) {
   const Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
   if (!script) return script.failure();
   const ExerciseDefinition& exercise = script.value()->definition();
+  if (exercise.scene.instruments.empty())
+    return fail(FailureKind::usage, "this exercise has no instrument to move", "play it by `calot run`");
   Operation operation{request, command, exercise, live_instruments(exercise.scene), LiveMailbox(), {}};
   std::unique_ptr<LineFeed> feed;
   if (command.no_window || !command.input.empty()) {

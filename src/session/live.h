@@ -138,7 +138,6 @@ class LiveSource : public InputSource {
   std::vector<std::string> notes() const override;
   LiveFigures figures() const;
   bool wants_restart() const { return ended_by_ == "restart"; }
-  bool is_paused() const { return paused_; }  ///< may be asked by another thread
 
  private:
   void begin(const World& world);
@@ -166,7 +165,7 @@ class LiveSource : public InputSource {
   LiveClock& clock_;
   StepInput asked_, given_;
   bool begun_ = false, started_ = false;  ///< called at all; an input has come, or need not
-  std::atomic<bool> paused_ = false;
+  bool paused_ = false;
   std::optional<double> lost_at_;
   std::string ended_by_;
   double due_ = 0;  ///< when the present step may begin, on the clock

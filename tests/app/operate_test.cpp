@@ -115,6 +115,19 @@ TEST_F(Operate, WhatCannotBeReadIsAUsageError) {
   EXPECT_EQ(calot({"operate", "small.lua", "--exam", "--practice"}).code, 4);
 }
 
+TEST_F(Operate, AnExerciseWithoutInstrumentsIsRefused) {
+  std::string text = small_scenario("t:step('wait', 'Wait'); t:wait(0.1 * s)", "t:wait(0.1 * s)");
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+  };
+  replace("{ left = { port = \"right_subcostal\" } }", "{}");
+  replace("left.path_length_mm", "total.time_s");
+  spill(folder_ / "small.lua", text);
+  const Outcome outcome = operate(moving_lines(0.1));
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_NE(outcome.err.find("no instrument"), std::string::npos) << outcome.err;
+}
+
 /// A connection to the program's socket, once there is one; -1 after some 30 s.
 int connect_to(const fs::path& path) {
   sockaddr_un address = {};
