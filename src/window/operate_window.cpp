@@ -70,8 +70,8 @@ struct PicturePlace {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-PicturePlace place_picture(int window_width, int window_height, const WindowOptions& options) {
-  const int panel = std::min(static_cast<int>(panel_width), window_width / 2);
+PicturePlace place_picture(int window_width, int window_height, double ratio, const WindowOptions& options) {
+  const int panel = std::min(static_cast<int>(ratio * panel_width), window_width / 2);
   const double scale = std::min(static_cast<double>(window_width - panel) / options.picture_width,
                                 static_cast<double>(window_height) / options.picture_height);
   PicturePlace place;
@@ -134,6 +134,7 @@ struct OperateWindow::Impl {
   void move_hands(double dt);
   bool key(int code) const { return glfwGetKey(window, code) == GLFW_PRESS; }
   bool button(int code) const { return captured && glfwGetMouseButton(window, code) == GLFW_PRESS; }
+  double pixel_ratio() const;
   PicturePlace place() const;
   void take(std::shared_ptr<const LiveView> newest);
   void draw_frame();
@@ -248,7 +249,8 @@ HandMotion OperateWindow::Impl::device_motion(double dt) {
   const double fine = key(GLFW_KEY_LEFT_SHIFT) || key(GLFW_KEY_RIGHT_SHIFT) ? finely : 1.0;
   HandMotion motion;
   const double field = renderer->lens().field_diameter * place().height;
-  const double pixel = fine * metres_a_pixel(view->scene.camera, hands->tip(hands->selected()), field);
+  const double pixel =
+      fine * pixel_ratio() * metres_a_pixel(view->scene.camera, hands->tip(hands->selected()), field);
   motion.in_view = Vec3(pixel * events.right, -pixel * events.down, fine * wheel_notch * events.wheel);
   const auto held = [&](bool more, bool less) { return fine * dt * ((more ? 1 : 0) - (less ? 1 : 0)); };
   motion.roll = roll_speed * held(key(GLFW_KEY_E), key(GLFW_KEY_Q));
@@ -286,10 +288,18 @@ void OperateWindow::Impl::take(std::shared_ptr<const LiveView> newest) {
   set_captured(false);
 }
 
+/// Pixels that the pointer's unit covers: more than one on dense screens.
+double OperateWindow::Impl::pixel_ratio() const {
+  int pixels = 0, units = 0, ignored = 0;
+  glfwGetFramebufferSize(window, &pixels, &ignored);
+  glfwGetWindowSize(window, &units, &ignored);
+  return units > 0 && pixels > 0 ? static_cast<double>(pixels) / units : 1;
+}
+
 PicturePlace OperateWindow::Impl::place() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(window, &width, &height);
-  return place_picture(width, height, options);
+  return place_picture(width, height, pixel_ratio(), options);
 }
 
 void OperateWindow::Impl::draw_frame() {
