@@ -65,6 +65,17 @@ class WindowContext : public GlContext {
   GLFWwindow* window_;
 };
 
+/// A window whose OpenGL is current, or none.
+GLFWwindow* make_window(int width, int height, const std::string& name) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  GLFWwindow* window = glfwCreateWindow(width, height, name.c_str(), nullptr, nullptr);
+  if (window != nullptr) glfwMakeContextCurrent(window);
+  return window;
+}
+
 /// Where the picture is in the window, px from the upper left.
 struct PicturePlace {
   int x = 0, y = 0, width = 0, height = 0;
@@ -152,12 +163,7 @@ OperateWindow::Impl::~Impl() {
 }
 
 std::optional<Failure> OperateWindow::Impl::build() {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  const std::string name = "Calot: " + options.title;
-  window = glfwCreateWindow(options.width, options.height, name.c_str(), nullptr, nullptr);
+  window = make_window(options.width, options.height, "Calot: " + options.title);
   if (window == nullptr) return no_window("no window with OpenGL 3.3 can be opened");
   auto context = std::make_unique<WindowContext>(window);
   if (!context->make_current()) return no_window("the window's OpenGL cannot be used");

@@ -2,8 +2,10 @@
 
 #include "window/operate_window.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <link.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -56,6 +58,18 @@ class Screen {
   pid_t server_ = -1;
   bool is_there_ = false;
 };
+
+/// What drivers keep for a process's life is lost, to who looks for leaks, where their libraries go before it ends.
+void keep_libraries() {
+  std::vector<std::string> names;
+  const auto note = [](dl_phdr_info* info, std::size_t, void* list) {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(info->dlpi_name);
+    return 0;
+  };
+  dl_iterate_phdr(note, &names);
+  for (const std::string& name : names)
+    if (!name.empty()) dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
+}
 
 std::shared_ptr<LiveView> small_view() {
   Pose frame = Pose::Identity();
@@ -113,6 +127,7 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   LiveMailbox mailbox;
   Result<OperateWindow> opened = OperateWindow::open(small_window(), mailbox);
   ASSERT_TRUE(opened) << to_text(opened.failure());
+  keep_libraries();
   OperateWindow& window = opened.value();
   ASSERT_TRUE(window.turn(view).value());
   // The same shaders by another driver of the same library: single pixels on edges may round otherwise.
