@@ -469,7 +469,8 @@ Result<StepReport> World::step(const StepInput& input) {
                                                    self.field.tools.size(), input.actions.size()));
   for (std::size_t i = 0; i < self.field.tools.size(); ++i) {
     const Tool& tool = self.field.tools[i];
-    if (std::optional<Failure> failure = check_pose(tool.definition.name, tool.geometry, input.instruments[i]))
+    if (std::optional<Failure> failure =
+            check_pose(tool.definition.name, tool.geometry, input.instruments[i]))
       return *failure;
     if (input.actions.empty()) continue;
     if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;

@@ -13,7 +13,7 @@ struct OverlayState {
   LiveMode mode = LiveMode::practice;
   int selected = 0;
   bool out_of_reach = false, menu = true, started = false;
-  bool runs = false;  ///< steps are taken, and recorded
+  bool runs = false;   ///< steps are taken, and recorded
   std::string result;  ///< lines; not empty: the session is over
   double pictures_a_second = 0;
 };
