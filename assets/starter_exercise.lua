@@ -32,7 +32,7 @@ return calot.exercise {
 
   -- What the trainee has to do, in order. wait_until and hold ask again after every simulated step.
   steps = function(t)
-    t:step("grasp", "Grasp the fundus", { limit = 20 * s })
+    t:step("grasp", "Grasp the fundus", { limit = 20 * s, hint = "Come down on it with open jaws" })
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
     t:step("lift", "Lift with at least 0.3 N for 2 s", { limit = 20 * s })

@@ -59,6 +59,7 @@
 ---Options of t:step.
 ---@class calot.step_options
 ---@field limit? number after it the step ends as timed out; 0.1 to 3600 s
+---@field hint? string how it is done, shown to who practises and not in an exam
 
 ---Options of motions.
 ---@class calot.move_options
@@ -327,7 +328,7 @@ local Steps = {}
 ---Ends the running step as done and starts the next.
 ---@param name string short name, for metrics: letters, digits and _
 ---@param title string one line for people
----@param options? calot.step_options a limit in time
+---@param options? calot.step_options a limit in time, a hint
 function Steps:step(name, title, options) end
 
 ---Waits until the predicate has held for a duration in all; metric <step>.<name>.time_in_s. Returns whether it did before the step's limit.

@@ -22,6 +22,7 @@ namespace {
 struct Program {
   CLI::App app{"Calot, a scriptable simulator of laparoscopic cholecystectomy"};
   RunCommand run;
+  OperateCommand operate;
   ReplayCommand replay;
   ScoreCommand score;
   PageCommand page;
@@ -51,9 +52,14 @@ void add_fail_below(CLI::App& command, std::optional<double>& points, const char
   });
 }
 
-void add_session_options(CLI::App& command, SessionCommand& options) {
+void add_report_options(CLI::App& command, SessionCommand& options) {
   add_threads(command, options.threads);
   command.add_flag("--json", options.json, "print the report as JSON, and nothing else, to stdout");
+  add_fail_below(command, options.fail_below, "exit with 1 when the score is below this");
+}
+
+void add_session_options(CLI::App& command, SessionCommand& options) {
+  add_report_options(command, options);
   command.add_flag("--no-render", options.no_render, "draw no frames");
   command.add_option("--size", options.size, "size of the frames, px")
       ->type_name("WxH")
@@ -62,18 +68,17 @@ void add_session_options(CLI::App& command, SessionCommand& options) {
       ->type_name("TIMES")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 3600.0));
-  add_fail_below(command, options.fail_below, "exit with 1 when the score is below this");
 }
 
-void add_run(Program& program) {
-  CLI::App& command = *program.app.add_subcommand("run", "play a scenario, score it and draw its frames");
-  command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
+/// What run and operate share.
+template <typename Command>
+void add_new_session_options(CLI::App& command, Command& options) {
   command
-      .add_option("-o,--output", program.run.output,
+      .add_option("-o,--output", options.output,
                   "output folder, of which an earlier session's files are replaced (default: a new one, "
                   "out/<scenario id>)")
       ->type_name("DIR");
-  command.add_option("--seed", program.run.seed, "seed of the scenario's random numbers")
+  command.add_option("--seed", options.seed, "seed of the scenario's random numbers")
       ->type_name("N")
       ->check([](const std::string& text) {
         // The library would turn -1 into 2^64 - 1.
@@ -84,14 +89,56 @@ void add_run(Program& program) {
                    : text + " is no seed: give a whole number from 0 on";
       });
   command.add_flag(
-      "--overwrite", program.run.overwrite,
+      "--overwrite", options.overwrite,
       "replace what an earlier session left in out/<scenario id> (else: out/<scenario id>-2, ...)");
-  command.add_option("--param", program.run.params, "set a parameter of the scenario; may be repeated")
+  command.add_option("--param", options.params, "set a parameter of the scenario; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
+}
+
+void add_run(Program& program) {
+  CLI::App& command = *program.app.add_subcommand("run", "play a scenario, score it and draw its frames");
+  command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
+  add_new_session_options(command, program.run);
   add_session_options(command, program.run);
   command.callback([&program] { program.chosen = [&program] { return run_command(program.run); }; });
+}
+
+void add_operate(Program& program) {
+  CLI::App& command = *program.app.add_subcommand(
+      "operate", "move the instruments of a scenario while it runs, and be scored");
+  OperateCommand& operate = program.operate;
+  command.add_option("scenario", operate.scenario, "the scenario's .lua file");
+  command.add_flag("--no-window", operate.no_window, "open no window: lines of input move the instruments");
+  command
+      .add_option(
+          "--input", operate.input,
+          "where lines of input come from: a file or named pipe, - for standard input, unix:PATH for a "
+          "local socket that is made there (default: mouse, keyboard and gamepad; without a window -)")
+      ->type_name("SOURCE");
+  command.add_flag(
+      "--stamped", operate.stamped,
+      "wait for nothing: the time in each line decides its step (default: real time, in which the "
+      "newest line counts)");
+  CLI::Option* practice =
+      command.add_flag("--practice")->description("show hints; may be paused and begun again (default)");
+  command.add_flag("--exam", operate.exam, "no hints, no pause; scored as it stands when it is given up")
+      ->excludes(practice);
+  command.add_option("--device", operate.device, "a file that says what a gamepad does: see --devices")
+      ->type_name("FILE");
+  command.add_flag("--devices", operate.devices,
+                   "list what is plugged in, and print a device file to start from");
+  command.add_option("--size", operate.size, "size of the picture before it is scaled to the window, px")
+      ->type_name("WxH")
+      ->capture_default_str();
+  add_new_session_options(command, operate);
+  add_report_options(command, operate);
+  command.footer(
+      "Lines of input: pose T NAME pitch yaw insertion roll jaw [ACTION], tip T NAME x y z roll jaw "
+      "[ACTION],\n"
+      "pause, resume, restart, abandon, end. Times in s, places in m, angles in rad.");
+  command.callback([&program] { program.chosen = [&program] { return operate_command(program.operate); }; });
 }
 
 void add_replay(Program& program) {
@@ -291,6 +338,7 @@ int parse_and_run(int argc, char** argv) {
   program.app.set_version_flag("--version", "calot " + version());
   program.app.require_subcommand(0, 1);
   add_run(program);
+  add_operate(program);
   add_replay(program);
   add_score(program);
   add_page(program);

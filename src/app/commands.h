@@ -13,7 +13,7 @@
 
 namespace calot {
 
-/// Shared by run and replay.
+/// Shared by the commands that play a session.
 struct SessionCommand {
   int threads = usual_threads();
   std::string output;  ///< folder
@@ -36,6 +36,18 @@ struct ReplayCommand : SessionCommand {
   std::string scenario;  ///< empty: the one named in the recording
 };
 ExitCode replay_command(const ReplayCommand& command);
+
+struct OperateCommand : SessionCommand {
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> params;  ///< "key=value"
+  bool overwrite = false;           ///< see PlayRequest
+  std::string input;   ///< see LineFeed::open; empty: the window's, or without one standard input
+  std::string device;  ///< file that says what a gamepad does; empty: the usual
+  bool exam = false, stamped = false, no_window = false;
+  bool devices = false;  ///< list them, and no more
+};
+ExitCode operate_command(const OperateCommand& command);
 
 /// As many as there are cores.
 inline int usual_jobs() {

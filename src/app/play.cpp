@@ -100,9 +100,10 @@ Result<Outputs> open_outputs(const PlayRequest& request, const ExerciseDefinitio
   Result<OutputFolder> folder = OutputFolder::claim(path.value());
   if (!folder) return folder.failure();
   folder->clear();  // a session that is killed leaves no older report beside its recording
+  RecordingHeader header = recording_header(exercise, world, portable_path(request.scenario));
+  if (request.live != nullptr) header.mode = to_text(request.live->figures().mode);
   Result<RecordingWriter> recording =
-      RecordingWriter::create((path.value() / "recording.jsonl").string(),
-                              recording_header(exercise, world, portable_path(request.scenario)));
+      RecordingWriter::create((path.value() / "recording.jsonl").string(), header);
   if (!recording) return recording.failure();
   outputs.recording = std::move(recording).value();
   Result<StepTable> table = StepTable::create((path.value() / "steps.csv").string(), exercise.scene);
@@ -125,13 +126,13 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
   if (request.replay != nullptr) replay.emplace(*request.replay);
   SessionOptions options;
   options.stop = &interrupt_flag();
-  options.end_with_source = replay.has_value();
+  options.end_with_source = replay.has_value() || request.live != nullptr;
   options.recording = outputs.recording ? &*outputs.recording : nullptr;
   options.table = outputs.table ? &*outputs.table : nullptr;
   ProgressLine line;
   options.observer = [&](const World& present, const Progress& progress, bool last) {
     if (request.show_progress) show_progress(line, present, progress, script.definition().time_limit);
-    if (request.on_state && !last) request.on_state(present);
+    if (request.on_state && !last) request.on_state(present, progress);
     if (capture != nullptr) capture->observe(present, progress, last);
   };
   // The recording is on disk already, line by line; what is left to say is where to go from here.
@@ -139,8 +140,10 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
     const ssize_t ignored = write(STDERR_FILENO, next.data(), next.size());
     static_cast<void>(ignored);
   });
-  InputSource& source = replay ? static_cast<InputSource&>(*replay) : script.demo();
-  return run_session(world, script, source, options);
+  InputSource* source = &script.demo();
+  if (replay) source = &*replay;
+  if (request.live != nullptr) source = request.live;
+  return run_session(world, script, *source, options);
 }
 
 /// What a replay owes its reader besides the session.
@@ -251,6 +254,7 @@ Result<Played> play(const PlayRequest& request) {
   played.session =
       run(request, *script.value(), world.value(), outputs.value(), capture ? &*capture : nullptr);
   if (request.replay != nullptr) note_recording(*request.replay, played.session);
+  if (request.live != nullptr) played.report.live = request.live->figures();
   played.exercise = exercise;
   played.report.aborted = was_aborted(played.session, request.replay);
   if (capture) {

@@ -10,6 +10,7 @@
 #include "render/image.h"
 #include "render/scene.h"
 #include "session/exercise.h"
+#include "session/live.h"
 #include "session/recording.h"
 #include "session/report.h"
 #include "session/runner.h"
@@ -39,8 +40,10 @@ struct PlayRequest {
       output;                 ///< folder, of which an earlier session's files are replaced; empty: out/<id>
   bool overwrite = false;     ///< without `output`: replace what out/<id> holds instead of taking out/<id>-2
   bool show_progress = true;  ///< on a terminal
-  const Recording* replay = nullptr;           ///< play these inputs instead of the scenario's demo
-  std::function<void(const World&)> on_state;  ///< called at rest and after each step
+  const Recording* replay = nullptr;  ///< play these inputs instead of the scenario's demo
+  LiveSource* live = nullptr;         ///< let these hands move the instruments instead
+  /// Called at rest and after each step.
+  std::function<void(const World&, const Progress&)> on_state;
   /// Called with the scene of each golden frame, before it is drawn.
   std::function<void(const Scene&, const std::string& frame)> on_scene;
   /// Asked at rest, after each step and at the end: what a picture of that state is to be called; empty: none is drawn.

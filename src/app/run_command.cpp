@@ -1,97 +1,15 @@
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "app/commands.h"
+#include "app/conclude.h"
 #include "app/play.h"
 #include "app/replay_checks.h"
-#include "app/summary.h"
 #include "app/terminal.h"
-#include "base/log.h"
 
 namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<Failure> read_size(const std::string& text, PlayRequest& request) {
-  const auto number = [&](std::size_t from, std::size_t to, int& value) {
-    const auto [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
-    return error == std::errc() && end == text.data() + to && value >= 16 && value <= 4096;
-  };
-  const std::size_t x = text.find('x');
-  if (x != std::string::npos && number(0, x, request.width) && number(x + 1, text.size(), request.height)) {
-    return std::nullopt;
-  }
-  return fail(FailureKind::usage, fmt::format("--size {} is no picture size", text),
-              "give WIDTHxHEIGHT in pixels, 16 to 4096 each, such as 960x540");
-}
-
-std::optional<Failure> read_params(const std::vector<std::string>& pairs, PlayRequest& request) {
-  for (const std::string& pair : pairs) {
-    const std::size_t equals = pair.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      return fail(FailureKind::usage, fmt::format("--param {} has no value", pair),
-                  "write --param key=value");
-    }
-    request.params[pair.substr(0, equals)] = pair.substr(equals + 1);
-  }
-  return std::nullopt;
-}
-
-/// Times of frames after the session's end are no error, but an author should know.
-void note_missing_frames(const Played& played, const std::vector<double>& at) {
-  const double end = played.session.traces.time.back();
-  for (const GoldenFrame& frame : golden_frames(played.exercise, at)) {
-    if (frame.time <= end) continue;
-    log_info(fmt::format("There is no picture at {:g} s: the session ended at {:g} s.", frame.time, end));
-  }
-}
-
-/// What is printed of a session and what comes next where it did not end well.
-struct Conclusion {
-  std::string again;          ///< the command that plays it again
-  std::string after_mending;  ///< the command that looks for the script's other mistakes
-  std::string after_error;    ///< the command to run where the simulation could not follow
-};
-
-ExitCode conclude_failed(const Failure& failure, const Conclusion& conclusion) {
-  std::string next = conclusion.after_error;
-  if (failure.kind == FailureKind::scenario)
-    next = "mend what is named above, then: " + conclusion.after_mending;
-  if (failure.kind == FailureKind::resource) next = "mend what is named above, then: " + conclusion.again;
-  return print_failure(failure, next);
-}
-
-ExitCode conclude_interrupted(const Played& played, const Conclusion& conclusion) {
-  const std::string written = played.output.empty() ? "nothing was to be written"
-                                                    : "what was done so far is in " + played.output.string();
-  std::fprintf(stderr, "Interrupted at %.2f s; %s.\nNext: %s\n", played.session.traces.time.back(),
-               written.c_str(), conclusion.again.c_str());
-  return ExitCode::interrupted;
-}
-
-/// What a played session prints, and its exit code.
-ExitCode conclude(const Played& played, const SessionCommand& command, const Conclusion& conclusion) {
-  if (command.json) {
-    std::fputs(played.json.c_str(), stdout);
-  } else {
-    print(summary(played));
-    if (!played.output.empty()) print(fmt::format("Written to {}", played.output.string()));
-  }
-  std::fflush(stdout);
-  for (const std::string& note : played.session.notes) log_warning(note);
-  if (played.session.end == SessionEnd::steps_done && played.rendered)
-    note_missing_frames(played, command.at);
-  if (played.session.end == SessionEnd::failed) return conclude_failed(played.session.failure, conclusion);
-  if (played.session.end == SessionEnd::interrupted) return conclude_interrupted(played, conclusion);
-  if (command.fail_below && !played.report.aborted && played.report.score.total < *command.fail_below) {
-    std::fprintf(stderr, "The score, %.1f, is below %g.\nNext: %s\n", played.report.score.total,
-                 *command.fail_below, conclusion.again.c_str());
-    return ExitCode::mismatch;
-  }
-  return ExitCode::ok;
-}
 
 }  // namespace
 

@@ -84,7 +84,8 @@ std::vector<KeyTable> option_tables() {
   return {
       {"step_options",
        "Options of t:step.",
-       {number("limit", quantity::time, 0.1 * s, 3600 * s, "", "after it the step ends as timed out")}},
+       {number("limit", quantity::time, 0.1 * s, 3600 * s, "", "after it the step ends as timed out"),
+        text("hint", "", "how it is done, shown to who practises and not in an exam")}},
       {"move_options", "Options of motions.", {speed()}},
       {"rotate_options",
        "Options of a rotation.",

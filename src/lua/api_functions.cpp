@@ -100,7 +100,7 @@ std::vector<ApiFunction> session_functions() {
        "Ends the running step as done and starts the next.",
        {required(text("name", "", "short name, for metrics: letters, digits and _")),
         required(text("title", "", "one line for people")),
-        table("options", "step_options", "a limit in time")},
+        table("options", "step_options", "a limit in time, a hint")},
        ""},
       {"Steps",
        "hold",

@@ -286,8 +286,11 @@ int step(lua_State* L) {
   steps.try_step();
   Arguments arguments(L, steps, "Steps", "step");
   double limit = 0;
-  arguments.options("step_options").take("limit", limit);
-  if (arguments.finish()) steps.step(L, arguments.text("name"), arguments.text("title"), limit);
+  std::string hint;
+  TableReader options = arguments.options("step_options");
+  options.take("limit", limit);
+  options.take("hint", hint);
+  if (arguments.finish()) steps.step(L, arguments.text("name"), arguments.text("title"), limit, hint);
   return 0;
 }
 

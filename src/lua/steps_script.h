@@ -28,7 +28,8 @@ class StepsScript final : public ScriptSession {
   int wait_until(lua_State* L, int predicate) override;
   /// A step is about to be declared: what is said of it stands for what follows from it.
   void try_step() { step_tried_ = true; }
-  void step(lua_State* L, const std::string& name, const std::string& title, double limit);
+  void step(lua_State* L, const std::string& name, const std::string& title, double limit,
+            const std::string& hint);
   void note(lua_State* L, const std::string& name, const Value& value, const std::string& unit);
   // What changes who is in the world, at once. In a dry run names are known from when they may come and are not forgotten.
   int divide(lua_State* L, const std::string& organ, double share);

@@ -31,7 +31,7 @@ struct VesselTexture {
 }  // namespace
 
 struct OffscreenRenderer::Impl {
-  OsmesaContext context;
+  std::unique_ptr<GlContext> context;
   GlFunctions gl;
   Lens lens;
   int width, height;
@@ -45,7 +45,7 @@ struct OffscreenRenderer::Impl {
   const std::shared_ptr<const VesselMap> no_vessels =
       std::make_shared<VesselMap>(VesselMap{Vec3::Zero(), 1.0, {1, 1, 1}, {0}});
 
-  Impl(OsmesaContext owner, const GlFunctions& functions, int w, int h)
+  Impl(std::unique_ptr<GlContext> owner, const GlFunctions& functions, int w, int h)
       : context(std::move(owner)), gl(functions), width(w), height(h) {}
 
   std::optional<Failure> build();
@@ -61,7 +61,7 @@ struct OffscreenRenderer::Impl {
   void draw_scene(const SceneCamera& camera);
   void draw_screen(const SceneCamera& camera);
   void full_screen(GLuint program, const Target& target, std::initializer_list<GLuint> textures);
-  Image read_back();
+  Image read(GLuint framebuffer, int x, int y, int w, int h) const;
 
   GLint at(GLuint program, const char* name) const { return gl.GetUniformLocation(program, name); }
   void set(GLuint program, const char* name, const Vec2& v) const {
@@ -206,6 +206,7 @@ void OffscreenRenderer::Impl::upload(const Scene& scene) {
     return static_cast<GLsizeiptr>(array.size() * sizeof(array[0]));
   };
   gl.BindVertexArray(vertex_array);
+  gl.BindBuffer(GL_ARRAY_BUFFER, vertices);  // others may draw in this context too
   gl.BufferData(GL_ARRAY_BUFFER, bytes(arrays.vertices), arrays.vertices.data(), GL_STREAM_DRAW);
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(arrays.indices), arrays.indices.data(), GL_STREAM_DRAW);
 }
@@ -305,16 +306,16 @@ void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   full_screen(lens_program, picture, {resolved.colour, smooth_occlusion.colour, glow.colour});
 }
 
-Image OffscreenRenderer::Impl::read_back() {
-  std::vector<unsigned char> rgba(static_cast<std::size_t>(width) * height * 4);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, picture.framebuffer);
-  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  Image image{width, height, {}};
-  image.rgb.resize(static_cast<std::size_t>(width) * height * 3);
+Image OffscreenRenderer::Impl::read(GLuint framebuffer, int left, int lower, int w, int h) const {
+  std::vector<unsigned char> rgba(static_cast<std::size_t>(w) * h * 4);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  gl.ReadPixels(left, lower, w, h, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  Image image{w, h, {}};
+  image.rgb.resize(static_cast<std::size_t>(w) * h * 3);
   unsigned char* out = image.rgb.data();
-  for (int y = height - 1; y >= 0; --y)  // OpenGL's rows go up
-    for (int x = 0; x < width; ++x) {
-      const unsigned char* in = &rgba[(static_cast<std::size_t>(y) * width + x) * 4];
+  for (int y = h - 1; y >= 0; --y)  // OpenGL's rows go up
+    for (int x = 0; x < w; ++x) {
+      const unsigned char* in = &rgba[(static_cast<std::size_t>(y) * w + x) * 4];
       *out++ = in[0], *out++ = in[1], *out++ = in[2];
     }
   return image;
@@ -331,32 +332,57 @@ Result<OffscreenRenderer> OffscreenRenderer::create(int width, int height) {
                 "choose sides of 16 to 4096 pixels");
   Result<OsmesaContext> context = OsmesaContext::create();
   if (!context) return context.failure();
-  const Result<GlFunctions> gl = load_gl(&OsmesaContext::function);
+  return create(std::make_unique<OsmesaContext>(std::move(context).value()), width, height);
+}
+
+Result<OffscreenRenderer> OffscreenRenderer::create(std::unique_ptr<GlContext> context, int width,
+                                                    int height) {
+  const Result<GlFunctions> gl = load_gl(context->loader());
   if (!gl) return gl.failure();
-  auto impl = std::make_unique<Impl>(std::move(context).value(), gl.value(), width, height);
+  auto impl = std::make_unique<Impl>(std::move(context), gl.value(), width, height);
   if (auto failure = impl->build()) return *failure;
   return OffscreenRenderer(std::move(impl));
 }
 
 Result<Image> OffscreenRenderer::render(const Scene& scene) {
+  const Result<bool> drawn = draw(scene);
+  if (!drawn) return drawn.failure();
+  Image image = impl_->read(impl_->picture.framebuffer, 0, 0, impl_->width, impl_->height);
+  if (const std::string error = pending_error(impl_->gl); !error.empty())
+    return fail(FailureKind::internal, "reading a picture raised " + error);
+  return image;
+}
+
+Result<bool> OffscreenRenderer::draw(const Scene& scene) {
   if (const std::string problem = scene_problem(scene); !problem.empty())
     return fail(FailureKind::internal, "the scene cannot be drawn: " + problem);
-  if (!impl_->context.make_current()) return fail(FailureKind::internal, "the OpenGL context was refused");
+  if (!impl_->context->make_current()) return fail(FailureKind::internal, "the OpenGL context was refused");
   impl_->upload(scene);
   impl_->draw_shadow(scene.camera);
   impl_->draw_scene(scene.camera);
   impl_->draw_screen(scene.camera);
-  Image image = impl_->read_back();
   if (const std::string error = pending_error(impl_->gl); !error.empty())
     return fail(FailureKind::internal, "drawing raised " + error);
-  return image;
+  return true;
+}
+
+void OffscreenRenderer::show(int x, int y, int width, int height) const {
+  const GlFunctions& gl = impl_->gl;
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, impl_->picture.framebuffer);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  gl.BlitFramebuffer(0, 0, impl_->width, impl_->height, x, y, x + width, y + height, GL_COLOR_BUFFER_BIT,
+                     GL_LINEAR);
+}
+
+Image OffscreenRenderer::shown(int x, int y, int width, int height) const {
+  return impl_->read(0, x, y, width, height);
 }
 
 const Lens& OffscreenRenderer::lens() const { return impl_->lens; }
 
 std::string OffscreenRenderer::description() const {
   const auto text = [&](GLenum name) { return reinterpret_cast<const char*>(impl_->gl.GetString(name)); };
-  impl_->context.make_current();
+  impl_->context->make_current();
   return fmt::format("{}, {}", text(GL_RENDERER), text(GL_VERSION));
 }
 

@@ -1,9 +1,11 @@
 #pragma once
-// The laparoscope's picture of a scene, drawn in software without a window.
+// The laparoscope's picture of a scene, drawn into memory: in software without a window, or by a window's context, which
+// it is then shown in.
 
 #include <memory>
 
 #include "base/status.h"
+#include "render/gl_context.h"
 #include "render/image.h"
 #include "render/lens.h"
 #include "render/scene.h"
@@ -15,6 +17,8 @@ class OffscreenRenderer {
  public:
   /// Failures: usage (a size outside 16 to 4096), resource (no OpenGL), internal (a shader does not compile).
   static Result<OffscreenRenderer> create(int width = 960, int height = 540);
+  /// By another context, which is current and stays so while this draws; what it draws depends on its OpenGL.
+  static Result<OffscreenRenderer> create(std::unique_ptr<GlContext> context, int width, int height);
   OffscreenRenderer(OffscreenRenderer&&) noexcept;
   OffscreenRenderer& operator=(OffscreenRenderer&&) noexcept;
   ~OffscreenRenderer();
@@ -22,6 +26,13 @@ class OffscreenRenderer {
   /// Failures (internal): arrays of a mesh that do not fit each other, numbers that are not finite, OpenGL
   /// errors.
   Result<Image> render(const Scene& scene);
+
+  /// The same without reading the picture back.
+  Result<bool> draw(const Scene& scene);
+  /// Copies the picture drawn last into the context's own framebuffer, scaled; the place is in px from its lower left.
+  void show(int x, int y, int width, int height) const;
+  /// What is in that framebuffer there.
+  Image shown(int x, int y, int width, int height) const;
 
   const Lens& lens() const;
   /// What draws: "llvmpipe (LLVM 15.0.6, 128 bits), Mesa 22.3.6", for reports and golden images.

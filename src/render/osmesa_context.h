@@ -2,22 +2,23 @@
 // A software OpenGL context without a window: the one place that knows OSMesa.
 
 #include "base/status.h"
+#include "render/gl_context.h"
 
 namespace calot {
 
 /// OpenGL 4.5 core profile on llvmpipe. Before the first context the process pins the processor's feature
 /// class (AVX where this binary needs it anyway, SSE 4.1 in a build for older ones), so that one binary draws
 /// the same picture on every machine it runs on.
-class OsmesaContext {
+class OsmesaContext : public GlContext {
  public:
   /// Fails (resource) when the library gives no such context.
   static Result<OsmesaContext> create();
   OsmesaContext(OsmesaContext&& other) noexcept;
   OsmesaContext& operator=(OsmesaContext&& other) noexcept;
-  ~OsmesaContext();
+  ~OsmesaContext() override;
 
-  /// Makes this the calling thread's context; false when the library refuses.
-  bool make_current();
+  bool make_current() override;
+  GlLoader loader() const override { return &function; }
 
   using Function = void (*)();
   static Function function(const char* name);

@@ -71,13 +71,15 @@ struct ExerciseDefinition {
   std::vector<ParameterDefinition> parameters;  ///< ordered by name
 };
 
-/// Where inputs come from: a scenario's demo, a recording, later a live device.
+/// Where inputs come from: a scenario's demo, a recording, live devices (session/live.h).
 class InputSource {
  public:
   virtual ~InputSource() = default;
   /// Targets at world.report().time + dt. No value: the source has ended (the runner then holds the last
-  /// input).
+  /// input). A failure as interrupted ends the session as that.
   virtual Result<std::optional<StepInput>> next(const World& world, double dt) = 0;
+  /// What report and recording should say of it, once the session has ended.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 class ExerciseScript {

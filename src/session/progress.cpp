@@ -2,11 +2,13 @@
 
 namespace calot {
 
-void Progress::begin_step(double time, const std::string& name, const std::string& title, double limit) {
+void Progress::begin_step(double time, const std::string& name, const std::string& title, double limit,
+                          const std::string& hint) {
   end_step(time, "done");
   StepRecord step;
   step.name = name;
   step.title = title;
+  step.hint = hint;
   step.limit = limit;
   step.started = time;
   steps_.push_back(std::move(step));

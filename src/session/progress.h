@@ -12,6 +12,7 @@ namespace calot {
 
 struct StepRecord {
   std::string name, title;
+  std::string hint;                 ///< how it is done, for who practises; in no report
   double limit = 0;                 ///< s, 0: none
   double started = 0, ended = -1;   ///< s; ended < 0 while it runs
   std::string outcome = "running";  ///< running, done, timeout, aborted
@@ -39,7 +40,8 @@ class Progress {
   Progress(std::vector<StepRecord> steps, std::vector<SessionEvent> events, std::vector<Note> notes)
       : steps_(std::move(steps)), events_(std::move(events)), notes_(std::move(notes)) {}
   /// Ends the running step as done, if any, and starts the next.
-  void begin_step(double time, const std::string& name, const std::string& title, double limit);
+  void begin_step(double time, const std::string& name, const std::string& title, double limit,
+                  const std::string& hint = {});
   /// Ends the running step, if any ("done", "timeout" or "aborted"), and raises step_done or step_timeout.
   void end_step(double time, const std::string& outcome);
   /// The running step, or null.

@@ -8,6 +8,7 @@
 
 #include "base/suggest.h"
 #include "session/json_fields.h"
+#include "session/live.h"
 #include "session/runner.h"
 
 namespace calot {
@@ -28,6 +29,14 @@ Make parse_make(JsonFields& fields) {
   return make;
 }
 
+std::string parse_mode(JsonFields& fields) {
+  const std::string mode = fields.text("mode");
+  const std::vector<std::string>& known = live_mode_names();
+  if (std::find(known.begin(), known.end(), mode) == known.end())
+    fields.wrong("mode", fmt::format("is \"{}\"; {}", shortened(mode, 40), suggestion(mode, known)));
+  return mode;
+}
+
 RecordingHeader parse_header(const Json& json, std::vector<std::string>& problems) {
   JsonFields fields(json, problems);
   RecordingHeader header;
@@ -44,6 +53,7 @@ RecordingHeader parse_header(const Json& json, std::vector<std::string>& problem
   if (fields.has("params")) header.params = fields.text_map("params");
   header.rate = fields.number("rate_Hz", 1 / highest_rate, highest_rate);
   header.instruments = fields.texts("instruments");
+  if (fields.has("mode")) header.mode = parse_mode(fields);
   header.make = parse_make(fields);
   if (fields.has("state_hash")) header.state_hash = fields.hash("state_hash");
   fields.expect_no_others();
@@ -249,6 +259,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, const R
   json["params"] = header.params;
   json["rate_Hz"] = header.rate;
   json["instruments"] = header.instruments;
+  if (!header.mode.empty()) json["mode"] = header.mode;
   json["toolchain"] = header.make.toolchain;
   json["instruction_set"] = header.make.instruction_set;
   json["mathematics"] = header.make.mathematics;

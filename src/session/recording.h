@@ -3,12 +3,14 @@
 //
 //   line 1
 //   {"schema":"calot.recording/2","scenario":...,"file":...,"source_hash":...,"seed":...,"params":{...},
-//               "rate_Hz":50,"instruments":["left"],"toolchain":...,"instruction_set":...,"mathematics":...,
+//               "rate_Hz":50,"instruments":["left"],"mode":"practice","toolchain":...,"instruction_set":...,"mathematics":...,
 //               "state_hash":...}
 //   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"actions":["activate",...],
 //               "state_hash":"..."}   (rad, m; actions where an instrument acts, "none" for one that does not)
 //   then       {"measured":{"exercise_hash":...,"metrics":{...},"steps":[...],"events":[...],"noted":[...],"notes":[...]}}
 //   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before)
+//
+// The mode is there where somebody operated: practice or exam (session/live.h).
 //
 // What was measured (session/measured.h) may be missing, as in recordings made before it was written: it is found again
 // by a replay.
@@ -44,6 +46,7 @@ struct RecordingHeader {
   std::map<std::string, std::string> params;
   double rate = 0;  ///< steps a second
   std::vector<std::string> instruments;
+  std::string mode;                         ///< of a session that was operated; else empty
   Make make;                                ///< parts may be empty
   std::optional<std::uint64_t> state_hash;  ///< at rest, before the first step; without one no step has one
   bool has_actions = true;                  ///< of calot.recording/2

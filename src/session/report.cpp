@@ -38,6 +38,24 @@ OrderedJson timing_json(const SessionResult& session, double start_to_first_fram
   return json;
 }
 
+OrderedJson operated_json(const LiveFigures& live) {
+  return {{"mode", to_text(live.mode)},
+          {"pacing", live.stamped ? "stamped" : "real_time"},
+          {"ended_by", live.ended_by.empty() ? OrderedJson() : OrderedJson(live.ended_by)},
+          {"inputs", live.inputs},
+          {"refused_inputs", live.refused},
+          {"held_up_inputs", live.full},
+          {"following_steps", live.following_steps},
+          {"pauses", live.pauses},
+          {"paused_s", live.paused},
+          {"slowed_steps", live.slowed_steps},
+          {"slowed_s", live.slowed},
+          {"longest_step_s", live.longest_step},
+          {"longest_silence_s", live.longest_silence},
+          {"input_to_step_s", {{"median", live.wait_median}, {"most", live.wait_most}}},
+          {"input_to_state_s", {{"median", live.state_median}, {"most", live.state_most}}}};
+}
+
 }  // namespace
 
 OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted) {
@@ -91,6 +109,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   json["build"] = {{"toolchain", make.toolchain},
                    {"instruction_set", make.instruction_set},
                    {"mathematics", make.mathematics}};
+  if (report.live) json["operated"] = operated_json(*report.live);
   json["timing"] = timing_json(session, report.start_to_first_frame_s);
   return json_text(json) + "\n";
 }

@@ -6,6 +6,7 @@
 
 #include "session/exercise.h"
 #include "session/json.h"
+#include "session/live.h"
 #include "session/runner.h"
 #include "session/scoring.h"
 
@@ -15,6 +16,7 @@ struct SessionReport {
   Score score;
   bool aborted = false;                ///< the session was cut: its parts are kept, but it has no total
   double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn
+  std::optional<LiveFigures> live;     ///< of a session that was operated
 };
 
 /// Total, verdict and parts; `aborted` as in the report.

@@ -41,6 +41,7 @@ class Session {
     close_steps();
     note_differences();
     note_refusals();
+    for (std::string& note : source_.notes()) result_.notes.push_back(std::move(note));
     observe(true);
     result_.metrics = measure(script_.definition().scene, result_.traces, result_.progress);
     finish_recording();
@@ -94,7 +95,10 @@ class Session {
   bool read_input() {
     Result<std::optional<StepInput>> next = source_.next(world_, dt_);
     if (!next) {
-      end(next.failure());
+      if (next.failure().kind == FailureKind::interrupted)
+        end(SessionEnd::interrupted);
+      else
+        end(next.failure());
       return false;
     }
     if (next->has_value()) {

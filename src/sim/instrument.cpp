@@ -1,5 +1,8 @@
 #include "sim/instrument.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
@@ -132,6 +135,33 @@ Vec3 handle_force(const Vec3& /*trocar*/, const InstrumentPose& pose, const Inst
   const Vec3 axial = along * along.dot(tip_force);
   const double lever = tip_depth(pose, geometry) / (geometry.working_length - pose.insertion);
   return axial - (tip_force - axial) * lever;
+}
+
+std::optional<Failure> check_pose(const std::string& name, const InstrumentGeometry& g,
+                                  const InstrumentPose& pose) {
+  const bool finite = std::isfinite(pose.pitch + pose.yaw + pose.insertion + pose.roll + pose.jaw);
+  const double slack = g.has_jaws() ? 1e-9 : 0;
+  if (finite && pose.insertion >= 0 && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
+      pose.jaw <= g.jaw_opening + slack &&
+      std::max({std::abs(pose.pitch), std::abs(pose.yaw), std::abs(pose.roll)}) < 100)
+    return std::nullopt;
+  return fail(
+      FailureKind::scenario,
+      fmt::format(
+          "instrument '{}' cannot take the pose pitch {:.3g}, yaw {:.3g}, roll {:.3g}, jaw {:.3g} rad, "
+          "insertion {:.3g} m",
+          name, pose.pitch, pose.yaw, pose.roll, pose.jaw, pose.insertion),
+      fmt::format("its insertion is 0 to {:.2f} m, {}", g.max_insertion,
+                  g.has_jaws() ? fmt::format("its jaws open from 0 to {:.2f} rad", g.jaw_opening)
+                               : "it has no jaws: its jaw angle is 0"));
+}
+
+std::optional<Failure> check_action(const InstrumentDefinition& definition, InstrumentAction action) {
+  if (has_action(definition.type, action)) return std::nullopt;
+  return fail(FailureKind::scenario,
+              fmt::format("instrument '{}' cannot {}: its type is {}", definition.name, to_text(action),
+                          to_text(definition.type)),
+              "give the action to an instrument that knows it");
 }
 
 }  // namespace calot

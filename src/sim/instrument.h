@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "anatomy/definitions.h"
+#include "base/status.h"
 #include "collision/shapes.h"
 
 namespace calot {
@@ -83,5 +84,12 @@ InstrumentPose pose_reaching(const Vec3& trocar, const Vec3& tip, double roll, d
 /// Needs insertion < working_length (at which the handle is in the trocar and the lever infinite).
 Vec3 handle_force(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry,
                   const Vec3& tip_force);
+
+// Inputs come from files and devices too: what an instrument, called `name`, cannot do is refused (scenario).
+
+/// Insertion, jaw, and angles of less than 100 rad.
+std::optional<Failure> check_pose(const std::string& name, const InstrumentGeometry& geometry,
+                                  const InstrumentPose& pose);
+std::optional<Failure> check_action(const InstrumentDefinition& definition, InstrumentAction action);
 
 }  // namespace calot

@@ -353,34 +353,6 @@ namespace {
 
 constexpr double waiting_depth = 30e-3;  // m: a tool in its trocar before its first move
 
-/// Inputs come from files and devices too: no pose may be beyond what the instrument can do.
-std::optional<Failure> check_pose(const Tool& tool, const InstrumentPose& pose) {
-  const InstrumentGeometry& g = tool.geometry;
-  const bool finite = std::isfinite(pose.pitch + pose.yaw + pose.insertion + pose.roll + pose.jaw);
-  const double slack = g.has_jaws() ? 1e-9 : 0;
-  if (finite && pose.insertion >= 0 && pose.insertion <= g.max_insertion && pose.jaw >= -slack &&
-      pose.jaw <= g.jaw_opening + slack &&
-      std::max({std::abs(pose.pitch), std::abs(pose.yaw), std::abs(pose.roll)}) < 100)
-    return std::nullopt;
-  return fail(
-      FailureKind::scenario,
-      fmt::format(
-          "instrument '{}' cannot take the pose pitch {:.3g}, yaw {:.3g}, roll {:.3g}, jaw {:.3g} rad, "
-          "insertion {:.3g} m",
-          tool.definition.name, pose.pitch, pose.yaw, pose.roll, pose.jaw, pose.insertion),
-      fmt::format("its insertion is 0 to {:.2f} m, {}", g.max_insertion,
-                  g.has_jaws() ? fmt::format("its jaws open from 0 to {:.2f} rad", g.jaw_opening)
-                               : "it has no jaws: its jaw angle is 0"));
-}
-
-std::optional<Failure> check_action(const Tool& tool, InstrumentAction action) {
-  if (has_action(tool.definition.type, action)) return std::nullopt;
-  return fail(FailureKind::scenario,
-              fmt::format("instrument '{}' cannot {}: its type is {}", tool.definition.name, to_text(action),
-                          to_text(tool.definition.type)),
-              "give the action to an instrument that knows it");
-}
-
 }  // namespace
 
 namespace {
@@ -501,10 +473,12 @@ Result<StepReport> World::step(const StepInput& input) {
     return fail(FailureKind::internal, fmt::format("a step needs {} actions or none, not {}",
                                                    self.field.tools.size(), input.actions.size()));
   for (std::size_t i = 0; i < self.field.tools.size(); ++i) {
-    if (std::optional<Failure> failure = check_pose(self.field.tools[i], input.instruments[i]))
+    const Tool& tool = self.field.tools[i];
+    if (std::optional<Failure> failure =
+            check_pose(tool.definition.name, tool.geometry, input.instruments[i]))
       return *failure;
     if (input.actions.empty()) continue;
-    if (std::optional<Failure> failure = check_action(self.field.tools[i], input.actions[i])) return *failure;
+    if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;
   }
   self.report.statistics = {};
   if (self.scene.solver.skip_still && self.still == input) {

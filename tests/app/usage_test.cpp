@@ -16,14 +16,15 @@ TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
   const Outcome outcome = calot({});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
-  for (const char* command :
-       {"run", "replay", "score", "page", "import", "check", "list", "new", "golden", "bench", "doctor"}) {
+  for (const char* command : {"run", "operate", "replay", "score", "page", "import", "check", "list", "new",
+                              "golden", "bench", "doctor"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
   }
 }
 
 TEST_F(Usage, EveryCommandHasHelp) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"run"},
+                                                                                     {"operate"},
                                                                                      {"replay"},
                                                                                      {"score"},
                                                                                      {"page"},
@@ -49,6 +50,8 @@ TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
   const std::vector<std::vector<std::string>> wrong{
       {"rnu", "small.lua"},
       {"run"},
+      {"operate"},
+      {"operate", "small.lua", "--exam", "--practice"},
       {"run", "small.lua", "--frames"},
       {"run", "small.lua", "extra.lua"},
       {"run", "small.lua", "--size", "960"},

@@ -52,7 +52,7 @@ TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
   PlayRequest request;
   request.scenario = source_dir() + "/scenarios/" + GetParam().scenario + ".lua";
   request.end_frame = false;
-  request.on_state = [&](const World& world) { watch.look(world); };
+  request.on_state = [&](const World& world, const Progress&) { watch.look(world); };
   request.on_scene = [&](const Scene& scene, const std::string& frame) {
     if (GetParam().judges_pictures) scenes[frame] = scene;
   };

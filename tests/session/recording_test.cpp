@@ -105,6 +105,17 @@ TEST_F(RecordingFile, ReadsBackTheSameBits) {
   }
 }
 
+TEST_F(RecordingFile, OfAnOperatedSessionNamesItsModeAndAnUnknownOneIsRefused) {
+  RecordingHeader exam = header();
+  exam.mode = "exam";
+  ASSERT_TRUE(RecordingWriter::create(path_, exam));
+  ASSERT_TRUE(read_recording(path_)) << complaint();
+  EXPECT_EQ(read_recording(path_)->header.mode, "exam");
+  exam.mode = "exams";
+  ASSERT_TRUE(RecordingWriter::create(path_, exam));
+  EXPECT_NE(complaint().find("did you mean \"exam\"?"), std::string::npos) << complaint();
+}
+
 Measured small_measured() {
   Measured measured;
   measured.exercise_hash = 0xfeedULL << 48;

@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <future>
+#include <iterator>
+
+#include "app/commands.h"
+#include "app/conclude.h"
+#include "app/interrupt.h"
+#include "app/line_feed.h"
+#include "app/operate_view.h"
+#include "app/output_folder.h"
+#include "app/terminal.h"
+#include "base/log.h"
+#include "session/json.h"
+#include "window/operate_window.h"
+
+namespace calot {
+namespace {
+
+/// Says what is asked, each time that changes; in practice, how it is done too.
+class StepTeller {
+ public:
+  explicit StepTeller(LiveMode mode) : mode_(mode) {}
+  void look(const World& world, const Progress& progress) {
+    for (; told_ < progress.steps().size(); ++told_) {
+      const StepRecord& step = progress.steps()[told_];
+      const std::string limit = step.limit > 0 ? fmt::format(" (within {:g} s)", step.limit) : "";
+      log_info(fmt::format("{:6.1f} s  {}{}", world.report().time, step.title, limit));
+      if (mode_ == LiveMode::practice && !step.hint.empty()) log_info("          " + step.hint);
+    }
+  }
+
+ private:
+  LiveMode mode_;
+  std::size_t told_ = 0;
+};
+
+LiveOptions live_options(const OperateCommand& command) {
+  LiveOptions options;
+  options.mode = command.exam ? LiveMode::exam : LiveMode::practice;
+  options.stamped = command.stamped;
+  options.watch_silence = command.no_window || !command.input.empty();
+  options.stop = &interrupt_flag();
+  options.say = log_info;
+  return options;
+}
+
+/// What an attempt is made with.
+struct Operation {
+  PlayRequest& request;
+  const OperateCommand& command;
+  ExerciseDefinition exercise;
+  std::vector<LiveInstrument> instruments;
+  LiveMailbox mailbox;
+  LatestView latest;
+};
+
+/// One attempt after another, each with its own recording, until one is not begun again.
+Result<Played> attempts(Operation& operation) {
+  PlayRequest& request = operation.request;
+  for (int attempt = 0;; ++attempt) {
+    LiveSource source(operation.instruments, operation.mailbox, live_options(operation.command));
+    StepTeller teller(source.figures().mode);
+    ViewMaker view(operation.latest, operation.exercise.time_limit, source.figures().mode, attempt);
+    request.live = &source;
+    request.on_state = [&](const World& world, const Progress& progress) {
+      teller.look(world, progress);
+      if (!operation.command.no_window) view.look(world, progress);
+    };
+    Result<Played> played = play(request);
+    if (!played || !source.wants_restart()) return played;
+    log_info(fmt::format("Begun again; the attempt before is in {}.", played->output.string()));
+    request.overwrite = false;
+    if (operation.command.output.empty()) continue;
+    const Result<std::filesystem::path> next = fresh_folder(operation.command.output);
+    if (!next) return next.failure();
+    request.output = next.value();
+  }
+}
+
+std::string result_lines(const Result<Played>& played) {
+  if (!played) return to_text(played.failure());
+  const Score& score = played->report.score;
+  const std::string total = played->report.aborted ? "No score: the session did not come to its end."
+                                                   : fmt::format("{:.1f} of 100 points: {}", score.total,
+                                                                 score.passed ? "passed" : "not passed");
+  return fmt::format("{}\nWritten to {}", total, played->output.string());
+}
+
+Result<OperateWindow> open_window(const Operation& operation, LiveMailbox& mailbox) {
+  WindowOptions options;
+  options.title = operation.exercise.title;
+  options.mode = operation.command.exam ? LiveMode::exam : LiveMode::practice;
+  options.instruments = operation.instruments;
+  options.picture_width = operation.request.width;
+  options.picture_height = operation.request.height;
+  if (!operation.command.device.empty()) {
+    const std::string& file = operation.command.device;
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return fail(FailureKind::usage, fmt::format("cannot read {}", file), "give a device file");
+    Result<GamepadMap> map = read_gamepad_map({std::istreambuf_iterator<char>(in), {}}, file);
+    if (!map) return map.failure();
+    options.gamepad = map.value();
+  }
+  return OperateWindow::open(std::move(options), mailbox);
+}
+
+/// The window has the main thread, as window systems want it; the session another.
+Result<Played> operate_in_window(Operation& operation) {
+  Result<OperateWindow> window = open_window(operation, operation.mailbox);
+  if (!window) return window.failure();
+  log_info(fmt::format("Drawn by {}.", window->description()));
+  if (window->description().starts_with("llvmpipe"))
+    log_info(
+        "That is software: hands are asked once a picture, and a smaller one is faster: --size 480x270.");
+  std::future<Result<Played>> session = std::async(std::launch::async, [&] { return attempts(operation); });
+  std::optional<Result<Played>> played;
+  std::optional<Failure> broken;
+  for (bool open = true; open && !(played && interrupt_flag());) {
+    const Result<bool> turned = window->turn(operation.latest.take());
+    if (!turned) broken = turned.failure();
+    open = turned && turned.value();
+    if (played || session.wait_for(std::chrono::seconds(0)) != std::future_status::ready) continue;
+    played = session.get();
+    window->set_result(result_lines(*played));
+  }
+  if (!played) operation.mailbox.put(LiveCommand::abandon);  // a window offers, and a full mailbox may refuse
+  if (!played) played = session.get();
+  if (broken) return *broken;
+  return *std::move(played);
+}
+
+Result<Played> operate(PlayRequest& request, const OperateCommand& command) {
+  const Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
+  if (!script) return script.failure();
+  const ExerciseDefinition& exercise = script.value()->definition();
+  if (exercise.scene.instruments.empty())
+    return fail(FailureKind::usage, "this exercise has no instrument to move", "play it by `calot run`");
+  Operation operation{request, command, exercise, live_instruments(exercise.scene), LiveMailbox(), {}};
+  std::unique_ptr<LineFeed> feed;
+  if (command.no_window || !command.input.empty()) {
+    Result<std::unique_ptr<LineFeed>> opened =
+        LineFeed::open(command.input.empty() ? "-" : command.input, operation.instruments, operation.mailbox);
+    if (!opened) return opened.failure();
+    feed = std::move(opened).value();
+    if (feed->is_file() && !command.stamped)
+      return fail(FailureKind::usage,
+                  "a file holds all its lines at once: in real time only the last would count",
+                  "add --stamped, so that the lines' times count, or send them through a pipe or socket");
+  }
+  return command.no_window ? attempts(operation) : operate_in_window(operation);
+}
+
+/// What is plugged in, and a device file to start from.
+ExitCode print_devices(bool json) {
+  const Result<std::vector<DeviceRow>> devices = list_devices();
+  if (!devices) return print_failure(devices.failure(), "calot operate --help", json);
+  if (json) {
+    OrderedJson list = {{"schema", "calot.devices/1"}, {"devices", OrderedJson::array()}};
+    for (const DeviceRow& row : devices.value())
+      list["devices"].push_back({{"name", row.name}, {"usable", row.usable}});
+    print(json_text(list));
+    return ExitCode::ok;
+  }
+  for (const DeviceRow& row : devices.value())
+    print(
+        fmt::format("{}: {}", row.name, row.usable ? "a gamepad" : "not usable: it has no gamepad mapping"));
+  if (devices->empty()) print("No gamepad is plugged in; mouse and keyboard always do.");
+  print("\nWhat a gamepad does; a file of this for --device may leave out what is to stay so:\n\n" +
+        gamepad_map_text({}));
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+ExitCode operate_command(const OperateCommand& command) {
+  if (command.devices) return print_devices(command.json);
+  PlayRequest request;
+  request.scenario = command.scenario;
+  request.threads = command.threads;
+  request.render = false;
+  request.write = true;
+  request.output = command.output;
+  request.overwrite = command.overwrite;
+  request.show_progress = false;
+  if (command.seed) request.seed = *command.seed;
+  std::optional<Failure> wrong = read_size(command.size, request);
+  if (!wrong) wrong = read_params(command.params, request);
+  if (!wrong && command.scenario.empty())
+    wrong = fail(FailureKind::usage, "which exercise?", "name a scenario's .lua file");
+  if (wrong) return print_failure(*wrong, "calot operate --help", command.json);
+  const Result<Played> played = operate(request, command);
+  const std::string file = shell_word(command.scenario);
+  if (!played) {
+    const FailureKind kind = played.failure().kind;
+    const bool is_scenario = kind == FailureKind::scenario || kind == FailureKind::simulation;
+    return print_failure(played.failure(),
+                         is_scenario ? "calot check --build " + file : "calot operate --help", command.json);
+  }
+  return conclude(played.value(), command,
+                  {"calot operate " + file, "calot check --build " + file,
+                   "calot replay " + shell_word((played->output / "recording.jsonl").string())});
+}
+
+}  // namespace calot

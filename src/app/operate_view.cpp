@@ -1,0 +1,44 @@
+#include "app/operate_view.h"
+
+#include <fmt/format.h>
+
+namespace calot {
+namespace {
+
+void show_step(const Progress& progress, double time, LiveMode mode, LiveView& view) {
+  view.step_number = static_cast<int>(progress.steps().size());
+  const StepRecord* step = progress.running();
+  if (step == nullptr) return;
+  view.step = step->title;
+  if (mode == LiveMode::practice) view.hint = step->hint;
+  view.step_time = time - step->started;
+  view.step_limit = step->limit;
+}
+
+}  // namespace
+
+void ViewMaker::look(const World& world, const Progress& progress) {
+  if (!builder_) builder_.emplace(world);
+  builder_->follow(world);
+  if (!latest_.wanted()) return;
+  const StepReport& report = world.report();
+  auto view = std::make_shared<LiveView>();
+  view->attempt = attempt_;
+  view->scene = builder_->build(world);
+  view->time = report.time;
+  view->time_limit = time_limit_;
+  show_step(progress, report.time, mode_, *view);
+  if (!progress.events().empty()) {
+    const SessionEvent& event = progress.events().back();
+    view->last_event = fmt::format("{} {} at {:.1f} s", to_text(event.kind), event.instrument, event.time);
+  }
+  const std::vector<InstrumentDefinition>& definitions = world.scene().instruments;
+  for (std::size_t i = 0; i < definitions.size(); ++i) {
+    const InstrumentState& state = report.instruments[i];
+    view->hands.push_back(
+        {definitions[i].name, state.holds, state.tip_force.norm(), definitions[i].force_limit, state.pose});
+  }
+  latest_.put(std::move(view));
+}
+
+}  // namespace calot

@@ -1,0 +1,73 @@
+#include "window/hand_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/lens.h"
+
+namespace calot {
+namespace {
+
+constexpr double least_depth = 25e-3;  // m from the trocar: the jaws and a little more
+constexpr double most_roll = 50;       // rad
+
+}  // namespace
+
+HandMotion& HandMotion::operator+=(const HandMotion& other) {
+  in_view += other.in_view;
+  roll += other.roll;
+  jaw += other.jaw;
+  activate = activate || other.activate;
+  next_hand = next_hand || other.next_hand;
+  return *this;
+}
+
+HandControl::HandControl(std::vector<LiveInstrument> instruments, const std::vector<InstrumentPose>& poses)
+    : instruments_(std::move(instruments)), poses_(poses) {}
+
+Vec3 HandControl::tip(int instrument) const {
+  const auto i = static_cast<std::size_t>(instrument);
+  InstrumentPose closed = poses_[i];
+  closed.jaw = 0;
+  return tip_position(instruments_[i].trocar, closed, instruments_[i].geometry);
+}
+
+void HandControl::move(const HandMotion& motion, const SceneCamera& camera) {
+  if (motion.next_hand) selected_ = (selected_ + 1) % static_cast<int>(instruments_.size());
+  const auto i = static_cast<std::size_t>(selected_);
+  const LiveInstrument& instrument = instruments_[i];
+  InstrumentPose& pose = poses_[i];
+  if (motion.in_view != Vec3::Zero()) {
+    const Vec3 wanted = tip(selected_) + camera_axes(camera).transpose() * motion.in_view;
+    const double depth = (wanted - instrument.trocar).norm();
+    out_of_reach_ = depth < least_depth || depth > instrument.geometry.max_insertion;
+    if (!out_of_reach_) {
+      const double jaw = pose.jaw;
+      pose = pose_reaching(instrument.trocar, wanted, pose.roll, 0, instrument.geometry);
+      pose.jaw = jaw;
+    }
+  }
+  pose.jaw = std::clamp(pose.jaw + motion.jaw, 0.0, instrument.geometry.jaw_opening);
+  pose.roll = std::clamp(pose.roll + motion.roll, -most_roll, most_roll);
+  activate_ = motion.activate && has_action(instrument.definition.type, InstrumentAction::activate);
+}
+
+LiveInput HandControl::input() const {
+  LiveInput input = held(selected_);
+  if (activate_) input.action = InstrumentAction::activate;
+  return input;
+}
+
+LiveInput HandControl::held(int instrument) const {
+  LiveInput input;
+  input.instrument = instrument;
+  input.pose = poses_[static_cast<std::size_t>(instrument)];
+  return input;
+}
+
+double metres_a_pixel(const SceneCamera& camera, const Vec3& place, double field) {
+  const double depth = std::max(5e-3, camera.direction.normalized().dot(place - camera.position));
+  return 2 * depth * std::tan(0.5 * camera.field_of_view) / field;
+}
+
+}  // namespace calot

@@ -1,0 +1,47 @@
+#pragma once
+// How a mouse, a keyboard or a gamepad moves instruments: one hand at a time, in the plane of the view.
+
+#include <vector>
+
+#include "render/scene.h"
+#include "session/live.h"
+
+namespace calot {
+
+/// What a device asks of the hand that is selected, since the last time it was asked.
+struct HandMotion {
+  Vec3 in_view = Vec3::Zero();  ///< m: right, up and into the picture
+  double roll = 0, jaw = 0;     ///< rad: more
+  bool activate = false;        ///< the pedal is down
+  bool next_hand = false;
+  HandMotion& operator+=(const HandMotion& other);
+};
+
+class HandControl {
+ public:
+  /// `poses` are where the instruments are, one each.
+  HandControl(std::vector<LiveInstrument> instruments, const std::vector<InstrumentPose>& poses);
+
+  int selected() const { return selected_; }
+  /// Moves the selected hand; the others stay where they were left. Jaws stop where they are closed or fully open. Where
+  /// the tip would be out of reach it stays, and `out_of_reach` says so.
+  void move(const HandMotion& motion, const SceneCamera& camera);
+  bool out_of_reach() const { return out_of_reach_; }
+  /// Of the closed jaws, m.
+  Vec3 tip(int instrument) const;
+  /// For the mailbox, of the selected hand.
+  LiveInput input() const;
+  /// The same of one that was let go by selecting another: it no longer acts.
+  LiveInput held(int instrument) const;
+
+ private:
+  std::vector<LiveInstrument> instruments_;
+  std::vector<InstrumentPose> poses_;
+  int selected_ = 0;
+  bool out_of_reach_ = false, activate_ = false;
+};
+
+/// m at the depth of `place` that a pixel of the picture covers at its middle; `field` is the round field's diameter, px.
+double metres_a_pixel(const SceneCamera& camera, const Vec3& place, double field);
+
+}  // namespace calot

@@ -1,0 +1,412 @@
+#include "window/operate_window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "render/offscreen.h"
+#include "window/draw_lists.h"
+#include "window/overlay.h"
+
+namespace calot {
+namespace {
+
+constexpr double wheel_notch = 2e-3;                                           // m
+constexpr double finely = 0.25;                                                // with Shift
+constexpr double jaw_speed = 120 * units::deg, roll_speed = 120 * units::deg;  // rad/s
+constexpr double longest_turn = 0.1;  // s that held keys count for at once
+constexpr double still_after = 1;     // s without a new state: time stands still
+constexpr double idle_wait = 5e-3;    // s
+
+std::string last_error() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "no reason is given";
+}
+
+Failure no_window(const std::string& what) {
+  return fail(
+      FailureKind::resource, fmt::format("{}: {}", what, last_error()),
+      "on a machine with a screen set DISPLAY; else move the instruments by a program, with --no-window and "
+      "--input, or call `xvfb-run calot operate ...` to try the window without a screen");
+}
+
+/// GLFW as long as somebody needs it.
+class Glfw {
+ public:
+  static Result<std::shared_ptr<Glfw>> start() {
+    if (glfwInit() != GLFW_TRUE) return no_window("no window can be opened");
+    return std::shared_ptr<Glfw>(new Glfw);
+  }
+  Glfw(const Glfw&) = delete;
+  Glfw& operator=(const Glfw&) = delete;
+  ~Glfw() { glfwTerminate(); }
+
+ private:
+  Glfw() = default;
+};
+
+class WindowContext : public GlContext {
+ public:
+  explicit WindowContext(GLFWwindow* window) : window_(window) {}
+  bool make_current() override {
+    if (glfwGetCurrentContext() != window_) glfwMakeContextCurrent(window_);
+    return glfwGetCurrentContext() == window_;
+  }
+  GlLoader loader() const override { return &glfwGetProcAddress; }
+
+ private:
+  GLFWwindow* window_;
+};
+
+/// A window whose OpenGL is current, or none.
+GLFWwindow* make_window(int width, int height, const std::string& name) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  GLFWwindow* window = glfwCreateWindow(width, height, name.c_str(), nullptr, nullptr);
+  if (window != nullptr) glfwMakeContextCurrent(window);
+  return window;
+}
+
+/// Where the picture is in the window, px from the upper left.
+struct PicturePlace {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+PicturePlace place_picture(int window_width, int window_height, double ratio, const WindowOptions& options) {
+  const int panel = std::min(static_cast<int>(ratio * panel_width), window_width / 2);
+  const double scale = std::min(static_cast<double>(window_width - panel) / options.picture_width,
+                                static_cast<double>(window_height) / options.picture_height);
+  PicturePlace place;
+  place.width = std::max(1, static_cast<int>(scale * options.picture_width));
+  place.height = std::max(1, static_cast<int>(scale * options.picture_height));
+  place.x = panel + (window_width - panel - place.width) / 2;
+  place.y = (window_height - place.height) / 2;
+  return place;
+}
+
+GamepadState read_gamepad() {
+  GamepadState state;
+  for (int pad = GLFW_JOYSTICK_1; pad <= GLFW_JOYSTICK_LAST; ++pad) {
+    GLFWgamepadstate raw;
+    if (glfwJoystickIsGamepad(pad) != GLFW_TRUE || glfwGetGamepadState(pad, &raw) != GLFW_TRUE) continue;
+    std::copy(std::begin(raw.axes), std::end(raw.axes), state.axes.begin());
+    for (std::size_t i = 0; i < state.buttons.size(); ++i) state.buttons[i] = raw.buttons[i] == GLFW_PRESS;
+    break;  // the first there is
+  }
+  return state;
+}
+
+}  // namespace
+
+struct OperateWindow::Impl {
+  std::shared_ptr<Glfw> library;
+  WindowOptions options;
+  LiveMailbox& mailbox;
+  GLFWwindow* window = nullptr;
+  ImGuiContext* overlay_context = nullptr;
+  std::optional<OffscreenRenderer> renderer;
+  std::optional<DrawLists> lists;
+  GlFunctions gl;
+  std::shared_ptr<const LiveView> view;
+  std::optional<HandControl> hands;
+  OverlayState state;
+  WindowEvents events;
+  GamepadState pad;
+  std::optional<Vec2> pointer;
+  double last_turn = 0, last_picture = 0;
+  bool captured = false, was_acting = false;
+
+  Impl(std::shared_ptr<Glfw> owner, WindowOptions wanted, LiveMailbox& box)
+      : library(std::move(owner)), options(std::move(wanted)), mailbox(box) {
+    state.title = options.title;
+    state.mode = options.mode;
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
+
+  std::optional<Failure> build();
+  void listen();
+  void set_captured(bool wanted);
+  void send(const LiveEvent& event) { mailbox.offer(event); }
+  void open_menu();
+  void go_on();
+  void choose(MenuChoice choice);
+  HandMotion device_motion(double dt);
+  void move_hands(double dt);
+  bool key(int code) const { return glfwGetKey(window, code) == GLFW_PRESS; }
+  bool button(int code) const { return captured && glfwGetMouseButton(window, code) == GLFW_PRESS; }
+  double pixel_ratio() const;
+  PicturePlace place() const;
+  void take(std::shared_ptr<const LiveView> newest);
+  void draw_frame();
+};
+
+OperateWindow::Impl::~Impl() {
+  if (window != nullptr) glfwMakeContextCurrent(window);
+  if (overlay_context != nullptr) {
+    ImGui::SetCurrentContext(overlay_context);
+    if (ImGui::GetIO().BackendPlatformUserData != nullptr) ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext(overlay_context);
+  }
+  renderer.reset();
+  if (window != nullptr) glfwDestroyWindow(window);
+}
+
+std::optional<Failure> OperateWindow::Impl::build() {
+  window = make_window(options.width, options.height, "Calot: " + options.title);
+  if (window == nullptr) return no_window("no window with OpenGL 3.3 can be opened");
+  auto context = std::make_unique<WindowContext>(window);
+  if (!context->make_current()) return no_window("the window's OpenGL cannot be used");
+  glfwSwapInterval(1);
+  const Result<GlFunctions> functions = load_gl(context->loader());
+  if (!functions) return functions.failure();
+  gl = functions.value();
+  Result<OffscreenRenderer> created =
+      OffscreenRenderer::create(std::move(context), options.picture_width, options.picture_height);
+  if (!created) return created.failure();
+  renderer = std::move(created).value();
+  listen();  // before ImGui, which passes on what it hears
+  overlay_context = ImGui::CreateContext();
+  ImGui::SetCurrentContext(overlay_context);
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  Result<DrawLists> made = DrawLists::create(gl);
+  if (!made) return made.failure();
+  lists = std::move(made).value();
+  last_turn = last_picture = glfwGetTime();
+  return std::nullopt;
+}
+
+void OperateWindow::Impl::listen() {
+  glfwSetWindowUserPointer(window, this);
+  static const auto self = [](GLFWwindow* from) {
+    return static_cast<Impl*>(glfwGetWindowUserPointer(from));
+  };
+  glfwSetCursorPosCallback(window, [](GLFWwindow* from, double x, double y) {
+    Impl& impl = *self(from);
+    if (impl.pointer && impl.captured) {
+      impl.events.right += x - impl.pointer->x();
+      impl.events.down += y - impl.pointer->y();
+    }
+    impl.pointer = Vec2(x, y);
+  });
+  glfwSetScrollCallback(
+      window, [](GLFWwindow* from, double, double notches) { self(from)->events.wheel += notches; });
+  glfwSetKeyCallback(window, [](GLFWwindow* from, int code, int, int action, int) {
+    if (action != GLFW_PRESS) return;
+    if (code == GLFW_KEY_TAB) self(from)->events.next_hand = true;
+    if (code == GLFW_KEY_ESCAPE) self(from)->events.menu = true;
+  });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int, int action, int) {
+    if (action == GLFW_PRESS) self(from)->events.click = true;
+  });
+  // Who looks elsewhere does not operate.
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* from, int focused) {
+    if (focused == GLFW_FALSE) self(from)->events.menu = true;
+  });
+}
+
+/// Captured, the pointer is hidden and its way has no end.
+void OperateWindow::Impl::set_captured(bool wanted) {
+  captured = wanted;
+  pointer.reset();
+  glfwSetInputMode(window, GLFW_CURSOR, wanted ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+  ImGuiIO& io = ImGui::GetIO();
+  io.ConfigFlags =
+      wanted ? io.ConfigFlags | ImGuiConfigFlags_NoMouse : io.ConfigFlags & ~ImGuiConfigFlags_NoMouse;
+}
+
+void OperateWindow::Impl::open_menu() {
+  if (state.menu) return;
+  state.menu = true;
+  set_captured(false);
+  if (options.mode == LiveMode::practice) send(LiveCommand::pause);
+}
+
+void OperateWindow::Impl::go_on() {
+  if (!hands || !state.result.empty()) return;
+  if (state.menu && state.started && options.mode == LiveMode::practice) send(LiveCommand::resume);
+  state.menu = false;
+  set_captured(true);
+  if (state.started) return;
+  state.started = true;
+  send(hands->input());  // the clock begins with the first input
+}
+
+void OperateWindow::Impl::choose(MenuChoice choice) {
+  if (choice == MenuChoice::go_on) go_on();
+  if (choice == MenuChoice::restart) send(LiveCommand::restart);
+  if (choice == MenuChoice::abandon) send(LiveCommand::abandon);
+  if (choice == MenuChoice::close) glfwSetWindowShouldClose(window, GLFW_TRUE);
+}
+
+HandMotion OperateWindow::Impl::device_motion(double dt) {
+  const double fine = key(GLFW_KEY_LEFT_SHIFT) || key(GLFW_KEY_RIGHT_SHIFT) ? finely : 1.0;
+  HandMotion motion;
+  const double field = renderer->lens().field_diameter * place().height;
+  const double pixel =
+      fine * pixel_ratio() * metres_a_pixel(view->scene.camera, hands->tip(hands->selected()), field);
+  motion.in_view = Vec3(pixel * events.right, -pixel * events.down, fine * wheel_notch * events.wheel);
+  const auto held = [&](bool more, bool less) { return fine * dt * ((more ? 1 : 0) - (less ? 1 : 0)); };
+  motion.roll = roll_speed * held(key(GLFW_KEY_E), key(GLFW_KEY_Q));
+  motion.jaw = jaw_speed * held(button(GLFW_MOUSE_BUTTON_RIGHT), button(GLFW_MOUSE_BUTTON_LEFT));
+  motion.activate = key(GLFW_KEY_SPACE);
+  motion.next_hand = events.next_hand;
+  const GamepadState now = read_gamepad();
+  motion += gamepad_motion(options.gamepad, now, pad, dt);
+  const auto menu_button = static_cast<std::size_t>(options.gamepad.menu);
+  if (options.gamepad.menu >= 0 && now.buttons[menu_button] && !pad.buttons[menu_button]) events.menu = true;
+  pad = now;
+  return motion;
+}
+
+/// Sends what has changed; a pedal that was let go is a change.
+void OperateWindow::Impl::move_hands(double dt) {
+  const HandMotion motion = device_motion(dt);
+  if (motion.next_hand) send(hands->held(hands->selected()));
+  hands->move(motion, view->scene.camera);
+  const bool moved = motion.in_view != Vec3::Zero() || motion.roll != 0 || motion.jaw != 0;
+  if (moved || motion.activate || was_acting || motion.next_hand) send(hands->input());
+  was_acting = motion.activate;
+}
+
+/// What is drawn now. At the begin of an attempt the hands are where its instruments are.
+void OperateWindow::Impl::take(std::shared_ptr<const LiveView> newest) {
+  const bool begins = !view || view->attempt != newest->attempt;
+  view = std::move(newest);
+  if (!begins) return;
+  std::vector<InstrumentPose> poses;
+  for (const HandView& hand : view->hands) poses.push_back(hand.pose);
+  hands.emplace(options.instruments, poses);
+  state.started = false;
+  state.menu = true;
+  set_captured(false);
+}
+
+/// Pixels that the pointer's unit covers: more than one on dense screens.
+double OperateWindow::Impl::pixel_ratio() const {
+  int pixels = 0, units = 0, ignored = 0;
+  glfwGetFramebufferSize(window, &pixels, &ignored);
+  glfwGetWindowSize(window, &units, &ignored);
+  return units > 0 && pixels > 0 ? static_cast<double>(pixels) / units : 1;
+}
+
+PicturePlace OperateWindow::Impl::place() const {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window, &width, &height);
+  return place_picture(width, height, pixel_ratio(), options);
+}
+
+void OperateWindow::Impl::draw_frame() {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window, &width, &height);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+  gl.ClearColor(0, 0, 0, 1);
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  const PicturePlace where = place();
+  if (view) renderer->show(where.x, height - where.y - where.height, where.width, where.height);
+  ImGui::SetCurrentContext(overlay_context);
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  static const LiveView nothing;
+  if (hands) state.selected = hands->selected(), state.out_of_reach = hands->out_of_reach();
+  const bool goes_on = state.started && (!state.menu || options.mode == LiveMode::exam);
+  // A program may move the instruments too, whatever is done here.
+  state.runs = goes_on || (view && view->time > 0 && glfwGetTime() - last_picture < still_after);
+  const std::optional<MenuChoice> chosen =
+      lay_out(state, view ? *view : nothing, ImGui::GetIO().DisplaySize.y);
+  ImGui::Render();
+  lists->draw(*ImGui::GetDrawData());
+  if (chosen) choose(*chosen);
+}
+
+OperateWindow::OperateWindow(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+OperateWindow::OperateWindow(OperateWindow&&) noexcept = default;
+OperateWindow& OperateWindow::operator=(OperateWindow&&) noexcept = default;
+OperateWindow::~OperateWindow() = default;
+
+Result<OperateWindow> OperateWindow::open(WindowOptions options, LiveMailbox& mailbox) {
+  Result<std::shared_ptr<Glfw>> library = Glfw::start();
+  if (!library) return library.failure();
+  auto impl = std::make_unique<Impl>(std::move(library).value(), std::move(options), mailbox);
+  if (std::optional<Failure> failure = impl->build()) return *failure;
+  return OperateWindow(std::move(impl));
+}
+
+Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
+  Impl& self = *impl_;
+  glfwMakeContextCurrent(self.window);
+  glfwPollEvents();
+  if (glfwWindowShouldClose(self.window) == GLFW_TRUE) {
+    self.send(LiveCommand::abandon);
+    return false;
+  }
+  const double now = glfwGetTime();
+  const double dt = std::min(now - self.last_turn, longest_turn);
+  self.last_turn = now;
+  if (newest) {
+    const Result<bool> drawn = self.renderer->draw(newest->scene);
+    if (!drawn) return drawn.failure();
+    self.state.pictures_a_second +=
+        0.1 * (1 / std::max(1e-3, now - self.last_picture) - self.state.pictures_a_second);
+    self.last_picture = now;
+    self.take(std::move(newest));
+  } else {
+    glfwWaitEventsTimeout(idle_wait);
+  }
+  const bool clicks_on = self.events.click && self.state.menu && !ImGui::GetIO().WantCaptureMouse;
+  const bool operates = self.hands && self.state.started && !self.state.menu && self.state.result.empty();
+  if (operates) self.move_hands(dt);
+  if (operates && self.events.menu) self.open_menu();
+  self.events = {};
+  if (clicks_on) self.go_on();
+  self.draw_frame();
+  glfwSwapBuffers(self.window);
+  return true;
+}
+
+void OperateWindow::set_result(const std::string& lines) {
+  impl_->set_captured(false);
+  impl_->state.menu = true;
+  impl_->state.result = lines;
+}
+
+WindowEvents& OperateWindow::events() { return impl_->events; }
+void OperateWindow::go_on() { impl_->go_on(); }
+void OperateWindow::close() { glfwSetWindowShouldClose(impl_->window, GLFW_TRUE); }
+
+Image OperateWindow::shown() const {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(impl_->window, &width, &height);
+  impl_->draw_frame();  // what a swap left in the framebuffer is not defined
+  const PicturePlace where = impl_->place();
+  return impl_->renderer->shown(where.x, height - where.y - where.height, where.width, where.height);
+}
+
+std::string OperateWindow::description() const { return impl_->renderer->description(); }
+
+Result<std::vector<DeviceRow>> list_devices() {
+  const Result<std::shared_ptr<Glfw>> library = Glfw::start();
+  if (!library) return library.failure();
+  std::vector<DeviceRow> rows;
+  for (int pad = GLFW_JOYSTICK_1; pad <= GLFW_JOYSTICK_LAST; ++pad) {
+    if (glfwJoystickPresent(pad) != GLFW_TRUE) continue;
+    const bool usable = glfwJoystickIsGamepad(pad) == GLFW_TRUE;
+    const char* name = usable ? glfwGetGamepadName(pad) : glfwGetJoystickName(pad);
+    rows.push_back({name != nullptr ? name : "without a name", usable});
+  }
+  return rows;
+}
+
+}  // namespace calot

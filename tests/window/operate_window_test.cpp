@@ -1,0 +1,182 @@
+// A window on a screen that only memory has.
+
+#include "window/operate_window.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <link.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "render/image_compare.h"
+#include "render/offscreen.h"
+#include "support/mock_organ.h"
+
+namespace calot {
+namespace {
+
+/// An X server without a screen, for as long as this lives.
+class Screen {
+ public:
+  Screen() {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return;
+    server_ = fork();
+    if (server_ == 0) {
+      const std::string number = std::to_string(ends[1]);
+      close(ends[0]);
+      dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
+      execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "800x600x24", "-nolisten", "tcp",
+             static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    close(ends[1]);
+    // Its number, once it answers. It writes for ever to a pipe that is closed before the line's end.
+    std::string number;
+    pollfd answer{ends[0], POLLIN, 0};
+    for (char c = 0; poll(&answer, 1, 20'000) == 1 && read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
+    close(ends[0]);
+    is_there_ = !number.empty();
+    if (is_there_) setenv("DISPLAY", (":" + number).c_str(), 1);
+  }
+  ~Screen() {
+    unsetenv("DISPLAY");
+    if (server_ > 0) {
+      kill(server_, SIGTERM);
+      waitpid(server_, nullptr, 0);
+    }
+  }
+  bool is_there() const { return is_there_; }
+
+ private:
+  pid_t server_ = -1;
+  bool is_there_ = false;
+};
+
+/// What drivers keep for a process's life is lost, to who looks for leaks, where their libraries go before it ends.
+void keep_libraries() {
+  std::vector<std::string> names;
+  const auto note = [](dl_phdr_info* info, std::size_t, void* list) {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(info->dlpi_name);
+    return 0;
+  };
+  dl_iterate_phdr(note, &names);
+  for (const std::string& name : names)
+    if (!name.empty()) dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
+}
+
+std::shared_ptr<LiveView> small_view() {
+  Pose frame = Pose::Identity();
+  frame.translation() = Vec3(0, 90e-3, -40e-3);
+  auto view = std::make_shared<LiveView>();
+  view->scene.meshes.push_back(test::mock_pear(frame, Vec3(0, -12e-3, 70e-3), Vec3(4e-3, -8e-3, 10e-3)));
+  view->step = "Do it";
+  view->time_limit = 60;
+  view->hands.push_back({"left", "", 1.5, 5, {0.4, 0.2, 0.12, 0, 0.5}});
+  return view;
+}
+
+WindowOptions small_window() {
+  SceneDefinition scene;
+  InstrumentDefinition instrument;
+  instrument.name = "left";
+  instrument.port = "right_subcostal";
+  scene.instruments.push_back(instrument);
+  WindowOptions options;
+  options.title = "A small exercise";
+  // The panel takes 290 px, the picture what is left: it is shown pixel by pixel.
+  options.width = 290 + 320;
+  options.height = 180;
+  options.picture_width = 320;
+  options.picture_height = 180;
+  options.instruments = live_instruments(scene);
+  return options;
+}
+
+std::vector<LiveEvent> taken(LiveMailbox& mailbox) {
+  std::vector<LiveEvent> events;
+  while (std::optional<LiveMailbox::Sent> sent = mailbox.take()) events.push_back(std::move(sent->event));
+  return events;
+}
+
+TEST(Window, WithoutADisplayItSaysWhatToDo) {
+  unsetenv("DISPLAY");
+  LiveMailbox mailbox;
+  const Result<OperateWindow> window = OperateWindow::open(small_window(), mailbox);
+  ASSERT_FALSE(window);
+  EXPECT_EQ(window.failure().kind, FailureKind::resource);
+  for (const char* said : {"DISPLAY", "--no-window", "xvfb-run"})
+    EXPECT_THAT(to_text(window.failure()), testing::HasSubstr(said));
+}
+
+/// One window for all: opening one takes most of the time.
+TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhenItIsClosed) {
+  const Screen screen;
+  if (!screen.is_there()) GTEST_SKIP() << "there is no Xvfb (package xvfb)";
+  const auto view = small_view();
+  Result<OffscreenRenderer> offscreen = OffscreenRenderer::create(320, 180);
+  ASSERT_TRUE(offscreen);
+  const Image expected = offscreen->render(view->scene).value();
+
+  LiveMailbox mailbox;
+  Result<OperateWindow> opened = OperateWindow::open(small_window(), mailbox);
+  ASSERT_TRUE(opened) << to_text(opened.failure());
+  keep_libraries();
+  OperateWindow& window = opened.value();
+  ASSERT_TRUE(window.turn(view).value());
+  // The same shaders by another driver of the same library: single pixels on edges may round otherwise.
+  CompareTolerance rounding;
+  rounding.small_delta = rounding.large_delta = 2;
+  rounding.differing_pixels = 0;
+  const Result<ImageDifference> compared = compare(expected, window.shown(), rounding);
+  ASSERT_TRUE(compared) << to_text(compared.failure());
+  EXPECT_TRUE(compared->within) << compared->differing_pixels << " pixels by up to " << compared->max_delta;
+  ASSERT_TRUE(window.turn(nullptr).value());
+  EXPECT_EQ(window.shown().rgb, window.shown().rgb);
+
+  window.events().right = 30;
+  ASSERT_TRUE(window.turn(nullptr).value());
+  EXPECT_THAT(taken(mailbox), testing::IsEmpty()) << "nobody has begun";
+  window.go_on();
+  ASSERT_TRUE(window.turn(view).value());
+  std::vector<LiveEvent> events = taken(mailbox);
+  ASSERT_EQ(events.size(), 1u);
+  const LiveInput start = std::get<LiveInput>(events[0]);
+  EXPECT_EQ(start.pose, view->hands[0].pose);
+
+  window.events().right = 30;
+  ASSERT_TRUE(window.turn(nullptr).value());
+  events = taken(mailbox);
+  ASSERT_EQ(events.size(), 1u);
+  const LiveInstrument left = small_window().instruments[0];
+  const auto closed_tip = [&](InstrumentPose pose) {
+    pose.jaw = 0;
+    return tip_position(left.trocar, pose, left.geometry);
+  };
+  const Vec3 moved = closed_tip(std::get<LiveInput>(events[0]).pose) - closed_tip(start.pose);
+  EXPECT_GT(moved.x(), 1e-3) << "to the right, which is +x for this camera";
+  EXPECT_LT(moved.tail<2>().norm(), 1e-9);
+
+  window.events().menu = true;
+  ASSERT_TRUE(window.turn(nullptr).value());
+  window.go_on();
+  events = taken(mailbox);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(std::get<LiveCommand>(events[0]), LiveCommand::pause);
+  EXPECT_EQ(std::get<LiveCommand>(events[1]), LiveCommand::resume);
+
+  window.close();
+  EXPECT_FALSE(window.turn(nullptr).value());
+  events = taken(mailbox);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(std::get<LiveCommand>(events[0]), LiveCommand::abandon);
+}
+
+}  // namespace
+}  // namespace calot
