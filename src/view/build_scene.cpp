@@ -12,7 +12,8 @@ namespace {
 /// In the order of OrganShape.
 Material material_of(const OrganShape& shape) {
   constexpr std::array materials = {Material::gallbladder, Material::membrane, Material::gallbladder,
-                                    Material::membrane,    Material::steel,    Material::liver};
+                                    Material::gallbladder, Material::membrane, Material::steel,
+                                    Material::liver};
   return materials[shape.index()];
 }
 
