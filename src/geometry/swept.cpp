@@ -1,5 +1,6 @@
 #include "geometry/swept.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,16 +17,21 @@ T hermite(const T& a, const T& slope_a, const T& b, const T& slope_b, double wid
   return T(s * s * (1 + 2 * t) * a + t * t * (1 + 2 * s) * b + width * s * t * (s * slope_a - t * slope_b));
 }
 
-/// Slopes of the parabola through a station and its neighbours, over the chords' lengths.
+/// Slopes of the natural cubic spline over the chords' lengths: its curvature is continuous.
 std::vector<Vec3> axis_slopes(const std::vector<SweptStation>& stations, const std::vector<double>& chords) {
-  const std::size_t last = chords.size();
-  const auto slope = [&](std::size_t k) { return Vec3((stations[k + 1].at - stations[k].at) / chords[k]); };
-  std::vector<Vec3> out(last + 1, slope(0));
-  if (last == 1) return out;
-  for (std::size_t k = 1; k < last; ++k)
-    out[k] = (chords[k] * slope(k - 1) + chords[k - 1] * slope(k)) / (chords[k - 1] + chords[k]);
-  out[0] = 2 * slope(0) - out[1];
-  out[last] = 2 * slope(last - 1) - out[last - 1];
+  const auto last = static_cast<Eigen::Index>(chords.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(last + 1, last + 1);
+  Eigen::MatrixX3d wanted = Eigen::MatrixX3d::Zero(last + 1, 3);
+  for (Eigen::Index k = 0; k < last; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const double share = 1 / chords[at];
+    matrix.block<2, 2>(k, k) += share * Eigen::Matrix2d{{2, 1}, {1, 2}};
+    wanted.middleRows<2>(k).rowwise() +=
+        3 * share * share * (stations[at + 1].at - stations[at].at).transpose();
+  }
+  const Eigen::MatrixX3d slopes = matrix.partialPivLu().solve(wanted);
+  std::vector<Vec3> out;
+  for (Eigen::Index k = 0; k <= last; ++k) out.push_back(slopes.row(k).transpose());
   return out;
 }
 

@@ -1,0 +1,232 @@
+-- The operating field of a cholecystectomy as data: what scene.anatomy takes, from a few lengths.
+--
+--   local anatomy = require "anatomy"
+--   scene = function() return { anatomy = anatomy.standard { cystic_duct_length = 12 * mm }, ... } end
+--
+-- Defaults and ranges of anatomy.standard's parameters (published: mean or usual value, range in brackets):
+--   gallbladder_length 80 mm (70 to 100), gallbladder_width 33 mm (30 to 40): doi 10.1155/2016/7201858
+--   fill_pressure 12 mmHg (10 to 15): common knowledge, uncalibrated
+--   cystic_duct_length 20 mm (20.6 +- 11.4, 6 to 55), cystic_duct_diameter 3.6 mm (3.2, 2 to 6):
+--     doi 10.4103/NJCA.NJCA_69_21
+--   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
+--   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
+--   union 0.42, the share of the common duct at which the cystic duct enters; node_diameter 6 mm; bed_stiffness;
+--     all strengths of tissue; where things lie beside each other: uncalibrated, no source gives them
+-- The gallbladder's pouch, its neck, and the course of duct and arteries are drawn by eye: uncalibrated.
+
+local calot = require "calot"
+local mm, kPa, mmHg = calot.units.mm, calot.units.kPa, calot.units.mmHg
+
+local anatomy = {}
+
+-- ---- points
+
+local function add(a, b, share)
+  share = share or 1
+  return { a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3] }
+end
+local function minus(a, b) return add(a, b, -1) end
+local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
+local function times(a, share) return { a[1] * share, a[2] * share, a[3] * share } end
+local function length(a) return math.sqrt(dot(a, a)) end
+local function unit(a) return times(a, 1 / length(a)) end
+local function cross(a, b)
+  return { a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1] }
+end
+
+--- A place at a share of the way along a line of points: anatomy.along(duct.shape.points, 0.3).
+function anatomy.along(points, share)
+  if share < 0 or share > 1 then error("a share of a way is 0 to 1, not " .. share, 2) end
+  local whole = 0
+  for k = 2, #points do whole = whole + length(minus(points[k], points[k - 1])) end
+  local left = share * whole
+  for k = 2, #points do
+    local way = minus(points[k], points[k - 1])
+    if left <= length(way) or k == #points then return add(points[k - 1], way, left / length(way)) end
+    left = left - length(way)
+  end
+end
+
+--- A line from one place to another that bows aside until it is as long as asked; straight where that is too short.
+local function bowed(from, to, long, aside)
+  local way = minus(to, from)
+  local straight = length(way)
+  -- Of a flat parabola: long = straight * (1 + 8/3 (rise / straight)^2).
+  local rise = straight * math.sqrt(math.max(0, 3 / 8 * (long / straight - 1)))
+  local out = {}
+  for k = 0, 4 do
+    local t = k / 4
+    out[#out + 1] = add(add(from, way, t), aside, 4 * t * (1 - t) * rise)
+  end
+  return out
+end
+
+-- ---- the frame: from the gallbladder's bed, { towards the liver, to the patient's right and back, towards the fundus }
+
+local bed_neck, bed_fundus, liver_side = { -50 * mm, 130 * mm, -110 * mm }, { -80 * mm, 100 * mm, -60 * mm }, { 0, 0.8, 0.6 }
+local towards_fundus = unit(minus(bed_fundus, bed_neck))
+local towards_liver = unit(minus(liver_side, times(towards_fundus, dot(liver_side, towards_fundus))))
+local aside = cross(towards_fundus, towards_liver)
+
+--- A place in the bed's frame, in mm, as one of the patient's.
+local function place(x, y, z)
+  return add(add(add(bed_neck, towards_liver, x * mm), aside, y * mm), towards_fundus, z * mm)
+end
+local caudal, back = { 0, -1, 0 }, { 0, 0, -1 }
+
+-- ---- organs
+
+local defaults = {
+  gallbladder_length = 80 * mm,
+  gallbladder_width = 33 * mm,
+  fill_pressure = 12 * mmHg,
+  phrygian_cap = false,
+  cystic_duct_length = 20 * mm,
+  cystic_duct_diameter = 3.6 * mm,
+  common_duct_diameter = 6 * mm,
+  union = 0.42,
+  cystic_artery_length = 17 * mm,
+  cystic_artery_diameter = 1.6 * mm,
+  second_cystic_artery = false,
+  hepatic_artery_near_neck = false,
+  node_diameter = 6 * mm,
+  nodes = 200,
+  strands = 1,
+  strength = 1,
+}
+
+local function soft_wall(thickness) return { thickness = thickness, density = 1050 } end
+
+--- Places in the bed's frame, and radii, in mm. Its neck bends off its pouch towards the hilum.
+local function gallbladder(p)
+  local long, wide = p.gallbladder_length / (80 * mm), p.gallbladder_width / (33 * mm)
+  local along = {}
+  local function station(x, y, z, radius, refine)
+    along[#along + 1] = { at = place(x, y, z), radius = radius * mm, refine = refine }
+  end
+  station(-2, -23, 3, 2.6)
+  station(-5, -17, 3.5, 3.6)
+  station(-8, -10, 7.5, 6)
+  station(-9, -3.5, 14.5, 9)
+  station(-5.5, -0.5, 24, 10.2)
+  station(-1.5, 0, 36, 13.2 * wide)
+  station(0, 0, 36 + 13 * long, 16.4 * wide)
+  if p.phrygian_cap then -- the fundus folds over towards the free side
+    station(-1, 0, 36 + 26 * long, 15 * wide)
+    station(-8, 0, 36 + 38 * long, 10.5 * wide)
+    station(-21, 0, 36 + 44 * long, 10 * wide)
+  else
+    station(0, 0, 36 + 27 * long, 16.4 * wide)
+    station(0, 0, 36 + 44 * long, 15.5 * wide, 1.6)
+  end
+  return {
+    name = "gallbladder",
+    shape = { type = "swept", along = along },
+    liver_side = liver_side,
+    nodes = p.nodes,
+    wall = soft_wall(2 * mm),
+    bile = { fill_pressure = p.fill_pressure },
+    held = { { name = "bed", landmark = "bed", radius = 22 * mm, stiffness = 3e5, while_filled = true } },
+  }
+end
+
+local function tube(name, points, diameter, wall, held, more)
+  local shape = { type = "tube", points = points, radius = diameter / 2, nodes = 9 }
+  for key, value in pairs(more or {}) do shape[key] = value end
+  return { name = name, shape = shape, wall = soft_wall(wall), held = held }
+end
+
+local function joint(from, to, radius) return { from = from, to = to, radius = radius } end
+
+--- The anatomy of a standard field, or with other lengths: see the top of this file.
+function anatomy.standard(overrides)
+  local p = {}
+  for key, value in pairs(defaults) do p[key] = value end
+  for key, value in pairs(overrides or {}) do
+    if defaults[key] == nil then error('anatomy.standard has no parameter "' .. tostring(key) .. '"', 2) end
+    p[key] = value
+  end
+
+  local bladder = gallbladder(p)
+  local neck = bladder.shape.along[1].at
+
+  -- The common duct comes from the hilum and goes down to the duodenum in its ligament.
+  local union_at = add(neck, minus(place(-17, -36, -8), place(-2, -23, 3)))
+  local hepatic = add(add(union_at, caudal, -25 * mm), back, 6 * mm)
+  local duodenal = add(add(union_at, caudal, 36 * mm), back, 4 * mm)
+  local common = tube("common_duct", { hepatic, add(add(union_at, caudal, -13 * mm), back, 2 * mm), union_at,
+    add(union_at, caudal, 18 * mm), duodenal }, p.common_duct_diameter, 1 * mm, {
+    { name = "hepatic", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
+    { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
+    { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
+  }, { nodes = 13, patient_end = "start" })
+  local union = anatomy.along(common.shape.points, p.union)
+
+  -- It leaves the neck without a step, and enters the common duct's side.
+  local enters = add(union, unit(minus(neck, union)), p.common_duct_diameter / 2)
+  local begins = add(neck, unit(minus(bladder.shape.along[2].at, neck)), 2.5 * mm)
+  local cystic = tube("cystic_duct", bowed(begins, enters, p.cystic_duct_length, unit(add(caudal, back, -0.4))),
+    5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
+
+  -- Behind the hepatic duct, through the triangle's top, into the liver.
+  local crossing = add(add(anatomy.along(common.shape.points, 0.15), back, p.common_duct_diameter / 2 + 3.2 * mm), caudal, 1 * mm)
+  local near = p.hepatic_artery_near_neck
+  local bend = near and place(-3, -14, -7) or place(-2, -13, -17)
+  local hepatic_artery = tube("right_hepatic_artery", {
+    add(add(crossing, { 18 * mm, 0, 0 }), caudal, 8 * mm), crossing, bend, place(1, 0, -23),
+  }, 3.4 * mm, 0.8 * mm, {
+    { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
+    { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
+  }, { pressure = 0, patient_end = "start" })
+
+  local organs = { bladder, {
+    name = "liver", neck = bed_neck, fundus = bed_fundus, liver_side = liver_side,
+    shape = { type = "lobe", bed_length = 80 * mm, bed_width = math.max(35 * mm, p.gallbladder_width + 2 * mm) },
+  }, common, cystic, hepatic_artery }
+  local joints = {
+    joint("cystic_duct.start", "gallbladder.neck", 4 * mm),
+    joint("cystic_duct.end", "common_duct.middle", 4 * mm),
+  }
+
+  local function cystic_artery(name, share, to)
+    local from = anatomy.along(hepatic_artery.shape.points, share)
+    local way = unit(minus(to, from))
+    local line = bowed(add(from, way, 1.7 * mm), to, p.cystic_artery_length, unit(add(towards_liver, aside, 0.5)))
+    organs[#organs + 1] =
+      tube(name, line, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start" })
+    joints[#joints + 1] = joint(name .. ".start", "right_hepatic_artery.middle", 3 * mm)
+    joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
+  end
+  cystic_artery("cystic_artery", 0.62, place(-4.5, -11, 0))
+  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.8, place(-3, -4, 4)) end
+
+  return {
+    organs = organs,
+    joints = joints,
+    tissue = anatomy.tissue(p),
+    ground = {
+      { name = "duodenum", type = "capsule", point = add(duodenal, { -50 * mm, -22 * mm, 2 * mm }),
+        to = add(duodenal, { 40 * mm, -19 * mm, -6 * mm }), radius = 14 * mm },
+    },
+  }
+end
+
+--- The cystic plate and what fills the triangle. Nothing of it is calibrated.
+function anatomy.tissue(p)
+  local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
+  local function fat(name, from, to, within, strands, more)
+    local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
+      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength }
+    for key, value in pairs(more or {}) do out[key] = value end
+    return out
+  end
+  return {
+    { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2, strands = count(60),
+      slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength },
+    fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
+    fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
+    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.3 }),
+  }
+end
+
+return anatomy
