@@ -14,9 +14,9 @@ return calot.exercise {
   scene = function()
     return {
       anatomy = anatomy.standard(),
-      ports = { scope = { -40 * mm, 20 * mm, 0 } },
+      ports = { scope = { -25 * mm, 10 * mm, -20 * mm } },
       instruments = { left = { port = "right_lateral" } },
-      laparoscope = { port = "scope", angle = 30 * calot.units.deg, look_at = "cystic_duct.middle", distance = 100 * mm },
+      laparoscope = { port = "scope", angle = 0, look_at = "cystic_duct.middle", distance = 95 * mm },
       solver = { motion = "dynamic" },
     }
   end,

@@ -10,7 +10,8 @@
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
---   union 0.42, the share of the common duct at which the cystic duct enters; node_diameter 6 mm; bed_stiffness;
+--   union 0.36, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct
+--     is moved; node_diameter 6 mm; bed_stiffness;
 --     all strengths of tissue; where things lie beside each other: uncalibrated, no source gives them
 -- The gallbladder's pouch, its neck, and the course of duct and arteries are drawn by eye: uncalibrated.
 
@@ -63,7 +64,9 @@ end
 
 -- ---- the frame: from the gallbladder's bed, { towards the liver, to the patient's right and back, towards the fundus }
 
-local bed_neck, bed_fundus, liver_side = { -50 * mm, 130 * mm, -110 * mm }, { -80 * mm, 100 * mm, -60 * mm }, { 0, 0.8, 0.6 }
+-- As the first assistant exposes it: the fundus is up over the liver, which turns its underside to the laparoscope.
+local bed_neck, bed_fundus = { -50 * mm, 120 * mm, -112 * mm }, { -90 * mm, 156 * mm, -53 * mm }
+local liver_side = { 0.1, 0.75, -0.65 }
 local towards_fundus = unit(minus(bed_fundus, bed_neck))
 local towards_liver = unit(minus(liver_side, times(towards_fundus, dot(liver_side, towards_fundus))))
 local aside = cross(towards_fundus, towards_liver)
@@ -84,7 +87,8 @@ local defaults = {
   cystic_duct_length = 20 * mm,
   cystic_duct_diameter = 3.6 * mm,
   common_duct_diameter = 6 * mm,
-  union = 0.42,
+  union = 0.36,
+  union_lies = { 0, 0, 0 },
   cystic_artery_length = 17 * mm,
   cystic_artery_diameter = 1.6 * mm,
   second_cystic_artery = false,
@@ -136,6 +140,13 @@ local function tube(name, points, diameter, wall, held, more)
   return { name = name, shape = shape, wall = soft_wall(wall), held = held }
 end
 
+--- The course of a duct or an artery by places relative to one, { left, head, front }, in mm.
+local function course(from, places)
+  local points = {}
+  for k, at in ipairs(places) do points[k] = add(from, at, mm) end
+  return points
+end
+
 local function joint(from, to, radius) return { from = from, to = to, radius = radius } end
 
 --- The anatomy of a standard field, or with other lengths: see the top of this file.
@@ -150,12 +161,10 @@ function anatomy.standard(overrides)
   local bladder = gallbladder(p)
   local neck = bladder.shape.along[1].at
 
-  -- The common duct comes from the hilum and goes down to the duodenum in its ligament.
-  local union_at = add(neck, minus(place(-17, -36, -8), place(-2, -23, 3)))
-  local hepatic = add(add(union_at, caudal, -25 * mm), back, 6 * mm)
-  local duodenal = add(add(union_at, caudal, 36 * mm), back, 4 * mm)
-  local common = tube("common_duct", { hepatic, add(add(union_at, caudal, -13 * mm), back, 2 * mm), union_at,
-    add(union_at, caudal, 18 * mm), duodenal }, p.common_duct_diameter, 1 * mm, {
+  -- The common duct comes from the hilum and goes down in its ligament, behind the duodenum.
+  local common = tube("common_duct", course(add(neck, p.union_lies), {
+    { 17, 16, -20 }, { 17, 3, -15 }, { 17, -10, -12 }, { 17, -28, -14 }, { 15, -56, -24 },
+  }), p.common_duct_diameter, 1 * mm, {
     { name = "hepatic", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
     { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
@@ -168,20 +177,18 @@ function anatomy.standard(overrides)
   local cystic = tube("cystic_duct", bowed(begins, enters, p.cystic_duct_length, unit(add(caudal, back, -0.4))),
     5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
 
-  -- Behind the hepatic duct, through the triangle's top, into the liver.
-  local crossing = add(add(anatomy.along(common.shape.points, 0.15), back, p.common_duct_diameter / 2 + 3.2 * mm), caudal, 1 * mm)
-  local near = p.hepatic_artery_near_neck
-  local bend = near and place(-3, -14, -7) or place(-2, -13, -17)
-  local hepatic_artery = tube("right_hepatic_artery", {
-    add(add(crossing, { 18 * mm, 0, 0 }), caudal, 8 * mm), crossing, bend, place(1, 0, -23),
-  }, 3.4 * mm, 0.8 * mm, {
+  -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
+  local to_hilum = p.hepatic_artery_near_neck and { { 5, 1, -10 }, { 5, 8, -22 } } or { { 6, 3.5, -14 }, { 4, 10, -26 } }
+  local hepatic_artery = tube("right_hepatic_artery", course(neck, {
+    { 30, -50, -26 }, { 29, -18, -17 }, { 25, 0, -19 }, { 17, 5, -23.5 }, table.unpack(to_hilum),
+  }), 3.4 * mm, 0.8 * mm, {
     { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
-  }, { pressure = 0, patient_end = "start" })
+  }, { nodes = 15, patient_end = "start", carries = "blood" })
 
   local organs = { bladder, {
     name = "liver", neck = bed_neck, fundus = bed_fundus, liver_side = liver_side,
-    shape = { type = "lobe", bed_length = 80 * mm, bed_width = math.max(35 * mm, p.gallbladder_width + 2 * mm) },
+    shape = { type = "lobe", depth = 70 * mm, bed_length = 80 * mm, bed_width = math.max(35 * mm, p.gallbladder_width + 2 * mm) },
   }, common, cystic, hepatic_artery }
   local joints = {
     joint("cystic_duct.start", "gallbladder.neck", 4 * mm),
@@ -193,22 +200,66 @@ function anatomy.standard(overrides)
     local way = unit(minus(to, from))
     local line = bowed(add(from, way, 1.7 * mm), to, p.cystic_artery_length, unit(add(towards_liver, aside, 0.5)))
     organs[#organs + 1] =
-      tube(name, line, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start" })
+      tube(name, line, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start", carries = "blood" })
     joints[#joints + 1] = joint(name .. ".start", "right_hepatic_artery.middle", 3 * mm)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
   end
-  cystic_artery("cystic_artery", 0.62, place(-4.5, -11, 0))
-  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.8, place(-3, -4, 4)) end
+  cystic_artery("cystic_artery", 0.82, place(-3.5, -13.5, 2))
+  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(-4, -9, 4.5)) end
 
   return {
     organs = organs,
     joints = joints,
     tissue = anatomy.tissue(p),
     ground = {
-      { name = "duodenum", type = "capsule", point = add(duodenal, { -50 * mm, -22 * mm, 2 * mm }),
-        to = add(duodenal, { 40 * mm, -19 * mm, -6 * mm }), radius = 14 * mm },
+      { name = "duodenum", type = "capsule", point = add(neck, { -28 * mm, -46 * mm, -4 * mm }),
+        to = add(neck, { 52 * mm, -50 * mm, 4 * mm }), radius = 13 * mm },
     },
   }
+end
+
+--- What differs from the standard field, by name; how often it is seen, as published.
+anatomy.variants = {
+  short_cystic_duct = { cystic_duct_length = 9 * mm, union_lies = { -8 * mm, 7 * mm, 5 * mm } }, -- 15 %
+  low_union = { union = 0.62, cystic_duct_length = 36 * mm }, -- 3 to 11 %
+  double_cystic_artery = { second_cystic_artery = true }, -- 13 %
+  hepatic_artery_near_neck = { hepatic_artery_near_neck = true }, -- "caterpillar turn"; uncalibrated
+  hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 25 * mmHg },
+  phrygian_cap = { phrygian_cap = true }, -- about 4 %
+}
+
+--- The standard field with what a variant changes, and then with what differs besides.
+function anatomy.variant(name, overrides)
+  local changes = anatomy.variants[name]
+  if changes == nil then
+    local names = {}
+    for known in pairs(anatomy.variants) do names[#names + 1] = known end
+    table.sort(names)
+    error('no variant "' .. tostring(name) .. '": there are ' .. table.concat(names, ", "), 2)
+  end
+  local all = {}
+  for key, value in pairs(changes) do all[key] = value end
+  for key, value in pairs(overrides or {}) do all[key] = value end
+  return anatomy.standard(all)
+end
+
+--- The standard field with lengths drawn from about the published ranges, as far as they fit this field, by the
+--- scenario's own random numbers (calot run --seed N): the same seed, the same patient.
+function anatomy.varied(overrides)
+  local function between(low, high) return low + (high - low) * math.random() end
+  local all = {
+    gallbladder_length = between(74, 88) * mm,
+    gallbladder_width = between(30, 35) * mm,
+    fill_pressure = between(10, 15) * mmHg,
+    cystic_duct_length = between(18, 28) * mm,
+    cystic_duct_diameter = between(2.6, 4.4) * mm,
+    common_duct_diameter = between(5, 6) * mm,
+    cystic_artery_diameter = between(1.2, 2) * mm,
+    second_cystic_artery = math.random() < 0.13,
+    phrygian_cap = math.random() < 0.04,
+  }
+  for key, value in pairs(overrides or {}) do all[key] = value end
+  return anatomy.standard(all)
 end
 
 --- The cystic plate and what fills the triangle. Nothing of it is calibrated.

@@ -48,6 +48,9 @@ struct MeshFile {
 /// end where both are, or neither), or always the same.
 enum class PatientEnd { held, start, end };
 
+/// What flows in a tube; by it a duct and an artery look different.
+enum class Carries { bile, blood };
+
 /// A duct or a vessel: a tube along a line; a solid thread where its wall is as thick as its radius.
 struct TubeShape {
   std::vector<Vec3> points;  ///< m, of its middle at rest, from its start to its end
@@ -56,6 +59,7 @@ struct TubeShape {
   int nodes = 11;            ///< control nodes of the middle line
   double pressure = 0;       ///< Pa, gauge, of what it carries
   PatientEnd patient_end = PatientEnd::held;
+  Carries carries = Carries::bile;
   bool operator==(const TubeShape&) const = default;
 };
 

@@ -304,6 +304,7 @@ std::vector<KeyTable> shape_tables() {
            count("nodes", &TubeShape::nodes, 5, 60, "a number of control nodes", "of its middle line"),
            number("pressure", &TubeShape::pressure, quantity::pressure, -10 * kPa, 40 * kPa,
                   "a pressure in a duct", "gauge pressure of what it carries"),
+           choice("carries", &TubeShape::carries, {"bile", "blood"}, "a duct's bile, or an artery's blood"),
            choice(
                "patient_end", &TubeShape::patient_end, {"held", "start", "end"},
                "the end that stays with the patient where it is divided: what is held, itself or by what it "
