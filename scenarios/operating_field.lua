@@ -11,12 +11,25 @@ return calot.exercise {
   title = "The operating field at rest",
   time_limit = 10 * s,
 
-  scene = function()
+  params = {
+    variant = {
+      type = "choice",
+      default = "standard",
+      choices = {
+        "standard", "varied", "short_cystic_duct", "low_union", "double_cystic_artery", "hepatic_artery_near_neck",
+        "hydrops", "phrygian_cap",
+      },
+      title = "whose field: the standard one, one drawn by the seed, or a variant",
+    },
+  },
+
+  scene = function(p)
+    local made = { standard = anatomy.standard, varied = anatomy.varied }
     return {
-      anatomy = anatomy.standard(),
-      ports = { scope = { -25 * mm, 10 * mm, -20 * mm } },
+      anatomy = made[p.variant] and made[p.variant]() or anatomy.variant(p.variant),
+      ports = { scope = { -40 * mm, 20 * mm, 10 * mm } },
       instruments = { left = { port = "right_lateral" } },
-      laparoscope = { port = "scope", angle = 0, look_at = "cystic_duct.middle", distance = 95 * mm },
+      laparoscope = { port = "scope", angle = 0, look_at = "cystic_duct.start", distance = 105 * mm },
       solver = { motion = "dynamic" },
     }
   end,
@@ -29,7 +42,7 @@ return calot.exercise {
   demo = function(t) t.left:wait(1 * s) end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "gallbladder.max_stretch", novice = 2.2, expert = 1.5 }, weight = 1 },
+    { calot.score.penalty { event = "tear", each = 1 }, weight = 1 },
   },
-  golden = { at = { 0, 1 * s } },
+  golden = { at = { 0 } },
 }

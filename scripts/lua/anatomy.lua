@@ -10,8 +10,8 @@
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
---   union 0.36, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct
---     is moved; node_diameter 6 mm; bed_stiffness;
+--   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
+--     moved there; node_diameter 6 mm; bed_stiffness;
 --     all strengths of tissue; where things lie beside each other: uncalibrated, no source gives them
 -- The gallbladder's pouch, its neck, and the course of duct and arteries are drawn by eye: uncalibrated.
 
@@ -87,7 +87,7 @@ local defaults = {
   cystic_duct_length = 20 * mm,
   cystic_duct_diameter = 3.6 * mm,
   common_duct_diameter = 6 * mm,
-  union = 0.36,
+  union = 0.38,
   union_lies = { 0, 0, 0 },
   cystic_artery_length = 17 * mm,
   cystic_artery_diameter = 1.6 * mm,
@@ -162,9 +162,11 @@ function anatomy.standard(overrides)
   local neck = bladder.shape.along[1].at
 
   -- The common duct comes from the hilum and goes down in its ligament, behind the duodenum.
-  local common = tube("common_duct", course(add(neck, p.union_lies), {
-    { 17, 16, -20 }, { 17, 3, -15 }, { 17, -10, -12 }, { 17, -28, -14 }, { 15, -56, -24 },
-  }), p.common_duct_diameter, 1 * mm, {
+  local line = course(neck, {
+    { 17, 30, -28 }, { 17, 16, -20 }, { 17, 3, -15 }, { 17, -10, -12 }, { 17, -28, -14 }, { 15, -70, -34 },
+  })
+  for k, share in ipairs { 0, 0, 0.6, 1, 0.6, 0 } do line[k] = add(line[k], p.union_lies, share) end
+  local common = tube("common_duct", line, p.common_duct_diameter, 1 * mm, {
     { name = "hepatic", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
     { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
@@ -178,9 +180,9 @@ function anatomy.standard(overrides)
     5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
 
   -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
-  local to_hilum = p.hepatic_artery_near_neck and { { 5, 1, -10 }, { 5, 8, -22 } } or { { 6, 3.5, -14 }, { 4, 10, -26 } }
+  local to_hilum = p.hepatic_artery_near_neck and { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 } } or { { 6, 3.5, -14 }, { 4, 10, -26 } }
   local hepatic_artery = tube("right_hepatic_artery", course(neck, {
-    { 30, -50, -26 }, { 29, -18, -17 }, { 25, 0, -19 }, { 17, 5, -23.5 }, table.unpack(to_hilum),
+    { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, { 17, 5, -23.5 }, table.unpack(to_hilum),
   }), 3.4 * mm, 0.8 * mm, {
     { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
@@ -212,15 +214,15 @@ function anatomy.standard(overrides)
     joints = joints,
     tissue = anatomy.tissue(p),
     ground = {
-      { name = "duodenum", type = "capsule", point = add(neck, { -28 * mm, -46 * mm, -4 * mm }),
-        to = add(neck, { 52 * mm, -50 * mm, 4 * mm }), radius = 13 * mm },
+      { name = "duodenum", type = "capsule", point = add(neck, { -34 * mm, -60 * mm, -12 * mm }),
+        to = add(neck, { 60 * mm, -62 * mm, -6 * mm }), radius = 13 * mm },
     },
   }
 end
 
 --- What differs from the standard field, by name; how often it is seen, as published.
 anatomy.variants = {
-  short_cystic_duct = { cystic_duct_length = 9 * mm, union_lies = { -8 * mm, 7 * mm, 5 * mm } }, -- 15 %
+  short_cystic_duct = { cystic_duct_length = 9 * mm, union = 0.4, union_lies = { -9 * mm, 1 * mm, 6 * mm } }, -- 15 %
   low_union = { union = 0.62, cystic_duct_length = 36 * mm }, -- 3 to 11 %
   double_cystic_artery = { second_cystic_artery = true }, -- 13 %
   hepatic_artery_near_neck = { hepatic_artery_near_neck = true }, -- "caterpillar turn"; uncalibrated
@@ -276,7 +278,7 @@ function anatomy.tissue(p)
       slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength },
     fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
     fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
-    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.3 }),
+    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),
   }
 end
 

@@ -10,7 +10,7 @@
 namespace calot {
 namespace {
 
-constexpr double thinnest_lobule = 0.7e-3, thickest_lobule = 2.2e-3;  // lobules
+constexpr double thinnest_lobule = 1.1e-3, thickest_lobule = 2.8e-3;  // lobules
 constexpr double torn_part = 0.3;  // of a strand's way that hangs on to either end after it is torn
 
 /// A number in [0, 1) that is the same in every picture.
@@ -80,7 +80,7 @@ void add_tissue(const Tissue& tissue, const std::vector<std::vector<Vec3>>& skin
                           on_skin(strands[k].other, skins[bodies[1]])};
     const StrandLaw::Setup& law = strands[k].strand.law.setup();
     const double area = law.strength / tissue.definition.strength;
-    const double radius = std::clamp(0.4 * std::sqrt(area), thinnest_lobule, thickest_lobule);
+    const double radius = std::clamp(0.6 * std::sqrt(area), thinnest_lobule, thickest_lobule);
     const bool torn = strands[k].strand.law.torn(tissue.now.opened[k]);
     // What was torn has drawn back to its ends.
     const double now = std::max((line.to - line.from).norm(), law.taut);
