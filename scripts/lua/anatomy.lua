@@ -11,7 +11,7 @@
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
---     moved there; node_diameter 6 mm; bed_stiffness;
+--     moved there; node_diameter 5 mm; bed_stiffness;
 --     all strengths of tissue; where things lie beside each other: uncalibrated, no source gives them
 -- The gallbladder's pouch, its neck, and the course of duct and arteries are drawn by eye: uncalibrated.
 
@@ -93,7 +93,7 @@ local defaults = {
   cystic_artery_diameter = 1.6 * mm,
   second_cystic_artery = false,
   hepatic_artery_near_neck = false,
-  node_diameter = 6 * mm,
+  node_diameter = 5 * mm,
   nodes = 200,
   strands = 1,
   strength = 1,
@@ -207,6 +207,13 @@ function anatomy.standard(overrides)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
   end
   cystic_artery("cystic_artery", 0.82, place(-3.5, -13.5, 2))
+
+  -- The node lies between neck and artery, fast to the neck by all of its skin.
+  local radius = p.node_diameter / 2
+  local on_neck, outward = place(-1.4, -18, 3), unit(minus(place(1, -18, 2.5), place(-5, -18, 3.5)))
+  organs[#organs + 1] = { name = "cystic_node",
+    shape = { type = "rigid", rounding = radius, centre = add(on_neck, outward, radius + 0.8 * mm), density = 1050 } }
+  joints[#joints + 1] = joint("cystic_node.centre", "gallbladder.neck", 3 * radius)
   if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(-4, -9, 4.5)) end
 
   return {

@@ -82,7 +82,9 @@ TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {
 TEST(Anatomy, TheSameSeedIsTheSamePatient) {
   const auto width = [](std::uint64_t seed) {
     const Folder folder;
-    const auto loaded = load_text(folder, field("anatomy.varied()"), {.seed = seed});
+    LoadOptions options;
+    options.seed = seed;
+    const auto loaded = load_text(folder, field("anatomy.varied()"), options);
     EXPECT_TRUE(loaded) << to_text(loaded.failure());
     return std::get<SweptShape>(loaded.value()->definition().scene.anatomy.organs[0].shape)
         .along.back()
