@@ -10,6 +10,7 @@
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
+--   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
 --     all strengths of tissue; where things lie beside each other: uncalibrated, no source gives them
@@ -62,7 +63,7 @@ local function bowed(from, to, long, aside)
   return out
 end
 
--- ---- the frame: from the gallbladder's bed, { towards the liver, to the patient's right and back, towards the fundus }
+-- ---- the frame of the bed, { towards the liver, to the patient's right and back, towards the fundus }
 
 -- As the first assistant exposes it: the fundus is up over the liver, which turns its underside to the laparoscope.
 local bed_neck, bed_fundus = { -50 * mm, 120 * mm, -112 * mm }, { -90 * mm, 156 * mm, -53 * mm }
@@ -94,6 +95,7 @@ local defaults = {
   second_cystic_artery = false,
   hepatic_artery_near_neck = false,
   node_diameter = 5 * mm,
+  assistant = true,
   nodes = 200,
   strands = 1,
   strength = 1,
@@ -123,6 +125,10 @@ local function gallbladder(p)
     station(0, 0, 36 + 27 * long, 16.4 * wide)
     station(0, 0, 36 + 44 * long, 15.5 * wide, 1.6)
   end
+  local held = { { name = "bed", landmark = "bed", radius = 22 * mm, stiffness = 3e5, while_filled = true } }
+  if p.assistant then
+    held[2] = { name = "assistant", landmark = "fundus", radius = 13 * mm, stiffness = 2e6 }
+  end
   return {
     name = "gallbladder",
     shape = { type = "swept", along = along },
@@ -130,7 +136,7 @@ local function gallbladder(p)
     nodes = p.nodes,
     wall = soft_wall(2 * mm),
     bile = { fill_pressure = p.fill_pressure },
-    held = { { name = "bed", landmark = "bed", radius = 22 * mm, stiffness = 3e5, while_filled = true } },
+    held = held,
   }
 end
 
@@ -180,17 +186,20 @@ function anatomy.standard(overrides)
     5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
 
   -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
-  local to_hilum = p.hepatic_artery_near_neck and { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 } } or { { 6, 3.5, -14 }, { 4, 10, -26 } }
+  local to_hilum = { { 6, 3.5, -14 }, { 4, 10, -26 } }
+  if p.hepatic_artery_near_neck then to_hilum = { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 } } end
   local hepatic_artery = tube("right_hepatic_artery", course(neck, {
     { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, { 17, 5, -23.5 }, table.unpack(to_hilum),
   }), 3.4 * mm, 0.8 * mm, {
     { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
+    { name = "ligament", landmark = "middle", radius = 14 * mm, stiffness = 5e4 },
     { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
   }, { nodes = 15, patient_end = "start", carries = "blood" })
 
+  local bed_width = math.max(35 * mm, 2 * p.gallbladder_width - 31 * mm)
   local organs = { bladder, {
     name = "liver", neck = bed_neck, fundus = bed_fundus, liver_side = liver_side,
-    shape = { type = "lobe", depth = 70 * mm, bed_length = 80 * mm, bed_width = math.max(35 * mm, p.gallbladder_width + 2 * mm) },
+    shape = { type = "lobe", depth = 70 * mm, bed_length = 80 * mm, bed_width = bed_width },
   }, common, cystic, hepatic_artery }
   local joints = {
     joint("cystic_duct.start", "gallbladder.neck", 4 * mm),
@@ -200,9 +209,9 @@ function anatomy.standard(overrides)
   local function cystic_artery(name, share, to)
     local from = anatomy.along(hepatic_artery.shape.points, share)
     local way = unit(minus(to, from))
-    local line = bowed(add(from, way, 1.7 * mm), to, p.cystic_artery_length, unit(add(towards_liver, aside, 0.5)))
+    local points = bowed(add(from, way, 1.7 * mm), to, p.cystic_artery_length, unit(add(towards_liver, aside, 0.5)))
     organs[#organs + 1] =
-      tube(name, line, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start", carries = "blood" })
+      tube(name, points, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start", carries = "blood" })
     joints[#joints + 1] = joint(name .. ".start", "right_hepatic_artery.middle", 3 * mm)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
   end
@@ -233,7 +242,7 @@ anatomy.variants = {
   low_union = { union = 0.62, cystic_duct_length = 36 * mm }, -- 3 to 11 %
   double_cystic_artery = { second_cystic_artery = true }, -- 13 %
   hepatic_artery_near_neck = { hepatic_artery_near_neck = true }, -- "caterpillar turn"; uncalibrated
-  hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 25 * mmHg },
+  hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 20 * mmHg },
   phrygian_cap = { phrygian_cap = true }, -- about 4 %
 }
 

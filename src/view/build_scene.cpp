@@ -15,7 +15,7 @@ Material material_of(const OrganShape& shape) {
   const auto* tube = std::get_if<TubeShape>(&shape);
   if (tube != nullptr && tube->carries == Carries::blood) return Material::artery;
   constexpr std::array materials = {Material::gallbladder, Material::membrane, Material::gallbladder,
-                                    Material::gallbladder, Material::membrane, Material::steel,
+                                    Material::gallbladder, Material::membrane, Material::fat,
                                     Material::liver};
   return materials[shape.index()];
 }

@@ -106,8 +106,10 @@ std::vector<Mistake> mistakes() {
        with_swept("{ at = { 0, 0, 0 }, radius = 8 * mm },\n { at = { 20 * mm, 0, 0 }, radius = 12 * mm },\n"
                   " { at = { 22 * mm, 20 * mm, 0 }, radius = 8 * mm }"),
        "radius = 12", "12 mm thick about it", "make the organ thinner there"},
-      {"AxisOfOnePlace", with_swept("{ at = { 0, 0, 0 } },\n { at = { 0, 0, 0 } }"), "{ at = { 0, 0, 0 } }\n",
-       "at one place", "1 mm apart"},
+      {"AxisOfOnePlace",
+       with_swept(
+           "{ at = { 0, 0, 0 } },\n { at = { 0, 0, 0 }, radius = 4 * mm },\n { at = { 40 * mm, 0, 0 } }"),
+       "radius = 4", "at one place", "1 mm apart"},
       {"AxisTooShortForItsEnds",
        with_swept("{ at = { 0, 0, 0 }, radius = 9 * mm }, { at = { 16 * mm, 0, 0 }, radius = 9 * mm }"),
        "along =", "too short for its round ends of 18 mm", "make it longer"},
