@@ -44,5 +44,4 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.penalty { event = "tear", each = 1 }, weight = 1 },
   },
-  golden = { at = { 0 } },
 }
