@@ -4,7 +4,7 @@
 ---A place or a vector {x, y, z} in m, in the patient's frame: x to the patient's left, y towards the head,
 ---z out of the abdomen, from the navel.
 ---@alias calot.point number[]
----@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_obj|calot.shape_tube|calot.shape_rigid|calot.shape_lobe
+---@alias calot.shape calot.shape_pear|calot.shape_sphere|calot.shape_swept|calot.shape_obj|calot.shape_tube|calot.shape_rigid|calot.shape_lobe
 
 ---An exercise: what a scenario returns.
 ---@class calot.exercise
@@ -179,7 +179,7 @@
 ---A hollow organ, a duct or vessel, a rigid thing, or a lobe of the liver. In calot.anatomy's overrides, only what differs.
 ---@class calot.organ
 ---@field name? string its name, unique; landmarks are written "gallbladder.fundus"; default "gallbladder"
----@field shape? calot.shape its shape at rest: type "pear", "sphere", "obj", "tube", "rigid" or "lobe" with their keys
+---@field shape? calot.shape its shape at rest: type "pear", "sphere", "swept", "obj", "tube", "rigid" or "lobe" with their keys
 ---@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 1000
 ---@field neck? calot.point where the shape's lower pole lies; default { -50 * mm, 130 * mm, -110 * mm }
 ---@field fundus? calot.point where its upper pole points to; default { -80 * mm, 100 * mm, -60 * mm }
@@ -222,7 +222,7 @@
 
 ---A gallbladder: round fundus, tapering body, slim neck.
 ---@class calot.shape_pear
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "pear"; default "pear"
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "pear"; default "pear"
 ---@field length? number neck to fundus; 70 to 100 mm is usual; default 80 * mm; 30 to 250 mm
 ---@field width? number largest diameter; 30 to 40 mm is usual; default 35 * mm; 10 to 120 mm
 ---@field refine? number control nodes are closer by this factor near the fundus; default 1; 1 to 8
@@ -230,28 +230,40 @@
 
 ---A ball, as in the paper's experiments.
 ---@class calot.shape_sphere
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "sphere"; default "pear"
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "sphere"; default "pear"
 ---@field radius? number radius at rest; default 20 * mm; 5 to 100 mm
+
+---A hollow organ along a curved axis, such as a gallbladder with its pouch; its stations are its neck and its fundus too.
+---@class calot.shape_swept
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "swept"; default "pear"
+---@field along calot.station[] its axis from the neck's end to the fundus' end, two stations or more; the ends are rounded off
+
+---A place on a swept organ's axis.
+---@class calot.station
+---@field at calot.point the place
+---@field radius? number of the organ about its axis there; default 5 * mm; 1 to 60 mm
+---@field refine? number control nodes are closer by this factor around it; default 1; 1 to 8
 
 ---A closed control mesh from a Wavefront OBJ file.
 ---@class calot.shape_obj
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "obj"; default "pear"
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "obj"; default "pear"
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
 
 ---A duct or a vessel: a tube along a line; solid where its wall is as thick as its radius.
 ---@class calot.shape_tube
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "tube"; default "pear"
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "tube"; default "pear"
 ---@field points calot.point[] its middle at rest, from its start to its end: two points or more
 ---@field radius? number outer radius; default 2.5 * mm; 0.3 to 20 mm
 ---@field end_radius? number outer radius at its end; 0: as at its start; default 0 * mm; 0 to 20 mm
 ---@field nodes? number of its middle line; default 11; 5 to 60
 ---@field pressure? number gauge pressure of what it carries; default 0 * kPa; -10 to 40 kPa
+---@field carries? "bile"|"blood" a duct's bile, or an artery's blood; default "bile"
 ---@field patient_end? "held"|"start"|"end" the end that stays with the patient where it is divided: what is held, itself or by what it is tied to (its end where both ends are, or neither), or always the start or the end; default "held"
 
 ---A rigid thing, such as a stone: a box with round edges, or a ball.
 ---@class calot.shape_rigid
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "rigid"; default "pear"
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "rigid"; default "pear"
 ---@field size? calot.point edges of the box without its rounding; { 0, 0, 0 }: a ball; default { 0, 0, 0 }
 ---@field rounding? number radius of its edges, or of the ball; default 5 * mm; 0.5 to 50 mm
 ---@field centre? calot.point where it is; default { 0, 0, 0 }
@@ -259,7 +271,7 @@
 
 ---A lobe of the liver, held at its back. Give it the neck, fundus and liver_side of the gallbladder in its bed.
 ---@class calot.shape_lobe
----@field type? "pear"|"sphere"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "lobe"; default "pear"
+---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "lobe"; default "pear"
 ---@field width? number across; default 140 * mm; 60 to 300 mm
 ---@field depth? number from its back to its edge; default 90 * mm; 40 to 200 mm
 ---@field thickness? number about, at its back; default 45 * mm; 15 to 120 mm

@@ -71,7 +71,7 @@ const std::vector<Landmark>& landmark_rows() {
 }
 
 const std::vector<std::string>& shape_names() {
-  static const std::vector<std::string> names = {"pear", "sphere", "obj", "tube", "rigid", "lobe"};
+  static const std::vector<std::string> names = {"pear", "sphere", "swept", "obj", "tube", "rigid", "lobe"};
   return names;
 }
 

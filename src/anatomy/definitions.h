@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "geometry/swept.h"
 #include "geometry/types.h"
 
 namespace calot {
@@ -30,6 +31,13 @@ struct PearShape {
   bool operator==(const PearShape&) const = default;
 };
 
+/// A hollow organ along a curved axis with a radius at each of its stations, from its neck to its fundus: a gallbladder
+/// with its pouch. The stations lie in the patient's frame and are the organ's neck and fundus.
+struct SweptShape {
+  std::vector<SweptStation> along;
+  bool operator==(const SweptShape&) const = default;
+};
+
 struct MeshFile {
   std::string path;
   double scale = 1.0;  ///< coordinates of the file times this are metres
@@ -40,6 +48,9 @@ struct MeshFile {
 /// end where both are, or neither), or always the same.
 enum class PatientEnd { held, start, end };
 
+/// What flows in a tube; by it a duct and an artery look different.
+enum class Carries { bile, blood };
+
 /// A duct or a vessel: a tube along a line; a solid thread where its wall is as thick as its radius.
 struct TubeShape {
   std::vector<Vec3> points;  ///< m, of its middle at rest, from its start to its end
@@ -48,6 +59,7 @@ struct TubeShape {
   int nodes = 11;            ///< control nodes of the middle line
   double pressure = 0;       ///< Pa, gauge, of what it carries
   PatientEnd patient_end = PatientEnd::held;
+  Carries carries = Carries::bile;
   bool operator==(const TubeShape&) const = default;
 };
 
@@ -78,12 +90,13 @@ struct LobeShape {
   bool operator==(const LobeShape&) const = default;
 };
 
-using OrganShape = std::variant<PearShape, SphereShape, MeshFile, TubeShape, RigidShape, LobeShape>;
-/// Of its own kind, "pear", "sphere", "obj", "tube", "rigid", "lobe".
+using OrganShape =
+    std::variant<PearShape, SphereShape, SweptShape, MeshFile, TubeShape, RigidShape, LobeShape>;
+/// Of its own kind, "pear", "sphere", "swept", "obj", "tube", "rigid", "lobe".
 const std::string& shape_name(const OrganShape& shape);
 const std::vector<std::string>& shape_names();
 /// A closed shell with bile; else it has neither neck nor fundus, and no filling that is kept.
-inline bool is_hollow(const OrganShape& shape) { return shape.index() <= 2; }
+inline bool is_hollow(const OrganShape& shape) { return shape.index() <= 3; }
 
 /// Two families of fibres at `angle` to either side of the organ's axis (neck to fundus), tight only when
 /// stretched, fading towards the poles: fem/shell.h, FibreLayout. The defaults are the human gallbladder's: E
@@ -160,7 +173,7 @@ struct TissueDefinition {
   double stiffness = 10e3;     ///< Pa, tension by area and strain as they become taut (d)
   double stiffening = 1.5;     ///< exponent of tension a strain (d)
   double strength = 30e3;      ///< Pa, largest tension by area (d, uncalibrated)
-  double break_energy = 150;    ///< J/m^2 to tear it: the force of a peel by width, N/m (d, uncalibrated)
+  double break_energy = 150;   ///< J/m^2 to tear it: the force of a peel by width, N/m (d, uncalibrated)
   double density = 1000;       ///< kg/m^3
 };
 

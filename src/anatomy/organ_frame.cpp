@@ -21,6 +21,11 @@ Pose organ_frame(const OrganDefinition& organ) {
 OrganExtent organ_extent(const OrganDefinition& organ) {
   if (const auto* sphere = std::get_if<SphereShape>(&organ.shape))
     return {sphere->radius, 2 * sphere->radius};
+  if (const auto* swept = std::get_if<SweptShape>(&organ.shape)) {
+    double widest = 0;
+    for (const SweptStation& station : swept->along) widest = std::max(widest, station.radius);
+    return {widest, (organ.fundus - organ.neck).norm()};
+  }
   const auto* pear = std::get_if<PearShape>(&organ.shape);
   const PearShape shape = pear ? *pear : PearShape{};
   return {0.5 * shape.width, shape.length};

@@ -179,9 +179,8 @@ std::vector<KeyTable> organ_tables() {
           "differs.",
           {text("name", &Organ::name, "its name, unique; landmarks are written \"gallbladder.fundus\""),
            table("shape", "shape",
-                 "its shape at rest: type \"pear\", \"sphere\", \"obj\", \"tube\", \"rigid\" or \"lobe\" "
-                 "with their "
-                 "keys"),
+                 "its shape at rest: type \"pear\", \"sphere\", \"swept\", \"obj\", \"tube\", \"rigid\" or "
+                 "\"lobe\" with their keys"),
            count("nodes", &Organ::nodes, 12, most_nodes, "a number of control nodes",
                  "control nodes; more resolve finer folds and cost more"),
            place("neck", &Organ::neck, abdomen_reach, "a place in the abdomen",
@@ -269,6 +268,23 @@ std::vector<KeyTable> shape_tables() {
       keys_of<SphereShape>("shape_sphere", "A ball, as in the paper's experiments.",
                            {type("sphere"), number("radius", &SphereShape::radius, quantity::length, 5 * mm,
                                                    100 * mm, "an organ's radius", "radius at rest")}),
+      keys_of<SweptShape>(
+          "shape_swept",
+          "A hollow organ along a curved axis, such as a gallbladder with its pouch; its stations are its "
+          "neck and "
+          "its fundus too.",
+          {type("swept"),
+           required(
+               list("along", "station",
+                    "its axis from the neck's end to the fundus' end, two stations or more; the ends are "
+                    "rounded off"))}),
+      keys_of<SweptStation>(
+          "station", "A place on a swept organ's axis.",
+          {required(place("at", &SweptStation::at, abdomen_reach, "a place in the abdomen", "the place")),
+           number("radius", &SweptStation::radius, quantity::length, 1 * mm, 60 * mm,
+                  "a hollow organ's radius", "of the organ about its axis there"),
+           number("refine", &SweptStation::refine, quantity::number, 1, 8, "a refinement",
+                  "control nodes are closer by this factor around it")}),
       keys_of<MeshFile>(
           "shape_obj", "A closed control mesh from a Wavefront OBJ file.",
           {type("obj"),
@@ -288,6 +304,7 @@ std::vector<KeyTable> shape_tables() {
            count("nodes", &TubeShape::nodes, 5, 60, "a number of control nodes", "of its middle line"),
            number("pressure", &TubeShape::pressure, quantity::pressure, -10 * kPa, 40 * kPa,
                   "a pressure in a duct", "gauge pressure of what it carries"),
+           choice("carries", &TubeShape::carries, {"bile", "blood"}, "a duct's bile, or an artery's blood"),
            choice(
                "patient_end", &TubeShape::patient_end, {"held", "start", "end"},
                "the end that stays with the patient where it is divided: what is held, itself or by what it "

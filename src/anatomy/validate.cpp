@@ -45,6 +45,42 @@ void check_pear(FieldCheck& check, const std::string& path, const PearShape& pea
                   "make it narrower, or use a sphere");
 }
 
+void check_swept(FieldCheck& check, const std::string& path, const SweptShape& shape, const Vec3& side) {
+  const std::vector<SweptStation>& along = shape.along;
+  bool good = true;
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    const std::string at = fmt::format("{}.along[{}]", path, i + 1);
+    check_limits(check, at, "station", along[i]);
+    for (const char* key : {".at", ".radius", ".refine"}) good &= check.is_fine(at + key);
+    if (i == 0 || !good || (along[i].at - along[i - 1].at).norm() >= 1 * mm) continue;
+    check.problem(at + ".at", "two stations of the axis are at one place", "move them at least 1 mm apart");
+    good = false;
+  }
+  if (along.size() < 2)
+    return check.problem(path + ".along", fmt::format("an axis of {} stations", along.size()),
+                         "give the neck's end and the fundus' end at least");
+  if (!good) return;
+  const SweptForm form(along, side);
+  const double ends = along.front().radius + along.back().radius;
+  if (form.length() < ends)
+    return check.problem(path + ".along",
+                         fmt::format("an axis {:.3g} mm long is too short for its round ends of {:.3g} mm",
+                                     form.length() / mm, ends / mm),
+                         "make it longer, or the ends thinner");
+  const SweptForm::Bend bend = form.sharpest();
+  constexpr double folds = 0.9;  // of the radius: the control nodes stand in between
+  if (bend.radius_by_curvature <= folds) return;
+  const Vec3 place = form.bent({0, 0, bend.way});
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < along.size(); ++i)
+    if ((along[i].at - place).norm() < (along[nearest].at - place).norm()) nearest = i;
+  check.problem(
+      fmt::format("{}.along[{}].radius", path, nearest + 1),
+      fmt::format("the axis bends there by a radius of {:.3g} mm, and the organ is {:.3g} mm thick about it",
+                  form.radius(bend.way) / bend.radius_by_curvature / mm, form.radius(bend.way) / mm),
+      "make the organ thinner there, or bend its axis over a longer way");
+}
+
 void check_tube(FieldCheck& check, const std::string& path, const TubeShape& tube) {
   check_limits(check, path, "shape_tube", tube);
   double length = 0;
@@ -82,11 +118,13 @@ void check_lobe(FieldCheck& check, const std::string& path, const LobeShape& lob
     check.problem(path + ".bed_depth", "a bed deeper than half its width", "make it shallower");
 }
 
-void check_shape(FieldCheck& check, const std::string& path, const OrganShape& shape) {
+void check_shape(FieldCheck& check, const std::string& path, const OrganShape& shape, const Vec3& side) {
   if (const auto* pear = std::get_if<PearShape>(&shape)) {
     check_pear(check, path, *pear);
   } else if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
     check_limits(check, path, "shape_sphere", *sphere);
+  } else if (const auto* swept = std::get_if<SweptShape>(&shape)) {
+    check_swept(check, path, *swept, side);
   } else if (const auto* tube = std::get_if<TubeShape>(&shape)) {
     check_tube(check, path, *tube);
   } else if (const auto* rigid = std::get_if<RigidShape>(&shape)) {
@@ -107,6 +145,11 @@ void check_shape(FieldCheck& check, const std::string& path, const OrganShape& s
 double radius_of(const OrganShape& shape) {
   if (const auto* pear = std::get_if<PearShape>(&shape)) return pear->width / 2;
   if (const auto* sphere = std::get_if<SphereShape>(&shape)) return sphere->radius;
+  if (const auto* swept = std::get_if<SweptShape>(&shape)) {
+    double widest = 0;
+    for (const SweptStation& station : swept->along) widest = std::max(widest, station.radius);
+    if (widest > 0) return widest;
+  }
   return std::numeric_limits<double>::infinity();
 }
 
@@ -142,9 +185,9 @@ void check_axis(FieldCheck& check, const std::string& path, const OrganDefinitio
 }
 
 void check_organ(FieldCheck& check, const std::string& path, const OrganDefinition& organ) {
-  const bool has_own_nodes = organ.shape.index() >= 2;
+  const bool has_own_nodes = !is_hollow(organ.shape) || std::holds_alternative<MeshFile>(organ.shape);
   check_limits(check, path, "organ", organ, has_own_nodes ? "nodes" : "");
-  check_shape(check, path + ".shape", organ.shape);
+  check_shape(check, path + ".shape", organ.shape, organ.liver_side);
   if (is_hollow(organ.shape) || std::holds_alternative<LobeShape>(organ.shape))
     check_axis(check, path, organ);
   if (!is_hollow(organ.shape) && (organ.bile.fill_volume || organ.bile.fill_pressure))

@@ -32,10 +32,23 @@ class SceneReader {
     if (const Value* bile = reader.take("bile")) forget_filling(organ.bile, *bile);
     reader.read(organ);
     if (const Value* shape = reader.take("shape")) read_shape(organ.shape, *shape, path + ".shape");
+    lay_along(reader, organ);
     if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
   }
 
  private:
+  /// A swept organ's axis says where its neck and its fundus are.
+  void lay_along(const TableReader& reader, OrganDefinition& organ) {
+    const auto* swept = std::get_if<SweptShape>(&organ.shape);
+    if (swept == nullptr || swept->along.empty()) return;
+    for (const char* end : {"neck", "fundus"})
+      if (reader.has(end))
+        check_.problem(reader.path_of(end), fmt::format("a swept organ's {} is an end of its axis", end),
+                       fmt::format("leave {} out", end));
+    organ.neck = swept->along.front().at;
+    organ.fundus = swept->along.back().at;
+  }
+
   AnatomyDefinition read_anatomy(const Value& value, const std::string& path) {
     const TableReader reader(check_, &value, path, api_table("anatomy"));
     AnatomyDefinition anatomy;
@@ -110,6 +123,11 @@ class SceneReader {
     } else if (wanted == "sphere") {
       if (wanted != present) shape = SphereShape{};
       reader.read(std::get<SphereShape>(shape));
+    } else if (wanted == "swept") {
+      if (wanted != present) shape = SweptShape{};
+      auto& swept = std::get<SweptShape>(shape);
+      reader.read(swept);
+      read_list(reader, "along", "station", swept.along);
     } else if (wanted == "tube") {
       if (wanted != present) shape = TubeShape{};
       read_tube(reader, std::get<TubeShape>(shape));

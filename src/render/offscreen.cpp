@@ -20,7 +20,7 @@ namespace {
 constexpr int samples = 4;
 constexpr std::array all_materials{Material::gallbladder, Material::membrane,   Material::liver,
                                    Material::fat,         Material::peritoneum, Material::steel,
-                                   Material::insulation};
+                                   Material::insulation,  Material::artery};
 
 /// A vessel map on the card's side. Holding the map keeps its address from being given to another one.
 struct VesselTexture {

@@ -19,6 +19,7 @@ enum class Material {
   peritoneum,   ///< pinkish lining with fine vessels
   steel,        ///< bright instrument metal
   insulation,   ///< black coating of a shaft
+  artery,       ///< pale red in a whitish sheath
 };
 
 /// Blood vessels as a volume over rest positions: the share of each voxel that they fill.

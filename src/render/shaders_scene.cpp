@@ -109,6 +109,17 @@ Surface surface_at(vec3 p) {
 }
 )";
 
+const char* const artery_material = R"(
+// Blood through a whitish sheath.
+Surface surface_at(vec3 p) {
+  vec4 middle = noise(p, 4.0);
+  vec4 fine = noise(p, 1.1);
+  vec3 albedo = mix(vec3(0.36, 0.060, 0.048), vec3(0.52, 0.23, 0.18), smoothstep(-0.5, 0.7, broad.a + 0.5 * middle.a));
+  vec3 slope = 0.10 * broad.rgb + 0.22 * middle.rgb + 0.16 * fine.rgb;
+  return Surface(albedo, vec3(0.40, 0.12, 0.09), slope, 0.3, 260.0, 1.4);
+}
+)";
+
 const char* const peritoneum_material = R"(
 Surface surface_at(vec3 p) {
   vec4 middle = noise(p + 6.0 * broad.rgb, 9.0);
@@ -234,6 +245,8 @@ double broad_cell(Material material) {
       return 19;
     case Material::peritoneum:
       return 29;
+    case Material::artery:
+      return 9;
     case Material::steel:
     case Material::insulation:
       return 10;
@@ -265,6 +278,8 @@ std::string scene_fragment_shader(Material material) {
       return common + fat_material + tissue_lighting;
     case Material::peritoneum:
       return common + peritoneum_material + tissue_lighting;
+    case Material::artery:
+      return common + artery_material + tissue_lighting;
     case Material::steel:
       return common +
              "#define METAL vec3(0.60, 0.59, 0.57)\n#define EDGE 0.2\n#define BASE vec3(0.03)\n#define BRUSH "

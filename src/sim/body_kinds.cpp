@@ -7,9 +7,10 @@
 namespace calot {
 
 const std::vector<BodyKind>& body_kinds() {
-  static const std::vector<BodyKind> kinds = {{"pear", make_hollow_organ}, {"sphere", make_hollow_organ},
-                                              {"obj", make_hollow_organ},  {"tube", make_tube},
-                                              {"rigid", make_rigid_organ}, {"lobe", make_lobe}};
+  static const std::vector<BodyKind> kinds = {{"pear", make_hollow_organ},  {"sphere", make_hollow_organ},
+                                              {"swept", make_hollow_organ}, {"obj", make_hollow_organ},
+                                              {"tube", make_tube},          {"rigid", make_rigid_organ},
+                                              {"lobe", make_lobe}};
   return kinds;
 }
 

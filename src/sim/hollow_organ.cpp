@@ -24,6 +24,15 @@ Result<TriMesh> unstressed_mesh(const OrganDefinition& definition) {
       for (Vec3& p : mesh->points) p.z() += sphere->radius;
     return mesh;
   }
+  if (const auto* swept = std::get_if<SweptShape>(&definition.shape)) {
+    const SweptForm form(swept->along, definition.liver_side);
+    Result<TriMesh> mesh =
+        revolve(form.profile(), definition.nodes, [&](const Vec3& p) { return form.spacing(p); });
+    const Pose to_organ = organ_frame(definition).inverse();
+    if (mesh)
+      for (Vec3& p : mesh->points) p = to_organ * form.bent(p);
+    return mesh;
+  }
   const auto& pear = std::get<PearShape>(definition.shape);
   const Vec3 fundus(0, 0, pear.length);
   // Finer where the pear narrows, and within the radius of the fundus, fading out over another radius.
@@ -124,6 +133,15 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
   Eigen::AlignedBox3d box;
   for (const Vec3& p : skin) box.extend(frame.inverse() * p);
   std::map<std::string, Vec3> places;
+  if (const auto* swept = std::get_if<SweptShape>(&definition.shape)) {
+    const SweptForm form(swept->along, definition.liver_side);
+    for (const Landmark& row : landmark_rows())
+      if (has_landmark(definition.shape, row)) {
+        const double z = row.along * form.length();
+        places[row.name] = form.bent({row.side * form.radius(z), 0, z});
+      }
+    return places;
+  }
   for (const Landmark& row : landmark_rows()) {
     if (!has_landmark(definition.shape, row)) continue;
     const Vec3 share(0.5 * (1 + row.side), 0.5, row.along);

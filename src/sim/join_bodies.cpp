@@ -3,16 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/tri_mesh.h"
+#include "sim/skin_place.h"
 
 namespace calot {
+
+namespace {
+
+/// What is tied as it is drawn has to reach what it is tied to.
+std::optional<Failure> ends_nowhere(const JointDefinition& joint, const Vec3& end, const Organ& other) {
+  const double within = joint.radius + other.body->thickest();
+  const SkinFinder skin(*other.body, other.body->skin_rest());
+  if (!skin.nearest(end, within).place.points.empty()) return std::nullopt;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : other.body->skin_rest()) nearest = std::min(nearest, (p - end).norm());
+  return fail(
+      FailureKind::scenario,
+      fmt::format(
+          "{} ends nowhere: it lies {:.3g} mm from '{}', further than the joint's radius of {:.3g} mm",
+          joint.from, 1e3 * (nearest - other.body->thickest()), other.definition.name, 1e3 * joint.radius),
+      "draw it up to there, or raise the joint's radius");
+}
+
+}  // namespace
 
 Result<bool> add_joint(const JointDefinition& joint, bool at_rest, Field& field) {
   const auto [one, from] = find_landmark(field.organs, joint.from);  // both are known to be there
   const auto [other, to] = find_landmark(field.organs, joint.to);
   const Organ &first = field.organs[one], &second = field.organs[other];
   std::array<std::vector<Vec3>, 2> skins{first.body->skin_rest(), second.body->skin_rest()};
+  if (at_rest)
+    if (std::optional<Failure> failure = ends_nowhere(joint, skins[0][from], second)) return *failure;
   if (!at_rest)
     skins = {first.body->skin_positions(first.state.x), second.body->skin_positions(second.state.x)};
   Result<JointLinks> links = joint_links(*first.body, *second.body, skins, {one, other}, skins[0][from],

@@ -4,6 +4,7 @@
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
 #include "view/structure_mesh.h"
+#include "view/tissue_mesh.h"
 #include "view/vessels.h"
 
 namespace calot {
@@ -11,8 +12,11 @@ namespace {
 
 /// In the order of OrganShape.
 Material material_of(const OrganShape& shape) {
+  const auto* tube = std::get_if<TubeShape>(&shape);
+  if (tube != nullptr && tube->carries == Carries::blood) return Material::artery;
   constexpr std::array materials = {Material::gallbladder, Material::membrane, Material::gallbladder,
-                                    Material::membrane,    Material::steel,    Material::liver};
+                                    Material::gallbladder, Material::membrane, Material::fat,
+                                    Material::liver};
   return materials[shape.index()];
 }
 
@@ -61,6 +65,8 @@ Scene SceneBuilder::build(const World& world) const {
     mesh.normals = std::move(skin.normals);
     scene.meshes.push_back(std::move(mesh));
   }
+  if (SceneMesh tissue = tissue_mesh(world); !tissue.triangles.empty())
+    scene.meshes.push_back(std::move(tissue));
   for (const Organ& organ : world.field().organs) {
     if (!definition.laparoscope.show_structure || shell_of(organ) == nullptr) continue;
     for (SceneMesh& mesh : structure_meshes(draw_structure(*shell_of(organ), organ.state.x)))

@@ -35,11 +35,13 @@ std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
                                    [](const OrganDefinition& organ) { return is_hollow(organ.shape); });
   const Vec3 about =
       organ_frame(hollow != anatomy.organs.end() ? *hollow : anatomy.organs.front()).translation();
-  for (const GroundDefinition& ground : anatomy.ground) meshes.push_back(ground_mesh(ground, about));
+  // Where there is a lobe, what stays is bowel; else it stands for the liver.
+  const bool liver = std::any_of(anatomy.organs.begin(), anatomy.organs.end(), is_lobe);
+  for (const GroundDefinition& ground : anatomy.ground)
+    meshes.push_back(ground_mesh(ground, about, liver ? Material::peritoneum : Material::liver));
   if (anatomy.support) meshes.push_back(plane_mesh(anatomy.support->point, anatomy.support->normal, about));
   if (meshes.empty() && hollow != anatomy.organs.end()) {
-    if (std::none_of(anatomy.organs.begin(), anatomy.organs.end(), is_lobe))
-      meshes.push_back(liver_mesh(*hollow));
+    if (!liver) meshes.push_back(liver_mesh(*hollow));
     add(abdomen_meshes(*hollow));
   } else {
     meshes.push_back(abdominal_wall(meshes.empty() ? about : foot_of(anatomy, about)));

@@ -138,14 +138,14 @@ SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about) {
   });
 }
 
-SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about) {
+SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about, Material material) {
   if (ground.type == GroundType::plane) return plane_mesh(ground.point, ground.normal, about);
   // A capsule is swept, a box grown along the same directions: of a sheet over the sphere around both.
   const bool box = ground.type == GroundType::box;
   const Vec3 along = ground.to - ground.point, axis = along.norm() > 0 ? along.normalized() : Vec3::UnitZ();
   const Vec3 a = box ? Vec3::UnitX() : axis.unitOrthogonal(), b = box ? Vec3::UnitY() : axis.cross(a);
   const Vec3 c = box ? Vec3::UnitZ() : axis;
-  return sheet(Material::liver, 64, 48, [&](double u, double v) {
+  return sheet(material, 64, 48, [&](double u, double v) {
     const double lon = 2 * pi * u, lat = pi * v;  // runs so that its normals point outward
     const Vec3 d(std::sin(lat) * std::cos(lon), -std::sin(lat) * std::sin(lon), std::cos(lat));
     const Vec3 out = ground.radius * (d.x() * a + d.y() * b + d.z() * c);

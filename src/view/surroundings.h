@@ -18,8 +18,8 @@ std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ);
 
 /// A plane that carries organs as a moist drape of tissue around the foot of a place on it.
 SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about);
-/// What stays and is touched: planes as drapes, the rest as what it is.
-SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about);
+/// What stays and is touched: planes as drapes, the rest as it is, of a material.
+SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about, Material material);
 /// A dark wall far around a place.
 SceneMesh abdominal_wall(const Vec3& centre);
 

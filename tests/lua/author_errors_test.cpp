@@ -82,6 +82,11 @@ ScenarioText with_params(const std::string& params) {
   return text;
 }
 
+ScenarioText with_swept(const std::string& along, const std::string& more = "") {
+  return with_anatomy("{ organs = { { " + more + "\nshape = { type = 'swept', along = {\n" + along +
+                      "\n} } } } }");
+}
+
 std::vector<Mistake> mistakes() {
   const std::string whole_weight =
       "{ calot.score.benchmark { metric = 'total.time_s', novice = 2, expert = 1 }, weight = 1 }";
@@ -97,6 +102,20 @@ std::vector<Mistake> mistakes() {
       {"UnknownSceneKey", with_scene("return { anatomy = calot.anatomy('standard'),\n lapraoscope = {} }"),
        "lapraoscope", "unknown key", "laparoscope"},
       {"UnknownAnatomy", with_anatomy("calot.anatomy('standrad')"), "standrad", "unknown base", "standard"},
+      {"AxisThatFolds",
+       with_swept("{ at = { 0, 0, 0 }, radius = 8 * mm },\n { at = { 20 * mm, 0, 0 }, radius = 12 * mm },\n"
+                  " { at = { 22 * mm, 20 * mm, 0 }, radius = 8 * mm }"),
+       "radius = 12", "12 mm thick about it", "make the organ thinner there"},
+      {"AxisOfOnePlace",
+       with_swept(
+           "{ at = { 0, 0, 0 } },\n { at = { 0, 0, 0 }, radius = 4 * mm },\n { at = { 40 * mm, 0, 0 } }"),
+       "radius = 4", "at one place", "1 mm apart"},
+      {"AxisTooShortForItsEnds",
+       with_swept("{ at = { 0, 0, 0 }, radius = 9 * mm }, { at = { 16 * mm, 0, 0 }, radius = 9 * mm }"),
+       "along =", "too short for its round ends of 18 mm", "make it longer"},
+      {"AxisBesideItsNeck",
+       with_swept("{ at = { 0, 0, 0 } }, { at = { 40 * mm, 0, 0 } }", "\nneck = { 0, 0, 0 },"),
+       "neck =", "a swept organ's neck is an end of its axis", "leave neck out"},
       {"UnknownPort", with_instruments("{ left = {\n port = 'right_subcostel' } }"), "right_subcostel",
        "unknown port", "right_subcostal"},
       {"MissingPort", with_instruments("{\n left = { force_limit = 5 * N } }"), "left = {",

@@ -1,0 +1,301 @@
+-- The operating field of a cholecystectomy as data: what scene.anatomy takes, from a few lengths.
+--
+--   local anatomy = require "anatomy"
+--   scene = function() return { anatomy = anatomy.standard { cystic_duct_length = 12 * mm }, ... } end
+--
+-- Defaults and ranges of anatomy.standard's parameters (published: mean or usual value, range in brackets):
+--   gallbladder_length 80 mm (70 to 100), gallbladder_width 33 mm (30 to 40): doi 10.1155/2016/7201858
+--   fill_pressure 12 mmHg (10 to 15): common knowledge, uncalibrated
+--   cystic_duct_length 20 mm (20.6 +- 11.4, 6 to 55), cystic_duct_diameter 3.6 mm (3.2, 2 to 6):
+--     doi 10.4103/NJCA.NJCA_69_21
+--   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
+--   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
+--   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
+--   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
+--     moved there; node_diameter 5 mm; bed_stiffness;
+--     all strengths of tissue; where things lie beside each other: uncalibrated, no source gives them
+-- The gallbladder's pouch, its neck, and the course of duct and arteries are drawn by eye: uncalibrated.
+
+local calot = require "calot"
+local mm, kPa, mmHg = calot.units.mm, calot.units.kPa, calot.units.mmHg
+
+local anatomy = {}
+
+-- ---- points
+
+local function add(a, b, share)
+  share = share or 1
+  return { a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3] }
+end
+local function minus(a, b) return add(a, b, -1) end
+local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
+local function times(a, share) return { a[1] * share, a[2] * share, a[3] * share } end
+local function length(a) return math.sqrt(dot(a, a)) end
+local function unit(a) return times(a, 1 / length(a)) end
+local function cross(a, b)
+  return { a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1] }
+end
+
+--- A place at a share of the way along a line of points: anatomy.along(duct.shape.points, 0.3).
+function anatomy.along(points, share)
+  if share < 0 or share > 1 then error("a share of a way is 0 to 1, not " .. share, 2) end
+  local whole = 0
+  for k = 2, #points do whole = whole + length(minus(points[k], points[k - 1])) end
+  local left = share * whole
+  for k = 2, #points do
+    local way = minus(points[k], points[k - 1])
+    if left <= length(way) or k == #points then return add(points[k - 1], way, left / length(way)) end
+    left = left - length(way)
+  end
+end
+
+--- A line from one place to another that bows aside until it is as long as asked; straight where that is too short.
+local function bowed(from, to, long, aside)
+  local way = minus(to, from)
+  local straight = length(way)
+  -- Of a flat parabola: long = straight * (1 + 8/3 (rise / straight)^2).
+  local rise = straight * math.sqrt(math.max(0, 3 / 8 * (long / straight - 1)))
+  local out = {}
+  for k = 0, 4 do
+    local t = k / 4
+    out[#out + 1] = add(add(from, way, t), aside, 4 * t * (1 - t) * rise)
+  end
+  return out
+end
+
+-- ---- the frame of the bed, { towards the liver, to the patient's right and back, towards the fundus }
+
+-- As the first assistant exposes it: the fundus is up over the liver, which turns its underside to the laparoscope.
+local bed_neck, bed_fundus = { -50 * mm, 120 * mm, -112 * mm }, { -90 * mm, 156 * mm, -53 * mm }
+local liver_side = { 0.1, 0.75, -0.65 }
+local towards_fundus = unit(minus(bed_fundus, bed_neck))
+local towards_liver = unit(minus(liver_side, times(towards_fundus, dot(liver_side, towards_fundus))))
+local aside = cross(towards_fundus, towards_liver)
+
+--- A place in the bed's frame, in mm, as one of the patient's.
+local function place(x, y, z)
+  return add(add(add(bed_neck, towards_liver, x * mm), aside, y * mm), towards_fundus, z * mm)
+end
+local caudal, back = { 0, -1, 0 }, { 0, 0, -1 }
+
+-- ---- organs
+
+local defaults = {
+  gallbladder_length = 80 * mm,
+  gallbladder_width = 33 * mm,
+  fill_pressure = 12 * mmHg,
+  phrygian_cap = false,
+  cystic_duct_length = 20 * mm,
+  cystic_duct_diameter = 3.6 * mm,
+  common_duct_diameter = 6 * mm,
+  union = 0.38,
+  union_lies = { 0, 0, 0 },
+  cystic_artery_length = 17 * mm,
+  cystic_artery_diameter = 1.6 * mm,
+  second_cystic_artery = false,
+  hepatic_artery_near_neck = false,
+  node_diameter = 5 * mm,
+  assistant = true,
+  nodes = 200,
+  strands = 1,
+  strength = 1,
+}
+
+local function soft_wall(thickness) return { thickness = thickness, density = 1050 } end
+
+--- Places in the bed's frame, and radii, in mm. Its neck bends off its pouch towards the hilum.
+local function gallbladder(p)
+  local long, wide = p.gallbladder_length / (80 * mm), p.gallbladder_width / (33 * mm)
+  local along = {}
+  local function station(x, y, z, radius, refine)
+    along[#along + 1] = { at = place(x, y, z), radius = radius * mm, refine = refine }
+  end
+  station(-2, -23, 3, 2.6)
+  station(-5, -17, 3.5, 3.6)
+  station(-8, -10, 7.5, 6)
+  station(-9, -3.5, 14.5, 9)
+  station(-5.5, -0.5, 24, 10.2)
+  station(-1.5, 0, 36, 13.2 * wide)
+  station(0, 0, 36 + 13 * long, 16.4 * wide)
+  if p.phrygian_cap then -- the fundus folds over towards the free side
+    station(-1, 0, 36 + 26 * long, 15 * wide)
+    station(-8, 0, 36 + 38 * long, 10.5 * wide)
+    station(-21, 0, 36 + 44 * long, 10 * wide)
+  else
+    station(0, 0, 36 + 27 * long, 16.4 * wide)
+    station(0, 0, 36 + 44 * long, 15.5 * wide, 1.6)
+  end
+  local held = { { name = "bed", landmark = "bed", radius = 22 * mm, stiffness = 3e5, while_filled = true } }
+  if p.assistant then
+    held[2] = { name = "assistant", landmark = "fundus", radius = 13 * mm, stiffness = 2e6 }
+  end
+  return {
+    name = "gallbladder",
+    shape = { type = "swept", along = along },
+    liver_side = liver_side,
+    nodes = p.nodes,
+    wall = soft_wall(2 * mm),
+    bile = { fill_pressure = p.fill_pressure },
+    held = held,
+  }
+end
+
+local function tube(name, points, diameter, wall, held, more)
+  local shape = { type = "tube", points = points, radius = diameter / 2, nodes = 9 }
+  for key, value in pairs(more or {}) do shape[key] = value end
+  return { name = name, shape = shape, wall = soft_wall(wall), held = held }
+end
+
+--- The course of a duct or an artery by places relative to one, { left, head, front }, in mm.
+local function course(from, places)
+  local points = {}
+  for k, at in ipairs(places) do points[k] = add(from, at, mm) end
+  return points
+end
+
+local function joint(from, to, radius) return { from = from, to = to, radius = radius } end
+
+--- The anatomy of a standard field, or with other lengths: see the top of this file.
+function anatomy.standard(overrides)
+  local p = {}
+  for key, value in pairs(defaults) do p[key] = value end
+  for key, value in pairs(overrides or {}) do
+    if defaults[key] == nil then error('anatomy.standard has no parameter "' .. tostring(key) .. '"', 2) end
+    p[key] = value
+  end
+
+  local bladder = gallbladder(p)
+  local neck = bladder.shape.along[1].at
+
+  -- The common duct comes from the hilum and goes down in its ligament, behind the duodenum.
+  local line = course(neck, {
+    { 17, 30, -28 }, { 17, 16, -20 }, { 17, 3, -15 }, { 17, -10, -12 }, { 17, -28, -14 }, { 15, -70, -34 },
+  })
+  for k, share in ipairs { 0, 0, 0.6, 1, 0.6, 0 } do line[k] = add(line[k], p.union_lies, share) end
+  local common = tube("common_duct", line, p.common_duct_diameter, 1 * mm, {
+    { name = "hepatic", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
+    { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
+    { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
+  }, { nodes = 13, patient_end = "start" })
+  local union = anatomy.along(common.shape.points, p.union)
+
+  -- It leaves the neck without a step, and enters the common duct's side.
+  local enters = add(union, unit(minus(neck, union)), p.common_duct_diameter / 2)
+  local begins = add(neck, unit(minus(bladder.shape.along[2].at, neck)), 2.5 * mm)
+  local cystic = tube("cystic_duct", bowed(begins, enters, p.cystic_duct_length, unit(add(caudal, back, -0.4))),
+    5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
+
+  -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
+  local to_hilum = { { 6, 3.5, -14 }, { 4, 10, -26 } }
+  if p.hepatic_artery_near_neck then to_hilum = { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 } } end
+  local hepatic_artery = tube("right_hepatic_artery", course(neck, {
+    { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, { 17, 5, -23.5 }, table.unpack(to_hilum),
+  }), 3.4 * mm, 0.8 * mm, {
+    { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
+    { name = "ligament", landmark = "middle", radius = 14 * mm, stiffness = 5e4 },
+    { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
+  }, { nodes = 15, patient_end = "start", carries = "blood" })
+
+  local bed_width = math.max(35 * mm, 2 * p.gallbladder_width - 31 * mm)
+  local organs = { bladder, {
+    name = "liver", neck = bed_neck, fundus = bed_fundus, liver_side = liver_side,
+    shape = { type = "lobe", depth = 70 * mm, bed_length = 80 * mm, bed_width = bed_width },
+  }, common, cystic, hepatic_artery }
+  local joints = {
+    joint("cystic_duct.start", "gallbladder.neck", 4 * mm),
+    joint("cystic_duct.end", "common_duct.middle", 4 * mm),
+  }
+
+  local function cystic_artery(name, share, to)
+    local from = anatomy.along(hepatic_artery.shape.points, share)
+    local way = unit(minus(to, from))
+    local points = bowed(add(from, way, 1.7 * mm), to, p.cystic_artery_length, unit(add(towards_liver, aside, 0.5)))
+    organs[#organs + 1] =
+      tube(name, points, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start", carries = "blood" })
+    joints[#joints + 1] = joint(name .. ".start", "right_hepatic_artery.middle", 3 * mm)
+    joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
+  end
+  cystic_artery("cystic_artery", 0.82, place(-3.5, -13.5, 2))
+
+  -- The node lies between neck and artery, fast to the neck by all of its skin.
+  local radius = p.node_diameter / 2
+  local on_neck, outward = place(-1.4, -18, 3), unit(minus(place(1, -18, 2.5), place(-5, -18, 3.5)))
+  organs[#organs + 1] = { name = "cystic_node",
+    shape = { type = "rigid", rounding = radius, centre = add(on_neck, outward, radius + 0.8 * mm), density = 1050 } }
+  joints[#joints + 1] = joint("cystic_node.centre", "gallbladder.neck", 3 * radius)
+  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(-4, -9, 4.5)) end
+
+  return {
+    organs = organs,
+    joints = joints,
+    tissue = anatomy.tissue(p),
+    ground = {
+      { name = "duodenum", type = "capsule", point = add(neck, { -34 * mm, -60 * mm, -12 * mm }),
+        to = add(neck, { 60 * mm, -62 * mm, -6 * mm }), radius = 13 * mm },
+    },
+  }
+end
+
+--- What differs from the standard field, by name; how often it is seen, as published.
+anatomy.variants = {
+  short_cystic_duct = { cystic_duct_length = 9 * mm, union = 0.4, union_lies = { -9 * mm, 1 * mm, 6 * mm } }, -- 15 %
+  low_union = { union = 0.62, cystic_duct_length = 36 * mm }, -- 3 to 11 %
+  double_cystic_artery = { second_cystic_artery = true }, -- 13 %
+  hepatic_artery_near_neck = { hepatic_artery_near_neck = true }, -- "caterpillar turn"; uncalibrated
+  hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 20 * mmHg },
+  phrygian_cap = { phrygian_cap = true }, -- about 4 %
+}
+
+--- The standard field with what a variant changes, and then with what differs besides.
+function anatomy.variant(name, overrides)
+  local changes = anatomy.variants[name]
+  if changes == nil then
+    local names = {}
+    for known in pairs(anatomy.variants) do names[#names + 1] = known end
+    table.sort(names)
+    error('no variant "' .. tostring(name) .. '": there are ' .. table.concat(names, ", "), 2)
+  end
+  local all = {}
+  for key, value in pairs(changes) do all[key] = value end
+  for key, value in pairs(overrides or {}) do all[key] = value end
+  return anatomy.standard(all)
+end
+
+--- The standard field with lengths drawn from about the published ranges, as far as they fit this field, by the
+--- scenario's own random numbers (calot run --seed N): the same seed, the same patient.
+function anatomy.varied(overrides)
+  local function between(low, high) return low + (high - low) * math.random() end
+  local all = {
+    gallbladder_length = between(74, 88) * mm,
+    gallbladder_width = between(30, 35) * mm,
+    fill_pressure = between(10, 15) * mmHg,
+    cystic_duct_length = between(18, 28) * mm,
+    cystic_duct_diameter = between(2.6, 4.4) * mm,
+    common_duct_diameter = between(5, 6) * mm,
+    cystic_artery_diameter = between(1.2, 2) * mm,
+    second_cystic_artery = math.random() < 0.13,
+    phrygian_cap = math.random() < 0.04,
+  }
+  for key, value in pairs(overrides or {}) do all[key] = value end
+  return anatomy.standard(all)
+end
+
+--- The cystic plate and what fills the triangle. Nothing of it is calibrated.
+function anatomy.tissue(p)
+  local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
+  local function fat(name, from, to, within, strands, more)
+    local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
+      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength }
+    for key, value in pairs(more or {}) do out[key] = value end
+    return out
+  end
+  return {
+    { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2, strands = count(60),
+      slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength },
+    fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
+    fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
+    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),
+  }
+end
+
+return anatomy

@@ -1,0 +1,114 @@
+#include "view/tissue_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/field.h"
+#include "view/surfaces.h"
+
+namespace calot {
+namespace {
+
+constexpr double thinnest_lobule = 1.1e-3, thickest_lobule = 2.8e-3;  // lobules
+constexpr double torn_part = 0.3;  // of a strand's way that hangs on to either end after it is torn
+
+/// A number in [0, 1) that is the same in every picture.
+double share_of(std::size_t strand, int lobule, int which) {
+  const double x = 12.9898 * static_cast<double>(strand) + 78.233 * lobule + 37.719 * which;
+  const double y = 43758.5453 * std::sin(x);
+  return y - std::floor(y);
+}
+
+/// A ball with dents, about the origin, as thick as 1.
+const SceneMesh& ball() {
+  static const SceneMesh mesh = sheet(Material::fat, 10, 7, [](double u, double v) {
+    const double a = 2 * std::numbers::pi * u, b = std::numbers::pi * v;
+    const Vec3 out(std::sin(b) * std::cos(a), -std::sin(b) * std::sin(a), std::cos(b));
+    return Vec3((1 + 0.12 * std::sin(3 * out.x() + 4 * out.y()) * std::cos(3 * out.z())) * out);
+  });
+  return mesh;
+}
+
+struct StrandLine {
+  Vec3 from, by, to;  ///< m: its ends, and its own node
+  Vec3 at(double share) const {
+    return share < 0.5 ? Vec3(from + 2 * share * (by - from)) : Vec3(by + (2 * share - 1) * (to - by));
+  }
+};
+
+/// Stretched along the strand, as lobules are; the volume stays.
+void add_lobule(const StrandLine& line, double share, double radius, std::size_t strand, int lobule,
+                SceneMesh& out) {
+  const Vec3 way = line.to - line.from;
+  const Vec3 along = way.norm() > 0 ? way.normalized() : Vec3::UnitZ(), side = along.unitOrthogonal();
+  const double longer = 1.1 + 0.5 * share_of(strand, lobule, 0), turned = 6 * share_of(strand, lobule, 1);
+  const double thick = radius * (0.75 + 0.5 * share_of(strand, lobule, 2));
+  Mat3 shape;
+  shape.col(2) = thick * longer * along;
+  shape.col(0) = thick * (std::cos(turned) * side + std::sin(turned) * along.cross(side));
+  shape.col(1) = along.cross(shape.col(0)) * (0.7 + 0.3 * share_of(strand, lobule, 3));
+  const Vec3 off_line = 0.35 * (shape.col(0) + (share_of(strand, lobule, 4) - 0.5) * shape.col(1));
+  const Mat3 normal_shape = shape.inverse().transpose();
+  // Each shows another part of the pattern.
+  const Vec3 pattern =
+      11e-3 * Vec3(static_cast<double>(strand % 17), lobule, static_cast<double>(strand % 5));
+  const int first = static_cast<int>(out.positions.size());
+  const SceneMesh& form = ball();
+  for (std::size_t i = 0; i < form.positions.size(); ++i) {
+    out.positions.emplace_back(line.at(share) + off_line + shape * form.positions[i]);
+    out.normals.emplace_back((normal_shape * form.normals[i]).normalized());
+    out.rest_positions.emplace_back(pattern + radius * form.positions[i]);
+  }
+  for (const Triangle& t : form.triangles)
+    out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+Vec3 on_skin(const CarriedPlace& place, const std::vector<Vec3>& skin) {
+  Vec3 out = Vec3::Zero();
+  for (std::size_t i = 0; i < place.points.size(); ++i) out += place.weights[i] * skin[place.points[i]];
+  return out;
+}
+
+void add_tissue(const Tissue& tissue, const std::vector<std::vector<Vec3>>& skins, std::size_t first_strand,
+                SceneMesh& out) {
+  const auto& bodies = tissue.strands->bodies();
+  const std::vector<PlacedStrand>& strands = tissue.strands->strands();
+  for (std::size_t k = 0; k < strands.size(); ++k) {
+    const StrandLine line{on_skin(strands[k].one, skins[bodies[0]]),
+                          tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(k)),
+                          on_skin(strands[k].other, skins[bodies[1]])};
+    const StrandLaw::Setup& law = strands[k].strand.law.setup();
+    const double area = law.strength / tissue.definition.strength;
+    const double radius = std::clamp(0.6 * std::sqrt(area), thinnest_lobule, thickest_lobule);
+    const bool torn = strands[k].strand.law.torn(tissue.now.opened[k]);
+    // What was torn has drawn back to its ends.
+    const double now = std::max((line.to - line.from).norm(), law.taut);
+    const double drawn_back = torn ? 2 * torn_part * law.taut / now : 1.0;
+    const int lobules = std::max(1, static_cast<int>(std::lround(law.taut / (1.3 * radius))));
+    for (int i = 0; i < lobules; ++i) {
+      const double share = (i + 0.5) / lobules;
+      add_lobule(line, share < 0.5 ? drawn_back * share : 1 - drawn_back * (1 - share), radius,
+                 first_strand + k, i, out);
+    }
+  }
+}
+
+}  // namespace
+
+SceneMesh tissue_mesh(const World& world) {
+  SceneMesh out;
+  out.material = Material::fat;
+  const Field& field = world.field();
+  if (field.tissues.empty()) return out;
+  std::vector<std::vector<Vec3>> skins;
+  for (const Organ& organ : field.organs) skins.push_back(organ.body->skin_positions(organ.state.x));
+  std::size_t strands = 0;
+  for (const Tissue& tissue : field.tissues) {
+    add_tissue(tissue, skins, strands, out);
+    strands += tissue.strands->strands().size();
+  }
+  return out;
+}
+
+}  // namespace calot

@@ -1,0 +1,12 @@
+#pragma once
+// Connective tissue to look at: fat in lobules along its strands, which hang where the strands do and part where they tear.
+
+#include "render/scene.h"
+#include "sim/world.h"
+
+namespace calot {
+
+/// All tissue of a world as it is now; no triangles where there is none.
+SceneMesh tissue_mesh(const World& world);
+
+}  // namespace calot

@@ -1,0 +1,129 @@
+// The operating field that scripts/lua/anatomy.lua makes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "lua/scenario_files.h"
+#include "sim/field.h"
+#include "sim/world.h"
+#include "support/long_run.h"
+
+namespace calot {
+namespace {
+
+using test::Folder;
+using test::load_text;
+using units::mL;
+using units::mm;
+
+std::string field(const std::string& anatomy) {
+  test::ScenarioText text;
+  text.head = "local anatomy = require 'anatomy'\n";
+  text.scene = "return { anatomy = " + anatomy +
+               ",\n solver = { motion = 'dynamic' }, laparoscope = { look_at = 'cystic_duct.middle' },\n"
+               " instruments = { left = { port = 'right_lateral' } } }";
+  return text.text();
+}
+
+SceneDefinition scene_of(const std::string& anatomy) {
+  const Folder folder;
+  const auto loaded = load_text(folder, field(anatomy));
+  EXPECT_TRUE(loaded) << to_text(loaded.failure());
+  return loaded ? loaded.value()->definition().scene : SceneDefinition{};
+}
+
+/// m, the farthest that any point of an organ's skin is from where it was drawn.
+double moved(const Organ& organ) {
+  const std::vector<Vec3> now = organ.body->skin_positions(organ.state.x);
+  double most = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    most = std::max(most, (now[i] - organ.body->skin_rest()[i]).norm());
+  return most;
+}
+
+TEST(Anatomy, TheStandardFieldComesToRest) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole field");
+  Result<World> world = World::create(scene_of("anatomy.standard()"));
+  ASSERT_TRUE(world) << to_text(world.failure());
+  std::vector<Vec3> before;
+  for (const Organ& organ : world->field().organs) {
+    // As drawn, but for what weight and filling do to it; a gallbladder swells by its pressure.
+    EXPECT_LT(moved(organ), 7 * mm) << organ.definition.name;
+    before.push_back(organ.body->skin_positions(organ.state.x).front());
+  }
+  for (const Tissue& tissue : world->field().tissues) EXPECT_EQ(tissue.torn(), 0) << tissue.definition.name;
+  const double volume = world->report().organs[0].volume;
+  EXPECT_GT(volume, 25 * mL);  // what gallbladders hold
+  EXPECT_LT(volume, 80 * mL);
+  StepInput still;
+  for (const InstrumentState& tool : world->report().instruments) still.instruments.push_back(tool.pose);
+  for (int step = 0; step < 10; ++step) ASSERT_TRUE(world->step(still));
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const Organ& organ = world->field().organs[k];
+    EXPECT_LT((organ.body->skin_positions(organ.state.x).front() - before[k]).norm(), 0.05 * mm)
+        << organ.definition.name;
+  }
+}
+
+TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {
+  const std::vector<std::string> variants = {"short_cystic_duct",        "low_union", "double_cystic_artery",
+                                             "hepatic_artery_near_neck", "hydrops",   "phrygian_cap"};
+  const SceneDefinition standard = scene_of("anatomy.standard()");
+  for (const std::string& name : variants) {
+    const SceneDefinition scene = scene_of("anatomy.variant('" + name + "')");
+    bool same = scene.anatomy.organs.size() == standard.anatomy.organs.size();
+    for (std::size_t i = 0; same && i < scene.anatomy.organs.size(); ++i)
+      same = scene.anatomy.organs[i].shape == standard.anatomy.organs[i].shape;
+    EXPECT_FALSE(same) << name;
+  }
+}
+
+TEST(Anatomy, TheSameSeedIsTheSamePatient) {
+  const auto width = [](std::uint64_t seed) {
+    const Folder folder;
+    LoadOptions options;
+    options.seed = seed;
+    const auto loaded = load_text(folder, field("anatomy.varied()"), options);
+    EXPECT_TRUE(loaded) << to_text(loaded.failure());
+    return std::get<SweptShape>(loaded.value()->definition().scene.anatomy.organs[0].shape)
+        .along.back()
+        .radius;
+  };
+  EXPECT_EQ(width(3), width(3));
+  EXPECT_NE(width(3), width(4));
+}
+
+TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
+  for (const char* wrong : {"anatomy.standard { cystic_duct_lenght = 1 }", "anatomy.variant('low_onion')"}) {
+    const Folder folder;
+    const auto loaded = load_text(folder, field(wrong));
+    ASSERT_FALSE(loaded);
+    EXPECT_THAT(to_text(loaded.failure()),
+                ::testing::AnyOf(::testing::HasSubstr("no parameter \"cystic_duct_lenght\""),
+                                 ::testing::HasSubstr("no variant \"low_onion\"")));
+  }
+}
+
+TEST(Anatomy, ADuctThatEndsNowhereIsRefused) {
+  const Folder folder;
+  test::ScenarioText text = test::with_scene(
+      "return { anatomy = { organs = { { name = 'stone', shape = { type = 'rigid', centre = { 0, 0, -200 * "
+      "mm } } },\n"
+      " { name = 'duct', shape = { type = 'tube', points = { { 20 * mm, 0, -200 * mm }, { 50 * mm, 0, -200 * "
+      "mm } } },\n"
+      "   held = { { landmark = 'end' } } } },\n"
+      " joints = {\n { from = 'duct.start', to = 'stone.centre' } } },\n"
+      " laparoscope = { look_at = 'duct.end' } }");
+  const auto loaded = load_text(folder, text.text());
+  ASSERT_TRUE(loaded) << to_text(loaded.failure());
+  const Result<World> world = World::create(loaded.value()->definition().scene);
+  ASSERT_FALSE(world);
+  const Failure failure = loaded.value()->located(world.failure());
+  EXPECT_EQ(failure.problems[0].place.path, "scene.anatomy.joints[1]");
+  EXPECT_GT(failure.problems[0].place.line, 0);
+  EXPECT_THAT(to_text(failure), ::testing::HasSubstr("duct.start ends nowhere: it lies 15.1 mm from 'stone'"));
+}
+
+}  // namespace
+}  // namespace calot
