@@ -16,7 +16,8 @@ struct Part {
   NodeRange places;  ///< nodes whose coordinates are places
   NodeRange
       displacements;  ///< those of structural extensions, whose coordinates are added to them; may be empty
-  double length = 1;  ///< m, the body's size: the scale of an increment
+  double length = 1;     ///< m, the body's size: the scale of an increment
+  bool weighed = false;  ///< masses count and resist all its motions: it is held by nothing and yet no mechanism
 
   int nodes() const { return places.size() + displacements.size(); }
   /// Calls use(node) for each.

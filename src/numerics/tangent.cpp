@@ -1,5 +1,6 @@
 #include "numerics/tangent.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/timed.h"
@@ -24,8 +25,11 @@ NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Newton
                               NewtonResult& result) {
   FactorStatus status = work.factor.factorise(work.matrix);
   const Border& border = work.border;
-  const bool doubtful = status == FactorStatus::not_positive_definite ||
-                        (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12);
+  // Between a stiff joint and a strand of fat the condition is low without anything amiss.
+  const bool weighed = std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.weighed; });
+  const bool doubtful =
+      !weighed && (status == FactorStatus::not_positive_definite ||
+                   (status == FactorStatus::ok && work.factor.reciprocal_condition() < 1e-12));
   if (doubtful)
     if (const std::optional<int> loose =
             mechanism(work.matrix, border.gradients, border.compliances, x, parts)) {

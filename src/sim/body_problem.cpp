@@ -52,7 +52,8 @@ std::optional<BlockMatrix> BodyProblem::new_pattern(const BlockMatrix& present) 
 }
 
 std::vector<Part> BodyProblem::parts() const {
-  return {{{0, body_.coarse_nodes()}, {body_.coarse_nodes(), body_.nodes()}, body_.size()}};
+  const bool weighed = loads_.inertia != nullptr && body_.mass() != nullptr;
+  return {{{0, body_.coarse_nodes()}, {body_.coarse_nodes(), body_.nodes()}, body_.size(), weighed}};
 }
 
 double BodyProblem::cancelling() const { return fixed_pressure_ ? std::abs(multiplier_) * volume_ : 0.0; }

@@ -13,6 +13,7 @@ const PartLoad& load_on(const InstrumentState& tool, ToolPart part) {
 }
 
 TEST(PartLoads, OfJawsAndShaftMakeTheWholeAndGripsTellWhatTheyDo) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole gallbladder");
   test::FundusPath path(test::ball_scene());
   path.driver.watch = [](const StepReport& report) {
     const InstrumentState& tool = report.instruments[0];
@@ -66,6 +67,7 @@ TEST(PartLoads, AnElectrodeThatPressesFeelsItAtItsTip) {
 }
 
 TEST(PartLoads, AShaftThatLeansOnTheBellyIsNotTheTip) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole gallbladder");
   test::FundusPath path(test::grasper_scene());
   // Beside the organ and past its fundus, then across until the shaft lies against it.
   const auto beside = [&](double across) {

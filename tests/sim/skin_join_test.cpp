@@ -595,6 +595,7 @@ TEST(SkinJoin, AMatrixServesForManySteps) {
 }
 
 TEST(SkinJoin, AnOrganPushedByAToolPushesAnother) {
+  CALOT_SLOW_WHEN_SANITIZED("two organs and a tool");
   const Vec3 up = -Vec3::UnitZ();  // they hang
   Field field = test::make_field(test::held_ball(), 1e-6, up);
   OrganDefinition beside = test::ball(Vec3(40.5e-3, 0, 0));

@@ -323,6 +323,7 @@ TEST(Solid, ItsBedHasTheGallbladdersShape) {
 }
 
 TEST(Solid, ARodDentsItAndItComesBack) {
+  CALOT_SLOW_WHEN_SANITIZED("a rod on a lobe");
   SceneDefinition scene = test::scene_with(InstrumentType::bipolar_electrode);
   scene.anatomy = {};
   scene.anatomy.organs = {lobe()};
