@@ -1,15 +1,42 @@
+-- Calot's triangle exposed: the gallbladder's pouch is drawn to the side and downwards, so that the cystic duct stands
+-- off the common duct and the laparoscope sees what lies between them. An assistant holds the fundus up. The classic
+-- mistake is a parameter, traction = "cephalad": both ends pulled towards the head line the ducts up.
+
 local calot = require "calot"
 local anatomy = require "anatomy"
-local mm, s, N = calot.units.mm, calot.units.s, calot.units.N
+local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
+
+local function minus(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
+local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
+
+-- Calot's triangle: the gallbladder's neck, where cystic and common duct meet, and where the common duct leaves the
+-- liver.
+local function triangle(t)
+  return t:place("cystic_duct.start"), t:place("cystic_duct.end"), t:place("common_duct.start")
+end
+
+-- At the union, between the cystic duct and the common hepatic duct.
+local function angle_of_ducts(t)
+  local neck, union, hilum = triangle(t)
+  local a, b = minus(neck, union), minus(hilum, union)
+  return math.acos(dot(a, b) / math.sqrt(dot(a, a) * dot(b, b)))
+end
 
 return calot.exercise {
   api = 1,
   id = "exposure",
   title = "Expose Calot's triangle",
   time_limit = 60 * s,
+
   params = {
-    traction = { type = "choice", default = "lateral", choices = { "lateral", "cephalad" } },
+    traction = {
+      type = "choice",
+      default = "lateral",
+      choices = { "lateral", "cephalad" },
+      title = "how the demo draws the pouch: to the side, as an expert, or towards the head, the classic mistake",
+    },
   },
+
   scene = function()
     return {
       anatomy = anatomy.standard(),
@@ -19,21 +46,33 @@ return calot.exercise {
       solver = { motion = "dynamic" },
     }
   end,
+
   steps = function(t)
-    t:step("grasp", "Take the pouch", { limit = 15 * s })
+    t:step("grasp", "Take the gallbladder by its pouch", { limit = 15 * s })
     t:wait_until(function() return t.left:holds("gallbladder") end)
-    t:step("expose", "Open the triangle", { limit = 15 * s })
+
+    t:step("expose", "Draw it so that the triangle between the ducts is seen", { limit = 10 * s })
     t:wait(2.5 * s)
-    local a, b, c = t:place("cystic_duct.start"), t:place("cystic_duct.end"), t:place("common_duct.start")
-    t:note("seen_mm2", t:seen_area(a, b, c) * 1e6, "mm2")
+    t:note("triangle_seen_mm2", t:seen_area(triangle(t)) / mm ^ 2, "mm2")
+    t:note("angle_of_ducts_deg", angle_of_ducts(t) / deg, "degrees")
   end,
-  demo = function(t)
+
+  demo = function(t, p)
     t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 4 * mm })
     t.left:close()
-    t.left:move_by({ -20 * mm, -12 * mm, 8 * mm }, { speed = 15 * mm / s })
+    local way = p.traction == "lateral" and { -20 * mm, -12 * mm, 8 * mm } or { -4 * mm, 22 * mm, 8 * mm }
+    t.left:move_by(way, { speed = 15 * mm / s })
     t.left:wait(2 * s)
   end,
+
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "note.seen_mm2", novice = 20, expert = 100 }, weight = 1 },
+    { calot.score.benchmark { metric = "note.triangle_seen_mm2", novice = 60, expert = 120 }, weight = 0.5 },
+    { calot.score.benchmark { metric = "note.angle_of_ducts_deg", novice = 70, expert = 110 }, weight = 0.3 },
+    { calot.score.benchmark { metric = "left.peak_force_N", novice = 5, expert = 2.5 }, weight = 0.2 },
+    critical = { "overforce" },
+    cap = 40,
+    pass = 70,
   },
+
+  golden = { at = { 0, 5 * s } },
 }

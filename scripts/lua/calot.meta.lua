@@ -332,6 +332,13 @@ function Session:torn(tissue) end
 ---@return calot.point
 function Session:place(landmark) end
 
+---How much of a triangle the laparoscope sees past organs and instruments, m^2, across its line of sight: from its edge it is seen as none.
+---@param a calot.point a corner, {x, y, z} in m
+---@param b calot.point the next
+---@param c calot.point the last
+---@return number
+function Session:seen_area(a, b, c) end
+
 ---The t of steps = function(t, p): the operation's steps, what to wait for, what to measure.
 ---@class calot.Steps: calot.Session
 ---@field [string] calot.Instrument
