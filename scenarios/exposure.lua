@@ -48,10 +48,16 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    t:step("grasp", "Take the gallbladder by its pouch", { limit = 15 * s })
+    t:step("grasp", "Take the gallbladder by its pouch", {
+      limit = 15 * s,
+      hint = "Hartmann's pouch is the bulge before the neck: press on it with open jaws, and close them",
+    })
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
-    t:step("expose", "Draw it so that the triangle between the ducts is seen", { limit = 10 * s })
+    t:step("expose", "Draw it so that the triangle between the ducts is seen", {
+      limit = 10 * s,
+      hint = "to the patient's right and down: the cystic duct should stand across the common duct, not along it",
+    })
     t:wait(2.5 * s)
     t:note("triangle_seen_mm2", t:seen_area(triangle(t)) / mm ^ 2, "mm2")
     t:note("angle_of_ducts_deg", angle_of_ducts(t) / deg, "degrees")

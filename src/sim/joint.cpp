@@ -155,6 +155,25 @@ void Joint::begin(std::span<const GroupPlace> bodies) const {
   nodes_ = rows_.node;
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  find_tied();
+}
+
+void Joint::find_tied() const {
+  const std::size_t count = nodes_.size();
+  tied_.assign(count * count, 0.0);
+  for (std::size_t link = 0; link < links_.links.size(); ++link) {
+    if (links_.links[link].length > 0) continue;
+    std::vector<double> weights(count, 0.0);  // of the way from one place to the other
+    for (int k = 0; k < 2; ++k) {
+      const std::size_t row = 2 * link + static_cast<std::size_t>(k);
+      for (int e = rows_.begin[row]; e < rows_.begin[row + 1]; ++e)
+        weights[std::lower_bound(nodes_.begin(), nodes_.end(), rows_.node[e]) - nodes_.begin()] +=
+            k == 0 ? rows_.value[e] : -rows_.value[e];
+    }
+    for (std::size_t b = 0; b < count; ++b)
+      for (std::size_t a = b; weights[b] != 0 && a < count; ++a)
+        tied_[b * count + a] += links_.stiffness * weights[a] * weights[b];
+  }
 }
 
 Joint::Pull Joint::pull(std::size_t link, const VecX& x) const {
@@ -194,14 +213,18 @@ Vec3 Joint::force(const VecX& x) const {
 }
 
 void Joint::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  for (std::size_t b = 0; b < nodes_.size(); ++b)
+    for (std::size_t a = b; a < nodes_.size(); ++a)
+      if (const double tied = tied_[b * nodes_.size() + a]; tied != 0)
+        matrix.add(nodes_[a], nodes_[b], tied * Mat3::Identity());
   for (int row = 0; row < rows_.rows(); row += 2) {
     const auto link = static_cast<std::size_t>(row) / 2;
-    Mat3 h = links_.stiffness * Mat3::Identity();
-    if (const double length = links_.links[link].length; length > 0) {
-      const Pull at = pull(link, x);
-      const Vec3 along = at.arm / at.distance;
-      h -= links_.stiffness * length / at.distance * (Mat3::Identity() - along * along.transpose());
-    }
+    const double length = links_.links[link].length;
+    if (length == 0) continue;
+    const Pull at = pull(link, x);
+    const Vec3 along = at.arm / at.distance;
+    const Mat3 h = links_.stiffness *
+                   (Mat3::Identity() - length / at.distance * (Mat3::Identity() - along * along.transpose()));
     Eigen::Matrix<double, 12, 12> both = Eigen::Matrix<double, 12, 12>::Zero();
     both.block<3, 3>(0, 0) = both.block<3, 3>(3, 3) = h;
     both.block<3, 3>(0, 3) = both.block<3, 3>(3, 0) = -h;

@@ -69,11 +69,14 @@ class Joint : public Join {
   };
   Pull pull(std::size_t link, const VecX& x) const;
   Vec3 slope(std::size_t link, const VecX& x) const;
+  void find_tied() const;
 
   JointLinks links_;
   /// Two rows a link, in the group's numbering; none where a body is not in the group.
   mutable StencilTable rows_;
   mutable std::vector<int> nodes_;  ///< of all of them, increasing
+  /// N/m, of the ties, the same along all axes and wherever the nodes are: of nodes a >= b at b * nodes + a.
+  mutable std::vector<double> tied_;
   /// What they were made for.
   mutable std::array<int, 2> first_{-1, -1};
   mutable std::array<std::vector<int>, 2> details_;

@@ -4,6 +4,7 @@
 
 #include "app/program.h"
 #include "session/json.h"
+#include "support/long_run.h"
 #include "support/paths.h"
 
 namespace calot::test {
@@ -33,6 +34,21 @@ class MainScenario : public ProgramTest {
     return {};
   }
 };
+
+class Exposure : public MainScenario {};
+
+TEST_F(Exposure, TheClassicMistakeLinesTheDuctsUpAndFails) {
+  if (!long_run()) GTEST_SKIP() << "plays a whole pull in the field: half a minute";
+  const std::string scenario = source_dir() + "/scenarios/exposure.lua";
+  const Outcome outcome = calot({"run", scenario, "--param", "traction=cephalad", "--no-render", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json score = Json::parse(outcome.out)["score"];
+  EXPECT_TRUE(score["completed"].get<bool>());
+  EXPECT_FALSE(score["passed"].get<bool>());
+  const Json seen = part(score, "note.triangle_seen_mm2");
+  EXPECT_EQ(seen["points"], 0) << seen.dump();
+  EXPECT_NE(seen["explanation"].get<std::string>().find("no better than novice"), std::string::npos);
+}
 
 TEST_F(MainScenario, TellsThoseApartWhoNeverGraspPullTooHardOrLetGoEarly) {
   const std::string grasp = "t.left:approach('gallbladder.fundus')\n t.left:close()\n";
