@@ -217,11 +217,13 @@ function anatomy.standard(overrides)
   end
   cystic_artery("cystic_artery", 0.82, place(-3.5, -13.5, 2))
 
-  -- The node lies between neck and artery, fast to the neck by all of its skin.
+  -- The node lies between neck and artery, fast to the neck by all of its skin. It gives way as lymph nodes do (20 to
+  -- 80 kPa, uncalibrated): a stone there would cost the solver half of its time to turn.
   local radius = p.node_diameter / 2
   local on_neck, outward = place(-1.4, -18, 3), unit(minus(place(1, -18, 2.5), place(-5, -18, 3.5)))
   organs[#organs + 1] = { name = "cystic_node",
-    shape = { type = "rigid", rounding = radius, centre = add(on_neck, outward, radius + 0.8 * mm), density = 1050 } }
+    shape = { type = "rigid", rounding = radius, centre = add(on_neck, outward, radius + 0.8 * mm), density = 1050,
+      stiffness = 80 * kPa } }
   joints[#joints + 1] = joint("cystic_node.centre", "gallbladder.neck", 3 * radius)
   if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(-4, -9, 4.5)) end
 

@@ -63,12 +63,13 @@ struct TubeShape {
   bool operator==(const TubeShape&) const = default;
 };
 
-/// A rigid thing: a box with round edges, a ball where it has no size.
+/// A rigid thing, or one that strains alike everywhere: a box with round edges, a ball where it has no size.
 struct RigidShape {
   Vec3 size = Vec3::Zero();    ///< m, edges of the box without its rounding, along x, y and z
   double rounding = 5e-3;      ///< m, radius of the edges
   Vec3 centre = Vec3::Zero();  ///< m
   double density = 1500;       ///< kg/m^3; a gallstone sinks in bile (d)
+  double stiffness = 8e8;      ///< Pa, Young's modulus; 10 N across a stone of 10 mm strain it by 3e-4
   bool operator==(const RigidShape&) const = default;
 };
 

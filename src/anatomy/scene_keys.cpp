@@ -317,7 +317,10 @@ std::vector<KeyTable> shape_tables() {
            number("rounding", &RigidShape::rounding, quantity::length, 0.5 * mm, 50 * mm,
                   "a rigid thing's rounding", "radius of its edges, or of the ball"),
            place("centre", &RigidShape::centre, abdomen_reach, "a place in the abdomen", "where it is"),
-           number("density", &RigidShape::density, quantity::density, 100, 20000, "a density", "kg/m^3")}),
+           number("density", &RigidShape::density, quantity::density, 100, 20000, "a density", "kg/m^3"),
+           number("stiffness", &RigidShape::stiffness, quantity::pressure, 10 * kPa, 1e10,
+                  "a Young's modulus of a rigid thing",
+                  "a stone's is some 0.8 GPa, a lymph node's below 100 kPa; it strains alike everywhere")}),
       keys_of<LobeShape>(
           "shape_lobe",
           "A lobe of the liver, held at its back. Give it the neck, fundus and liver_side of the gallbladder "

@@ -21,6 +21,7 @@ namespace calot {
 class AffineBody {
  public:
   static constexpr int nodes = 4;
+  static constexpr double young_over_kappa = 8;
   using Coordinates = Eigen::Matrix<double, 12, 1>;  ///< x, y, z of node 0, then of node 1, ..., m
   using Hessian = Eigen::Matrix<double, 12, 12>;
 

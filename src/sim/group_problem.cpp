@@ -273,11 +273,12 @@ void GroupProblem::prepare(NewtonWorkspace& work) const {
     changed |= other_body || pattern.has_value();
   }
   // What had to be coupled and is apart again costs room in the factor, but a new one costs more.
-  constexpr std::size_t most_idle = 2;  // times as many groups as are near
-  std::vector<std::vector<int>> joined = cliques(false);
-  if (!changed && patterns_.joined.size() <= most_idle * joined.size() && holds(work.matrix, cliques(true)))
-    return;
-  patterns_.joined = std::move(joined);
+  constexpr std::size_t most_idle = 3;  // times as many groups as are close
+  if (!changed) {
+    const std::vector<std::vector<int>> close = cliques(true);
+    if (patterns_.joined.size() <= most_idle * close.size() && holds(work.matrix, close)) return;
+  }
+  patterns_.joined = cliques(false);
   work = NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined), kept_nodes());
 }
 

@@ -9,18 +9,11 @@
 #include "sim/body_kinds.h"
 
 namespace calot {
-namespace {
-
-/// Pa: 10 N across a stone of 10 mm distort it by 3e-4, and a turn of 1/20 in one step still costs less than its weight
-/// gives: stiffer ones take many short steps to roll to rest.
-constexpr double rigid_stiffness = 1e8;
-
-}  // namespace
-
 Result<RigidBody> RigidBody::create(const Setup& setup) {
   RigidBody body;
   body.setup_ = setup;
-  Result<AffineBody> affine = AffineBody::create(mesh_moments(setup.surface), rigid_stiffness);
+  Result<AffineBody> affine =
+      AffineBody::create(mesh_moments(setup.surface), setup.stiffness / AffineBody::young_over_kappa);
   if (!affine) return affine.failure();
   body.affine_ = std::move(affine).value();
   body.rest_ = body.affine_->placed();
@@ -123,7 +116,7 @@ Result<RestedOrgan> make_rigid_organ(const OrganDefinition& definition, const Or
   Result<RestedOrgan> made = organ_as_drawn(
       definition,
       RigidBody::create({definition.name, rounded_box(shape.size, shape.rounding, shape.centre, spacing),
-                         shape.density, setting.up}),
+                         shape.density, shape.stiffness, setting.up}),
       setting);
   if (made)
     for (const std::string& landmark : landmarks_of(definition.shape)) made->organ.landmarks[landmark] = 0;

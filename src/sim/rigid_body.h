@@ -1,6 +1,8 @@
 #pragma once
-// A rigid thing as a body: an affine one of four nodes, which its stiffness keeps a rotation of itself.
+// A rigid thing as a body: an affine one of four nodes, which its stiffness keeps a rotation of itself. A soft one strains
+// alike everywhere.
 
+#include "anatomy/definitions.h"
 #include "fem/affine.h"
 #include "geometry/tri_mesh.h"
 #include "sim/body.h"
@@ -13,6 +15,9 @@ class RigidBody : public Body {
     std::string name = "stone";
     TriMesh surface;     ///< m, closed, outward, where it is at rest
     double density = 0;  ///< kg/m^3
+    /// Pa, Young's modulus: a turn of 1/20 in one step of the solver still costs no more than weight gives. Stiffer ones
+    /// take many short steps to roll to rest, and so does tissue that turns them.
+    double stiffness = RigidShape{}.stiffness;
     Vec3 up = Vec3::UnitZ();
   };
   /// Fails (scenario) where the surface encloses nothing.
