@@ -1,6 +1,7 @@
--- Calot's triangle exposed: the gallbladder's pouch is drawn to the side and downwards, so that the cystic duct stands
--- off the common duct and the laparoscope sees what lies between them. An assistant holds the fundus up. The classic
--- mistake is a parameter, traction = "cephalad": both ends pulled towards the head line the ducts up.
+-- Calot's triangle exposed, the first act of the operation: one grasper takes the fundus and pushes it up over the
+-- liver's edge; another draws the pouch to the side and downwards, so that the cystic duct stands off the common duct and
+-- the laparoscope sees what lies between them. The classic mistake is a parameter, traction = "cephalad": both ends
+-- pulled towards the head line the ducts up.
 
 local calot = require "calot"
 local anatomy = require "anatomy"
@@ -8,6 +9,9 @@ local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.
 
 local function minus(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
 local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
+
+-- Where the fundus goes: towards the patient's right shoulder, over the liver.
+local up = { -0.33, 0.6, 0.73 }
 
 -- Calot's triangle: the gallbladder's neck, where cystic and common duct meet, and where the common duct leaves the
 -- liver.
@@ -29,6 +33,13 @@ return calot.exercise {
   time_limit = 60 * s,
 
   params = {
+    field = {
+      type = "choice",
+      default = "standard",
+      choices = { "standard", "short_cystic_duct", "low_union", "double_cystic_artery", "hepatic_artery_near_neck",
+        "hydrops", "phrygian_cap" },
+      title = "the patient's anatomy",
+    },
     traction = {
       type = "choice",
       default = "lateral",
@@ -37,17 +48,31 @@ return calot.exercise {
     },
   },
 
-  scene = function()
+  scene = function(p)
+    local own = { assistant = false }
     return {
-      anatomy = anatomy.standard(),
+      anatomy = p.field == "standard" and anatomy.standard(own) or anatomy.variant(p.field, own),
       ports = { scope = { -40 * mm, 20 * mm, 10 * mm } },
-      instruments = { left = { port = "right_lateral", force_limit = 5 * N } },
-      laparoscope = { port = "scope", angle = 0, look_at = "cystic_duct.start", distance = 105 * mm },
+      instruments = {
+        fundus = { port = "right_lateral", force_limit = 5 * N },
+        left = { port = "right_subcostal", force_limit = 5 * N },
+      },
+      laparoscope = { port = "scope", angle = 0, look_at = "gallbladder.infundibulum", distance = 120 * mm },
       solver = { motion = "dynamic" },
     }
   end,
 
   steps = function(t)
+    t:step("lift", "Take the fundus and push it up over the liver's edge", {
+      limit = 20 * s,
+      hint = "the fundus is the round end away from the ducts: close the jaws on a fold of it and push it towards the "
+        .. "patient's right shoulder, until the gallbladder's underside is seen",
+    })
+    local hung = t:place("gallbladder.fundus")
+    t:wait_until(function()
+      return t.fundus:holds("gallbladder") and dot(minus(t:place("gallbladder.fundus"), hung), up) > 15 * mm
+    end)
+
     t:step("grasp", "Take the gallbladder by its pouch", {
       limit = 15 * s,
       hint = "Hartmann's pouch is the bulge before the neck: press on it with open jaws, and close them",
@@ -64,21 +89,25 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
+    t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
+    t.fundus:close()
+    t.fundus:move_by({ -9 * mm, 17 * mm, 20 * mm }, { speed = 20 * mm / s })
     t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 4 * mm })
     t.left:close()
-    local way = p.traction == "lateral" and { -20 * mm, -12 * mm, 8 * mm } or { -4 * mm, 22 * mm, 8 * mm }
+    local way = p.traction == "lateral" and { -18 * mm, -11 * mm, 7 * mm } or { -4 * mm, 22 * mm, 8 * mm }
     t.left:move_by(way, { speed = 15 * mm / s })
     t.left:wait(2 * s)
   end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "note.triangle_seen_mm2", novice = 60, expert = 120 }, weight = 0.5 },
-    { calot.score.benchmark { metric = "note.angle_of_ducts_deg", novice = 70, expert = 110 }, weight = 0.3 },
-    { calot.score.benchmark { metric = "left.peak_force_N", novice = 5, expert = 2.5 }, weight = 0.2 },
+    { calot.score.benchmark { metric = "note.triangle_seen_mm2", novice = 60, expert = 120 }, weight = 0.4 },
+    { calot.score.benchmark { metric = "note.angle_of_ducts_deg", novice = 90, expert = 120 }, weight = 0.3 },
+    { calot.score.benchmark { metric = "left.peak_force_N", novice = 5, expert = 3 }, weight = 0.2 },
+    { calot.score.penalty { event = "slip", each = 0.5 }, weight = 0.1 },
     critical = { "overforce" },
     cap = 40,
     pass = 70,
   },
 
-  golden = { at = { 0, 5 * s } },
+  golden = { at = { 0, 2.8 * s, 4.2 * s, 6.4 * s, 9 * s } },
 }
