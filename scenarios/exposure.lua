@@ -1,6 +1,6 @@
 -- Calot's triangle exposed, the first act of the operation: one grasper takes the fundus and pushes it up over the
--- liver's edge; another draws the pouch to the side and downwards, so that the cystic duct stands off the common duct and
--- the laparoscope sees what lies between them. The classic mistake is a parameter, traction = "cephalad": both ends
+-- liver's edge; another draws the pouch to the side and downwards, so that the cystic duct stands off the common duct
+-- and the laparoscope sees what lies between them. The classic mistake is a parameter, traction = "cephalad": both ends
 -- pulled towards the head line the ducts up.
 
 local calot = require "calot"
