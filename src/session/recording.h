@@ -6,7 +6,8 @@
 //               "rate_Hz":50,"instruments":["left"],"mode":"practice","toolchain":...,"instruction_set":...,"mathematics":...,
 //               "state_hash":...}
 //   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"actions":["activate",...],
-//               "state_hash":"..."}   (rad, m; actions where an instrument acts, "none" for one that does not)
+//               "laparoscope":[pitch,yaw,insertion,roll],"state_hash":"..."}
+//              (rad, m; actions where an instrument acts, "none" for one that does not; the laparoscope where it moves)
 //   then       {"measured":{"exercise_hash":...,"metrics":{...},"steps":[...],"events":[...],"noted":[...],"notes":[...]}}
 //   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before)
 //

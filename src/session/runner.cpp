@@ -108,6 +108,7 @@ class Session {
       return false;
     } else {
       input_.actions.clear();  // poses are held, pedals are not
+      input_.laparoscope.reset();
     }
     return true;
   }

@@ -29,6 +29,36 @@ LaparoscopePose laparoscope_pose(const LaparoscopeDefinition& scope, const Vec3&
   return out;
 }
 
+InstrumentGeometry laparoscope_geometry() {
+  InstrumentGeometry geometry;
+  geometry.shaft_radius = 5e-3;
+  geometry.jaw_length = geometry.jaw_opening = 0;
+  geometry.fenestrated = false;
+  return geometry;
+}
+
+Laparoscope::Laparoscope(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target)
+    : port_(port), stands_(laparoscope_pose(scope, port, target)) {
+  const Vec3 shaft = stands_.position - port;
+  const bool inside = shaft.dot(target - port) > 0;
+  start_ = pose_reaching(port, inside ? stands_.position : Vec3(port - shaft), 0, 0, laparoscope_geometry());
+  const Mat3 to_tip = hinge_frame(port, start_, laparoscope_geometry()).linear().transpose();
+  along_ = to_tip * stands_.direction;
+  level_up_ = to_tip * stands_.up;
+}
+
+LaparoscopePose Laparoscope::view(const InstrumentPose& pose) const {
+  if (pose == start_) return stands_;
+  const Pose tip = hinge_frame(port_, pose, laparoscope_geometry());
+  LaparoscopePose view;
+  view.position = tip.translation();
+  view.direction = tip.linear() * along_;
+  const Vec3 across = view.direction.cross(Vec3::UnitZ());
+  // Straight up or down there is no horizon: the camera turns with the shaft.
+  view.up = across.norm() > 1e-6 ? across.cross(view.direction).normalized() : Vec3(tip.linear() * level_up_);
+  return view;
+}
+
 namespace {
 
 /// What may stand between an eye and places on a triangle.
@@ -102,13 +132,17 @@ class Sight {
 
 }  // namespace
 
-double seen_area(const Field& field, const Vec3& eye, const std::array<Vec3, 3>& corners, double margin) {
+double seen_area(const Field& field, const LaparoscopePose& lens, double field_of_view,
+                 const std::array<Vec3, 3>& corners, double margin) {
   const Vec3 area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  const Sight sight(field, eye, corners);
+  const Sight sight(field, lens.position, corners);
+  const double least_cosine = std::cos(0.5 * field_of_view);
   double sum = 0;
   for (const Vec3& weights : contact_rule) {
     const Vec3 place = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-    if (sight.sees(place, margin)) sum += std::abs(area.dot((place - eye).normalized()));
+    const Vec3 along = (place - lens.position).normalized();
+    if (along.dot(lens.direction) >= least_cosine && sight.sees(place, margin))
+      sum += std::abs(area.dot(along));
   }
   return sum / static_cast<double>(contact_rule.size());
 }
