@@ -223,7 +223,9 @@ void add_page(Program& program) {
       .add_option("--benchmarks", page.benchmarks,
                   "a Lua table of novice's and expert's figures, used instead of the exercise's own")
       ->type_name("FILE");
-  command.add_flag("--no-pictures", page.no_pictures, "draw no pictures, which takes about half of the time");
+  command.add_flag(
+      "--no-pictures", page.no_pictures,
+      "draw no pictures; what a recording holds is then not played again, and forces are not shown");
   command.add_option("-j,--jobs", page.jobs, "recordings played at once; the page does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, most_threads))

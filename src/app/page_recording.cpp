@@ -7,6 +7,7 @@
 #include "app/page_plots.h"
 #include "app/score_tables.h"
 #include "page/html.h"
+#include "session/live.h"
 #include "session/metrics.h"
 #include "session/progress_json.h"
 
@@ -149,6 +150,22 @@ void add_facts(const OrderedJson& entry, const Watched& watched, PageRecording& 
 
 }  // namespace
 
+Watched held_by(const Recording& recording, const ExerciseDefinition& exercise) {
+  Watched watched{{}, PageMoments(error_kinds(exercise)), {}, false};
+  watched.played.exercise = exercise;
+  watched.played.session.progress = recording.measured->progress;
+  Traces& traces = watched.played.session.traces;
+  const std::vector<LiveInstrument> instruments = live_instruments(exercise.scene);
+  traces.instruments.resize(exercise.scene.instruments.size());
+  for (const RecordedStep& step : recording.steps) {
+    traces.time.push_back(step.time);
+    for (std::size_t i = 0; i < traces.instruments.size(); ++i)
+      traces.instruments[i].emplace_back().tip =
+          tip_position(instruments[i].trocar, step.input.instruments[i], instruments[i].geometry);
+  }
+  return watched;
+}
+
 PageRecording page_recording(const OrderedJson& entry, const Watched& watched, const std::string& prefix) {
   PageRecording page;
   page.prefix = prefix;
@@ -161,6 +178,7 @@ PageRecording page_recording(const OrderedJson& entry, const Watched& watched, c
   page.pictures = watched.moments.pictures;
   page.pictures_left_out = watched.moments.left_out;
   page.drawn = watched.played.rendered;
+  page.simulated = watched.simulated;
   page.plots = page_plots(watched.played.exercise.scene, watched.played.session.traces);
   add_facts(entry, watched, page);
   return page;

@@ -87,7 +87,8 @@ struct PageRecording {
   std::vector<PageEvent> events;
   std::size_t events_left_out = 0;
   std::vector<PagePicture> pictures;
-  bool drawn = true;  ///< pictures were asked for
+  bool drawn = true;      ///< pictures were asked for
+  bool simulated = true;  ///< again: else forces are not known
   std::size_t pictures_left_out = 0;
   std::vector<PagePlot> plots;
   std::vector<PageFact> parameters, metrics, noted;

@@ -144,7 +144,8 @@ std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
   fields.expect_no_others();
   const SessionEnd ends[] = {SessionEnd::steps_done, SessionEnd::time_limit, SessionEnd::source_ended,
                              SessionEnd::interrupted, SessionEnd::failed};
-  if (std::none_of(std::begin(ends), std::end(ends), [&](SessionEnd known) { return to_text(known) == end; }))
+  if (end != cut_end &&
+      std::none_of(std::begin(ends), std::end(ends), [&](SessionEnd known) { return to_text(known) == end; }))
     problems.push_back(fmt::format("a session does not end as \"{}\"", end));
   return end;
 }
@@ -235,9 +236,15 @@ class Reader {
 
 }  // namespace
 
+bool came_to_its_end(const std::string& end) {
+  return !end.empty() && end != cut_end && end != to_text(SessionEnd::interrupted) &&
+         end != to_text(SessionEnd::failed);
+}
+
 std::optional<std::string> cut_note(const Recording& recording) {
-  if (!recording.end.empty()) return std::nullopt;
-  return fmt::format("the recording has no end: it was cut, and stops at step {} ({:.3f} s)",
+  if (!recording.end.empty() && recording.end != cut_end) return std::nullopt;
+  return fmt::format("the recording {}: it was cut, and stops at step {} ({:.3f} s)",
+                     recording.end.empty() ? "has no end" : "is played from one without an end",
                      recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);
 }
 

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <turbojpeg.h>
 
 #include "app/page_moments.h"
 #include "app/program.h"
 #include "session/json.h"
+#include "session/recording.h"
 
 namespace calot::test {
 namespace {
@@ -92,6 +94,61 @@ TEST_F(PageOfSmall, IsNotWrittenWhereNothingIsScoredNorOverARecording) {
   EXPECT_EQ(slurp(folder_ / "out" / "recording.jsonl"), text_);
   fs::create_directories(folder_ / "empty");
   EXPECT_EQ(calot({"page", "empty"}).code, 5);
+}
+
+std::string from_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned held = 0;
+  int bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    held = held << 6 | static_cast<unsigned>(digits.find(c));
+    if ((bits += 6) < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>(held >> bits & 0xff);
+  }
+  return bytes;
+}
+
+TEST_F(PageOfSmall, ItsPicturesAreWholeAndAsLargeAsItSays) {
+  ASSERT_EQ(calot({"page", "out/recording.jsonl"}).code, 0);
+  const std::string html = slurp(folder_ / "out" / "recording.html"), start = "src=\"data:image/jpeg;base64,";
+  const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
+  int pictures = 0;
+  for (std::size_t at = html.find(start); at != std::string::npos;
+       at = html.find(start, at + 1), ++pictures) {
+    const std::size_t begin = at + start.size();
+    std::string bytes = from_base64(html.substr(begin, html.find('"', begin) - begin));
+    std::vector<unsigned char> rgb(640 * 360 * 3);
+    EXPECT_EQ(tjDecompress2(decoder.get(), reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(),
+                            rgb.data(), 640, 0, 360, TJPF_RGB, TJFLAG_STOPONWARNING),
+              0)
+        << tjGetErrorStr2(decoder.get());
+  }
+  EXPECT_EQ(pictures, 2);
+}
+
+TEST_F(PageOfSmall, WithoutPicturesWhatARecordingHoldsIsNotPlayedAgain) {
+  const std::string file = (folder_ / "other.jsonl").string();
+  Recording recording = read_recording((folder_ / "out" / "recording.jsonl").string()).value();
+  recording.steps[3].state_hash = 1;  // who plays it notices
+  {
+    Result<RecordingWriter> writer = RecordingWriter::create(file, recording.header);
+    for (const RecordedStep& step : recording.steps) ASSERT_TRUE(writer->write(step));
+    ASSERT_TRUE(writer->write(*recording.measured) && writer->finish(recording.end));
+  }
+  const auto page = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"page", "other.jsonl", "-o", "p.html"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(calot(words).code, 0);
+    return slurp(folder_ / "p.html");
+  };
+  EXPECT_THAT(page({}), HasSubstr("The replay parts from the recording at step 4"));
+  const std::string html = page({"--no-pictures"});
+  EXPECT_THAT(html, Not(HasSubstr("parts from")));
+  EXPECT_THAT(html, HasSubstr("Way of the tip"));
+  EXPECT_THAT(html, HasSubstr("Forces are known only where the recording is played again"));
 }
 
 /// Asks as a session does, and draws a small picture where that is wanted.
