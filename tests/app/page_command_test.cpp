@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <turbojpeg.h>
 
+#include "app/browser.h"
 #include "app/page_moments.h"
 #include "app/program.h"
 #include "session/json.h"
 #include "session/recording.h"
+#include "support/long_run.h"
 
 namespace calot::test {
 namespace {
@@ -127,6 +129,41 @@ TEST_F(PageOfSmall, ItsPicturesAreWholeAndAsLargeAsItSays) {
         << tjGetErrorStr2(decoder.get());
   }
   EXPECT_EQ(pictures, 2);
+}
+
+TEST_F(PageOfSmall, ABrowserFindsNothingBrokenAndAsksForNothingElse) {
+  if (!long_run()) GTEST_SKIP() << "left to scripts/test --long: it takes a browser of 300 MB";
+  Browser browser(folder_ / "browser");
+  ASSERT_TRUE(browser.is_there()) << "no chromium, which scripts/test --long installs";
+  spill(folder_ / "cut.jsonl", text_.substr(0, text_.size() / 2));
+  EXPECT_EQ(calot({"page", "out/recording.jsonl", "cut.jsonl", "-o", "p.html"}).code, 1);
+  const std::string html = slurp(folder_ / "p.html");
+  const char* look = R"((() => {
+    const broken = [...document.images].filter(i => !(i.complete && i.naturalWidth === 640)).length;
+    const links = [...document.querySelectorAll('a')].map(a => a.getAttribute('href'));
+    const lost = links.filter(l => !l.startsWith('#') || !document.getElementById(l.slice(1)));
+    const wide = document.documentElement.scrollWidth > window.innerWidth;
+    return { images: document.images.length, links: links.length, broken, lost, wide };
+  })())";
+  const Opened whole = browser.open(folder_ / "p.html", look);
+  ASSERT_TRUE(whole.loaded);
+  EXPECT_THAT(whole.requests, testing::IsEmpty());
+  EXPECT_THAT(whole.said, testing::IsEmpty());
+  EXPECT_GE(whole.found["images"], 3) << whole.found;
+  EXPECT_GE(whole.found["links"], 10);
+  EXPECT_EQ(whole.found["broken"], 0);
+  EXPECT_EQ(whole.found["lost"], Json::array());
+  EXPECT_EQ(whole.found["wide"], false) << "it scrolls sideways";
+
+  // What this looks for would be found.
+  std::string worse = html;
+  worse.replace(worse.find("base64,/9j/") + 7, 4, "AAAA");
+  worse.replace(worse.find("<h1"), 0, "<img src=\"https://127.0.0.1:1/x.png\"><a href=\"#nowhere\">x</a>");
+  spill(folder_ / "worse.html", worse);
+  const Opened found = browser.open(folder_ / "worse.html", look);
+  EXPECT_EQ(found.found["broken"], 2) << found.found;
+  EXPECT_EQ(found.found["lost"], Json({"#nowhere"}));
+  EXPECT_FALSE(found.said.empty()) << "a picture from elsewhere is refused, and that is said";
 }
 
 TEST_F(PageOfSmall, WithoutPicturesWhatARecordingHoldsIsNotPlayedAgain) {
