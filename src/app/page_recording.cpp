@@ -57,7 +57,8 @@ void add_steps(const Watched& watched, PageRecording& page) {
   const std::vector<StepRecord>& steps = watched.played.session.progress.steps();
   for (std::size_t i = 0; i < steps.size(); ++i)
     page.steps.push_back({steps[i].name, steps[i].title, steps[i].outcome, steps[i].started, steps[i].ended,
-                          picture(watched.moments.step_begins, i), picture(watched.moments.step_ends, i)});
+                          picture(watched.moments.step_begins, i), picture(watched.moments.step_ends, i),
+                          steps[i].hint});
 }
 
 /// Those at these times that `is_meant` takes: where the replay has other events than the recording, none.
@@ -112,6 +113,28 @@ void add_score(const OrderedJson& entry, PageRecording& page) {
     page.score.critical.push_back(
         {event, critical["cap"].get<double>(),
          events_at(critical["times_s"], page, [&](const PageEvent& found) { return found.kind == event; })});
+  }
+}
+
+/// The step that a metric is of, or in which it was noted; none of those of the whole session.
+PageStep* step_of(const std::string& metric, const Progress& progress, PageRecording& page) {
+  const std::size_t dot = metric.find('.');
+  std::string name = metric.substr(0, dot);
+  for (const Note& note : progress.notes())
+    if (metric == "note." + note.name) name = note.step;
+  const auto found = std::find_if(page.steps.begin(), page.steps.end(),
+                                  [&](const PageStep& step) { return step.name == name; });
+  return found == page.steps.end() ? nullptr : &*found;
+}
+
+void add_points_to_steps(const OrderedJson& entry, const Watched& watched, PageRecording& page) {
+  for (const OrderedJson& part : entry["score"]["parts"]) {
+    if (!part["benchmark"].contains("metric")) continue;
+    PageStep* const step =
+        step_of(part["benchmark"]["metric"].get<std::string>(), watched.played.session.progress, page);
+    if (step == nullptr) continue;
+    step->points += part["points"].get<double>();
+    step->most += 100 * part["weight"].get<double>();
   }
 }
 
@@ -174,6 +197,7 @@ PageRecording page_recording(const OrderedJson& entry, const Watched& watched, c
   add_events(watched, page);
   add_steps(watched, page);
   add_score(entry, page);
+  add_points_to_steps(entry, watched, page);
   add_warnings(entry, watched, page);
   page.pictures = watched.moments.pictures;
   page.pictures_left_out = watched.moments.left_out;

@@ -144,11 +144,30 @@ class Section {
            "</div>\n";
   }
 
+  /// How it is done, to who has not done it well.
+  static std::string what_is_asked(const PageStep& step) {
+    if (step.hint.empty() || (step.outcome == "done" && !(step.points < step.most)))
+      return escaped(step.title);
+    return fmt::format("{}<br><span class=\"soft\">{}</span>", escaped(step.title), escaped(step.hint));
+  }
+
+  /// A step that only takes its time is done however it was done: its points say more.
+  static std::string outcome(const PageStep& step) {
+    const bool done = step.outcome == "done";
+    return done && step.most > 0 ? escaped(step.outcome) : verdict_html(step.outcome, done);
+  }
+
+  static std::string points(const PageStep& step) {
+    if (!(step.most > 0)) return {};
+    return verdict_html(fmt::format("{:.1f} of {:.1f}", step.points, step.most),
+                        2 * step.points >= step.most);
+  }
+
   std::string steps() const {
     HtmlTable table;
     table.caption = "Steps of the exercise";
-    table.heads = {"step", "what is asked", "begins", "ends", "takes", "outcome", "see"};
-    table.numbers = "llrrrll";
+    table.heads = {"step", "what is asked", "begins", "ends", "takes", "outcome", "points", "see"};
+    table.numbers = "llrrrlll";
     for (std::size_t i = 0; i < recording_.steps.size(); ++i) {
       const PageStep& step = recording_.steps[i];
       std::string see;
@@ -157,8 +176,8 @@ class Section {
         see += (see.empty() ? "" : ", ") + picture_link(*step.end_picture);
       table.rows.push_back(
           {fmt::format(" id=\"{}step-{}\"", prefix_, i + 1),
-           {escaped(step.name), escaped(step.title), seconds(step.started), seconds(step.ended),
-            seconds(step.ended - step.started), verdict_html(step.outcome, step.outcome == "done"), see}});
+           {escaped(step.name), what_is_asked(step), seconds(step.started), seconds(step.ended),
+            seconds(step.ended - step.started), outcome(step), points(step), see}});
     }
     return head("steps", "Steps") + (table.rows.empty() ? "<p>None was begun.</p>\n" : calot::html(table));
   }

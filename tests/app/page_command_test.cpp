@@ -22,7 +22,10 @@ class PageOfSmall : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    std::string text = small_scenario("t:step('move', '<script>alert(1)</script>'); t:wait(0.2 * s)");
+    std::string text = small_scenario(
+        "t:step('move', '<script>alert(1)</script>', { hint = 'Gently' }); t:note('seen', 3); t:wait(0.2 * "
+        "s)");
+    text.replace(text.find("left.path_length_mm"), 19, "note.seen");
     text.replace(text.find("A small exercise"), 16, "<script>alert(2)</script>");
     spill(folder_ / "small.lua", text);
     static std::string recording;  // played once for all tests
@@ -55,6 +58,9 @@ TEST_F(PageOfSmall, HasItsScoreAndPicturesWhereStepsBeginAndEndAndNoForeignMarku
               HasSubstr(fmt::format("<b>{:.1f}</b> of 100 points", score["score"]["total"].get<double>())));
   EXPECT_THAT(html, HasSubstr("uncalibrated"));
   EXPECT_THAT(html, HasSubstr("id=\"picture-2\"><img src=\"data:image/jpeg;base64,/9j/"));
+  EXPECT_THAT(html, HasSubstr("85.0 of 100.0"))
+      << "what was noted in the step, from 20 to 0, counts as the step's";
+  EXPECT_THAT(html, HasSubstr("Gently")) << "points were lost";
   EXPECT_THAT(html, Not(HasSubstr("id=\"picture-3\""))) << "one where the step begins, one where it ends";
   EXPECT_THAT(html, Not(HasSubstr("<script")));
   EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(1)"));
