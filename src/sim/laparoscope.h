@@ -1,13 +1,9 @@
 #pragma once
-// Where a laparoscope is, and what it sees.
-
-#include <array>
+// Where a laparoscope is, and where it looks.
 
 #include "sim/instrument.h"
 
 namespace calot {
-
-struct Field;
 
 struct LaparoscopePose {
   Vec3 position = Vec3::Zero();                        ///< m, of the lens
@@ -44,11 +40,5 @@ class Laparoscope {
   Vec3 along_ = Vec3::UnitZ(),
        level_up_ = Vec3::UnitX();  ///< the view and its upward direction, in the tip's frame
 };
-
-/// How much of a triangle is seen from a lens whose round field is `field_of_view` rad across, m^2, across the line of
-/// sight: a triangle seen from its edge is none. Rays go to 64 places on it; what stands before one within the last
-/// `margin` m does not hide it (what the triangle is stretched between).
-double seen_area(const Field& field, const LaparoscopePose& lens, double field_of_view,
-                 const std::array<Vec3, 3>& corners, double margin);
 
 }  // namespace calot

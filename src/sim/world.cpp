@@ -18,6 +18,7 @@
 #include "sim/join_bodies.h"
 #include "sim/laparoscope.h"
 #include "sim/settle_field.h"
+#include "sim/sight.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
 #include "sim/vibration.h"

@@ -16,6 +16,7 @@
 
 #include "app/igtl_messages.h"
 #include "app/input_feed.h"
+#include "app/program.h"
 #include "base/rng.h"
 #include "session/runner.h"
 #include "session/session_for_tests.h"
@@ -367,6 +368,54 @@ TEST_F(Igtl, ASenderThatListensIsConnectedToAndAgainWhenItComesBack) {
     ASSERT_TRUE(std::holds_alternative<LiveLoss>(lost)) << i;
     EXPECT_TRUE(std::get<LiveLoss>(lost).may_return);
   }
+}
+
+class OperateByIgtl : public test::ProgramTest {
+ protected:
+  void registration(const std::string& port) const {
+    test::spill(folder_ / "t.lua",
+                R"(return { version = 1, exercise = "small", format = "sequence", unit = 0.001,
+      instruments = { { name = "left", source = "StylusToTracker", )" +
+                    port + "} } }");
+  }
+};
+
+TEST_F(OperateByIgtl, ATrackerThatIsConnectedToMovesItByItsRegistration) {
+  std::string heard_at;
+  const Result<Descriptor> tracker = listen_at({"127.0.0.1", "0", true}, heard_at);
+  ASSERT_TRUE(tracker);
+  registration("port = { 0, 0, 0 }");
+  const auto outcome = calot(
+      {"operate", "small.lua", "--no-window", "--igtl", heard_at, "--registration", "t.lua", "-o", "here"},
+      [&](pid_t) {
+        const Descriptor connection = accept_from(tracker->get());
+        const std::string bytes = transform("StylusToTracker", Vec3(0.03, 0.02, -0.06));
+        EXPECT_GT(write(connection.get(), bytes.data(), bytes.size()), 0);
+        EXPECT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 15));
+        const std::string end = text("session", "end");
+        EXPECT_GT(write(connection.get(), end.data(), end.size()), 0);
+      });
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Result<Recording> recording = read_recording((folder_ / "here/recording.jsonl").string());
+  ASSERT_TRUE(recording) << to_text(recording.failure());
+  const InstrumentPose last = recording->steps.back().input.instruments[0];
+  EXPECT_NEAR(last.insertion, 0.07, 1e-8) << "as far from the trocar as there";
+}
+
+TEST_F(OperateByIgtl, WhatCannotBeIsAUsageError) {
+  registration("");
+  const auto refused = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"operate", "small.lua", "--no-window"};
+    words.insert(words.end(), more.begin(), more.end());
+    const test::Outcome outcome = calot(words);
+    EXPECT_EQ(outcome.code, 4) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(refused({"--igtl", "0", "--registration", "t.lua"}), HasSubstr("give port = { x, y, z }"));
+  EXPECT_THAT(refused({"--igtl", "127.0.0.1:1"}), HasSubstr("cannot connect to 127.0.0.1:1"));
+  EXPECT_THAT(refused({"--igtl", "here"}), HasSubstr("no port, nor HOST:PORT"));
+  EXPECT_THAT(refused({"--registration", "t.lua"}), HasSubstr("--igtl"));
+  EXPECT_THAT(refused({"--igtl", "0", "--stamped"}), HasSubstr("--stamped"));
 }
 
 TEST(NetworkPlaces, WhatIsNoneSaysWhatOneIs) {

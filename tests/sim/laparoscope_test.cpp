@@ -1,9 +1,8 @@
-#include "sim/laparoscope.h"
-
 #include <gtest/gtest.h>
 
 #include "rig.h"
 #include "sim/field_state.h"
+#include "sim/sight.h"
 
 namespace calot {
 namespace {
