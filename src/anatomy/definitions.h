@@ -269,6 +269,9 @@ bool has_action(InstrumentType type, InstrumentAction action);
 /// (c). Pinch and friction mean nothing without jaws.
 InstrumentDefinition default_instrument(InstrumentType type);
 
+/// What it is called among instruments, by who moves them.
+inline constexpr const char* laparoscope_name = "laparoscope";
+
 struct LaparoscopeDefinition {
   std::string port = "umbilical";
   double angle = 0.5235987755982988;           ///< rad; 0 or 30 deg (c)

@@ -372,6 +372,8 @@ void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition
     const InstrumentDefinition& instrument = instruments[i];
     std::string at = fmt::format("scene.instruments[{}]", i + 1);
     if (names.add(at + ".name", instrument.name)) at = "scene.instruments." + instrument.name;
+    if (instrument.name == laparoscope_name)
+      check.problem(at, "the laparoscope is called that already", "give the instrument another name");
     ports.take(at + ".port", instrument.port, fmt::format("instrument \"{}\"", instrument.name));
     check_limits(check, at, "instrument", instrument);
   }

@@ -115,12 +115,28 @@ void add_operate(Program& program) {
       .add_option(
           "--input", operate.input,
           "where lines of input come from: a file or named pipe, - for standard input, unix:PATH for a "
-          "local socket that is made there (default: mouse, keyboard and gamepad; without a window -)")
+          "local socket that is made there, tcp:PORT or tcp:HOST:PORT (default: mouse, keyboard and gamepad; "
+          "without a window -)")
       ->type_name("SOURCE");
-  command.add_flag(
-      "--stamped", operate.stamped,
-      "wait for nothing: the time in each line decides its step (default: real time, in which the "
-      "newest line counts)");
+  CLI::Option* igtl =
+      command
+          .add_option(
+              "--igtl", operate.igtl,
+              "OpenIGTLink moves the instruments: a port to be connected to from this machine, *:PORT "
+              "from others too, or HOST:PORT of a sender")
+          ->type_name("WHERE")
+          ->excludes("--input");
+  command
+      .add_option("--registration", operate.registration,
+                  "with --igtl: the file that says how its tools lie in the field (default: in mm in the "
+                  "patient's frame, called as the instruments)")
+      ->type_name("T.lua")
+      ->needs(igtl);
+  command
+      .add_flag("--stamped", operate.stamped,
+                "wait for nothing: the time in each line decides its step (default: real time, in which the "
+                "newest line counts)")
+      ->excludes(igtl);
   CLI::Option* practice =
       command.add_flag("--practice")->description("show hints; may be paused and begun again (default)");
   command.add_flag("--exam", operate.exam, "no hints, no pause; scored as it stands when it is given up")
@@ -207,7 +223,9 @@ void add_page(Program& program) {
       .add_option("--benchmarks", page.benchmarks,
                   "a Lua table of novice's and expert's figures, used instead of the exercise's own")
       ->type_name("FILE");
-  command.add_flag("--no-pictures", page.no_pictures, "draw no pictures, which takes about half of the time");
+  command.add_flag(
+      "--no-pictures", page.no_pictures,
+      "draw no pictures; what a recording holds is then not played again, and forces are not shown");
   command.add_option("-j,--jobs", page.jobs, "recordings played at once; the page does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, most_threads))

@@ -42,8 +42,10 @@ struct OperateCommand : SessionCommand {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> params;  ///< "key=value"
   bool overwrite = false;           ///< see PlayRequest
-  std::string input;   ///< see LineFeed::open; empty: the window's, or without one standard input
-  std::string device;  ///< file that says what a gamepad does; empty: the usual
+  std::string input;  ///< of lines, see InputFeed::open; empty: the window's, or without one standard input
+  std::string igtl;   ///< where OpenIGTLink comes from instead, see app/sockets.h
+  std::string registration;  ///< file that says how its tools lie in the field; empty: as the field itself
+  std::string device;        ///< file that says what a gamepad does; empty: the usual
   bool exam = false, stamped = false, no_window = false;
   bool devices = false;  ///< list them, and no more
 };

@@ -7,13 +7,17 @@
 
 #include "app/commands.h"
 #include "app/conclude.h"
+#include "app/igtl_messages.h"
+#include "app/input_feed.h"
 #include "app/interrupt.h"
-#include "app/line_feed.h"
 #include "app/operate_view.h"
 #include "app/output_folder.h"
+#include "app/project.h"
 #include "app/terminal.h"
 #include "base/log.h"
+#include "lua/read_registration.h"
 #include "session/json.h"
+#include "session/live_lines.h"
 #include "window/operate_window.h"
 
 namespace calot {
@@ -41,7 +45,7 @@ LiveOptions live_options(const OperateCommand& command) {
   LiveOptions options;
   options.mode = command.exam ? LiveMode::exam : LiveMode::practice;
   options.stamped = command.stamped;
-  options.watch_silence = command.no_window || !command.input.empty();
+  options.watch_silence = command.no_window || !command.input.empty() || !command.igtl.empty();
   options.stop = &interrupt_flag();
   options.say = log_info;
   return options;
@@ -132,6 +136,35 @@ Result<Played> operate_in_window(Operation& operation) {
   return *std::move(played);
 }
 
+/// How OpenIGTLink's tools lie in the field.
+Result<std::shared_ptr<const Registration>> live_registration(const Operation& operation) {
+  const std::string& file = operation.command.registration;
+  if (file.empty())
+    return std::make_shared<const Registration>(
+        direct_registration(operation.exercise.id, operation.instruments));
+  Result<Registration> read = read_registration(file, project_part("scripts/lua"));
+  if (!read) return read.failure();
+  if (std::vector<Problem> problems = live_problems_with(read.value(), operation.exercise); !problems.empty())
+    return Failure{FailureKind::usage, std::move(problems)};
+  return std::make_shared<const Registration>(std::move(read).value());
+}
+
+Result<std::unique_ptr<InputFeed>> open_feed(Operation& operation) {
+  const OperateCommand& command = operation.command;
+  if (command.igtl.empty()) {
+    const auto lines = [&](const std::string& source) {
+      return std::make_unique<LiveLines>(operation.instruments, source);
+    };
+    return InputFeed::open(command.input.empty() ? "-" : command.input, lines, operation.mailbox);
+  }
+  const Result<std::shared_ptr<const Registration>> registration = live_registration(operation);
+  if (!registration) return registration.failure();
+  const auto messages = [&operation, registration = registration.value()](const std::string&) {
+    return std::make_unique<IgtlMessages>(operation.instruments, registration, "OpenIGTLink");
+  };
+  return InputFeed::open("tcp:" + command.igtl, messages, operation.mailbox);
+}
+
 Result<Played> operate(PlayRequest& request, const OperateCommand& command) {
   const Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
   if (!script) return script.failure();
@@ -139,16 +172,16 @@ Result<Played> operate(PlayRequest& request, const OperateCommand& command) {
   if (exercise.scene.instruments.empty())
     return fail(FailureKind::usage, "this exercise has no instrument to move", "play it by `calot run`");
   Operation operation{request, command, exercise, live_instruments(exercise.scene), LiveMailbox(), {}};
-  std::unique_ptr<LineFeed> feed;
-  if (command.no_window || !command.input.empty()) {
-    Result<std::unique_ptr<LineFeed>> opened =
-        LineFeed::open(command.input.empty() ? "-" : command.input, operation.instruments, operation.mailbox);
+  std::unique_ptr<InputFeed> feed;
+  if (command.no_window || !command.input.empty() || !command.igtl.empty()) {
+    Result<std::unique_ptr<InputFeed>> opened = open_feed(operation);
     if (!opened) return opened.failure();
     feed = std::move(opened).value();
     if (feed->is_file() && !command.stamped)
       return fail(FailureKind::usage,
                   "a file holds all its lines at once: in real time only the last would count",
                   "add --stamped, so that the lines' times count, or send them through a pipe or socket");
+    if (!feed->heard_at().empty()) log_info("Waiting to be connected to at " + feed->heard_at());
   }
   return command.no_window ? attempts(operation) : operate_in_window(operation);
 }

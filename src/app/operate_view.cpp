@@ -38,6 +38,7 @@ void ViewMaker::look(const World& world, const Progress& progress) {
     view->hands.push_back(
         {definitions[i].name, state.holds, state.tip_force.norm(), definitions[i].force_limit, state.pose});
   }
+  view->hands.push_back({laparoscope_name, "", 0, 0, report.laparoscope.pose});
   latest_.put(std::move(view));
 }
 

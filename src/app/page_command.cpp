@@ -75,6 +75,10 @@ class PageMaker {
         [this](const Recording& recording, const Played& played) {
           watched_ = Watched{played, std::move(*moments_), compare_states(recording, played.session).message};
         }};
+    if (command_.no_pictures)
+      request.watcher->held = [this](const Recording& recording, const ExerciseDefinition& exercise) {
+        watched_ = held_by(recording, exercise);
+      };
     Result<RecordingScorer> scorer = RecordingScorer::create(std::move(request));
     if (!scorer) return scorer.failure();
     scorer_.emplace(std::move(scorer).value());

@@ -7,6 +7,7 @@
 #include "app/page_plots.h"
 #include "app/score_tables.h"
 #include "page/html.h"
+#include "session/live.h"
 #include "session/metrics.h"
 #include "session/progress_json.h"
 
@@ -56,7 +57,8 @@ void add_steps(const Watched& watched, PageRecording& page) {
   const std::vector<StepRecord>& steps = watched.played.session.progress.steps();
   for (std::size_t i = 0; i < steps.size(); ++i)
     page.steps.push_back({steps[i].name, steps[i].title, steps[i].outcome, steps[i].started, steps[i].ended,
-                          picture(watched.moments.step_begins, i), picture(watched.moments.step_ends, i)});
+                          picture(watched.moments.step_begins, i), picture(watched.moments.step_ends, i),
+                          steps[i].hint});
 }
 
 /// Those at these times that `is_meant` takes: where the replay has other events than the recording, none.
@@ -114,6 +116,28 @@ void add_score(const OrderedJson& entry, PageRecording& page) {
   }
 }
 
+/// The step that a metric is of, or in which it was noted; none of those of the whole session.
+PageStep* step_of(const std::string& metric, const Progress& progress, PageRecording& page) {
+  const std::size_t dot = metric.find('.');
+  std::string name = metric.substr(0, dot);
+  for (const Note& note : progress.notes())
+    if (metric == "note." + note.name) name = note.step;
+  const auto found = std::find_if(page.steps.begin(), page.steps.end(),
+                                  [&](const PageStep& step) { return step.name == name; });
+  return found == page.steps.end() ? nullptr : &*found;
+}
+
+void add_points_to_steps(const OrderedJson& entry, const Watched& watched, PageRecording& page) {
+  for (const OrderedJson& part : entry["score"]["parts"]) {
+    if (!part["benchmark"].contains("metric")) continue;
+    PageStep* const step =
+        step_of(part["benchmark"]["metric"].get<std::string>(), watched.played.session.progress, page);
+    if (step == nullptr) continue;
+    step->points += part["points"].get<double>();
+    step->most += 100 * part["weight"].get<double>();
+  }
+}
+
 void add_warnings(const OrderedJson& entry, const Watched& watched, PageRecording& page) {
   const SessionResult& session = watched.played.session;
   if (!entry["whole"].get<bool>())
@@ -149,6 +173,22 @@ void add_facts(const OrderedJson& entry, const Watched& watched, PageRecording& 
 
 }  // namespace
 
+Watched held_by(const Recording& recording, const ExerciseDefinition& exercise) {
+  Watched watched{{}, PageMoments(error_kinds(exercise)), {}, false};
+  watched.played.exercise = exercise;
+  watched.played.session.progress = recording.measured->progress;
+  Traces& traces = watched.played.session.traces;
+  const std::vector<LiveInstrument> instruments = live_instruments(exercise.scene);
+  traces.instruments.resize(exercise.scene.instruments.size());
+  for (const RecordedStep& step : recording.steps) {
+    traces.time.push_back(step.time);
+    for (std::size_t i = 0; i < traces.instruments.size(); ++i)
+      traces.instruments[i].emplace_back().tip =
+          tip_position(instruments[i].trocar, step.input.instruments[i], instruments[i].geometry);
+  }
+  return watched;
+}
+
 PageRecording page_recording(const OrderedJson& entry, const Watched& watched, const std::string& prefix) {
   PageRecording page;
   page.prefix = prefix;
@@ -157,10 +197,12 @@ PageRecording page_recording(const OrderedJson& entry, const Watched& watched, c
   add_events(watched, page);
   add_steps(watched, page);
   add_score(entry, page);
+  add_points_to_steps(entry, watched, page);
   add_warnings(entry, watched, page);
   page.pictures = watched.moments.pictures;
   page.pictures_left_out = watched.moments.left_out;
   page.drawn = watched.played.rendered;
+  page.simulated = watched.simulated;
   page.plots = page_plots(watched.played.exercise.scene, watched.played.session.traces);
   add_facts(entry, watched, page);
   return page;

@@ -15,7 +15,10 @@ struct Watched {
   Played played;
   PageMoments moments;
   std::string differs;  ///< where the replay's states part from the recording's, and why that may be
+  bool simulated = true;
 };
+/// What a recording that is scored from what it holds says without being simulated: forces are not known.
+Watched held_by(const Recording& recording, const ExerciseDefinition& exercise);
 
 /// `entry` is its score as in score_recording.h; `prefix` of its ids.
 PageRecording page_recording(const OrderedJson& entry, const Watched& watched, const std::string& prefix);

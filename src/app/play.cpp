@@ -102,6 +102,7 @@ Result<Outputs> open_outputs(const PlayRequest& request, const ExerciseDefinitio
   folder->clear();  // a session that is killed leaves no older report beside its recording
   RecordingHeader header = recording_header(exercise, world, portable_path(request.scenario));
   if (request.live != nullptr) header.mode = to_text(request.live->figures().mode);
+  if (request.replay != nullptr) header.mode = request.replay->header.mode;
   Result<RecordingWriter> recording =
       RecordingWriter::create((path.value() / "recording.jsonl").string(), header);
   if (!recording) return recording.failure();
@@ -127,6 +128,8 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
   SessionOptions options;
   options.stop = &interrupt_flag();
   options.end_with_source = replay.has_value() || request.live != nullptr;
+  if (replay && !came_to_its_end(request.replay->end))
+    options.source_end = request.replay->end.empty() ? cut_end : request.replay->end;
   options.recording = outputs.recording ? &*outputs.recording : nullptr;
   options.table = outputs.table ? &*outputs.table : nullptr;
   ProgressLine line;
@@ -155,9 +158,7 @@ void note_recording(const Recording& recording, SessionResult& session) {
 
 /// A session that was cut earns no points, neither then nor when it is played again.
 bool was_aborted(const SessionResult& session, const Recording* replay) {
-  const bool short_recording =
-      replay != nullptr && (replay->end.empty() || replay->end == to_text(SessionEnd::interrupted) ||
-                            replay->end == to_text(SessionEnd::failed));
+  const bool short_recording = replay != nullptr && !came_to_its_end(replay->end);
   return session.end == SessionEnd::interrupted || session.end == SessionEnd::failed ||
          (session.end == SessionEnd::source_ended && short_recording);
 }

@@ -27,14 +27,10 @@ bool add_file(Hash& hash, const std::string& path) {
   return in.eof() && !in.bad();
 }
 
-bool came_to_its_end(const std::string& end) {
-  return !end.empty() && end != to_text(SessionEnd::interrupted) && end != to_text(SessionEnd::failed);
-}
-
 /// How the recorded session ended, as far as its replay shows it.
 std::string end_of(const Recording& recording, const SessionResult& session) {
   if (session.end != SessionEnd::source_ended) return to_text(session.end);
-  if (recording.end.empty()) return "cut";
+  if (recording.end.empty()) return cut_end;
   return came_to_its_end(recording.end) ? to_text(session.end) : recording.end;
 }
 
@@ -175,9 +171,15 @@ std::optional<Failure> RecordingScorer::add_score(const Recording& recording, Or
   entry["end"] = recording.end;
   entry["whole"] = came_to_its_end(recording.end);
   entry["stopped_at_s"] = recording.steps.empty() ? 0.0 : recording.steps.back().time;
-  add_measured(exercise.definition, recording.measured->metrics, recording.measured->progress,
-               recording.measured->notes, entry);
+  const Measured& held = *recording.measured;
+  std::vector<std::string> notes = held.notes;
+  if (const std::optional<std::string> cut = cut_note(recording)) notes.push_back(*cut);
+  add_measured(exercise.definition, held.metrics, held.progress, notes, entry);
   if (!request_.watcher) return std::nullopt;
+  if (request_.watcher->held) {
+    request_.watcher->held(recording, exercise.definition);
+    return std::nullopt;
+  }
   const Result<Played> watched = replay(recording, exercise);
   return watched ? std::nullopt : std::optional(watched.failure());
 }

@@ -16,6 +16,8 @@ namespace calot {
 struct ScoreWatcher {
   std::function<void(const ExerciseDefinition&, PlayRequest&)> begin;  ///< may ask for pictures
   std::function<void(const Recording&, const Played&)> end;            ///< of one that was not interrupted
+  /// Of one that is scored from what it holds: it then is not simulated.
+  std::function<void(const Recording&, const ExerciseDefinition&)> held = {};
 };
 
 struct ScoreRequest {
@@ -23,7 +25,7 @@ struct ScoreRequest {
   std::optional<BenchmarkTable> benchmarks;  ///< instead of the exercise's own
   bool verify = false;                       ///< simulate, and compare with what the recording holds
   bool keyed = false;                        ///< key() is going to be asked
-  /// Every recording is then simulated too, though it be scored from what it holds.
+  /// Every recording is then simulated too, though it be scored from what it holds, unless the watcher takes that.
   std::optional<ScoreWatcher> watcher;
 };
 

@@ -20,6 +20,8 @@ struct PageStep {
   std::string name, title, outcome;  ///< outcome as in StepRecord
   double started = 0, ended = 0;     ///< s
   std::optional<std::size_t> begin_picture, end_picture;
+  std::string hint;             ///< how it is done; empty where that is not known
+  double points = 0, most = 0;  ///< of the parts of the score that this step is measured by
 };
 
 struct PageEvent {
@@ -87,7 +89,8 @@ struct PageRecording {
   std::vector<PageEvent> events;
   std::size_t events_left_out = 0;
   std::vector<PagePicture> pictures;
-  bool drawn = true;  ///< pictures were asked for
+  bool drawn = true;      ///< pictures were asked for
+  bool simulated = true;  ///< again: else forces are not known
   std::size_t pictures_left_out = 0;
   std::vector<PagePlot> plots;
   std::vector<PageFact> parameters, metrics, noted;

@@ -27,6 +27,12 @@ class Section {
   std::string head(const char* id, const char* words) const {
     return fmt::format("<h3 id=\"{}{}\">{}</h3>\n", prefix_, id, words);
   }
+  template <class Html>
+  static std::string each(std::size_t count, const Html& html) {
+    std::string out;
+    for (std::size_t i = 0; i < count; ++i) out += html(i);
+    return out;
+  }
   std::string event_link(std::size_t index, const std::string& words) const {
     return fmt::format("<a href=\"#{}event-{}\">{}</a>", prefix_, index + 1, escaped(words));
   }
@@ -77,9 +83,8 @@ class Section {
   }
 
   std::string parts() const {
-    std::string out = head("score", "Score, part by part") + "<ul class=\"cards\">\n";
-    for (std::size_t i = 0; i < recording_.score.parts.size(); ++i) out += part(i);
-    return out + "</ul>\n";
+    return head("score", "Score, part by part") + "<ul class=\"cards\">\n" +
+           each(recording_.score.parts.size(), [this](std::size_t i) { return part(i); }) + "</ul>\n";
   }
 
   std::string timeline() const {
@@ -101,6 +106,15 @@ class Section {
                        seconds(recording_.pictures[index].time));
   }
 
+  std::string picture(std::size_t index) const {
+    const PagePicture& picture = recording_.pictures[index];
+    return fmt::format(
+        "<figure id=\"{}picture-{}\"><img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"The laparoscope's "
+        "picture at {}: {}\"><figcaption><b>{}</b> {}</figcaption></figure>\n",
+        prefix_, index + 1, data_uri(picture.media_type, picture.bytes), picture.width, picture.height,
+        seconds(picture.time), escaped(picture.caption), seconds(picture.time), escaped(picture.caption));
+  }
+
   std::string pictures() const {
     std::string out = head("pictures", "Pictures");
     if (!recording_.drawn) return out + "<p>None were asked for.</p>\n";
@@ -108,16 +122,7 @@ class Section {
         "<p class=\"soft\">Drawn anew by playing the recording again: where a step begins or ends, and at "
         "errors.</p>"
         "<div class=\"pictures\">\n";
-    for (std::size_t i = 0; i < recording_.pictures.size(); ++i) {
-      const PagePicture& picture = recording_.pictures[i];
-      out += fmt::format(
-          "<figure id=\"{}picture-{}\"><img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"The laparoscope's "
-          "picture at "
-          "{}: {}\"><figcaption><b>{}</b> {}</figcaption></figure>\n",
-          prefix_, i + 1, data_uri(picture.media_type, picture.bytes), picture.width, picture.height,
-          seconds(picture.time), escaped(picture.caption), seconds(picture.time), escaped(picture.caption));
-    }
-    out += "</div>\n";
+    out += each(recording_.pictures.size(), [this](std::size_t i) { return picture(i); }) + "</div>\n";
     if (recording_.pictures_left_out > 0)
       out += fmt::format(
           "<p class=\"warning\" role=\"note\">{} more moments have no picture: a page holds only so many. "
@@ -128,16 +133,41 @@ class Section {
 
   std::string plots() const {
     if (recording_.plots.empty()) return {};
-    std::string out = head("plots", "Forces and paths") + "<div class=\"plots\">\n";
-    for (std::size_t i = 0; i < recording_.plots.size(); ++i) out += plot_html(recording_, i);
-    return out + "</div>\n";
+    std::string out = head("plots", recording_.simulated ? "Forces and paths" : "Paths");
+    if (!recording_.simulated)
+      out +=
+          "<p class=\"soft\">Of where the instruments were sent. Forces are known only where the recording "
+          "is "
+          "played again, as for pictures.</p>\n";
+    out += "<div class=\"plots\">\n";
+    return out + each(recording_.plots.size(), [this](std::size_t i) { return plot_html(recording_, i); }) +
+           "</div>\n";
+  }
+
+  /// How it is done, to who has not done it well.
+  static std::string what_is_asked(const PageStep& step) {
+    if (step.hint.empty() || (step.outcome == "done" && !(step.points < step.most)))
+      return escaped(step.title);
+    return fmt::format("{}<br><span class=\"soft\">{}</span>", escaped(step.title), escaped(step.hint));
+  }
+
+  /// A step that only takes its time is done however it was done: its points say more.
+  static std::string outcome(const PageStep& step) {
+    const bool done = step.outcome == "done";
+    return done && step.most > 0 ? escaped(step.outcome) : verdict_html(step.outcome, done);
+  }
+
+  static std::string points(const PageStep& step) {
+    if (!(step.most > 0)) return {};
+    return verdict_html(fmt::format("{:.1f} of {:.1f}", step.points, step.most),
+                        2 * step.points >= step.most);
   }
 
   std::string steps() const {
     HtmlTable table;
     table.caption = "Steps of the exercise";
-    table.heads = {"step", "what is asked", "begins", "ends", "takes", "outcome", "see"};
-    table.numbers = "llrrrll";
+    table.heads = {"step", "what is asked", "begins", "ends", "takes", "outcome", "points", "see"};
+    table.numbers = "llrrrlll";
     for (std::size_t i = 0; i < recording_.steps.size(); ++i) {
       const PageStep& step = recording_.steps[i];
       std::string see;
@@ -146,8 +176,8 @@ class Section {
         see += (see.empty() ? "" : ", ") + picture_link(*step.end_picture);
       table.rows.push_back(
           {fmt::format(" id=\"{}step-{}\"", prefix_, i + 1),
-           {escaped(step.name), escaped(step.title), seconds(step.started), seconds(step.ended),
-            seconds(step.ended - step.started), verdict_html(step.outcome, step.outcome == "done"), see}});
+           {escaped(step.name), what_is_asked(step), seconds(step.started), seconds(step.ended),
+            seconds(step.ended - step.started), outcome(step), points(step), see}});
     }
     return head("steps", "Steps") + (table.rows.empty() ? "<p>None was begun.</p>\n" : calot::html(table));
   }

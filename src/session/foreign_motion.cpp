@@ -69,17 +69,6 @@ std::optional<std::vector<std::string>> fields_of(std::string_view line, char se
   return fields;
 }
 
-bool is_rotation(const Mat3& r) {
-  return (r * r.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < rotation_slack && r.determinant() > 0;
-}
-
-/// Tip and directions of a tool whose frame has this origin and these axes.
-void set_frame(ForeignSample& sample, const ForeignInstrument& tool, const Mat3& axes, const Vec3& origin) {
-  sample.tip = origin + axes * tool.tip;
-  sample.along = (axes * tool.along).normalized();
-  sample.across = (axes * tool.across).normalized();
-}
-
 /// What all formats share: lines, and what is wrong with them.
 class MotionReader {
  public:
@@ -373,6 +362,16 @@ class SequenceReader final : public MotionReader {
 };
 
 }  // namespace
+
+bool is_rotation(const Mat3& r) {
+  return (r * r.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < rotation_slack && r.determinant() > 0;
+}
+
+void set_frame(ForeignSample& sample, const ForeignInstrument& tool, const Mat3& axes, const Vec3& origin) {
+  sample.tip = origin + axes * tool.tip;
+  sample.along = (axes * tool.along).normalized();
+  sample.across = (axes * tool.across).normalized();
+}
 
 const std::vector<std::string>& motion_format_names() {
   static const std::vector<std::string> names{"csv", "jigsaws", "sequence"};

@@ -51,6 +51,11 @@ struct ForeignSample {
   std::optional<double> roll, jaw;      ///< their units
 };
 
+/// But for what few digits leave.
+bool is_rotation(const Mat3& r);
+/// Tip and directions of a tool whose frame has this origin and these axes.
+void set_frame(ForeignSample& sample, const ForeignInstrument& tool, const Mat3& axes, const Vec3& origin);
+
 struct ForeignMotion {
   std::string file;
   bool framed = false;  ///< its rows are frames, not lines

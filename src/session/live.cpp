@@ -65,13 +65,15 @@ const std::vector<std::string>& live_command_names() {
 
 std::vector<LiveInstrument> live_instruments(const SceneDefinition& scene) {
   std::vector<LiveInstrument> instruments;
-  const std::vector<PortDefinition> ports = scene.ports.empty() ? default_ports() : scene.ports;
-  for (const InstrumentDefinition& definition : scene.instruments) {
-    LiveInstrument instrument{definition, instrument_geometry(definition.type), Vec3::Zero()};
-    for (const PortDefinition& port : ports)
-      if (port.name == definition.port) instrument.trocar = port.position;
-    instruments.push_back(std::move(instrument));
-  }
+  for (const InstrumentDefinition& definition : scene.instruments)
+    instruments.push_back({definition, instrument_geometry(definition.type)});
+  InstrumentDefinition scope;
+  scope.name = laparoscope_name;
+  scope.port = scene.laparoscope.port;
+  instruments.push_back({std::move(scope), laparoscope_geometry(), Vec3::Zero(), true});
+  for (LiveInstrument& instrument : instruments)
+    for (const PortDefinition& port : scene.ports.empty() ? default_ports() : scene.ports)
+      if (port.name == instrument.definition.port) instrument.trocar = port.position;
   return instruments;
 }
 
@@ -142,6 +144,7 @@ Result<std::optional<StepInput>> LiveSource::next(const World& world, double dt)
 void LiveSource::begin(const World& world) {
   begun_ = true;
   for (const InstrumentState& state : world.report().instruments) asked_.instruments.push_back(state.pose);
+  asked_.instruments.push_back(world.report().laparoscope.pose);
   asked_.actions.assign(asked_.instruments.size(), InstrumentAction::none);
   given_ = asked_;
   started_ = options_.begins_at_once || options_.stamped;
@@ -229,6 +232,7 @@ void LiveSource::apply(const LiveMailbox::Sent& sent) {
   if (const auto* command = std::get_if<LiveCommand>(&sent.event)) apply(*command);
   if (const auto* loss = std::get_if<LiveLoss>(&sent.event)) apply(*loss);
   if (const auto* refusal = std::get_if<LiveRefusal>(&sent.event)) refuse(refusal->problem);
+  if (const auto* remark = std::get_if<LiveRemark>(&sent.event)) say(remark->text);
 }
 
 void LiveSource::apply(const LiveInput& input, double at) {
@@ -300,9 +304,10 @@ void LiveSource::say(const std::string& text) const {
   if (options_.say) options_.say(text);
 }
 
-/// Each instrument goes on towards what is asked of it.
+/// Each instrument goes on towards what is asked of it; the laparoscope is named only where it moves.
 StepInput LiveSource::follow(double dt) {
   bool lags = false;
+  const InstrumentPose scope_before = given_.instruments.back();
   for (std::size_t i = 0; i < instruments_.size(); ++i) {
     InstrumentPose& pose = given_.instruments[i];
     const InstrumentPose& to = asked_.instruments[i];
@@ -312,7 +317,11 @@ StepInput LiveSource::follow(double dt) {
   }
   given_.actions = asked_.actions;
   figures_.following_steps += lags ? 1 : 0;
-  return given_;
+  StepInput input = given_;
+  if (input.instruments.back() != scope_before) input.laparoscope = input.instruments.back();
+  input.instruments.pop_back();
+  input.actions.pop_back();
+  return input;
 }
 
 Result<std::optional<StepInput>> LiveSource::conclude() const {

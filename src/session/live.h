@@ -27,8 +27,9 @@ struct LiveInstrument {
   InstrumentDefinition definition;
   InstrumentGeometry geometry;
   Vec3 trocar = Vec3::Zero();  ///< m
+  bool is_laparoscope = false;
 };
-/// In the order of the scene, which is that of a step's input.
+/// In the order of the scene, which is that of a step's input; the laparoscope is the last.
 std::vector<LiveInstrument> live_instruments(const SceneDefinition& scene);
 
 enum class LiveCommand { pause, resume, restart, abandon, end };
@@ -48,13 +49,18 @@ struct LiveRefusal {
   Problem problem;
 };
 
+/// What the operator should know of a source that is used all the same.
+struct LiveRemark {
+  std::string text;
+};
+
 /// The source is gone without having said `end`.
 struct LiveLoss {
   std::string why;
   bool may_return = false;  ///< another input or command may still come
 };
 
-using LiveEvent = std::variant<LiveInput, LiveCommand, LiveRefusal, LiveLoss>;
+using LiveEvent = std::variant<LiveInput, LiveCommand, LiveRefusal, LiveRemark, LiveLoss>;
 
 class LiveClock {
  public:
@@ -163,7 +169,7 @@ class LiveSource : public InputSource {
   LiveMailbox& mailbox_;
   LiveOptions options_;
   LiveClock& clock_;
-  StepInput asked_, given_;
+  StepInput asked_, given_;               ///< the laparoscope is the last of their instruments
   bool begun_ = false, started_ = false;  ///< called at all; an input has come, or need not
   bool paused_ = false;
   std::optional<double> lost_at_;

@@ -13,22 +13,21 @@
 #include <string_view>
 #include <vector>
 
-#include "session/live.h"
+#include "session/live_decoder.h"
 
 namespace calot {
 
 /// Turns bytes as they come into events. A line that cannot be used is one too, with its number and why.
-class LiveLines {
+class LiveLines : public LiveDecoder {
  public:
   static constexpr std::size_t longest = 1000;  ///< bytes
 
   /// `source` is what messages call it.
   LiveLines(std::vector<LiveInstrument> instruments, std::string source);
-  void add(std::string_view bytes, std::vector<LiveEvent>& events);
-  /// After the last byte: a line without an end may be half of one, and is refused.
-  void finish(std::vector<LiveEvent>& events);
-  /// Whether the source has said that it ends.
-  bool ended() const { return ended_; }
+  void add(std::string_view bytes, std::vector<LiveEvent>& events) override;
+  /// A line without an end may be half of one.
+  void finish(std::vector<LiveEvent>& events) override;
+  bool ended() const override { return ended_; }
 
  private:
   void end_line(std::vector<LiveEvent>& events);

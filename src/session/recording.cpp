@@ -60,8 +60,8 @@ RecordingHeader parse_header(const Json& json, std::vector<std::string>& problem
   return header;
 }
 
-bool is_pose(const Json& json) {
-  return json.is_array() && json.size() == 5 &&
+bool is_pose(const Json& json, std::size_t numbers) {
+  return json.is_array() && json.size() == numbers &&
          std::all_of(json.begin(), json.end(), [](const Json& number) { return number.is_number(); });
 }
 
@@ -69,13 +69,19 @@ std::vector<InstrumentPose> parse_poses(const Json& poses, std::vector<std::stri
   std::vector<InstrumentPose> result;
   if (!poses.is_array()) problems.emplace_back("poses must be a list, one for each instrument");
   for (std::size_t i = 0; poses.is_array() && i < poses.size(); ++i) {
-    if (!is_pose(poses[i]))
+    if (!is_pose(poses[i], 5))
       problems.push_back(
           fmt::format("poses[{}] needs 5 numbers: pitch, yaw, insertion, roll, jaw (rad, m)", i));
     else
       result.push_back({poses[i][0], poses[i][1], poses[i][2], poses[i][3], poses[i][4]});
   }
   return result;
+}
+
+InstrumentPose parse_laparoscope(const Json& json, std::vector<std::string>& problems) {
+  if (is_pose(json, 4)) return {json[0], json[1], json[2], json[3], 0};
+  problems.emplace_back("laparoscope needs 4 numbers: pitch, yaw, insertion, roll (rad, m)");
+  return {};
 }
 
 std::vector<InstrumentAction> parse_actions(const std::vector<std::string>& names,
@@ -101,6 +107,8 @@ RecordedStep parse_step(const Json& json, const RecordingHeader& header, double 
   step.input.instruments = parse_poses(fields.any("poses"), problems);
   if (header.has_actions && fields.has("actions"))
     step.input.actions = parse_actions(fields.texts("actions"), problems);
+  if (fields.has("laparoscope"))
+    step.input.laparoscope = parse_laparoscope(fields.any("laparoscope"), problems);
   if (header.state_hash) step.state_hash = fields.hash("state_hash");
   fields.expect_no_others();
   const std::size_t poses = step.input.instruments.size();
@@ -136,7 +144,8 @@ std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
   fields.expect_no_others();
   const SessionEnd ends[] = {SessionEnd::steps_done, SessionEnd::time_limit, SessionEnd::source_ended,
                              SessionEnd::interrupted, SessionEnd::failed};
-  if (std::none_of(std::begin(ends), std::end(ends), [&](SessionEnd known) { return to_text(known) == end; }))
+  if (end != cut_end &&
+      std::none_of(std::begin(ends), std::end(ends), [&](SessionEnd known) { return to_text(known) == end; }))
     problems.push_back(fmt::format("a session does not end as \"{}\"", end));
   return end;
 }
@@ -227,9 +236,15 @@ class Reader {
 
 }  // namespace
 
+bool came_to_its_end(const std::string& end) {
+  return !end.empty() && end != cut_end && end != to_text(SessionEnd::interrupted) &&
+         end != to_text(SessionEnd::failed);
+}
+
 std::optional<std::string> cut_note(const Recording& recording) {
-  if (!recording.end.empty()) return std::nullopt;
-  return fmt::format("the recording has no end: it was cut, and stops at step {} ({:.3f} s)",
+  if (!recording.end.empty() && recording.end != cut_end) return std::nullopt;
+  return fmt::format("the recording {}: it was cut, and stops at step {} ({:.3f} s)",
+                     recording.end.empty() ? "has no end" : "is played from one without an end",
                      recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);
 }
 
@@ -290,6 +305,8 @@ bool RecordingWriter::write(const RecordedStep& step) {
     json["actions"] = OrderedJson::array();
     for (InstrumentAction action : step.input.actions) json["actions"].push_back(to_text(action));
   }
+  if (const std::optional<InstrumentPose>& scope = step.input.laparoscope)
+    json["laparoscope"] = {scope->pitch, scope->yaw, scope->insertion, scope->roll};
   if (step.state_hash) json["state_hash"] = hex(*step.state_hash);
   ++steps_;
   return add_line(json.dump());

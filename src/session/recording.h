@@ -6,9 +6,11 @@
 //               "rate_Hz":50,"instruments":["left"],"mode":"practice","toolchain":...,"instruction_set":...,"mathematics":...,
 //               "state_hash":...}
 //   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"actions":["activate",...],
-//               "state_hash":"..."}   (rad, m; actions where an instrument acts, "none" for one that does not)
+//               "laparoscope":[pitch,yaw,insertion,roll],"state_hash":"..."}
+//              (rad, m; actions where an instrument acts, "none" for one that does not; the laparoscope where it moves)
 //   then       {"measured":{"exercise_hash":...,"metrics":{...},"steps":[...],"events":[...],"noted":[...],"notes":[...]}}
-//   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before)
+//   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before; the end as to_text(SessionEnd), or
+//              "cut" of the replay of a recording without this line)
 //
 // The mode is there where somebody operated: practice or exam (session/live.h).
 //
@@ -65,7 +67,11 @@ struct Recording {
   std::string end;                   ///< how the session ended; empty where the last line is missing
 };
 
-/// Where a recording without an end stops; none for a whole one.
+/// The end of what was played from a recording without one.
+inline constexpr const char* cut_end = "cut";
+/// Whether a session that ended so was not broken off.
+bool came_to_its_end(const std::string& end);
+/// Where a recording without an end stops, or what was played from one; none for others.
 std::optional<std::string> cut_note(const Recording& recording);
 
 /// The header for a session about to start; `file` is the scenario's path as it is to be recorded.

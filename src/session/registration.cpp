@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/suggest.h"
+#include "session/registered_tool.h"
 #include "session/runner.h"
 #include "sim/tool.h"
 
@@ -30,10 +31,26 @@ std::vector<std::string> names_of(const std::vector<InstrumentDefinition>& instr
   return names;
 }
 
-Vec3 place_of(const SceneDefinition& scene, const std::string& port) {
-  for (const PortDefinition& known : scene.ports.empty() ? default_ports() : scene.ports)
-    if (known.name == port) return known.position;
-  return Vec3::Zero();  // validate() knows no such scene
+/// What of it does not name an exercise and its instruments, each once.
+std::vector<Problem> misnamed(const Registration& registration, const ExerciseDefinition& exercise,
+                              const std::vector<std::string>& names) {
+  if (registration.exercise != exercise.id)
+    return {{registration.place,
+             fmt::format("this registers for {}, not for {}", registration.exercise, exercise.id),
+             "play that exercise, or name another table"}};
+  std::vector<Problem> problems;
+  std::vector<std::string> given;
+  for (const ForeignInstrument& instrument : registration.instruments) {
+    if (std::find(names.begin(), names.end(), instrument.name) == names.end())
+      problems.push_back({instrument.place,
+                          fmt::format("the exercise has no instrument \"{}\"", instrument.name),
+                          suggestion(instrument.name, names)});
+    if (std::find(given.begin(), given.end(), instrument.name) != given.end())
+      problems.push_back(
+          {instrument.place, fmt::format("\"{}\" is there twice", instrument.name), "name each once"});
+    given.push_back(instrument.name);
+  }
+  return problems;
 }
 
 /// One file's motion on its way into one exercise.
@@ -41,20 +58,17 @@ class Importer {
  public:
   Importer(const ForeignMotion& motion, const Registration& registration, const ExerciseDefinition& exercise)
       : motion_(motion), registration_(registration), exercise_(exercise), rate_(exercise.scene.solver.rate) {
-    axes_.col(0) = registration.x_axis;
-    axes_.col(1) = registration.y_axis;
-    axes_.col(2) = registration.z_axis;
     result_.notes = motion.notes;
   }
 
   Result<ImportedRecording> run() {
     const std::vector<std::string> names = names_of(exercise_.scene.instruments);
+    const std::vector<LiveInstrument> instruments = live_instruments(exercise_.scene);
     std::vector<std::vector<TimedPose>> tracks(names.size());
     for (std::size_t i = 0; i < registration_.instruments.size(); ++i) {
       const auto at =
           std::find(names.begin(), names.end(), registration_.instruments[i].name) - names.begin();
-      tracks[static_cast<std::size_t>(at)] =
-          poses(i, exercise_.scene.instruments[static_cast<std::size_t>(at)]);
+      tracks[static_cast<std::size_t>(at)] = poses(i, instruments[static_cast<std::size_t>(at)]);
     }
     keep_first(problems_);
     if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
@@ -74,7 +88,7 @@ class Importer {
 
   void note(const std::string& who, const std::string& what) { result_.notes.push_back(who + ": " + what); }
 
-  std::vector<TimedPose> poses(std::size_t track, const InstrumentDefinition& definition) {
+  std::vector<TimedPose> poses(std::size_t track, const LiveInstrument& instrument) {
     const std::vector<ForeignSample>& samples = motion_.tracks[track];
     const ForeignInstrument& tool = registration_.instruments[track];
     std::vector<TimedPose> result;
@@ -87,18 +101,17 @@ class Importer {
     }
     const std::optional<Vec3> port = samples.front().pivot ? Vec3(Vec3::Zero()) : port_of(tool, samples);
     if (!port) return result;
-    double roll = 0;
-    int held_jaws = 0;
+    RegisteredTool registered(registration_, tool, *port, instrument);
     for (const ForeignSample& sample : samples) {
-      TimedPose pose{sample.time * registration_.time_unit, sample.row, {}};
+      TimedPose pose{sample.time * registration_.time_unit, sample.row, registered.pose(sample)};
       check_time(result, pose);
-      pose.pose = pose_of(sample, tool, *port, definition, roll, held_jaws);
+      check_depth(tool, pose.pose, instrument.geometry.max_insertion, sample.row);
       result.push_back(pose);
     }
-    if (held_jaws > 0)
+    if (registered.held_jaws() > 0)
       note(tool.name,
            fmt::format("the jaws were beyond closed or fully open in {} of {} rows, and are taken as that",
-                       held_jaws, samples.size()));
+                       registered.held_jaws(), samples.size()));
     return result;
   }
 
@@ -151,52 +164,12 @@ class Importer {
     return port;
   }
 
-  InstrumentPose pose_of(const ForeignSample& sample, const ForeignInstrument& tool, const Vec3& port,
-                         const InstrumentDefinition& definition, double& roll, int& held_jaws) {
-    const InstrumentGeometry geometry = instrument_geometry(definition.type);
-    const double jaw = jaw_of(sample, tool, geometry, held_jaws);
-    InstrumentPose pose;
-    if (sample.pivot) {
-      pose = *sample.pivot;
-      pose.pitch *= registration_.angle_unit;
-      pose.yaw *= registration_.angle_unit;
-      pose.insertion *= registration_.unit;
-      pose.jaw = jaw;
-    } else {
-      const Vec3 trocar = place_of(exercise_.scene, definition.port);
-      const Vec3 tip = trocar + axes_ * (sample.tip - port) * registration_.unit;
-      pose = pose_reaching(trocar, tip, 0, jaw, geometry);
-    }
-    roll = sample.roll ? *sample.roll * registration_.angle_unit : roll_of(sample, pose, geometry, roll);
-    pose.roll = roll;
-    if (!(pose.insertion >= 0 && pose.insertion <= geometry.max_insertion))
-      problem(sample.row,
-              fmt::format("{} would be {:.1f} mm deep in its trocar: it reaches {:g} mm", tool.name,
-                          pose.insertion / 1e-3, geometry.max_insertion / 1e-3),
-              "are the registration's unit, port and axes right?");
-    return pose;
-  }
-
-  /// Of the file's `across` about the shaft, within half a turn of the one before.
-  double roll_of(const ForeignSample& sample, const InstrumentPose& pose, const InstrumentGeometry& geometry,
-                 double before) const {
-    if (!sample.across) return before;
-    const Mat3 frame = hinge_frame(Vec3::Zero(), pose, geometry).linear();
-    const Vec3 across = axes_ * *sample.across;
-    const double x = across.dot(frame.col(0)), y = across.dot(frame.col(1));
-    if (std::hypot(x, y) < 1e-6) return before;  // it looks along the shaft
-    return before + std::remainder(std::atan2(y, x) - before, 2 * std::numbers::pi);
-  }
-
-  double jaw_of(const ForeignSample& sample, const ForeignInstrument& tool,
-                const InstrumentGeometry& geometry, int& held_jaws) const {
-    if (!sample.jaw || !geometry.has_jaws()) return 0;
-    const double jaw = tool.jaw_closed ? (*sample.jaw - *tool.jaw_closed) /
-                                             (*tool.jaw_open - *tool.jaw_closed) * geometry.jaw_opening
-                                       : *sample.jaw * registration_.angle_unit;
-    const double held = std::clamp(jaw, 0.0, geometry.jaw_opening);
-    if (std::abs(held - jaw) > 1e-9) ++held_jaws;
-    return held;
+  void check_depth(const ForeignInstrument& tool, const InstrumentPose& pose, double deepest, int row) {
+    if (pose.insertion >= 0 && pose.insertion <= deepest) return;
+    problem(row,
+            fmt::format("{} would be {:.1f} mm deep in its trocar: it reaches {:g} mm", tool.name,
+                        pose.insertion / 1e-3, deepest / 1e-3),
+            "are the registration's unit, port and axes right?");
   }
 
   void write_header(const std::vector<std::string>& names) {
@@ -260,7 +233,6 @@ class Importer {
   const Registration& registration_;
   const ExerciseDefinition& exercise_;
   double rate_;
-  Mat3 axes_;
   std::vector<Problem> problems_;
   ImportedRecording result_;
 };
@@ -268,29 +240,43 @@ class Importer {
 }  // namespace
 
 std::vector<Problem> problems_with(const Registration& registration, const ExerciseDefinition& exercise) {
-  if (registration.exercise != exercise.id)
-    return {{registration.place,
-             fmt::format("this registers for {}, not for {}", registration.exercise, exercise.id),
-             "import for that exercise, or name another table"}};
-  std::vector<Problem> problems;
   const std::vector<std::string> names = names_of(exercise.scene.instruments);
-  std::vector<std::string> given;
-  for (const ForeignInstrument& instrument : registration.instruments) {
-    if (std::find(names.begin(), names.end(), instrument.name) == names.end())
-      problems.push_back({instrument.place,
-                          fmt::format("the exercise has no instrument \"{}\"", instrument.name),
-                          suggestion(instrument.name, names)});
-    if (std::find(given.begin(), given.end(), instrument.name) != given.end())
-      problems.push_back(
-          {instrument.place, fmt::format("\"{}\" is there twice", instrument.name), "name each once"});
-    given.push_back(instrument.name);
-  }
+  std::vector<Problem> problems = misnamed(registration, exercise, names);
+  if (registration.exercise != exercise.id) return problems;
   for (const std::string& name : names)
-    if (std::find(given.begin(), given.end(), name) == given.end())
+    if (std::none_of(registration.instruments.begin(), registration.instruments.end(),
+                     [&](const ForeignInstrument& tool) { return tool.name == name; }))
       problems.push_back({registration.place,
                           fmt::format("the exercise's instrument \"{}\" is missing", name),
                           "add { name = \"" + name + "\", source = ... } to instruments"});
   return problems;
+}
+
+std::vector<Problem> live_problems_with(const Registration& registration,
+                                        const ExerciseDefinition& exercise) {
+  std::vector<std::string> names = names_of(exercise.scene.instruments);
+  names.emplace_back(laparoscope_name);
+  std::vector<Problem> problems = misnamed(registration, exercise, names);
+  for (const ForeignInstrument& tool : registration.instruments)
+    if (!tool.port)
+      problems.push_back({tool.place,
+                          fmt::format("{}: while it moves, its trocar's place cannot be found", tool.name),
+                          "give port = { x, y, z } in their frame and unit"});
+  return problems;
+}
+
+Registration direct_registration(const std::string& exercise,
+                                 const std::vector<LiveInstrument>& instruments) {
+  Registration registration;
+  registration.exercise = exercise;
+  registration.unit = 1e-3;
+  for (const LiveInstrument& instrument : instruments) {
+    ForeignInstrument tool;
+    tool.name = tool.source = instrument.definition.name;
+    tool.port = instrument.trocar / registration.unit;
+    registration.instruments.push_back(std::move(tool));
+  }
+  return registration;
 }
 
 Result<ImportedRecording> to_recording(const ForeignMotion& motion, const Registration& registration,

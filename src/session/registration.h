@@ -3,6 +3,7 @@
 
 #include "session/exercise.h"
 #include "session/foreign_motion.h"
+#include "session/live.h"
 #include "session/recording.h"
 
 namespace calot {
@@ -23,6 +24,12 @@ struct Registration {
 
 /// What of it does not fit the exercise: its id, its instruments.
 std::vector<Problem> problems_with(const Registration& registration, const ExerciseDefinition& exercise);
+
+/// What of it does not fit motion that comes while the exercise runs: its id, its instruments (the laparoscope may be one,
+/// and who is missing does not move), a trocar's place that is to be found.
+std::vector<Problem> live_problems_with(const Registration& registration, const ExerciseDefinition& exercise);
+/// Of senders that know the field: mm in the patient's frame, each tool called as its instrument.
+Registration direct_registration(const std::string& exercise, const std::vector<LiveInstrument>& instruments);
 
 /// A recording of poses without states: each instrument's tip keeps its place relative to the trocar, turned by the axes;
 /// roll comes from `across`. Resampled to the exercise's rate by straight lines. Instruments begin in their trocars and go

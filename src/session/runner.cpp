@@ -54,7 +54,8 @@ class Session {
     if (options_.recording == nullptr) return;
     options_.recording->write(
         {exercise_hash(script_.definition()), result_.metrics, result_.progress, result_.notes});
-    options_.recording->finish(to_text(result_.end));
+    const bool by_source = result_.end == SessionEnd::source_ended && !options_.source_end.empty();
+    options_.recording->finish(by_source ? options_.source_end : to_text(result_.end));
   }
 
   void end(SessionEnd how) {
@@ -108,6 +109,7 @@ class Session {
       return false;
     } else {
       input_.actions.clear();  // poses are held, pedals are not
+      input_.laparoscope.reset();
     }
     return true;
   }

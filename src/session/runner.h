@@ -30,6 +30,8 @@ using StepObserver = std::function<void(const World& world, const Progress& prog
 struct SessionOptions {
   const std::atomic<bool>* stop = nullptr;  ///< set: the session ends as interrupted before its next step
   bool end_with_source = false;             ///< a replay ends where its recording does
+  /// How that is recorded; empty: as source_ended. Of a replay of what was broken off: how that was.
+  std::string source_end;
   RecordingWriter* recording = nullptr;
   StepTable* table = nullptr;
   StepObserver observer;

@@ -1,13 +1,9 @@
 #pragma once
-// Where a laparoscope is, and what it sees.
+// Where a laparoscope is, and where it looks.
 
-#include <array>
-
-#include "anatomy/definitions.h"
+#include "sim/instrument.h"
 
 namespace calot {
-
-struct Field;
 
 struct LaparoscopePose {
   Vec3 position = Vec3::Zero();                        ///< m, of the lens
@@ -20,9 +16,29 @@ struct LaparoscopePose {
 /// out.
 LaparoscopePose laparoscope_pose(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target);
 
-/// How much of a triangle is seen from `eye`, m^2, across the line of sight: a triangle seen from its edge is none. Rays go to
-/// 64 places on it; what stands before one within the last `margin` m does not hide it (what the triangle is stretched
-/// between).
-double seen_area(const Field& field, const Vec3& eye, const std::array<Vec3, 3>& corners, double margin);
+/// How far it goes in: a shaft of 10 mm, 310 mm long, without jaws. Tissue does not feel it.
+InstrumentGeometry laparoscope_geometry();
+
+/// A laparoscope in its port, about which it pivots as an instrument does. Its optic is fixed to the shaft, so roll turns
+/// the way an angled one looks; the camera on it is held so that the horizon stays level.
+class Laparoscope {
+ public:
+  Laparoscope() = default;
+  /// Stands as laparoscope_pose() says, until it is moved.
+  Laparoscope(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target);
+
+  /// As an instrument's, jaw 0: the lens is its tip. Where laparoscope_pose() has it outside its port (the port is nearer
+  /// to the target than the lens is to be), this is in the port, as deep as it was outside.
+  const InstrumentPose& start() const { return start_; }
+  /// From a pose; where that is start(), laparoscope_pose() by every bit.
+  LaparoscopePose view(const InstrumentPose& pose) const;
+
+ private:
+  Vec3 port_ = Vec3::Zero();
+  InstrumentPose start_;
+  LaparoscopePose stands_;
+  Vec3 along_ = Vec3::UnitZ(),
+       level_up_ = Vec3::UnitX();  ///< the view and its upward direction, in the tip's frame
+};
 
 }  // namespace calot

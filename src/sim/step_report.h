@@ -2,11 +2,13 @@
 // What goes into a step and what comes out of it: plain data.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/events.h"
 #include "sim/instrument.h"
+#include "sim/laparoscope.h"
 #include "sim/part_load.h"
 
 namespace calot {
@@ -16,6 +18,8 @@ namespace calot {
 struct StepInput {
   std::vector<InstrumentPose> instruments;
   std::vector<InstrumentAction> actions = {};  ///< one an instrument; empty: none acts
+  /// Where the laparoscope is to be, about its port (sim/laparoscope.h); none: where it is.
+  std::optional<InstrumentPose> laparoscope = {};
   bool operator==(const StepInput&) const = default;
 };
 
@@ -30,6 +34,12 @@ struct InstrumentState {
   int grip_points = 0;
   GripState grip = GripState::open;
   InstrumentAction action = InstrumentAction::none;
+};
+
+struct LaparoscopeState {
+  InstrumentPose pose;
+  LaparoscopePose view;
+  double distance = 0;  ///< m, from the lens to where at rest the place was that the scene has it look at
 };
 
 struct OrganState {
@@ -61,6 +71,7 @@ struct SolveStatistics {
 struct StepReport {
   double time = 0;  ///< s, at the end of the step
   std::vector<InstrumentState> instruments;
+  LaparoscopeState laparoscope;
   std::vector<OrganState> organs;
   std::vector<TissueState> tissues;
   std::vector<WorldEvent> events;

@@ -18,6 +18,7 @@
 #include "sim/join_bodies.h"
 #include "sim/laparoscope.h"
 #include "sim/settle_field.h"
+#include "sim/sight.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
 #include "sim/vibration.h"
@@ -48,7 +49,8 @@ struct World::Impl {
   Assembly assembly;
   SceneDefinition scene;
   Vec3 up = Vec3::UnitZ();
-  Vec3 eye = Vec3::Zero();  ///< m, the laparoscope's lens
+  Laparoscope laparoscope;
+  Vec3 looked_at = Vec3::Zero();  ///< m, at rest
   Field field;
   StepReport report;
   long steps = 0;
@@ -58,6 +60,7 @@ struct World::Impl {
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
 
+  void place_laparoscope(const InstrumentPose& pose);
   void observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions);
   InstrumentState instrument_state(std::size_t index, const ToolLoad& load) const;
   OrganState organ_state(const Organ& organ) const;
@@ -174,6 +177,10 @@ void add_rubbing(Hash& hash, const std::vector<SkinHold>& rubbing) {
   }
 }
 
+void add_pose(Hash& hash, const InstrumentPose& pose) {
+  for (double v : {pose.pitch, pose.yaw, pose.insertion, pose.roll, pose.jaw}) hash.add(v);
+}
+
 void add_tool(Hash& hash, const Tool& tool) {
   const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0) |
                    static_cast<int>(tool.action) << 3;
@@ -181,8 +188,7 @@ void add_tool(Hash& hash, const Tool& tool) {
   hash.add(static_cast<unsigned char>(grip));
   hash.add(tool.touched);
   hash.add(tool.over_limit);
-  for (double v : {tool.pose.pitch, tool.pose.yaw, tool.pose.insertion, tool.pose.roll, tool.pose.jaw})
-    hash.add(v);
+  add_pose(hash, tool.pose);
 }
 
 void add_place(Hash& hash, const CarriedPlace& place) {
@@ -240,7 +246,17 @@ std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
   Hash hash;
   hash.add(of_field);
   hash.add(steps);
+  const InstrumentPose& scope = report.laparoscope.pose;
+  if (scope != laparoscope.start()) add_pose(hash, scope);
   return hash.value();
+}
+
+void World::Impl::place_laparoscope(const InstrumentPose& pose) {
+  report.laparoscope.pose = pose;
+  report.laparoscope.view = laparoscope.view(pose);
+  report.laparoscope.distance = pose == laparoscope.start()
+                                    ? scene.laparoscope.distance
+                                    : (looked_at - report.laparoscope.view.position).norm();
 }
 
 InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad& load) const {
@@ -452,9 +468,10 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     SolveStatistics statistics;
     for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
   }
-  world.impl_->eye = laparoscope_pose(scene.laparoscope, world.port_position(scene.laparoscope.port),
-                                      world.landmark(scene.laparoscope.look_at))
-                         .position;
+  world.impl_->looked_at = world.landmark(scene.laparoscope.look_at);
+  world.impl_->laparoscope =
+      Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), world.impl_->looked_at);
+  world.impl_->place_laparoscope(world.impl_->laparoscope.start());
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
   world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
   world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
@@ -480,6 +497,10 @@ Result<StepReport> World::step(const StepInput& input) {
     if (input.actions.empty()) continue;
     if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;
   }
+  if (input.laparoscope)
+    if (std::optional<Failure> failure =
+            check_pose(laparoscope_name, laparoscope_geometry(), *input.laparoscope))
+      return *failure;
   self.report.statistics = {};
   if (self.scene.solver.skip_still && self.still == input) {
     ++self.steps;
@@ -501,6 +522,7 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   ++self.steps;
+  if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
   self.observe(std::move(events).value(), input.actions);
   self.still.reset();
   if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
@@ -563,7 +585,8 @@ Vec3 World::landmark_normal(const std::string& name) const { return skin_place(i
 
 double World::seen_area(const std::array<Vec3, 3>& corners) const {
   constexpr double margin = 2e-3;  // m: as thick as what such a triangle is stretched between
-  return calot::seen_area(impl_->field, impl_->eye, corners, margin);
+  return calot::seen_area(impl_->field, impl_->report.laparoscope.view,
+                          impl_->scene.laparoscope.field_of_view, corners, margin);
 }
 
 const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }

@@ -74,8 +74,8 @@ class World {
   Vec3 port_position(const std::string& port) const;
   /// Present place of "organ.landmark" on the skin, m; of an organ that went, where it was last.
   Vec3 landmark(const std::string& organ_and_landmark) const;
-  /// Of a triangle's area what the laparoscope sees, m^2, across its line of sight (sim/laparoscope.h). It stands where it
-  /// stood at rest.
+  /// Of a triangle's area what the laparoscope sees, m^2, across its line of sight (sim/sight.h), from where
+  /// it is now.
   double seen_area(const std::array<Vec3, 3>& corners) const;
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;

@@ -23,9 +23,6 @@ Material material_of(const OrganShape& shape) {
 }  // namespace
 
 SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())), moulds_(world) {
-  const SceneDefinition& scene = world.scene();
-  camera_ = laparoscope_camera(scene.laparoscope, world.port_position(scene.laparoscope.port),
-                               world.landmark(scene.laparoscope.look_at));
   for (const Organ& organ : world.field().organs) {
     const auto k = static_cast<std::size_t>(organ.record);
     if (k >= organs_.size()) organs_.resize(k + 1);
@@ -49,7 +46,7 @@ SceneMesh SceneBuilder::organ_mesh(const World& world, int organ) {
 Scene SceneBuilder::build(const World& world) const {
   const SceneDefinition& definition = world.scene();
   Scene scene;
-  scene.camera = camera_;
+  scene.camera = laparoscope_camera(definition.laparoscope, world.report().laparoscope);
   for (std::size_t i = 0; i < definition.instruments.size(); ++i) {
     const Vec3 trocar = world.port_position(definition.instruments[i].port);
     for (SceneMesh& mesh :

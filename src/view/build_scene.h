@@ -12,12 +12,11 @@ class SceneBuilder {
   explicit SceneBuilder(const World& world);
   /// To be told of every step, drawn or not: a picture shows something of the way to it (view/jaw_mould.h).
   void follow(const World& world) { moulds_.follow(world); }
-  /// The picture of the world's present state. The laparoscope stays where it stood at the builder's making:
-  /// a camera held still, not one glued to the moving organ.
+  /// The picture of the world's present state. The laparoscope is where it was moved to, else where it stood at rest: a
+  /// camera held still, not one glued to the moving organ.
   Scene build(const World& world) const;
 
  private:
-  SceneCamera camera_;
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
   /// All that does not move of an organ: material, rest positions, triangles, vessels.
   static SceneMesh organ_mesh(const World& world, int organ);

@@ -2,19 +2,16 @@
 
 #include <cmath>
 
-#include "sim/laparoscope.h"
-
 namespace calot {
 
-SceneCamera laparoscope_camera(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target) {
-  const LaparoscopePose pose = laparoscope_pose(scope, port, target);
+SceneCamera laparoscope_camera(const LaparoscopeDefinition& scope, const LaparoscopeState& state) {
   SceneCamera camera;
-  camera.position = pose.position;
-  camera.direction = pose.direction;
-  camera.up = pose.up;
+  camera.position = state.view.position;
+  camera.direction = state.view.direction;
+  camera.up = state.view.up;
   camera.field_of_view = scope.field_of_view;
   // Exposure follows the distance, as a surgeon's light source does: what is looked at is well lit.
-  camera.light_intensity = std::pow(scope.distance / 90e-3, 2);
+  camera.light_intensity = std::pow(state.distance / 90e-3, 2);
   return camera;
 }
 

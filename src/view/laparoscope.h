@@ -1,11 +1,11 @@
 #pragma once
 
-#include "anatomy/definitions.h"
 #include "render/scene.h"
+#include "sim/step_report.h"
 
 namespace calot {
 
-/// Its camera, at laparoscope_pose() (sim/laparoscope.h).
-SceneCamera laparoscope_camera(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target);
+/// What is seen through a laparoscope that is there (sim/laparoscope.h).
+SceneCamera laparoscope_camera(const LaparoscopeDefinition& scope, const LaparoscopeState& state);
 
 }  // namespace calot

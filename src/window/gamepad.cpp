@@ -27,9 +27,10 @@ const std::array axis_rows = {
     AxisRow{"right", &GamepadMap::right, "mm_s", mm_s},   AxisRow{"up", &GamepadMap::up, "mm_s", mm_s},
     AxisRow{"deeper", &GamepadMap::deeper, "mm_s", mm_s}, AxisRow{"roll", &GamepadMap::roll, "deg_s", deg_s},
     AxisRow{"close", &GamepadMap::close, "deg_s", deg_s}, AxisRow{"open", &GamepadMap::open, "deg_s", deg_s}};
-const std::array<std::pair<const char*, int GamepadMap::*>, 4> button_rows = {
+const std::array<std::pair<const char*, int GamepadMap::*>, 5> button_rows = {
     {{"clutch", &GamepadMap::clutch},
      {"next_hand", &GamepadMap::next_hand},
+     {"laparoscope", &GamepadMap::laparoscope},
      {"activate", &GamepadMap::activate},
      {"menu", &GamepadMap::menu}}};
 
@@ -128,7 +129,9 @@ HandMotion gamepad_motion(const GamepadMap& map, const GamepadState& state, cons
   };
   const auto way = [&](const AxisUse& use) { return use.speed * deflection(use, state) * dt; };
   HandMotion motion;
-  motion.next_hand = down(state, map.next_hand) && !down(before, map.next_hand);
+  const auto pressed = [&](int button) { return down(state, button) && !down(before, button); };
+  motion.next_hand = pressed(map.next_hand);
+  motion.laparoscope = pressed(map.laparoscope);
   motion.activate = down(state, map.activate);
   if (down(state, map.clutch)) return motion;
   motion.in_view = Vec3(way(map.right), way(map.up), way(map.deeper));

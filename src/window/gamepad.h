@@ -27,8 +27,8 @@ struct AxisUse {
 struct GamepadMap {
   AxisUse right{0, 0.15, 60e-3}, up{1, 0.15, -60e-3}, deeper{3, 0.15, -60e-3}, roll{2, 0.15, 2.5};
   AxisUse close{5, 0.05, 2.0}, open{4, 0.05, 2.0};
-  int clutch = 4, next_hand = 3, activate = 0,
-      menu = 7;  ///< buttons; while the clutch is held the hand stays
+  /// Buttons; while the clutch is held the hand stays.
+  int clutch = 4, next_hand = 3, laparoscope = 5, activate = 0, menu = 7;
 };
 
 /// From a device file's text (JSON, schema calot.device/1); what it leaves out stays as above. Fails (usage) with all that

@@ -19,6 +19,7 @@ HandMotion& HandMotion::operator+=(const HandMotion& other) {
   jaw += other.jaw;
   activate = activate || other.activate;
   next_hand = next_hand || other.next_hand;
+  laparoscope = laparoscope || other.laparoscope;
   return *this;
 }
 
@@ -32,13 +33,31 @@ Vec3 HandControl::tip(int instrument) const {
   return tip_position(instruments_[i].trocar, closed, instruments_[i].geometry);
 }
 
+Vec3 HandControl::grasped(const SceneCamera& camera) const {
+  if (!on_laparoscope_) return tip(hand_);
+  return camera.position + poses_.back().insertion * camera.direction.normalized();
+}
+
 void HandControl::move(const HandMotion& motion, const SceneCamera& camera) {
-  if (motion.next_hand) selected_ = (selected_ + 1) % static_cast<int>(instruments_.size());
-  const auto i = static_cast<std::size_t>(selected_);
+  if (motion.laparoscope) on_laparoscope_ = !on_laparoscope_;
+  if (motion.next_hand && !on_laparoscope_) hand_ = (hand_ + 1) % laparoscope();
+  if (motion.next_hand) on_laparoscope_ = false;
+  move(selected(), motion, camera);
+  activate_ =
+      motion.activate && !on_laparoscope_ &&
+      has_action(instruments_[static_cast<std::size_t>(hand_)].definition.type, InstrumentAction::activate);
+}
+
+void HandControl::move_laparoscope(const HandMotion& motion, const SceneCamera& camera) {
+  move(laparoscope(), motion, camera);
+}
+
+void HandControl::move(int which, const HandMotion& motion, const SceneCamera& camera) {
+  const auto i = static_cast<std::size_t>(which);
   const LiveInstrument& instrument = instruments_[i];
   InstrumentPose& pose = poses_[i];
   if (motion.in_view != Vec3::Zero()) {
-    const Vec3 wanted = tip(selected_) + camera_axes(camera).transpose() * motion.in_view;
+    const Vec3 wanted = tip(which) + camera_axes(camera).transpose() * motion.in_view;
     const double depth = (wanted - instrument.trocar).norm();
     out_of_reach_ = depth < least_depth || depth > instrument.geometry.max_insertion;
     if (!out_of_reach_) {
@@ -49,11 +68,10 @@ void HandControl::move(const HandMotion& motion, const SceneCamera& camera) {
   }
   pose.jaw = std::clamp(pose.jaw + motion.jaw, 0.0, instrument.geometry.jaw_opening);
   pose.roll = std::clamp(pose.roll + motion.roll, -most_roll, most_roll);
-  activate_ = motion.activate && has_action(instrument.definition.type, InstrumentAction::activate);
 }
 
 LiveInput HandControl::input() const {
-  LiveInput input = held(selected_);
+  LiveInput input = held(selected());
   if (activate_) input.action = InstrumentAction::activate;
   return input;
 }

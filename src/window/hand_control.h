@@ -10,10 +10,11 @@ namespace calot {
 
 /// What a device asks of the hand that is selected, since the last time it was asked.
 struct HandMotion {
-  Vec3 in_view = Vec3::Zero();  ///< m: right, up and into the picture
-  double roll = 0, jaw = 0;     ///< rad: more
-  bool activate = false;        ///< the pedal is down
-  bool next_hand = false;
+  Vec3 in_view = Vec3::Zero();                  ///< m: right, up and into the picture
+  double roll = 0, jaw = 0;                     ///< rad: more
+  bool activate = false;                        ///< the pedal is down
+  bool next_hand = false, laparoscope = false;  ///< to the other hand; to the laparoscope, or back
+  bool moves() const { return in_view != Vec3::Zero() || roll != 0 || jaw != 0; }
   HandMotion& operator+=(const HandMotion& other);
 };
 
@@ -22,23 +23,31 @@ class HandControl {
   /// `poses` are where the instruments are, one each.
   HandControl(std::vector<LiveInstrument> instruments, const std::vector<InstrumentPose>& poses);
 
-  int selected() const { return selected_; }
+  int selected() const { return on_laparoscope_ ? laparoscope() : hand_; }
+  int laparoscope() const { return static_cast<int>(instruments_.size()) - 1; }
   /// Moves the selected hand; the others stay where they were left. Jaws stop where they are closed or fully open. Where
   /// the tip would be out of reach it stays, and `out_of_reach` says so.
   void move(const HandMotion& motion, const SceneCamera& camera);
+  /// The same of the laparoscope, selected or not: somebody else holds it.
+  void move_laparoscope(const HandMotion& motion, const SceneCamera& camera);
   bool out_of_reach() const { return out_of_reach_; }
   /// Of the closed jaws, m.
   Vec3 tip(int instrument) const;
+  /// What goes as far in the view as the selected hand's device does, m: its tip. The laparoscope turns by what is as far
+  /// before it as its port is behind, so that the picture goes with the pointer.
+  Vec3 grasped(const SceneCamera& camera) const;
   /// For the mailbox, of the selected hand.
   LiveInput input() const;
   /// The same of one that was let go by selecting another: it no longer acts.
   LiveInput held(int instrument) const;
 
  private:
-  std::vector<LiveInstrument> instruments_;
+  void move(int instrument, const HandMotion& motion, const SceneCamera& camera);
+
+  std::vector<LiveInstrument> instruments_;  ///< the laparoscope is the last
   std::vector<InstrumentPose> poses_;
-  int selected_ = 0;
-  bool out_of_reach_ = false, activate_ = false;
+  int hand_ = 0;
+  bool on_laparoscope_ = false, out_of_reach_ = false, activate_ = false;
 };
 
 /// m at the depth of `place` that a pixel of the picture covers at its middle; `field` is the round field's diameter, px.

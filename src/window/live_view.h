@@ -13,7 +13,7 @@ namespace calot {
 
 struct HandView {
   std::string name, holds;      ///< the organ held, or empty
-  double force = 0, limit = 8;  ///< N, at the tip
+  double force = 0, limit = 8;  ///< N, at the tip; limit 0: it is not measured
   InstrumentPose pose;
 };
 
@@ -25,7 +25,7 @@ struct LiveView {
   double step_time = 0, step_limit = 0;  ///< s; no limit: 0
   int step_number = 0;
   std::string last_event;
-  std::vector<HandView> hands;
+  std::vector<HandView> hands;  ///< the laparoscope is the last
 };
 
 /// One thread puts, another takes; what was not taken is replaced.

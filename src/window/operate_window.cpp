@@ -1,7 +1,5 @@
 #include "window/operate_window.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <fmt/format.h>
 #include <imgui.h>
@@ -13,6 +11,7 @@
 #include "render/offscreen.h"
 #include "window/draw_lists.h"
 #include "window/overlay.h"
+#include "window/window_system.h"
 
 namespace calot {
 namespace {
@@ -23,58 +22,6 @@ constexpr double jaw_speed = 120 * units::deg, roll_speed = 120 * units::deg;  /
 constexpr double longest_turn = 0.1;  // s that held keys count for at once
 constexpr double still_after = 1;     // s without a new state: time stands still
 constexpr double idle_wait = 5e-3;    // s
-
-std::string last_error() {
-  const char* text = nullptr;
-  glfwGetError(&text);
-  return text != nullptr ? text : "no reason is given";
-}
-
-Failure no_window(const std::string& what) {
-  return fail(
-      FailureKind::resource, fmt::format("{}: {}", what, last_error()),
-      "on a machine with a screen set DISPLAY; else move the instruments by a program, with --no-window and "
-      "--input, or call `xvfb-run calot operate ...` to try the window without a screen");
-}
-
-/// GLFW as long as somebody needs it.
-class Glfw {
- public:
-  static Result<std::shared_ptr<Glfw>> start() {
-    if (glfwInit() != GLFW_TRUE) return no_window("no window can be opened");
-    return std::shared_ptr<Glfw>(new Glfw);
-  }
-  Glfw(const Glfw&) = delete;
-  Glfw& operator=(const Glfw&) = delete;
-  ~Glfw() { glfwTerminate(); }
-
- private:
-  Glfw() = default;
-};
-
-class WindowContext : public GlContext {
- public:
-  explicit WindowContext(GLFWwindow* window) : window_(window) {}
-  bool make_current() override {
-    if (glfwGetCurrentContext() != window_) glfwMakeContextCurrent(window_);
-    return glfwGetCurrentContext() == window_;
-  }
-  GlLoader loader() const override { return &glfwGetProcAddress; }
-
- private:
-  GLFWwindow* window_;
-};
-
-/// A window whose OpenGL is current, or none.
-GLFWwindow* make_window(int width, int height, const std::string& name) {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  GLFWwindow* window = glfwCreateWindow(width, height, name.c_str(), nullptr, nullptr);
-  if (window != nullptr) glfwMakeContextCurrent(window);
-  return window;
-}
 
 /// Where the picture is in the window, px from the upper left.
 struct PicturePlace {
@@ -93,18 +40,6 @@ PicturePlace place_picture(int window_width, int window_height, double ratio, co
   return place;
 }
 
-GamepadState read_gamepad() {
-  GamepadState state;
-  for (int pad = GLFW_JOYSTICK_1; pad <= GLFW_JOYSTICK_LAST; ++pad) {
-    GLFWgamepadstate raw;
-    if (glfwJoystickIsGamepad(pad) != GLFW_TRUE || glfwGetGamepadState(pad, &raw) != GLFW_TRUE) continue;
-    std::copy(std::begin(raw.axes), std::end(raw.axes), state.axes.begin());
-    for (std::size_t i = 0; i < state.buttons.size(); ++i) state.buttons[i] = raw.buttons[i] == GLFW_PRESS;
-    break;  // the first there is
-  }
-  return state;
-}
-
 }  // namespace
 
 struct OperateWindow::Impl {
@@ -120,7 +55,7 @@ struct OperateWindow::Impl {
   std::optional<HandControl> hands;
   OverlayState state;
   WindowEvents events;
-  GamepadState pad;
+  std::vector<GamepadState> pads;  ///< at the last turn
   std::optional<Vec2> pointer;
   double last_turn = 0, last_picture = 0;
   bool captured = false, was_acting = false;
@@ -142,6 +77,7 @@ struct OperateWindow::Impl {
   void go_on();
   void choose(MenuChoice choice);
   HandMotion device_motion(double dt);
+  HandMotion pad_motion(std::size_t pad, const std::vector<GamepadState>& now, double dt);
   void move_hands(double dt);
   bool key(int code) const { return glfwGetKey(window, code) == GLFW_PRESS; }
   bool button(int code) const { return captured && glfwGetMouseButton(window, code) == GLFW_PRESS; }
@@ -206,6 +142,7 @@ void OperateWindow::Impl::listen() {
   glfwSetKeyCallback(window, [](GLFWwindow* from, int code, int, int action, int) {
     if (action != GLFW_PRESS) return;
     if (code == GLFW_KEY_TAB) self(from)->events.next_hand = true;
+    if (code == GLFW_KEY_C) self(from)->events.laparoscope = true;
     if (code == GLFW_KEY_ESCAPE) self(from)->events.menu = true;
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int, int action, int) {
@@ -256,29 +193,41 @@ HandMotion OperateWindow::Impl::device_motion(double dt) {
   HandMotion motion;
   const double field = renderer->lens().field_diameter * place().height;
   const double pixel =
-      fine * pixel_ratio() * metres_a_pixel(view->scene.camera, hands->tip(hands->selected()), field);
+      fine * pixel_ratio() * metres_a_pixel(view->scene.camera, hands->grasped(view->scene.camera), field);
   motion.in_view = Vec3(pixel * events.right, -pixel * events.down, fine * wheel_notch * events.wheel);
   const auto held = [&](bool more, bool less) { return fine * dt * ((more ? 1 : 0) - (less ? 1 : 0)); };
   motion.roll = roll_speed * held(key(GLFW_KEY_E), key(GLFW_KEY_Q));
   motion.jaw = jaw_speed * held(button(GLFW_MOUSE_BUTTON_RIGHT), button(GLFW_MOUSE_BUTTON_LEFT));
   motion.activate = key(GLFW_KEY_SPACE);
   motion.next_hand = events.next_hand;
-  const GamepadState now = read_gamepad();
-  motion += gamepad_motion(options.gamepad, now, pad, dt);
-  const auto menu_button = static_cast<std::size_t>(options.gamepad.menu);
-  if (options.gamepad.menu >= 0 && now.buttons[menu_button] && !pad.buttons[menu_button]) events.menu = true;
-  pad = now;
+  motion.laparoscope = events.laparoscope;
   return motion;
+}
+
+/// Nothing of one that was plugged in since the last turn.
+HandMotion OperateWindow::Impl::pad_motion(std::size_t pad, const std::vector<GamepadState>& now, double dt) {
+  if (pad >= now.size() || pad >= pads.size()) return {};
+  const auto menu_button = static_cast<std::size_t>(options.gamepad.menu);
+  if (options.gamepad.menu >= 0 && now[pad].buttons[menu_button] && !pads[pad].buttons[menu_button])
+    events.menu = true;
+  return gamepad_motion(options.gamepad, now[pad], pads[pad], dt);
 }
 
 /// Sends what has changed; a pedal that was let go is a change.
 void OperateWindow::Impl::move_hands(double dt) {
-  const HandMotion motion = device_motion(dt);
-  if (motion.next_hand) send(hands->held(hands->selected()));
-  hands->move(motion, view->scene.camera);
-  const bool moved = motion.in_view != Vec3::Zero() || motion.roll != 0 || motion.jaw != 0;
-  if (moved || motion.activate || was_acting || motion.next_hand) send(hands->input());
+  const std::vector<GamepadState> now = read_gamepads();
+  HandMotion motion = device_motion(dt);
+  motion += pad_motion(0, now, dt);
+  const HandMotion assistant = pad_motion(1, now, dt);
+  pads = now;
+  const SceneCamera& camera = view->scene.camera;
+  const bool changes = motion.next_hand || motion.laparoscope;
+  if (changes) send(hands->held(hands->selected()));
+  hands->move(motion, camera);
+  if (motion.moves() || motion.activate || was_acting || changes) send(hands->input());
   was_acting = motion.activate;
+  hands->move_laparoscope(assistant, camera);
+  if (assistant.moves()) send(hands->held(hands->laparoscope()));
 }
 
 /// What is drawn now. At the begin of an attempt the hands are where its instruments are.
@@ -395,18 +344,5 @@ Image OperateWindow::shown() const {
 }
 
 std::string OperateWindow::description() const { return impl_->renderer->description(); }
-
-Result<std::vector<DeviceRow>> list_devices() {
-  const Result<std::shared_ptr<Glfw>> library = Glfw::start();
-  if (!library) return library.failure();
-  std::vector<DeviceRow> rows;
-  for (int pad = GLFW_JOYSTICK_1; pad <= GLFW_JOYSTICK_LAST; ++pad) {
-    if (glfwJoystickPresent(pad) != GLFW_TRUE) continue;
-    const bool usable = glfwJoystickIsGamepad(pad) == GLFW_TRUE;
-    const char* name = usable ? glfwGetGamepadName(pad) : glfwGetJoystickName(pad);
-    rows.push_back({name != nullptr ? name : "without a name", usable});
-  }
-  return rows;
-}
 
 }  // namespace calot

@@ -40,10 +40,11 @@ void lay_out_light(bool runs) {
 }
 
 void lay_out_hand(const HandView& hand, bool selected) {
-  const double share = hand.limit > 0 ? hand.force / hand.limit : 0;
   coloured(selected ? ImVec4(1, 1, 1, 1) : grey,
            fmt::format("{}{}{}", selected ? "> " : "  ", hand.name,
                        hand.holds.empty() ? "" : " holds " + hand.holds));
+  if (!(hand.limit > 0)) return;
+  const double share = hand.force / hand.limit;
   ImGui::PushStyleColor(ImGuiCol_PlotHistogram, share > 1 ? red : share > 0.7 ? amber : green);
   ImGui::ProgressBar(static_cast<float>(std::clamp(share, 0.0, 1.0)), wide,
                      fmt::format("{:.1f} of {:g} N", hand.force, hand.limit).c_str());
@@ -102,7 +103,7 @@ std::optional<MenuChoice> lay_out(const OverlayState& state, const LiveView& vie
   coloured(
       grey,
       "mouse: tip in the view's plane\nwheel: deeper, back\nleft, right button: close, open\nQ, E: roll\n"
-      "Tab: the other hand\nSpace: activate\nShift: finely\nEsc: menu");
+      "Tab: the other hand\nC: the laparoscope, and back\nSpace: activate\nShift: finely\nEsc: menu");
   coloured(grey, fmt::format("{:.0f} pictures a second", state.pictures_a_second));
   ImGui::End();
   return chosen;

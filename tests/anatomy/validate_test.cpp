@@ -210,6 +210,8 @@ const std::vector<Refusal>& refusals() {
        "\"2nd\"", "digit"},
       {"InstrumentTwice", [](auto& s) { s.instruments[1].name = "left"; }, "scene.instruments[2].name",
        "\"left\" is given twice", "rename"},
+      {"InstrumentCalledAsTheLaparoscope", [](auto& s) { s.instruments[1].name = "laparoscope"; },
+       "scene.instruments.laparoscope", "the laparoscope is called that already", "another name"},
       {"InstrumentPort", [](auto& s) { s.instruments[0].port = "right_subcostl"; },
        "scene.instruments.left.port", "unknown port \"right_subcostl\"", "did you mean \"right_subcostal\"?"},
       {"InstrumentPortOfNoOtherList",

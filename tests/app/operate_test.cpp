@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/program.h"
+#include "geometry/types.h"
+#include "support/long_run.h"
+#include "support/paths.h"
 
 namespace calot::test {
 namespace {
@@ -19,6 +22,24 @@ std::string moving_lines(double seconds, const std::string& last = "end\n") {
   for (int i = 0; i <= 100 * seconds; ++i)
     text += fmt::format("tip {:.2f} left {} 0.06 -0.03 0 0.3\n", 0.01 * i, -0.08 + 1e-4 * i);
   return text + last;
+}
+
+/// A connection to the program's socket, once there is one; -1 after some 30 s.
+int connect_to(const fs::path& path) {
+  sockaddr_un address = {};
+  address.sun_family = AF_UNIX;
+  path.string().copy(address.sun_path, sizeof address.sun_path - 1);
+  for (int i = 0; i < 3000; ++i) {
+    const int file = socket(AF_UNIX, SOCK_STREAM, 0);
+    if (connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return file;
+    close(file);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return -1;
+}
+
+void send_text(int file, const std::string& text) {
+  EXPECT_EQ(send(file, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
 }
 
 class Operate : public ProgramTest {
@@ -51,6 +72,63 @@ TEST_F(Operate, ASessionByTimeStampsIsScoredAndItsReplayGoesThroughTheSameStates
   const Outcome replay = calot({"replay", "here/recording.jsonl"});
   EXPECT_EQ(replay.code, 0) << replay.err;
   EXPECT_NE(replay.out.find("Every state is that of the recording."), std::string::npos);
+}
+
+TEST_F(Operate, TheLaparoscopeIsAnInstrumentOfTheLinesAndIsReplayed) {
+  std::string lines = moving_lines(0.3);
+  lines.insert(lines.find("tip 0.10"), "tip 0.09 laparoscope -0.05 0.02 -0.03 0.4 0\n");
+  lines.insert(lines.find("tip 0.20"), "tip 0.19 laparoscope -0.05 0.02 -9 0 0\n");
+  const Outcome outcome = operate(lines);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("laparoscope' cannot take the pose"), std::string::npos) << outcome.err;
+  EXPECT_NE(slurp(folder_ / "here/recording.jsonl").find("\"laparoscope\":["), std::string::npos);
+  const Outcome replay = calot({"replay", "here/recording.jsonl"});
+  EXPECT_NE(replay.out.find("Every state is that of the recording."), std::string::npos) << replay.err;
+}
+
+/// From one place to another, mm, in so many seconds; the jaws from one opening to another, rad.
+struct Reach {
+  Vec3 to;
+  double seconds, jaw;
+};
+
+/// Lines at 50 Hz of a hand that goes from reach to reach on straight lines.
+std::string lines_of(Vec3 at, double jaw, const std::vector<Reach>& way) {
+  std::string text;
+  double time = 0;
+  for (const Reach& reach : way) {
+    const int lines = static_cast<int>(50 * reach.seconds);
+    for (int i = 1; i <= lines; ++i) {
+      const double share = static_cast<double>(i) / lines;
+      const Vec3 tip = 1e-3 * (at + share * (reach.to - at));
+      text += fmt::format("tip {:.2f} left {} {} {} 0 {}\n", time + 0.02 * i, tip.x(), tip.y(), tip.z(),
+                          jaw + share * (reach.jaw - jaw));
+    }
+    time += reach.seconds;
+    at = reach.to;
+    jaw = reach.jaw;
+  }
+  return text + "end\n";
+}
+
+TEST_F(Operate, AnExpertsHandExposesTheTriangleThroughASocketAndPasses) {
+  if (!long_run()) GTEST_SKIP() << "left to scripts/test --long: half a minute";
+  // The pouch is pressed on with open jaws, taken, and drawn to the patient's right and down.
+  const Vec3 before(-50, 100.5, -84), on(-49.7, 119, -100.4), drawn = on + Vec3(-20, -12, 8);
+  const std::string lines =
+      lines_of({-120, 32, -40}, 1.04,
+               {{before, 1.8, 1.04}, {on, 0.6, 1.04}, {on, 0.5, 0}, {drawn, 1.7, 0}, {drawn, 2, 0}});
+  const Outcome outcome = calot({"operate", source_dir() + "/scenarios/exposure.lua", "--no-window",
+                                 "--input", "unix:s", "--stamped", "-o", "here"},
+                                [&](pid_t) {
+                                  const int file = connect_to(folder_ / "s");
+                                  send_text(file, lines);
+                                  close(file);
+                                });
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = report("here");
+  EXPECT_TRUE(json["score"]["passed"].get<bool>()) << json["score"].dump(2);
+  EXPECT_GT(json["metrics"]["note.triangle_seen_mm2"], 110) << "the demo's expert: 129";
 }
 
 TEST_F(Operate, AnExamThatIsGivenUpIsScoredAndOneOfPracticeIsNot) {
@@ -126,24 +204,6 @@ TEST_F(Operate, AnExerciseWithoutInstrumentsIsRefused) {
   const Outcome outcome = operate(moving_lines(0.1));
   EXPECT_EQ(outcome.code, 4) << outcome.err;
   EXPECT_NE(outcome.err.find("no instrument"), std::string::npos) << outcome.err;
-}
-
-/// A connection to the program's socket, once there is one; -1 after some 30 s.
-int connect_to(const fs::path& path) {
-  sockaddr_un address = {};
-  address.sun_family = AF_UNIX;
-  path.string().copy(address.sun_path, sizeof address.sun_path - 1);
-  for (int i = 0; i < 3000; ++i) {
-    const int file = socket(AF_UNIX, SOCK_STREAM, 0);
-    if (connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return file;
-    close(file);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return -1;
-}
-
-void send_text(int file, const std::string& text) {
-  EXPECT_EQ(send(file, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
 }
 
 TEST_F(Operate, ASocketMovesItInRealTimeAndASecondSenderGoesOnWhereTheFirstWasLost) {

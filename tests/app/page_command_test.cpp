@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <turbojpeg.h>
 
+#include "app/browser.h"
 #include "app/page_moments.h"
 #include "app/program.h"
 #include "session/json.h"
+#include "session/recording.h"
+#include "support/long_run.h"
 
 namespace calot::test {
 namespace {
@@ -18,7 +22,10 @@ class PageOfSmall : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    std::string text = small_scenario("t:step('move', '<script>alert(1)</script>'); t:wait(0.2 * s)");
+    std::string text = small_scenario(
+        "t:step('move', '<script>alert(1)</script>', { hint = 'Gently' }); t:note('seen', 3); t:wait(0.2 * "
+        "s)");
+    text.replace(text.find("left.path_length_mm"), 19, "note.seen");
     text.replace(text.find("A small exercise"), 16, "<script>alert(2)</script>");
     spill(folder_ / "small.lua", text);
     static std::string recording;  // played once for all tests
@@ -51,6 +58,9 @@ TEST_F(PageOfSmall, HasItsScoreAndPicturesWhereStepsBeginAndEndAndNoForeignMarku
               HasSubstr(fmt::format("<b>{:.1f}</b> of 100 points", score["score"]["total"].get<double>())));
   EXPECT_THAT(html, HasSubstr("uncalibrated"));
   EXPECT_THAT(html, HasSubstr("id=\"picture-2\"><img src=\"data:image/jpeg;base64,/9j/"));
+  EXPECT_THAT(html, HasSubstr("85.0 of 100.0"))
+      << "what was noted in the step, from 20 to 0, counts as the step's";
+  EXPECT_THAT(html, HasSubstr("Gently")) << "points were lost";
   EXPECT_THAT(html, Not(HasSubstr("id=\"picture-3\""))) << "one where the step begins, one where it ends";
   EXPECT_THAT(html, Not(HasSubstr("<script")));
   EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(1)"));
@@ -92,6 +102,96 @@ TEST_F(PageOfSmall, IsNotWrittenWhereNothingIsScoredNorOverARecording) {
   EXPECT_EQ(slurp(folder_ / "out" / "recording.jsonl"), text_);
   fs::create_directories(folder_ / "empty");
   EXPECT_EQ(calot({"page", "empty"}).code, 5);
+}
+
+std::string from_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned held = 0;
+  int bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    held = held << 6 | static_cast<unsigned>(digits.find(c));
+    if ((bits += 6) < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>(held >> bits & 0xff);
+  }
+  return bytes;
+}
+
+TEST_F(PageOfSmall, ItsPicturesAreWholeAndAsLargeAsItSays) {
+  ASSERT_EQ(calot({"page", "out/recording.jsonl"}).code, 0);
+  const std::string html = slurp(folder_ / "out" / "recording.html"), start = "src=\"data:image/jpeg;base64,";
+  const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
+  int pictures = 0;
+  for (std::size_t at = html.find(start); at != std::string::npos;
+       at = html.find(start, at + 1), ++pictures) {
+    const std::size_t begin = at + start.size();
+    std::string bytes = from_base64(html.substr(begin, html.find('"', begin) - begin));
+    std::vector<unsigned char> rgb(640 * 360 * 3);
+    EXPECT_EQ(tjDecompress2(decoder.get(), reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(),
+                            rgb.data(), 640, 0, 360, TJPF_RGB, TJFLAG_STOPONWARNING),
+              0)
+        << tjGetErrorStr2(decoder.get());
+  }
+  EXPECT_EQ(pictures, 2);
+}
+
+TEST_F(PageOfSmall, ABrowserFindsNothingBrokenAndAsksForNothingElse) {
+  if (!long_run()) GTEST_SKIP() << "left to scripts/test --long: it takes a browser of 300 MB";
+  Browser browser(folder_ / "browser");
+  ASSERT_TRUE(browser.is_there()) << "no chromium, which scripts/test --long installs";
+  spill(folder_ / "cut.jsonl", text_.substr(0, text_.size() / 2));
+  EXPECT_EQ(calot({"page", "out/recording.jsonl", "cut.jsonl", "-o", "p.html"}).code, 1);
+  const std::string html = slurp(folder_ / "p.html");
+  const char* look = R"((() => {
+    const broken = [...document.images].filter(i => !(i.complete && i.naturalWidth === 640)).length;
+    const links = [...document.querySelectorAll('a')].map(a => a.getAttribute('href'));
+    const lost = links.filter(l => !l.startsWith('#') || !document.getElementById(l.slice(1)));
+    const wide = document.documentElement.scrollWidth > window.innerWidth;
+    return { images: document.images.length, links: links.length, broken, lost, wide };
+  })())";
+  const Opened whole = browser.open(folder_ / "p.html", look);
+  ASSERT_TRUE(whole.loaded);
+  EXPECT_THAT(whole.requests, testing::IsEmpty());
+  EXPECT_THAT(whole.said, testing::IsEmpty());
+  EXPECT_GE(whole.found["images"], 3) << whole.found;
+  EXPECT_GE(whole.found["links"], 10);
+  EXPECT_EQ(whole.found["broken"], 0);
+  EXPECT_EQ(whole.found["lost"], Json::array());
+  EXPECT_EQ(whole.found["wide"], false) << "it scrolls sideways";
+
+  // What this looks for would be found.
+  std::string worse = html;
+  worse.replace(worse.find("base64,/9j/") + 7, 4, "AAAA");
+  worse.replace(worse.find("<h1"), 0, "<img src=\"https://127.0.0.1:1/x.png\"><a href=\"#nowhere\">x</a>");
+  spill(folder_ / "worse.html", worse);
+  const Opened found = browser.open(folder_ / "worse.html", look);
+  EXPECT_EQ(found.found["broken"], 2) << found.found;
+  EXPECT_EQ(found.found["lost"], Json({"#nowhere"}));
+  EXPECT_FALSE(found.said.empty()) << "a picture from elsewhere is refused, and that is said";
+}
+
+TEST_F(PageOfSmall, WithoutPicturesWhatARecordingHoldsIsNotPlayedAgain) {
+  const std::string file = (folder_ / "other.jsonl").string();
+  Recording recording = read_recording((folder_ / "out" / "recording.jsonl").string()).value();
+  recording.steps[3].state_hash = 1;  // who plays it notices
+  {
+    Result<RecordingWriter> writer = RecordingWriter::create(file, recording.header);
+    for (const RecordedStep& step : recording.steps) ASSERT_TRUE(writer->write(step));
+    ASSERT_TRUE(writer->write(*recording.measured) && writer->finish(recording.end));
+  }
+  const auto page = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"page", "other.jsonl", "-o", "p.html"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(calot(words).code, 0);
+    return slurp(folder_ / "p.html");
+  };
+  EXPECT_THAT(page({}), HasSubstr("The replay parts from the recording at step 4"));
+  const std::string html = page({"--no-pictures"});
+  EXPECT_THAT(html, Not(HasSubstr("parts from")));
+  EXPECT_THAT(html, HasSubstr("Way of the tip"));
+  EXPECT_THAT(html, HasSubstr("Forces are known only where the recording is played again"));
 }
 
 /// Asks as a session does, and draws a small picture where that is wanted.

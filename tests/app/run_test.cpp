@@ -149,7 +149,7 @@ TEST_F(Run, AKilledRunsRecordingReplaysUpToItsLastStep) {
     kill(pid, SIGKILL);
   });
   EXPECT_EQ(outcome.code, 128 + SIGKILL);
-  const Outcome replay = calot({"replay", "here/recording.jsonl", "--json"});
+  const Outcome replay = calot({"replay", "here/recording.jsonl", "--json", "--no-render", "-o", "again"});
   EXPECT_EQ(replay.code, 1) << replay.err;
   const Json replayed = Json::parse(replay.out);
   const int steps = replayed["timing"]["steps"];
@@ -160,6 +160,15 @@ TEST_F(Run, AKilledRunsRecordingReplaysUpToItsLastStep) {
   EXPECT_NE(replayed["notes"].dump().find("has no end"), std::string::npos);
   EXPECT_EQ(replay.err.find("parts from"), std::string::npos) << "every state is that of the recording";
   expect_next_command(replay);
+  // What the replay wrote has an end, and says of what.
+  EXPECT_NE(slurp(folder_ / "again/recording.jsonl").find("{\"end\":\"cut\",\"steps\":"), std::string::npos);
+  const Outcome scored = calot({"score", "long.lua", "again/recording.jsonl", "--json"});
+  EXPECT_EQ(scored.code, 1) << scored.err;
+  const Json entry = Json::parse(scored.out)["recordings"][0];
+  EXPECT_EQ(entry["from"], "recording");
+  EXPECT_EQ(entry["end"], "cut");
+  EXPECT_FALSE(entry["whole"].get<bool>());
+  EXPECT_NE(entry["notes"].dump().find("is played from one without an end"), std::string::npos);
 }
 
 TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToChange) {

@@ -31,7 +31,7 @@ inline PageRecording made_up(const std::string& prefix, std::size_t samples, std
   };
   for (std::size_t i = 0; i < 4; ++i)
     r.steps.push_back({word, word, i < 3 ? "done" : word, end * 0.25 * static_cast<double>(i),
-                       end * 0.25 * static_cast<double>(i + 1), picture(i), picture(i + 1)});
+                       end * 0.25 * static_cast<double>(i + 1), picture(i), picture(i + 1), word});
   for (std::size_t i = 0; i < events; ++i)
     r.events.push_back({word, word, end * static_cast<double>(i) / static_cast<double>(events), word, word,
                         word, word, i % 3 == 0, picture(i)});

@@ -60,6 +60,26 @@ TEST(ThePage, HasThePlaceOfEveryLinkOnce) {
   EXPECT_THAT(all(alone, "href=\"([^\"]*)\""), Contains("#picture-3"));
 }
 
+TEST(ThePage, AStepIsTickedByItsPointsWhereItHasAnyAndSaysHowItIsDoneWhereTheyAreLost) {
+  PageRecording recording = made_up("", 100, 0, 0, 0);
+  recording.steps.resize(2);
+  recording.steps[0].hint = recording.steps[1].hint = "like this";
+  const auto row = [&](double points, double most) {
+    recording.steps[0].points = points, recording.steps[0].most = most;
+    const std::string html = recording_html(recording);
+    const std::size_t begin = html.find("<tr id=\"step-1\"");
+    return html.substr(begin, html.find("</tr>", begin) - begin);
+  };
+  const std::string ticked = "&#10003;</span> ", crossed = "&#10007;</span> ";
+  EXPECT_THAT(row(0, 0), HasSubstr(ticked + "done"));
+  EXPECT_THAT(row(0, 0), Not(HasSubstr("like this")));
+  EXPECT_THAT(row(2.4, 80), HasSubstr(crossed + "2.4 of 80.0"));
+  EXPECT_THAT(row(2.4, 80), Not(HasSubstr(ticked))) << "it was done, and badly";
+  EXPECT_THAT(row(2.4, 80), HasSubstr("like this"));
+  EXPECT_THAT(row(80, 80), HasSubstr(ticked + "80.0 of 80.0"));
+  EXPECT_THAT(row(80, 80), Not(HasSubstr("like this")));
+}
+
 TEST(ThePage, EscapesTextFromOutside) {
   const std::string evil = "<script>x</script>\"'><img onerror=x>&\x01";
   Page page = page_of({row("r1-", 40), row("r2-", 50)});

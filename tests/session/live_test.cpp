@@ -154,6 +154,38 @@ TEST(Live, AJumpIsGoneAfterAtAHandsSpeedAndSaid) {
   EXPECT_THAT(result.notes[0], HasSubstr("jump"));
 }
 
+TEST(Live, TheLaparoscopeMovesAsAnInstrumentAndItsReplayGoesThroughTheSameStates) {
+  Rig rig;
+  const test::Folder folder;
+  const std::string file = (folder.path() / "recording.jsonl").string();
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(file, recording_header(test::small_exercise(), rig.world, "small.lua"));
+  ASSERT_TRUE(writer);
+  rig.session.recording = &writer.value();
+  LiveInput input;
+  input.instrument = 1;
+  input.pose = rig.world.report().laparoscope.pose;
+  const InstrumentPose start = input.pose;
+  input.pose.insertion += 50e-3;
+  rig.send_at(0.05, input);
+  const SessionResult result = rig.play(0.2);
+  EXPECT_EQ(rig.world.report().laparoscope.pose, input.pose);
+  EXPECT_EQ(insertions(result).back(), rig.rest.insertion) << "the instrument stays";
+  EXPECT_EQ(rig.source->figures().following_steps, 2) << "a jump is gone after here too";
+  const Result<Recording> recording = read_recording(file);
+  ASSERT_TRUE(recording) << to_text(recording.failure());
+  std::vector<int> moving;
+  for (std::size_t i = 0; i < recording->steps.size(); ++i)
+    if (recording->steps[i].input.laparoscope) moving.push_back(static_cast<int>(i));
+  EXPECT_THAT(moving, ElementsAre(3, 4, 5)) << "it is named where it moves";
+  World again = World::create(test::small_scene()).value();
+  EXPECT_EQ(again.report().laparoscope.pose, start);
+  ReplaySource replay(recording.value());
+  test::TimedScript script(0.2);
+  EXPECT_EQ(run_session(again, script, replay, {}).state_hashes, result.state_hashes);
+  EXPECT_EQ(again.report().laparoscope.pose, input.pose);
+}
+
 TEST(Live, WhilePausedNoStepIsTakenAndNoTimeIsLost) {
   Rig rig;
   rig.send_at(0.05, LiveCommand::pause);

@@ -1,8 +1,8 @@
-#include "sim/laparoscope.h"
-
 #include <gtest/gtest.h>
 
 #include "rig.h"
+#include "sim/field_state.h"
+#include "sim/sight.h"
 
 namespace calot {
 namespace {
@@ -24,7 +24,12 @@ struct Seen {
     const Vec3 at = middle + Vec3(0, behind, 0);
     return {at + Vec3(left, 0, -15e-3), at + Vec3(left, 0, 15e-3), at + Vec3(30e-3, 0, 0)};
   }
-  double of(const std::array<Vec3, 3>& corners) const { return seen_area(world.field(), eye, corners, 2e-3); }
+  double of(const std::array<Vec3, 3>& corners) const {
+    return from({eye, Vec3::UnitY(), Vec3::UnitZ()}, corners);
+  }
+  double from(const LaparoscopePose& lens, const std::array<Vec3, 3>& corners) const {
+    return seen_area(world.field(), lens, 75 * units::deg, corners, 2e-3);
+  }
 };
 
 double area(const std::array<Vec3, 3>& t) { return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm(); }
@@ -46,6 +51,90 @@ TEST(SeenArea, ATriangleIsSeenFromItsEdgeAsNone) {
   EXPECT_NEAR(seen.of({at, at + Vec3(10e-3, 0, 0), at + Vec3(0, -10e-3, 0)}), 0, 1e-12);
   const std::array<Vec3, 3> tilted{at, at + Vec3(1e-3, 1e-3, 0), at + Vec3(0, 0, 1e-3)};  // by 45 degrees
   EXPECT_NEAR(seen.of(tilted) / area(tilted), std::sqrt(0.5), 0.02);
+}
+
+TEST(SeenArea, WhatLiesOutsideTheRoundFieldIsNotSeen) {
+  const Seen seen;
+  const std::array<Vec3, 3> before = seen.screen(-40e-3, -5e-3);
+  const auto turned = [&](double degrees) {
+    const double angle = degrees * units::deg;
+    return seen.from({seen.eye, Vec3(std::sin(angle), std::cos(angle), 0), Vec3::UnitZ()}, before);
+  };
+  EXPECT_EQ(turned(0), seen.of(before));
+  // It is from 5 degrees left to 27 right: with the field's edge, 37.5 degrees off, through its middle half of it is seen.
+  EXPECT_GT(turned(-27), 0.1 * turned(0));
+  EXPECT_LT(turned(-27), 0.9 * turned(0));
+  EXPECT_EQ(turned(-50), 0);
+  EXPECT_EQ(turned(180), 0);
+}
+
+TEST(LaparoscopeInItsPort, StandsAsTheSceneSaysUntilItIsMoved) {
+  const LaparoscopeDefinition scope;
+  const Vec3 port(0.01, -0.01, 0), target(-0.05, 0.15, -0.09);
+  const LaparoscopePose stands = laparoscope_pose(scope, port, target);
+  const Laparoscope laparoscope(scope, port, target);
+  const InstrumentPose start = laparoscope.start();
+  EXPECT_EQ(laparoscope.view(start).direction, stands.direction);
+  EXPECT_LT((tip_position(port, start, laparoscope_geometry()) - stands.position).norm(), 1e-12);
+  InstrumentPose moved = start;
+  moved.insertion += 1e-9;  // no jump where it is moved first
+  EXPECT_LT((laparoscope.view(moved).direction - stands.direction).norm(), 1e-9);
+  EXPECT_LT((laparoscope.view(moved).up - stands.up).norm(), 1e-9);
+}
+
+TEST(LaparoscopeInItsPort, RollTurnsAnAngledOpticAboutTheShaftAndTheHorizonStaysLevel) {
+  const Vec3 port(0.01, -0.01, 0), target(-0.05, 0.15, -0.09);
+  const Laparoscope laparoscope({}, port, target);
+  InstrumentPose pose = laparoscope.start();
+  const LaparoscopePose before = laparoscope.view(pose);
+  const Vec3 shaft = (before.position - port).normalized();
+  pose.roll = 50 * units::deg;
+  const LaparoscopePose after = laparoscope.view(pose);
+  EXPECT_LT((after.position - before.position).norm(), 1e-12);
+  EXPECT_NEAR(shaft.dot(after.direction), std::cos(30 * units::deg), 1e-12);
+  const Vec3 across = before.direction - shaft * shaft.dot(before.direction);
+  EXPECT_LT(
+      (after.direction - (shaft * shaft.dot(before.direction) + Eigen::AngleAxisd(pose.roll, shaft) * across))
+          .norm(),
+      1e-12);
+  EXPECT_NEAR(after.up.cross(after.direction).z(), 0, 1e-12);
+}
+
+TEST(LaparoscopeInItsPort, APortNearerThanTheLensIsToBeHasItInsideWhenItIsMoved) {
+  const Laparoscope laparoscope({}, Vec3::Zero(), Vec3(0, 0.03, -0.04));
+  InstrumentPose pose = laparoscope.start();
+  EXPECT_GE(pose.insertion, 0);
+  pose.insertion += 1e-3;
+  EXPECT_LT(laparoscope.view(pose).position.z(), 0);
+}
+
+TEST(LaparoscopeInItsPort, AWorldsLaparoscopeGoesWhereItsInputSaysAndBackWithItsState) {
+  Seen seen;
+  World& world = seen.world;
+  StepInput input;
+  input.instruments = {world.report().instruments[0].pose};
+  const InstrumentPose start = world.report().laparoscope.pose;
+  const FieldState before = world.state();
+  ASSERT_TRUE(world.step(input));
+  const std::uint64_t still = world.state_hash();
+  ASSERT_TRUE(world.restore(before));
+  input.laparoscope = start;
+  ASSERT_TRUE(world.step(input));
+  EXPECT_EQ(world.state_hash(), still) << "where it stood is no motion";
+  ASSERT_TRUE(world.restore(before));
+  input.laparoscope->yaw += 0.3;
+  ASSERT_TRUE(world.step(input));
+  EXPECT_NE(world.state_hash(), still);
+  EXPECT_EQ(world.report().laparoscope.pose, *input.laparoscope);
+  const std::array<Vec3, 3> before_ball = seen.screen(-40e-3, -5e-3);
+  const double seen_there = world.seen_area(before_ball);
+  ASSERT_TRUE(world.restore(before));
+  EXPECT_EQ(world.report().laparoscope.pose, start);
+  EXPECT_NE(world.seen_area(before_ball), seen_there);
+  input.laparoscope->insertion = 0.31;
+  EXPECT_FALSE(world.step(input)) << "its shaft is shorter";
+  input.laparoscope.reset();
+  EXPECT_TRUE(world.step(input));
 }
 
 TEST(SeenArea, AShaftHidesWhatIsBehindIt) {

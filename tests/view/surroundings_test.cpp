@@ -98,7 +98,8 @@ TEST(Surroundings, NoVoidIsSeenFromAnyUsualView) {
         LaparoscopeDefinition scope;
         scope.distance = distance;
         if ((port.position - organ.fundus).norm() < distance + 20e-3) continue;  // no room for the scope
-        const SceneCamera camera = laparoscope_camera(scope, port.position, organ.fundus);
+        const SceneCamera camera = laparoscope_camera(
+            scope, {{}, laparoscope_pose(scope, port.position, organ.fundus), scope.distance});
         EXPECT_EQ(black_pixels_of_the_field(camera, still_meshes(scene)), 0) << port.name << " " << distance;
       }
   }

@@ -32,7 +32,7 @@ class Hands : public testing::Test {
     camera.direction = Vec3(-0.5, 0.8, -0.4).normalized();
   }
   std::vector<LiveInstrument> instruments = two_instruments();
-  HandControl hands{instruments, {{0.3, 0.2, 0.15, 0, 0.4}, {0.1, -0.2, 0.12, 0, 0}}};
+  HandControl hands{instruments, {{0.3, 0.2, 0.15, 0, 0.4}, {0.1, -0.2, 0.12, 0, 0}, {0.9, 0, 0.1, 0, 0}}};
   SceneCamera camera;
 };
 
@@ -99,6 +99,50 @@ TEST_F(Hands, OnlyWhatCarriesCurrentActs) {
   EXPECT_EQ(hands.held(1).action, InstrumentAction::none) << "let go";
 }
 
+TEST_F(Hands, TheLaparoscopeIsTakenAndLeftWithoutLosingTheHand) {
+  HandMotion take;
+  take.laparoscope = true;
+  take.in_view = Vec3(2e-3, 0, 0);
+  const InstrumentPose left = hands.held(0).pose;
+  const Vec3 before = hands.tip(2);
+  hands.move(take, camera);
+  EXPECT_EQ(hands.selected(), 2);
+  EXPECT_EQ(hands.input().instrument, 2);
+  EXPECT_LT((camera_axes(camera) * (hands.tip(2) - before) - take.in_view).norm(), 1e-12);
+  EXPECT_EQ(hands.held(0).pose, left);
+  take.in_view = Vec3::Zero();
+  take.jaw = 1;
+  take.laparoscope = false;
+  hands.move(take, camera);
+  EXPECT_EQ(hands.input().pose.jaw, 0) << "it has none";
+  take.in_view = Vec3(0, 0, 1);
+  hands.move(take, camera);
+  EXPECT_TRUE(hands.out_of_reach()) << "its shaft ends, as an instrument's";
+  HandMotion back;
+  back.laparoscope = true;
+  hands.move(back, camera);
+  EXPECT_EQ(hands.selected(), 0);
+}
+
+TEST_F(Hands, WhoHoldsTheLaparoscopeBesidesDoesNotMoveTheSelectedHand) {
+  const InstrumentPose left = hands.held(0).pose;
+  const Vec3 before = hands.tip(2);
+  HandMotion motion;
+  motion.in_view = Vec3(0, 3e-3, 0);
+  hands.move_laparoscope(motion, camera);
+  EXPECT_EQ(hands.selected(), 0);
+  EXPECT_EQ(hands.held(0).pose, left);
+  EXPECT_NEAR((hands.tip(2) - before).norm(), 3e-3, 1e-12);
+}
+
+TEST_F(Hands, UnderThePointerTheViewTurnsAsFarAsThePointerGoes) {
+  HandMotion take;
+  take.laparoscope = true;
+  hands.move(take, camera);
+  // At the depth at which a pixel of the lens's way about the port, 0.1 m behind it, is an angle of one in the picture.
+  EXPECT_NEAR((hands.grasped(camera) - camera.position).norm(), 0.1, 1e-12);
+}
+
 TEST_F(Hands, WhatTheyAskForAnInstrumentCanAlwaysDo) {
   HandMotion motion;
   for (int i = 0; i < 2000; ++i) {
@@ -107,6 +151,7 @@ TEST_F(Hands, WhatTheyAskForAnInstrumentCanAlwaysDo) {
     motion.roll = 0.1;
     motion.jaw = std::sin(0.1 * turn);
     motion.next_hand = i % 50 == 0;
+    motion.laparoscope = i % 70 == 0;
     hands.move(motion, camera);
     const LiveInstrument& instrument = instruments[static_cast<std::size_t>(hands.selected())];
     ASSERT_EQ(check_pose("it", instrument.geometry, hands.input().pose), std::nullopt) << i;

@@ -79,6 +79,7 @@ std::shared_ptr<LiveView> small_view() {
   view->step = "Do it";
   view->time_limit = 60;
   view->hands.push_back({"left", "", 1.5, 5, {0.4, 0.2, 0.12, 0, 0.5}});
+  view->hands.push_back({"laparoscope", "", 0, 0, {0.9, 0.1, 0.1, 0, 0}});
   return view;
 }
 
@@ -162,6 +163,15 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   const Vec3 moved = closed_tip(std::get<LiveInput>(events[0]).pose) - closed_tip(start.pose);
   EXPECT_GT(moved.x(), 1e-3) << "to the right, which is +x for this camera";
   EXPECT_LT(moved.tail<2>().norm(), 1e-9);
+
+  window.events().laparoscope = true;
+  window.events().right = 10;
+  ASSERT_TRUE(window.turn(nullptr).value());
+  events = taken(mailbox);
+  ASSERT_EQ(events.size(), 2u) << "the hand is let go, and the laparoscope moves";
+  EXPECT_EQ(std::get<LiveInput>(events[0]).instrument, 0);
+  EXPECT_EQ(std::get<LiveInput>(events[1]).instrument, 1);
+  EXPECT_NE(std::get<LiveInput>(events[1]).pose, view->hands[1].pose);
 
   window.events().menu = true;
   ASSERT_TRUE(window.turn(nullptr).value());

@@ -1,0 +1,97 @@
+#include "sim/sight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/field.h"
+
+namespace calot {
+namespace {
+
+/// What may stand between an eye and places on a triangle.
+class Sight {
+ public:
+  Sight(const Field& field, const Vec3& eye, const std::array<Vec3, 3>& corners) : eye_(eye) {
+    const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3 - eye;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 side = (corners[k] - eye).cross(corners[(k + 1) % 3] - eye);
+      sides_[k] = side.dot(middle) < 0 ? Vec3(-side) : side;
+    }
+    for (const Organ& organ : field.organs) {
+      const std::vector<Vec3> places = organ.body->drawn(organ.state.x).positions;
+      for (const Triangle& t : organ.body->drawn_triangles())
+        if (const Corners at{places[t[0]], places[t[1]], places[t[2]]}; may_hide(at))
+          triangles_.push_back(at);
+    }
+    for (const Tool& tool : field.tools)
+      for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry))
+        tools_.push_back(shape);
+  }
+
+  /// Whether nothing is met on the way to a place, but for the last `margin` m of it.
+  bool sees(const Vec3& place, double margin) const {
+    const Vec3 way = place - eye_;
+    const double length = way.norm() - margin;
+    if (!(length > 0)) return true;
+    const Vec3 along = way.normalized();
+    return std::none_of(triangles_.begin(), triangles_.end(),
+                        [&](const Corners& t) { return is_met(t, along, length); }) &&
+           std::none_of(tools_.begin(), tools_.end(),
+                        [&](const Shape& shape) { return is_met(shape, along, length); });
+  }
+
+ private:
+  using Corners = std::array<Vec3, 3>;
+
+  /// Not where all corners lie outside one side of what is looked through.
+  bool may_hide(const Corners& t) const {
+    return std::none_of(sides_.begin(), sides_.end(), [&](const Vec3& side) {
+      return std::all_of(t.begin(), t.end(), [&](const Vec3& p) { return side.dot(p - eye_) < 0; });
+    });
+  }
+
+  /// Moeller and Trumbore 1997.
+  bool is_met(const Corners& t, const Vec3& along, double length) const {
+    const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = along.cross(ac);
+    const double volume = ab.dot(p);
+    if (volume == 0) return false;  // seen from its edge
+    const Vec3 from = eye_ - t[0], q = from.cross(ab);
+    const double b = from.dot(p) / volume, c = along.dot(q) / volume, way = ac.dot(q) / volume;
+    return b >= 0 && c >= 0 && b + c <= 1 && way > 0 && way < length;
+  }
+
+  /// On steps that are safe, as nothing is nearer than the distance.
+  bool is_met(const Shape& shape, const Vec3& along, double length) const {
+    constexpr double touched = 1e-5;  // m
+    for (double way = 0; way < length;) {
+      const double free = signed_distance(shape, eye_ + way * along);
+      if (free < touched) return true;
+      way += free;
+    }
+    return false;
+  }
+
+  Vec3 eye_;
+  std::array<Vec3, 3> sides_;  ///< planes through the eye, normals to the inside
+  std::vector<Corners> triangles_;
+  std::vector<Shape> tools_;
+};
+
+}  // namespace
+
+double seen_area(const Field& field, const LaparoscopePose& lens, double field_of_view,
+                 const std::array<Vec3, 3>& corners, double margin) {
+  const Vec3 area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const Sight sight(field, lens.position, corners);
+  const double least_cosine = std::cos(0.5 * field_of_view);
+  double sum = 0;
+  for (const Vec3& weights : contact_rule) {
+    const Vec3 place = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+    const Vec3 along = (place - lens.position).normalized();
+    if (along.dot(lens.direction) >= least_cosine && sight.sees(place, margin))
+      sum += std::abs(area.dot(along));
+  }
+  return sum / static_cast<double>(contact_rule.size());
+}
+
+}  // namespace calot
