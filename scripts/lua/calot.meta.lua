@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
@@ -132,6 +132,8 @@
 ---@field strength? number largest tension by area; uncalibrated; default 30 * kPa; 0.1 to 10000 kPa
 ---@field break_energy? number to tear it, J/m^2: as a peel's force by width, N/m; uncalibrated; default 150; 0.1 to 100000
 ---@field density? number kg/m^3; default 1000; 100 to 2000 kg/m^3
+---@field radius? number of a strand, in its middle, as instruments feel it; 0: they pass through; uncalibrated; default 0.2 * mm; 0 to 2 mm
+---@field divide_energy? number of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; uncalibrated; default 2.5e+06; 1000 to 1e+08
 
 ---A shape that stays and is touched.
 ---@class calot.ground
@@ -152,6 +154,7 @@
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
+---@field power? number W of its current, where it can be activated: what strands of tissue it touches then share it, and are divided by it; default 30; 1 to 120
 
 ---The camera and its light.
 ---@class calot.laparoscope

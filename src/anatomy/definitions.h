@@ -176,6 +176,9 @@ struct TissueDefinition {
   double strength = 30e3;      ///< Pa, largest tension by area (d, uncalibrated)
   double break_energy = 150;   ///< J/m^2 to tear it: the force of a peel by width, N/m (d, uncalibrated)
   double density = 1000;       ///< kg/m^3
+  double radius = 0.2e-3;      ///< m, of a strand as instruments feel it; 0: they do not (d, uncalibrated)
+  /// J/m^2 of current's power that divides it: 1 mm of water, boiled away (d, uncalibrated).
+  double divide_energy = 2.5e6;
 };
 
 enum class GroundType { plane, capsule, box };
@@ -241,6 +244,7 @@ struct InstrumentDefinition {
   /// Coulomb's, of the wet skin on the shaft and on what of the jaws does not hold it; a smooth shaft has 0 to
   /// 0.3 (c).
   double friction = 0;
+  double power = 30;  ///< W of its current, where it has any: 25 to 40 in use (c)
 };
 
 /// What an instrument can be made to do beside moving and closing, for as long as a foot or a finger asks for it.

@@ -90,8 +90,14 @@ std::vector<KeyTable> field_tables() {
                   "a tissue's strength", "largest tension by area; uncalibrated"),
            number("break_energy", &TissueDefinition::break_energy, quantity::number, 0.1, 1e5,
                   "a break energy", "to tear it, J/m^2: as a peel's force by width, N/m; uncalibrated"),
-           number("density", &TissueDefinition::density, quantity::density, 100, 2000, "a density",
-                  "kg/m^3")}),
+           number("density", &TissueDefinition::density, quantity::density, 100, 2000, "a density", "kg/m^3"),
+           number("radius", &TissueDefinition::radius, quantity::length, 0, 2 * mm, "a strand's radius",
+                  "of a strand, in its middle, as instruments feel it; 0: they pass through; uncalibrated"),
+           number(
+               "divide_energy", &TissueDefinition::divide_energy, quantity::number, 1e3, 1e8,
+               "an energy to divide tissue",
+               "of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; "
+               "uncalibrated")}),
       keys_of<GroundDefinition>(
           "ground", "A shape that stays and is touched.",
           {text("name", &GroundDefinition::name, "its name, unique"),
@@ -128,7 +134,10 @@ std::vector<KeyTable> field_tables() {
            number("friction", &Instrument::friction, quantity::number, 0, 1,
                   "a coefficient of friction of a smooth tool",
                   "coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 "
-                  "for a smooth shaft on wet skin")}),
+                  "for a smooth shaft on wet skin"),
+           number("power", &Instrument::power, quantity::number, 1, 120, "a power of a generator, W",
+                  "W of its current, where it can be activated: what strands of tissue it touches then share "
+                  "it, and are divided by it")}),
       keys_of<Scope>("laparoscope", "The camera and its light.",
                      {text("port", &Scope::port, "the port it goes through"),
                       number("angle", &Scope::angle, quantity::angle, 0, 70 * deg,

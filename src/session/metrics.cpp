@@ -111,6 +111,13 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
   metrics[prefix + "mean_force_N"] = loaded > 0 ? sum / loaded : 0.0;
 }
 
+void sum_divided(const Progress& progress, const std::string& instrument, Metrics& metrics) {
+  double area = 0;
+  for (const SessionEvent& event : progress.events())
+    if (event.kind == EventKind::divided && event.instrument == instrument) area += event.value;
+  metrics[instrument + ".divided_mm2"] = area;
+}
+
 void count_events(const Progress& progress, const std::string& instrument, Metrics& metrics) {
   for (const MetricRow& row : metric_rows()) {
     if (!row.counts) continue;
@@ -176,6 +183,9 @@ const std::vector<MetricRow>& metric_rows() {
       {"slips", instrument, "how often what it held slid", EventKind::slip, true},
       {"activations", instrument, "how often current began to flow in it", EventKind::activation, true},
       {"activation_time_s", instrument, "time for which current flowed", EventKind::activation},
+      {"dry_activations", instrument, "how often current flowed in it and it touched nothing",
+       EventKind::dry_activation, true},
+      {"divided_mm2", instrument, "area of strands that its current divided", EventKind::divided},
       {"peak_pressure_Pa", organ, "largest pressure of its filling"},
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
       {"lowest_frequency_Hz", organ,
@@ -239,6 +249,7 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
     measure_forces(traces.instruments[i], name + ".", metrics);
     measure_activation(traces.time, traces.instruments[i], name + ".", metrics);
     count_events(progress, name, metrics);
+    sum_divided(progress, name, metrics);
   }
   for (std::size_t i = 0; i < traces.organs.size(); ++i) {
     if (traces.organs[i].empty()) continue;

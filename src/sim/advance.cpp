@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/timed.h"
@@ -155,6 +156,63 @@ double share_kept_apart(const Field& field, const Organ& organ, const ContactLoa
   return share;
 }
 
+/// Adds the load that the tools' motion to `to` puts on the strands that they touch at x, to first order.
+void add_strand_load(const Field& field, const VecX& x, const Poses& from, const Poses& to, VecX& load,
+                     bool& loaded) {
+  for (const Tissue& tissue : field.tissues) {
+    const StrandJoin& strands = *tissue.strands;
+    strands.for_contacts(x, [&](std::size_t strand, const StrandContact& contact) {
+      const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
+      if (from[tool] == to[tool]) return;
+      const Pose motion =
+          part_motion(field.tools[tool], from[tool], to[tool], contact.shape % shapes_per_tool);
+      strands.add_force(strand, contact.piece, contact.share,
+                        strands.touch().hessian_at(contact) * carried(motion, contact.at), load);
+      loaded = true;
+    });
+  }
+}
+
+/// Largest share of the joint motion of strands and tools that keeps them apart.
+double share_kept_apart(const Field& field, const Tissue& tissue, const VecX& x, const VecX& dx,
+                        const Poses& from, const Poses& to, double share) {
+  const StrandJoin& strands = *tissue.strands;
+  const std::vector<Shape>& shapes = strands.touch().shapes();
+  ShapePaths paths(field, from, to);
+  std::vector<Shape> cores;
+  std::vector<Eigen::AlignedBox3d> near;
+  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+    cores.push_back(core_of(shapes[shape]));
+    const double travel = paths.travel(static_cast<int>(shape)) / (1.0 - contact_keep);
+    const Bounds around = bounds(offset(cores[shape], travel));
+    near.emplace_back(around.lower, around.upper);
+  }
+  for (std::size_t i = 0; i < strands.strands().size(); ++i) {
+    if (strands.torn(i) || strands.strands()[i].thread.points == 0) continue;
+    const StrandVector places = strands.places(i, x), motion = strands.places(i, dx);
+    for (int piece = 0; piece < 2; ++piece) {
+      const StrandPiece at = piece_of(places, piece), whole = piece_of(motion, piece);
+      const double further = std::max(whole[0].norm(), whole[1].norm()) / (1.0 - contact_keep);
+      Eigen::AlignedBox3d box(at[0], at[0]);
+      box.extend(at[1]);
+      box.min().array() -= further;
+      box.max().array() += further;
+      for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+        if (!near[shape].intersects(box)) continue;
+        const int index = static_cast<int>(shape);
+        const double gap = nearest_on_piece(cores[shape], at).slope.distance;
+        // What is inside already is pushed out: it is not held there.
+        if (!(gap > 0) || gap * (1.0 - contact_keep) > paths.travel(index) + further) continue;
+        const StrandPiece by{share * whole[0], share * whole[1]};
+        const PartPath* path = paths.of(index, share);
+        share *= path ? path->share_apart(cores[shape], at, by, contact_keep)
+                      : safe_share(at, by, cores[shape], contact_keep);
+      }
+    }
+  }
+  return share;
+}
+
 /// What masses move: organs, then the nodes of tissues.
 std::size_t moving_bodies(const Field& field) { return field.organs.size() + field.tissues.size(); }
 BodyState& state_of(Field& field, std::size_t k) {
@@ -279,9 +337,25 @@ std::vector<double> all_edge_lengths(const Field& field) {
   std::vector<double> out;
   for (const Organ& organ : field.organs)
     out.insert(out.end(), organ.body->edge_lengths().begin(), organ.body->edge_lengths().end());
-  for (const Tissue& tissue : field.tissues)
-    out.insert(out.end(), tissue.body->edge_lengths().begin(), tissue.body->edge_lengths().end());
+  for (const Tissue& tissue : field.tissues)  // see make_believable()
+    out.insert(out.end(), tissue.body->edge_lengths().size(), std::numeric_limits<double>::infinity());
   return out;
+}
+
+/// A strand's node that a tool pushes about may have next to no stiffness along some way. One that would go further than
+/// solves take it goes with its ends instead: the solve finds where it lies.
+void make_believable(const Field& field, VecX& dx) {
+  const BodyParts parts(field);
+  for (std::size_t t = 0; t < field.tissues.size(); ++t) {
+    const Tissue& tissue = field.tissues[t];
+    auto nodes = parts.of(field.organs.size() + t, dx);
+    for (std::size_t i = 0; i < tissue.strands->strands().size(); ++i) {
+      const StrandVector way = tissue.strands->places(i, dx);
+      const Vec3 mean = 0.5 * (way.head<3>() + way.tail<3>());
+      if ((way.segment<3>(3) - mean).norm() > tissue.body->edge_lengths()[i])
+        nodes.segment<3>(3 * static_cast<Eigen::Index>(i)) = mean;
+    }
+  }
 }
 
 /// Limits a prediction to what keeps skins and tools apart.
@@ -304,6 +378,10 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
     out.share *= share_kept_apart(field, field.organs[k], loads[k], pairs[k],
                                   out.share * parts.of(k, std::as_const(out.dx)), from, partly);
   }
+  if (field.tissues.empty()) return;
+  const VecX x = parts.present(field);
+  for (const Tissue& tissue : field.tissues)
+    out.share = share_kept_apart(field, tissue, x, out.dx, from, to, out.share);
 }
 
 /// Answer of the organs to tools that move from `from` to `to`, and the share of it that is safe. With `fresh` the
@@ -329,13 +407,15 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
     }
     parts.of(k, load) = motion_load(field, organ, loads[k], pairs[k], from, to, out.loaded);
   }
+  const std::vector<JoinPointer> all = all_joins(field, from);
+  add_strand_load(field, place_strands(field), from, to, load, out.loaded);
   out.loaded |= moving;
   if (out.loaded) {
     std::vector<Member> members = members_of(field, loads);
     TissueMembers tissues(field);
     tissues.add_to(members);
     Group& group = field.group;
-    const std::vector<JoinPointer> joins = joins_with(all_joins(field), group.rubbing);
+    const std::vector<JoinPointer> joins = joins_with(all, group.rubbing);
     const GroupProblem problem(members, joins, group.patterns);
     const VecX multipliers = problem.resting_multipliers();
     VecX values;
@@ -345,6 +425,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
     count(answer.result, statistics);
     if (!answer.result.converged())
       return solve_failure(answer.result, member_name(field, answer.result.part), "under its instruments");
+    make_believable(field, answer.dx);
     out.first_order = std::move(answer.dx);
     out.first_order_pressures = problem.pressures(answer.dmultipliers);
     out.share = answer.share;

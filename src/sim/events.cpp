@@ -22,6 +22,11 @@ const std::vector<EventRow>& event_rows() {
       {tear, "tear", "strands of a tissue begin to tear; with the share of them that is torn", "share", false,
        true},
       {parted, "parted", "the last strand of a tissue is torn", "", false, true},
+      {divided, "divided", "strands of a tissue are divided by an instrument's current; with their area",
+       "area_mm2", true, true},
+      {dry_activation, "dry_activation",
+       "current has flowed in an instrument for a quarter of a second while it touched nothing", "", true,
+       false},
       {step_done, "step_done", "a step of the exercise ends as done", "duration_s", false, false},
       {step_timeout, "step_timeout", "a step of the exercise reaches its limit", "duration_s", false, false},
   };

@@ -19,6 +19,8 @@ enum class EventKind {
   overstretch,
   tear,
   parted,
+  divided,
+  dry_activation,
   step_done,
   step_timeout,
 };

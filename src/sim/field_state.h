@@ -12,6 +12,7 @@ struct ToolSnapshot {
   bool touched = false, over_limit = false, jaw_stopped = false, lost = false, beside = false,
        slipping = false;
   InstrumentAction action = InstrumentAction::none;
+  double dry = 0;
 };
 
 struct FieldState {

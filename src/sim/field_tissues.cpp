@@ -21,16 +21,33 @@ void TissueMembers::add_to(std::vector<Member>& members) {
   }
 }
 
-void add_strands(const Field& field, int first, std::vector<JoinPointer>& joins) {
+namespace {
+
+StrandTouch touch_of(const Field& field, const std::vector<InstrumentPose>& poses) {
+  std::vector<Shape> shapes;
+  for (std::size_t i = 0; i < field.tools.size(); ++i)
+    for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
+      shapes.push_back(contact_shape(shape));
+  return {std::move(shapes), field.barrier};
+}
+
+}  // namespace
+
+void add_strands(const Field& field, const std::vector<InstrumentPose>& poses,
+                 std::vector<JoinPointer>& joins) {
+  if (field.tissues.empty()) return;
+  const StrandTouch touch = touch_of(field, poses);
+  int nodes = static_cast<int>(field.organs.size());
   for (const Tissue& tissue : field.tissues) {
-    tissue.strands->set_nodes(first++);
+    tissue.strands->set_nodes(nodes++);
     tissue.strands->set_past(tissue.now.opened, tissue.now.state.motion.duration);
+    tissue.strands->set_touch(touch);
     joins.push_back(tissue.strands);
   }
 }
 
-void grow_damage(Field& field) {
-  if (field.tissues.empty()) return;
+VecX place_strands(const Field& field) {
+  if (field.tissues.empty()) return {};
   std::vector<GroupPlace> places;
   std::vector<double> all;
   const auto add = [&](const Body* body, const auto& x) {
@@ -40,11 +57,23 @@ void grow_damage(Field& field) {
   for (const Organ& organ : field.organs) add(organ.body.get(), organ.state.x);
   int nodes = static_cast<int>(places.size());
   for (const Tissue& tissue : field.tissues) add(tissue.body.get(), tissue.now.state.x);
-  const Eigen::Map<const VecX> x(all.data(), static_cast<Eigen::Index>(all.size()));
+  for (const Tissue& tissue : field.tissues) {
+    tissue.strands->set_nodes(nodes++);
+    tissue.strands->begin(places);
+  }
+  return Eigen::Map<const VecX>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+VecX place_strands_and_tools(const Field& field) {
+  std::vector<JoinPointer> joins;
+  add_strands(field, present_poses(field), joins);
+  return place_strands(field);
+}
+
+void grow_damage(Field& field) {
+  const VecX x = place_strands(field);
   for (Tissue& tissue : field.tissues) {
     const StrandJoin& strands = *tissue.strands;
-    tissue.strands->set_nodes(nodes++);
-    strands.begin(places);
     const std::vector<double> strains = strands.strains(x);
     for (std::size_t i = 0; i < strains.size(); ++i)
       if (strains[i] > strands.strands()[i].strand.law.peak())

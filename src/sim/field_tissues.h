@@ -17,9 +17,15 @@ class TissueMembers {
   std::vector<ContactLoads> loads_;
 };
 
-/// Adds the strands of all tissues, with their past and in the part of a motion that they are in; `first`: the place of
-/// the first tissue's nodes in the group.
-void add_strands(const Field& field, int first, std::vector<JoinPointer>& joins);
+/// Adds the strands of all tissues, with their past and in the part of a motion that they are in, and what they touch when
+/// the tools stand at `poses`.
+void add_strands(const Field& field, const std::vector<InstrumentPose>& poses,
+                 std::vector<JoinPointer>& joins);
+
+/// Tells the strands where their bodies are. Returns where all nodes of the group are, m.
+VecX place_strands(const Field& field);
+/// The same, and what they touch when the tools stand where they do: for who asks them outside of a solve.
+VecX place_strands_and_tools(const Field& field);
 
 /// Strands that are stretched further than ever, beyond their strength, are so from now on. To be called between solves.
 void grow_damage(Field& field);

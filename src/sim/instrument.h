@@ -69,6 +69,11 @@ inline constexpr int shapes_per_tool = 3;  ///< shaft and two more, whatever the
 std::vector<Shape> instrument_shapes(const Vec3& trocar, const InstrumentPose& pose,
                                      const InstrumentGeometry& geometry);
 
+/// Whether current flows through a shape: through jaws, and of what a rod ends in through the electrode alone.
+inline bool conducts(const InstrumentGeometry& geometry, int part) {
+  return part == 2 || (part == 1 && geometry.has_jaws());
+}
+
 /// The tip: middle of the jaws' pad ends, on the shaft's axis, jaw_length * cos(jaw / 2) beyond the hinge.
 Vec3 tip_position(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry);
 

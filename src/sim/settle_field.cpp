@@ -57,9 +57,9 @@ std::string member_name(const Field& field, int part) {
   return field.tissues[index - field.organs.size()].definition.name;
 }
 
-std::vector<JoinPointer> all_joins(const Field& field) {
+std::vector<JoinPointer> all_joins(const Field& field, const std::vector<InstrumentPose>& poses) {
   std::vector<JoinPointer> out = field.group.joins;
-  add_strands(field, static_cast<int>(field.organs.size()), out);
+  add_strands(field, poses, out);
   return out;
 }
 
@@ -102,7 +102,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   std::vector<SkinHold> rubbing = group.rubbing;
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {
-    const std::vector<JoinPointer> joins = joins_with(all_joins(field), rubbing);
+    const std::vector<JoinPointer> joins = joins_with(all_joins(field, poses), rubbing);
     total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
     if (!total.converged() || !has_friction(field)) break;
     std::vector<FrictionLoad> used;
@@ -142,7 +142,8 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
   std::vector<Member> members = members_of(field, loads);
   TissueMembers tissues(field);
   tissues.add_to(members);
-  const NewtonResult result = sink(members, all_joins(field), group.patterns, settings, group.work);
+  const NewtonResult result =
+      sink(members, all_joins(field, present_poses(field)), group.patterns, settings, group.work);
   count(result, statistics);
   if (!result.converged())
     return solve_failure(result, member_name(field, result.part), "as it sank to rest");

@@ -19,8 +19,8 @@ void count(const NewtonResult& result, SolveStatistics& statistics);
 
 /// What such a group's part is called, the tissues behind the organs.
 std::string member_name(const Field& field, int part);
-/// All joins of the field's group: organs', then tissues'.
-std::vector<JoinPointer> all_joins(const Field& field);
+/// All joins of the field's group: organs', then tissues', with the tools at `poses`.
+std::vector<JoinPointer> all_joins(const Field& field, const std::vector<InstrumentPose>& poses);
 
 /// The organs as members of one group under `loads`, one an organ.
 std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads);

@@ -48,16 +48,28 @@ StrandVector StrandJoin::places(std::size_t strand, const VecX& x) const {
   return out;
 }
 
+void StrandJoin::add_force(std::size_t strand, int piece, double share, const Vec3& force,
+                           VecX& nodes) const {
+  const int row = 3 * static_cast<int>(strand) + piece;
+  spread(rows_, row, (1 - share) * force, nodes);
+  spread(rows_, row + 1, share * force, nodes);
+}
+
 double StrandJoin::value(const VecX& x) const {
   double sum = 0;
-  for (std::size_t i = 0; active() && i < strands_.size(); ++i)
-    sum += strands_[i].strand.value(places(i, x), pasts_[i]);
+  for (std::size_t i = 0; active() && i < strands_.size(); ++i) {
+    const StrandVector at = places(i, x);
+    sum += strands_[i].strand.value(at, pasts_[i]);
+    if (const StrandThread* met = thread(i)) sum += touch_.value(*met, at);
+  }
   return sum;
 }
 
 void StrandJoin::add_gradient(const VecX& x, VecX& gradient) const {
   for (std::size_t i = 0; active() && i < strands_.size(); ++i) {
-    const StrandVector pull = strands_[i].strand.gradient(places(i, x), pasts_[i]);
+    const StrandVector at = places(i, x);
+    StrandVector pull = strands_[i].strand.gradient(at, pasts_[i]);
+    if (const StrandThread* met = thread(i)) pull += touch_.gradient(*met, at);
     for (int k = 0; k < 3; ++k) spread(rows_, 3 * static_cast<int>(i) + k, pull.segment<3>(3 * k), gradient);
   }
 }
@@ -95,7 +107,9 @@ void StrandJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   std::vector<Node> nodes;
   std::size_t next = 0;
   for (std::size_t i = 0; i < strands_.size(); ++i) {
-    const StrandMatrix hessian = strands_[i].strand.hessian(places(i, x), pasts_[i]);
+    const StrandVector at = places(i, x);
+    StrandMatrix hessian = strands_[i].strand.hessian(at, pasts_[i]);
+    if (const StrandThread* met = thread(i)) hessian += touch_.hessian(*met, at);
     nodes.clear();
     for (int row : ordered_rows(i))
       for (int e = rows_.begin[row]; e < rows_.begin[row + 1]; ++e)
@@ -129,6 +143,7 @@ double StrandJoin::safe_share(const VecX& x, const VecX& step, double share) con
                  after = strand.law.strain(strand.way(from + share * motion));
     const double most = std::max(before, strand.law.peak()) + 0.5 * strand.law.tail();
     if (after > most) share *= (most - before) / (after - before);  // a way is convex along the step
+    if (const StrandThread* met = thread(i)) share = touch_.safe_share(*met, from, motion, share);
   }
   return share;
 }

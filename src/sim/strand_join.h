@@ -1,12 +1,13 @@
 #pragma once
 // The strands of a tissue (fem/strand.h), each from a place on one body by way of its own node, a third body's
-// (tissue_body.h), to a place on another.
+// (tissue_body.h), to a place on another. Instruments meet it on its way (strand_touch.h).
 //
 // Neighbours are coupled by the skins that they end on, not by their nodes: these then are condensed one by one, where a
 // sheet of linked nodes takes several times as long.
 
 #include "fem/strand.h"
 #include "sim/joint.h"
+#include "sim/strand_touch.h"
 
 namespace calot {
 
@@ -14,6 +15,8 @@ namespace calot {
 struct PlacedStrand {
   Strand strand;
   CarriedPlace one, other;
+  StrandThread thread = {};
+  double area = 0;  ///< m^2 that it stands for
 };
 
 class StrandJoin : public Join {
@@ -29,6 +32,8 @@ class StrandJoin : public Join {
   /// What the strands bring into the solves that follow: how far each has been opened, and the time that passes, s
   /// (0: none).
   void set_past(const std::vector<double>& opened, double duration);
+  /// What they meet in the solves that follow; what is torn meets nothing.
+  void set_touch(StrandTouch touch) { touch_ = std::move(touch); }
 
   void begin(std::span<const GroupPlace> bodies) const override;
   double value(const VecX& x) const override;
@@ -36,7 +41,8 @@ class StrandJoin : public Join {
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
 
-  /// No step takes a strand beyond half of the way on which it tears: it would end behind what it resists.
+  /// No step takes a strand beyond half of the way on which it tears: it would end behind what it resists. None takes it
+  /// through what it touches.
   double safe_share(const VecX& x, const VecX& step, double share) const override;
 
   const std::array<int, 2>& bodies() const { return bodies_; }
@@ -46,17 +52,41 @@ class StrandJoin : public Join {
   /// N, of all strands on the first body.
   Vec3 force(const VecX& x) const;
 
- private:
+  // What follows needs to know where the bodies are: begin().
+  bool active() const { return rows_.rows() > 0; }
+  /// Of a, m and b, m, or how they move.
   StrandVector places(std::size_t strand, const VecX& x) const;
+  /// Adds a force on a place between two of these, at this share of the piece's way, N, to the nodes.
+  void add_force(std::size_t strand, int piece, double share, const Vec3& force, VecX& nodes) const;
+  bool torn(std::size_t strand) const { return strands_[strand].strand.law.torn(pasts_[strand].opened); }
+  /// Calls use(strand, contact) for what meets the strands at x.
+  template <class Use>
+  void for_contacts(const VecX& x, const Use& use) const {
+    std::vector<StrandContact> found;
+    for (std::size_t i = 0; meets() && i < strands_.size(); ++i) {
+      if (torn(i)) continue;
+      found.clear();
+      touch_.find(strands_[i].thread, places(i, x), found);
+      for (const StrandContact& contact : found) use(i, contact);
+    }
+  }
+  const StrandTouch& touch() const { return touch_; }
+
+ private:
   /// Rows of a strand, of increasing nodes.
   std::array<int, 3> ordered_rows(std::size_t strand) const;
   void find_blocks(const BlockMatrix& matrix) const;
-  bool active() const { return rows_.rows() > 0; }
+  bool meets() const { return active() && !touch_.none(); }
+  /// Null: it meets nothing.
+  const StrandThread* thread(std::size_t strand) const {
+    return touch_.none() || torn(strand) ? nullptr : &strands_[strand].thread;
+  }
 
   std::array<int, 2> bodies_;
   int nodes_body_ = -1;
   std::vector<PlacedStrand> strands_;
   std::vector<StrandPast> pasts_;
+  StrandTouch touch_;
   /// Three rows a strand, for a, m and b, in the group's numbering; none where a body is not in the group.
   mutable StencilTable rows_;
   /// What they were made for.

@@ -65,7 +65,11 @@ Tissue Tissue::part(std::array<int, 2> bodies, std::vector<PlacedStrand> strands
   out.now.state.motion.begin.x = taken(now.state.motion.begin.x);
   out.now.state.motion.begin.velocity = taken(now.state.motion.begin.velocity);
   out.now.opened.clear();
-  for (int strand : which) out.now.opened.push_back(now.opened[strand]);
+  out.now.heated.clear();
+  for (int strand : which) {
+    out.now.opened.push_back(now.opened[strand]);
+    out.now.heated.push_back(now.heated[strand]);
+  }
   return out;
 }
 
@@ -102,13 +106,15 @@ Result<Tissue> make_tissue(const TissueDefinition& definition, const std::vector
   for (const StrandPlace& place : places.value()) {
     Result<StrandLaw> law = StrandLaw::create(law_of(definition, place));
     if (!law) return law.failure();
-    strands.push_back({{std::move(law).value()}, place.one, place.other});
+    const StrandThread thread = strand_thread(law.value(), definition.radius);
+    strands.push_back({{std::move(law).value()}, place.one, place.other, thread, place.area});
   }
   Tissue out;
   out.definition = definition;
   out.body = nodes_of(definition, std::move(at), std::move(masses), up, strength);
   out.now.state.x = out.body->rest();
   out.now.opened.assign(strands.size(), 0.0);
+  out.now.heated.assign(strands.size(), 0.0);
   out.strands = std::make_shared<StrandJoin>(bodies, std::move(strands));
   out.search.own.active = false;
   return out;

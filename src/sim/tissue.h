@@ -12,8 +12,9 @@ namespace calot {
 struct TissueMotion {
   BodyState state;  ///< of the strands' nodes
   std::vector<double>
-      opened;            ///< the largest strain of each strand that took it beyond its strength; 0: none did
-  bool tearing = false;  ///< some strand was torn in the last step
+      opened;  ///< the largest strain of each strand that took it beyond its strength; 0: none did
+  std::vector<double> heated;  ///< J that each has taken from instruments' current
+  bool tearing = false;        ///< some strand was torn in the last step
 };
 
 struct Tissue {

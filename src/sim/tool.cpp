@@ -73,6 +73,24 @@ double PartPath::share_apart(const Shape& shape, const Vec3& x, const Vec3& moti
   return safe_share(x, path, offset(shape, bend), keep);
 }
 
+double PartPath::share_apart(const Shape& shape, const StrandPiece& piece, const StrandPiece& motion,
+                             double keep) const {
+  const double gap = nearest_on_piece(shape, piece).slope.distance;
+  if (gap <= 0) return 0;
+  double bend = 0;
+  StrandPiece path, half_motion;
+  for (std::size_t end = 0; end < 2; ++end) {
+    path[end] = back_ * (piece[end] + motion[end]) - piece[end];
+    half_motion[end] = 0.5 * motion[end];
+    bend = std::max(bend, path_bend(tool_, from_, to_, piece[end], motion[end].norm()));
+  }
+  if (bend > 0.25 * gap) {
+    const PartPath half(tool_, part_, from_, interpolate(from_, to_, 0.5));
+    return 0.5 * half.share_apart(shape, piece, half_motion, keep);
+  }
+  return safe_share(piece, path, offset(shape, bend), keep);
+}
+
 std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid) {
   std::vector<double> stops;
   const double change = to.jaw - from.jaw;

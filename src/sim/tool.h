@@ -6,6 +6,7 @@
 
 #include "collision/shapes.h"
 #include "sim/instrument.h"
+#include "sim/strand_touch.h"
 
 namespace calot {
 
@@ -20,6 +21,7 @@ struct Tool {
   bool beside =
       false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
   InstrumentAction action = InstrumentAction::none;
+  double dry = 0;  ///< s for which its current has flowed and it touched nothing, up to what is an event
   bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
 };
 
@@ -41,6 +43,9 @@ class PartPath {
   /// that is carried along hardly moves; the path's departure from a straight line there is bounded by the turn squared
   /// and taken off the distance. 0 where the point is inside already.
   double share_apart(const Shape& shape, const Vec3& x, const Vec3& motion, double keep) const;
+  /// The same of a straight piece between two points.
+  double share_apart(const Shape& shape, const StrandPiece& piece, const StrandPiece& motion,
+                     double keep) const;
   /// Bound on how far the point goes seen from the part, m: convex in x and motion, so that no point of a triangle goes
   /// further than its corners may.
   double way(const Vec3& x, const Vec3& motion) const;

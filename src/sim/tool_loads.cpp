@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/field_tissues.h"
 #include "sim/settle_field.h"
 
 namespace calot {
@@ -75,6 +76,12 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
               now.grip.stiffness[g] * (at - now.grip.target[g]), true, name);
     }
   }
+  if (field.tissues.empty()) return sum.take();
+  const VecX x = place_strands_and_tools(field);
+  for (const Tissue& tissue : field.tissues)
+    tissue.strands->for_contacts(x, [&](std::size_t, const StrandContact& contact) {
+      sum.add(contact.shape, contact.at, contact.force_on_shape(), true, tissue.definition.name);
+    });
   return sum.take();
 }
 
@@ -83,11 +90,16 @@ Result<bool> check_clear(const Field& field) {
   const auto touches =
       std::find_if(loads.begin(), loads.end(), [](const ToolLoad& l) { return l.touches > 0; });
   if (touches == loads.end() && deepest_penetration(field) <= 0) return true;
+  const bool strands = touches != loads.end() &&
+                       std::none_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+                         return organ.definition.name == touches->organ;
+                       });
   const std::string name =
       touches == loads.end() ? std::string() : field.tools[touches - loads.begin()].definition.name;
   return fail(FailureKind::scenario,
-              fmt::format("{} that waits in its trocar, 30 mm deep, touches an organ",
-                          name.empty() ? "an instrument" : fmt::format("instrument '{}'", name)),
+              fmt::format("{} that waits in its trocar, 30 mm deep, touches {}",
+                          name.empty() ? "an instrument" : fmt::format("instrument '{}'", name),
+                          strands ? fmt::format("strands of '{}'", touches->organ) : "an organ"),
               "choose another port, or move the organ",
               {"", 0, name.empty() ? "scene.instruments" : fmt::format("scene.instruments.{}.port", name)});
 }

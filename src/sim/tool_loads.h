@@ -13,12 +13,12 @@ struct ToolLoad {
   Vec3 force = Vec3::Zero();   ///< N, of all parts
   Vec3 moment = Vec3::Zero();  ///< N m, about the trocar
   int touches = 0;             ///< of all parts
-  std::string organ;           ///< the first organ that touches it, or empty
+  std::string organ;           ///< the first organ, else tissue, that touches it, or empty
   PartLoads parts;             ///< by ToolPart
 };
 std::vector<ToolLoad> tool_loads(const Field& field);
 
-/// Fails (scenario) when a tool starts inside an organ.
+/// Fails (scenario) when a tool starts inside an organ or among strands.
 Result<bool> check_clear(const Field& field);
 
 /// Deepest point of any skin inside a tool as it is made, m, on the skin's triangles split into four along each edge.

@@ -12,6 +12,7 @@
 #include "sim/advance.h"
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
+#include "sim/current.h"
 #include "sim/field_state.h"
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
@@ -120,6 +121,11 @@ void add_tissue(Hash& hash, const Tissue& tissue) {
   add_vector(hash, tissue.now.state.x);
   if (tissue.now.state.motion.duration > 0) add_motion(hash, tissue.now.state.motion);
   for (double opened : tissue.now.opened) hash.add(opened);
+  for (std::size_t i = 0; i < tissue.now.heated.size(); ++i) {
+    if (tissue.now.heated[i] == 0) continue;
+    hash.add(i);
+    hash.add(tissue.now.heated[i]);
+  }
   hash.add(tissue.now.tearing);
 }
 
@@ -188,6 +194,7 @@ void add_tool(Hash& hash, const Tool& tool) {
   hash.add(static_cast<unsigned char>(grip));
   hash.add(tool.touched);
   hash.add(tool.over_limit);
+  if (tool.dry > 0) hash.add(tool.dry);
   add_pose(hash, tool.pose);
 }
 
@@ -330,7 +337,6 @@ void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<Inst
     report.instruments.push_back(instrument_state(i, loads[i]));
   const std::vector<OrganState> before = std::exchange(report.organs, {});
   for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
-  report.tissues = tissue_states(field);
 
   // Events are raised when a condition begins, not while it lasts.
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -350,6 +356,8 @@ void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<Inst
     tool.touched = state.touching;
     tool.over_limit = over;
   }
+  for (const WorldEvent& event : apply_current(field, 1 / scene.solver.rate)) events.push_back(event);
+  report.tissues = tissue_states(field);
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const double limit = field.organs[k].definition.wall.overstretch;
     const bool was = std::any_of(before.begin(), before.end(), [&](const OrganState& one) {

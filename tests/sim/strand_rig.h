@@ -22,10 +22,10 @@ struct StrandRig : GroupRig {
   std::shared_ptr<StrandJoin> strands;
   std::vector<double> opened;
 
-  /// From body 0 to body 1 at `places`, m, each for `area`, m^2: taut as they are.
+  /// From body 0 to body 1 at `places`, m, each for `area`, m^2: taut as they are. Instruments feel them by `radius`, m.
   StrandRig(const std::vector<BodyPointer>& of, const TestTissue& tissue, const std::vector<Vec3>& at,
-            double area)
-      : StrandRig(made(of, tissue, at, area)) {}
+            double area, double radius = 0)
+      : StrandRig(made(of, tissue, at, area, radius)) {}
 
   /// A step of implicit Euler of `h` s; 0: a rest.
   NewtonResult step(double h, double tolerance = 1e-6) {
@@ -55,7 +55,7 @@ struct StrandRig : GroupRig {
     std::shared_ptr<StrandJoin> join;
   };
   static Made made(const std::vector<BodyPointer>& of, const TestTissue& tissue,
-                   const std::vector<Vec3>& places_of, double area) {
+                   const std::vector<Vec3>& places_of, double area, double radius) {
     std::vector<PlacedStrand> strands;
     TissueBody::Setup middle;
     middle.strength = tissue.strength * area;
@@ -68,7 +68,8 @@ struct StrandRig : GroupRig {
       setup.stiffness = tissue.stiffness * area;
       setup.strength = tissue.strength * area;
       setup.break_energy = tissue.break_energy * area;
-      strands.push_back({{StrandLaw::create(setup).value()}, one.place, other.place});
+      const StrandLaw law = StrandLaw::create(setup).value();
+      strands.push_back({{law}, one.place, other.place, strand_thread(law, radius), area});
       middle.nodes.push_back(at);
       middle.masses.push_back(1000 * area * tissue.length);
     }

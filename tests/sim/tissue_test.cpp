@@ -147,6 +147,7 @@ TEST(Tissue, RestoredWhileItTearsTheSameStepsHaveTheSameBits) {
   };
   differs("x", [](TissueMotion& now) { now.state.x[0] += 1e-15; });
   differs("opened", [](TissueMotion& now) { now.opened[0] += 1e-9; });
+  differs("heated", [](TissueMotion& now) { now.heated[0] += 1e-9; });
   differs("velocity", [](TissueMotion& now) { now.state.motion.begin.velocity[0] += 1e-9; });
   differs("tearing", [](TissueMotion& now) { now.tearing = !now.tearing; });
 }
