@@ -271,6 +271,7 @@
 ---@field rounding? number radius of its edges, or of the ball; default 5 * mm; 0.5 to 50 mm
 ---@field centre? calot.point where it is; default { 0, 0, 0 }
 ---@field density? number kg/m^3; default 1500; 100 to 20000 kg/m^3
+---@field stiffness? number a stone's is some 0.8 GPa, a lymph node's below 100 kPa; it strains alike everywhere; default 800000 * kPa; 10 to 1e+07 kPa
 
 ---A lobe of the liver, held at its back. Give it the neck, fundus and liver_side of the gallbladder in its bed.
 ---@class calot.shape_lobe

@@ -50,6 +50,17 @@ TEST_F(Exposure, TheClassicMistakeLinesTheDuctsUpAndFails) {
   EXPECT_NE(seen["explanation"].get<std::string>().find("no better than novice"), std::string::npos);
 }
 
+TEST_F(Exposure, EveryAnatomyIsExposedByTheSameHand) {
+  if (!long_run()) GTEST_SKIP() << "plays the first act six times";
+  for (const std::string field : {"short_cystic_duct", "low_union", "double_cystic_artery",
+                                  "hepatic_artery_near_neck", "hydrops", "phrygian_cap"}) {
+    const Outcome outcome = calot({"run", source_dir() + "/scenarios/exposure.lua", "--param",
+                                   "field=" + field, "--no-render", "--json"});
+    EXPECT_EQ(outcome.code, 0) << field << outcome.err;
+    EXPECT_TRUE(Json::parse(outcome.out)["score"]["passed"].get<bool>()) << field;
+  }
+}
+
 TEST_F(MainScenario, TellsThoseApartWhoNeverGraspPullTooHardOrLetGoEarly) {
   const std::string grasp = "t.left:approach('gallbladder.fundus')\n t.left:close()\n";
   const Json idle = score("t.left:wait(1 * s)");
