@@ -10,6 +10,7 @@
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
+--   looks "bile": "pale" is how a gallbladder full of mucus looks (hydrops)
 --   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
@@ -96,6 +97,7 @@ local defaults = {
   hepatic_artery_near_neck = false,
   node_diameter = 5 * mm,
   assistant = true,
+  looks = "bile",
   nodes = 200,
   strands = 1,
   strength = 1,
@@ -137,6 +139,7 @@ local function gallbladder(p)
     wall = soft_wall(2 * mm),
     bile = { fill_pressure = p.fill_pressure },
     held = held,
+    looks = p.looks,
   }
 end
 
@@ -231,10 +234,7 @@ function anatomy.standard(overrides)
     organs = organs,
     joints = joints,
     tissue = anatomy.tissue(p),
-    ground = {
-      { name = "duodenum", type = "capsule", point = add(neck, { -34 * mm, -60 * mm, -12 * mm }),
-        to = add(neck, { 60 * mm, -62 * mm, -6 * mm }), radius = 13 * mm },
-    },
+    ground = anatomy.surroundings(neck),
   }
 end
 
@@ -244,7 +244,7 @@ anatomy.variants = {
   low_union = { union = 0.62, cystic_duct_length = 36 * mm }, -- 3 to 11 %
   double_cystic_artery = { second_cystic_artery = true }, -- 13 %
   hepatic_artery_near_neck = { hepatic_artery_near_neck = true }, -- "caterpillar turn"; uncalibrated
-  hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 20 * mmHg },
+  hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 20 * mmHg, looks = "pale" },
   phrygian_cap = { phrygian_cap = true }, -- about 4 %
 }
 
@@ -280,6 +280,29 @@ function anatomy.varied(overrides)
   }
   for key, value in pairs(overrides or {}) do all[key] = value end
   return anatomy.standard(all)
+end
+
+--- What lies around the field, stays, and is touched: drawn by eye. But for the duodenum it is clear of all that moves.
+function anatomy.surroundings(neck)
+  local function capsule(name, looks, from, to, radius)
+    return { name = name, type = "capsule", looks = looks, point = from, to = to, radius = radius * mm }
+  end
+  local function near(x, y, z) return add(neck, { x, y, z }, mm) end
+  return {
+    capsule("duodenum", "bowel", near(-34, -60, -12), near(60, -62, -6), 13),
+    -- Beside the liver's lobe: the round ligament in its fissure, and the left lobe beyond; behind it the right lobe and,
+    -- behind the hilum, the caudate lobe.
+    capsule("round_ligament", "fat", place(22, -91, -20), place(17, -92, 90), 4),
+    capsule("round_ligament_root", "fat", place(22, -91, -20), place(56, -92, -50), 4),
+    capsule("left_lobe", "liver", place(49, -123, -30), place(49, -120, 70), 40),
+    capsule("right_lobe", "liver", place(62, 8, -48), place(58, 140, -44), 34),
+    capsule("caudate_lobe", "liver", place(84, -45, -54), place(84, -130, -48), 40),
+    -- The colon's hepatic flexure, and the fat of omentum and retroperitoneum.
+    capsule("ascending_colon", "bowel", near(-131, -39, -73), near(-53, -29, -77), 20),
+    capsule("transverse_colon", "bowel", near(-53, -29, -77), near(-21, -60, -70), 20),
+    capsule("omentum", "fat", near(72, -40, -70), near(173, -22, -52), 22),
+    capsule("retroperitoneum", "fat", near(-202, 12, -135), near(206, -14, -120), 45),
+  }
 end
 
 --- The cystic plate and what fills the triangle. Nothing of it is calibrated.

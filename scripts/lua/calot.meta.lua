@@ -145,6 +145,7 @@
 ---@field size? calot.point a box' edges along x, y and z, without its rounding; default { 0, 0, 0 }
 ---@field radius? number of a capsule, and of a box' edges; default 5 * mm; 0.5 to 250 mm
 ---@field friction? number coefficient of friction of what touches it; default 0; 0 to 1
+---@field looks? "usual"|"liver"|"bowel"|"fat"|"peritoneum" how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as peritoneum; a bowel has to be a capsule; default "usual"
 
 ---An instrument through a port.
 ---@class calot.instrument
@@ -163,6 +164,8 @@
 ---@field look_at? string landmark in the middle of the picture; default "gallbladder.fundus"
 ---@field distance? number from its tip to what it looks at; default 90 * mm; 10 to 400 mm
 ---@field field_of_view? number across the round picture; default 75 * deg; 20 to 120 deg
+---@field light? number brightness of its light; 1: what it looks at is well lit; 0: it is off; default 1; 0 to 10
+---@field exposure? number of the camera; a picture is as bright as light times exposure; default 1; 0.05 to 20
 ---@field show_structure? boolean draw elements and nodes on the organs, to look into the simulation; default false
 
 ---How the simulation steps.
@@ -190,6 +193,7 @@
 ---@field wall? calot.wall its wall
 ---@field bile? calot.bile what fills it
 ---@field held? calot.held[] elastic attachments; a list given here replaces the anatomy's own
+---@field looks? "bile"|"pale" how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops); default "bile"
 ---@field extensions? boolean false: no structural extensions on this organ; default true
 ---@field compared_with? string another organ of the same shape; the metrics mean_difference_pct and largest_difference_pct then say how far this one's skin is from moving like that one's
 

@@ -139,6 +139,9 @@ struct HeldRegion {
   bool while_filled = false;
 };
 
+/// How a hollow organ is drawn: full of bile, or pale, as one that mucus has filled (hydrops).
+enum class OrganLooks { bile, pale };
+
 struct OrganDefinition {
   std::string name = "gallbladder";
   OrganShape shape = PearShape{};
@@ -149,6 +152,7 @@ struct OrganDefinition {
   WallDefinition wall;
   BileDefinition bile;
   std::vector<HeldRegion> held;
+  OrganLooks looks = OrganLooks::bile;
   bool extensions = true;     ///< false: none are laid on this organ, whatever the solver's levels
   std::string compared_with;  ///< another organ of the same shape and posture, see session/skin_difference.h
 };
@@ -183,6 +187,9 @@ struct TissueDefinition {
 
 enum class GroundType { plane, capsule, box };
 
+/// How ground is drawn. Usual: beside a lobe of the liver as peritoneum, as planes always; else as the liver.
+enum class GroundLooks { usual, liver, bowel, fat, peritoneum };
+
 /// What stays, and is touched: the liver before there is one, a bone, a table.
 struct GroundDefinition {
   std::string name = "ground";
@@ -193,6 +200,7 @@ struct GroundDefinition {
   Vec3 size = Vec3::Zero();     ///< m, of a box along x, y and z, without its rounding
   double radius = 5e-3;         ///< m, of a capsule, and of a box' edges
   double friction = 0;          ///< Coulomb's, of what touches it (d); the rest state is found without
+  GroundLooks looks = GroundLooks::usual;
 };
 
 struct SupportDefinition {
@@ -282,7 +290,9 @@ struct LaparoscopeDefinition {
   double field_of_view = 1.3089969389957472;   ///< rad, across the picture's round field; 70 to 80 deg (c)
   std::string look_at = "gallbladder.fundus";  ///< organ.landmark
   double distance = 90e-3;                     ///< m from the scope's tip to what it looks at
-  bool show_structure = false;                 ///< draw elements and nodes on the organs: a debug view
+  double light = 1;     ///< brightness of its light, 1: what is looked at is well lit, at any distance
+  double exposure = 1;  ///< of the camera; pictures go by light times exposure
+  bool show_structure = false;  ///< draw elements and nodes on the organs: a debug view
 };
 
 /// How the unknowns of structural extensions are solved for: with the coarse ones, onto which they are condensed, or

@@ -114,7 +114,11 @@ std::vector<KeyTable> field_tables() {
            number("radius", &GroundDefinition::radius, quantity::length, 0.5 * mm, 250 * mm,
                   "a ground's radius", "of a capsule, and of a box' edges"),
            number("friction", &GroundDefinition::friction, quantity::number, 0, 1,
-                  "a coefficient of friction of ground", "coefficient of friction of what touches it")}),
+                  "a coefficient of friction of ground", "coefficient of friction of what touches it"),
+           choice("looks", &GroundDefinition::looks, {"usual", "liver", "bowel", "fat", "peritoneum"},
+                  "how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as "
+                  "peritoneum; a bowel has to "
+                  "be a capsule")}),
       keys_of<Instrument>(
           "instrument", "An instrument through a port.",
           {choice("type", &Instrument::type, instrument_type_names(),
@@ -147,6 +151,10 @@ std::vector<KeyTable> field_tables() {
                              "a distance to look from", "from its tip to what it looks at"),
                       number("field_of_view", &Scope::field_of_view, quantity::angle, 20 * deg, 120 * deg,
                              "a laparoscope's field of view", "across the round picture"),
+                      number("light", &Scope::light, quantity::number, 0, 10, "a light's brightness",
+                             "brightness of its light; 1: what it looks at is well lit; 0: it is off"),
+                      number("exposure", &Scope::exposure, quantity::number, 0.05, 20, "a camera's exposure",
+                             "of the camera; a picture is as bright as light times exposure"),
                       flag("show_structure", &Scope::show_structure,
                            "draw elements and nodes on the organs, to look into the simulation")}),
       keys_of<Solver>(
@@ -201,6 +209,9 @@ std::vector<KeyTable> organ_tables() {
            table("wall", &Organ::wall, "wall", "its wall"),
            table("bile", &Organ::bile, "bile", "what fills it"),
            list("held", "held", "elastic attachments; a list given here replaces the anatomy's own"),
+           choice(
+               "looks", &Organ::looks, {"bile", "pale"},
+               "how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops)"),
            flag("extensions", &Organ::extensions, "false: no structural extensions on this organ"),
            text("compared_with", &Organ::compared_with,
                 "another organ of the same shape; the metrics mean_difference_pct and "

@@ -190,6 +190,9 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
   check_shape(check, path + ".shape", organ.shape, organ.liver_side);
   if (is_hollow(organ.shape) || std::holds_alternative<LobeShape>(organ.shape))
     check_axis(check, path, organ);
+  if (organ.looks == OrganLooks::pale && !is_hollow(organ.shape))
+    check.problem(path + ".looks", fmt::format("a {} is not filled with mucus", shape_name(organ.shape)),
+                  "leave looks out");
   if (!is_hollow(organ.shape) && (organ.bile.fill_volume || organ.bile.fill_pressure))
     check.problem(path + ".bile", fmt::format("a {} keeps no filling", shape_name(organ.shape)),
                   "leave fill_volume and fill_pressure out; a tube has a pressure");
@@ -289,6 +292,9 @@ void check_ground(FieldCheck& check, const AnatomyDefinition& anatomy) {
     check_limits(check, at, "ground", ground);
     if (ground.type == GroundType::plane)
       check.unit_direction(at + ".normal", ground.normal, "a unit normal");
+    if (ground.looks == GroundLooks::bowel && ground.type != GroundType::capsule)
+      check.problem(at + ".looks", "only a capsule looks like bowel",
+                    "give it type = \"capsule\", or other looks");
     if (ground.size.minCoeff() < 0)
       check.problem(at + ".size", "a box has an edge below zero", "give edges of zero or more");
   }

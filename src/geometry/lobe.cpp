@@ -8,11 +8,16 @@ namespace {
 
 /// What recedes of the edge towards the sides, of the depth.
 constexpr double receding = 0.14;
+/// By how much its ends are rounded: either side of them of the depth, and of the thickness there.
+constexpr double end_shorter = 0.16, end_thinner = 0.22;
 
 double depth_at(const LobeForm& form, double y) {
   const double aside = 2 * y / form.width;
   return form.depth * (1 - receding * aside * aside);
 }
+
+/// 1 at the ends, next to nothing beside the bed: smooth, for the skin goes through these places and would swing over.
+double end_share(const LobeForm& form, double y) { return std::pow(2 * y / form.width, 4); }
 
 double thickness_at(const LobeForm& form, double from_edge) {
   const double more = form.thickness - form.edge;
@@ -29,12 +34,14 @@ double underside_at(const LobeForm& form, double y, double z) {
 }  // namespace
 
 Vec3 lobe_place(const LobeForm& form, const Vec3& at) {
-  const double y = form.width * (at[0] - 0.5), depth = depth_at(form, y);
-  const double back = form.edge_at - form.depth, z = back + depth * at[1];
-  const double under = underside_at(form, y, z);
-  const double upper = form.underside + thickness_at(form, back + depth - z);
+  const double y = form.width * (at[0] - 0.5), end = end_share(form, y);
+  const double rounding = end_shorter * form.depth * end, depth = depth_at(form, y) - 2 * rounding;
+  const double back = form.edge_at - form.depth + rounding, z = back + depth * at[1];
+  const double under = underside_at(form, y, z), thick = thickness_at(form, back + depth - z);
   // The bed takes from the thickness, but no more than leaves an edge above it.
-  return {under + at[2] * (std::max(upper, under + form.edge) - under), y, z};
+  const double through = std::max(form.underside + thick, under + form.edge) - under;
+  const double thinner = end_thinner * thick * end;
+  return {under + thinner + at[2] * (through - 2 * thinner), y, z};
 }
 
 LobeCells lobe_cells(const LobeForm& form) {

@@ -20,7 +20,14 @@ namespace {
 constexpr int samples = 4;
 constexpr std::array all_materials{Material::gallbladder, Material::membrane,   Material::liver,
                                    Material::fat,         Material::peritoneum, Material::steel,
-                                   Material::insulation,  Material::artery};
+                                   Material::insulation,  Material::artery,     Material::capsule,
+                                   Material::bowel,       Material::veil,       Material::hydrops};
+
+/// Omentum, bowel and walls lie behind all else: their shadows are never seen. Light passes a veil.
+bool casts_shadow(Material material) {
+  return material != Material::fat && material != Material::peritoneum && material != Material::bowel &&
+         material != Material::veil;
+}
 
 /// A vessel map on the card's side. Holding the map keeps its address from being given to another one.
 struct VesselTexture {
@@ -221,9 +228,8 @@ void OffscreenRenderer::Impl::draw_shadow(const SceneCamera& camera) {
   set(shadow_program, "clip_from_place", shadow_projection(camera));
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5f, 4.0f);
-  for (const ScenePart& part :
-       arrays.parts)  // omentum and walls lie behind all else: their shadows are never seen
-    if (part.material != Material::fat && part.material != Material::peritoneum) draw_part(part);
+  for (const ScenePart& part : arrays.parts)
+    if (casts_shadow(part.material)) draw_part(part);
   gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -245,7 +251,7 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
   const Eigen::Matrix4d to_shadow = shadow_projection(camera);
   const Vec3 light = camera_axes(camera).transpose() * camera.light_offset;
   GLuint current = 0;
-  for (const ScenePart& part : arrays.parts) {
+  const auto draw = [&](const ScenePart& part) {
     const GLuint program = scene_programs[static_cast<std::size_t>(part.material)];
     if (program != current) {
       gl.UseProgram(program);
@@ -258,7 +264,19 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
     }
     bind_vessels(program, part);
     draw_part(part);
-  }
+  };
+  for (const ScenePart& part : arrays.parts)
+    if (part.material != Material::veil) draw(part);
+  // Over all that it may veil; what the sensor could not keep (alpha) stays that of what is behind.
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_ONE, GL_SRC_ALPHA);
+  gl.Disable(GL_CULL_FACE);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+  for (const ScenePart& part : arrays.parts)
+    if (part.material == Material::veil) draw(part);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl.Enable(GL_CULL_FACE);
+  gl.Disable(GL_BLEND);
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.framebuffer);
   gl.BlitFramebuffer(0, 0, drawn.width, drawn.height, 0, 0, drawn.width, drawn.height,

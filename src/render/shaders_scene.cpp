@@ -72,9 +72,9 @@ Surface surface_at(vec3 p) {
   float facing = abs(dot(normalize(normal), normalize(place)));
   float thick = smoothstep(-0.55, 0.65, broad.a + 0.45 * middle.a + 0.15 * fine.a);
   thick = 0.08 + 0.55 * thick + 0.37 * (1.0 - facing) * (1.0 - facing);
-  vec3 albedo = mix(vec3(0.130, 0.172, 0.132), vec3(0.385, 0.305, 0.225), thick);
+  vec3 albedo = mix(BILE, vec3(0.385, 0.305, 0.225), thick);
   albedo = mix(albedo, vec3(0.44, 0.17, 0.12), 0.45 * smoothstep(-0.05, 0.55, broad.g + 0.5 * middle.r));
-  albedo = mix(albedo, vec3(0.26, 0.036, 0.040), 0.75 * vessel);
+  albedo = mix(albedo, vec3(0.26, 0.036, 0.040), VESSELS * vessel);
 
   float fat = smoothstep(0.05, 0.40, middle.a + 0.8 * broad.a + 0.3 * fine.a + FAT_BIAS);
   albedo = mix(albedo, vec3(0.66, 0.44, 0.15), 0.85 * fat);
@@ -92,6 +92,33 @@ Surface surface_at(vec3 p) {
   albedo *= 1.0 + 0.16 * middle.a + 0.20 * lobules.a;
   vec3 slope = 0.40 * broad.rgb + 0.40 * middle.rgb + 0.34 * lobules.rgb;
   return Surface(albedo, vec3(0.20, 0.06, 0.04), slope, 0.15, 170.0, 2.4);
+}
+)";
+
+const char* const capsule_material = R"(
+// Smooth and dark: a broad soft sheen, and a mirrored light where the surface faces it, for the capsule has no relief
+// of its own but the faint one of the lobules below it.
+Surface surface_at(vec3 p) {
+  vec4 middle = noise(p, 7.0);
+  vec4 lobules = noise(p, 1.3);
+  vec3 albedo = mix(vec3(0.098, 0.026, 0.019), vec3(0.150, 0.043, 0.028), smoothstep(-0.5, 0.5, broad.a));
+  albedo *= 1.0 + 0.10 * middle.a + 0.13 * lobules.a;
+  vec3 slope = 0.06 * broad.rgb + 0.05 * middle.rgb + 0.03 * lobules.rgb;
+  return Surface(albedo, vec3(0.20, 0.06, 0.04), slope, 0.3, 700.0, 0.33);
+}
+)";
+
+const char* const bowel_material = R"(
+// Pale pink serosa; its vessels run around the tube, whose axis is z.
+Surface surface_at(vec3 p) {
+  vec4 middle = noise(p + 4.0 * broad.rgb, 8.0);
+  vec4 around = noise(vec3(0.4 * p.xy, p.z) + 2.0 * broad.rgb, 5.0);
+  vec4 fine = noise(p, 1.4);
+  vec3 albedo = mix(vec3(0.25, 0.105, 0.075), vec3(0.34, 0.18, 0.125), smoothstep(-0.5, 0.6, broad.a + 0.5 * middle.a));
+  float vessel = smoothstep(0.34, 0.06, distance_to_zero(around, 5.0)) * smoothstep(-0.1, 0.6, broad.r + 0.5 * middle.r);
+  albedo = mix(albedo, vec3(0.25, 0.04, 0.035), 0.5 * vessel);
+  vec3 slope = 0.12 * broad.rgb + 0.13 * middle.rgb + 0.08 * fine.rgb;
+  return Surface(albedo, vec3(0.38, 0.17, 0.12), slope, 0.5, 260.0, 0.8);
 }
 )";
 
@@ -169,6 +196,28 @@ void main() {
 }
 )";
 
+// A sheet with both its sides seen: alpha is the share of what lies behind it that shines through.
+const char* const veil_lighting = R"(
+void main() {
+  vec3 n = normalize(normal);
+  vec3 v = normalize(-place);
+  n = dot(n, v) < 0.0 ? -n : n;
+  vec4 middle = noise(rest + 2.0 * broad.rgb, 3.5);
+  vec4 fine = noise(rest, 1.2);
+  Light l = light_at(n);
+  float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
+  float vessel = smoothstep(0.26, 0.05, distance_to_zero(middle, 3.5)) * smoothstep(-0.1, 0.4, broad.r + 0.4 * fine.a);
+  vec3 albedo = mix(vec3(0.46, 0.27, 0.19), vec3(0.32, 0.03, 0.03), vessel);
+  float dense = 0.16 + 0.22 * away * away + 0.10 * smoothstep(0.0, 0.6, middle.a) + 0.45 * vessel;
+  float facing = abs(dot(n, l.towards));
+  vec3 lit = albedo * ((0.3 + 0.7 * facing) * l.strength * mix(0.3, 1.0, l.seen) + l.around);
+  vec3 h = normalize(l.towards + v);
+  vec3 film = normalize(n + 0.05 * broad.rgb + 0.06 * middle.rgb + 0.05 * fine.rgb);
+  float spot = 0.9 * exp2(430.0 * (dot(film, h) - 1.0)) + 0.03 * exp2(40.0 * (dot(n, h) - 1.0));
+  colour = vec4(exposed(lit).rgb * dense + exposed(vec3(spot) * l.strength * l.seen).rgb, 1.0 - dense);
+}
+)";
+
 const char* const light_functions = R"(
 struct Light {
   vec3 towards;    // unit
@@ -238,20 +287,31 @@ double broad_cell(Material material) {
   switch (material) {
     case Material::gallbladder:
     case Material::membrane:
+    case Material::hydrops:
       return 14;
     case Material::liver:
+    case Material::capsule:
       return 23;
     case Material::fat:
+    case Material::bowel:
       return 19;
     case Material::peritoneum:
       return 29;
     case Material::artery:
+    case Material::veil:
       return 9;
     case Material::steel:
     case Material::insulation:
       return 10;
   }
   return 10;
+}
+
+/// What the gallbladder's wall shows: what is in it, its vessels, its patches of fat.
+std::string wall_of(const char* bile, double vessels, const char* fat_bias) {
+  return fmt::format("#define BILE {}\n#define VESSELS {:.2f}\n#define FAT_BIAS ({})\n", bile, vessels,
+                     fat_bias) +
+         gallbladder_material;
 }
 
 std::string header(Material material) {
@@ -267,11 +327,20 @@ std::string scene_vertex_shader(Material material) { return header(material) + v
 
 std::string scene_fragment_shader(Material material) {
   const std::string common = header(material) + prelude + light_functions;
+  const char* const bile = "vec3(0.130, 0.172, 0.132)";
   switch (material) {
     case Material::gallbladder:
-      return common + "#define FAT_BIAS (0.30 - 0.028 * p.z)\n" + gallbladder_material + tissue_lighting;
+      return common + wall_of(bile, 0.75, "0.30 - 0.028 * p.z") + tissue_lighting;
     case Material::membrane:
-      return common + "#define FAT_BIAS (-2.0)\n" + gallbladder_material + tissue_lighting;
+      return common + wall_of(bile, 0.75, "-2.0") + tissue_lighting;
+    case Material::hydrops:
+      return common + wall_of("vec3(0.34, 0.315, 0.25)", 0.25, "-0.15 - 0.028 * p.z") + tissue_lighting;
+    case Material::capsule:
+      return common + capsule_material + tissue_lighting;
+    case Material::veil:
+      return common + veil_lighting;
+    case Material::bowel:
+      return common + bowel_material + tissue_lighting;
     case Material::liver:
       return common + liver_material + tissue_lighting;
     case Material::fat:

@@ -5,18 +5,21 @@
 #include "view/laparoscope.h"
 #include "view/structure_mesh.h"
 #include "view/tissue_mesh.h"
+#include "view/veil_mesh.h"
 #include "view/vessels.h"
 
 namespace calot {
 namespace {
 
 /// In the order of OrganShape.
-Material material_of(const OrganShape& shape) {
+Material material_of(const OrganDefinition& organ) {
+  const OrganShape& shape = organ.shape;
+  if (organ.looks == OrganLooks::pale && is_hollow(shape)) return Material::hydrops;
   const auto* tube = std::get_if<TubeShape>(&shape);
   if (tube != nullptr && tube->carries == Carries::blood) return Material::artery;
   constexpr std::array materials = {Material::gallbladder, Material::membrane, Material::gallbladder,
                                     Material::gallbladder, Material::membrane, Material::fat,
-                                    Material::liver};
+                                    Material::capsule};
   return materials[shape.index()];
 }
 
@@ -36,7 +39,7 @@ SceneMesh SceneBuilder::organ_mesh(const World& world, int organ) {
   std::vector<Vec3> rest = world.drawn_rest(organ);
   for (Vec3& p : rest) p = to_organ * p;
   SceneMesh mesh;
-  mesh.material = material_of(definition.shape);
+  mesh.material = material_of(definition);
   mesh.triangles = world.drawn_triangles(organ);
   if (is_hollow(definition.shape)) mesh.vessels = grow_vessels(rest, mesh.triangles);
   mesh.rest_positions = std::move(rest);
@@ -70,6 +73,7 @@ Scene SceneBuilder::build(const World& world) const {
       scene.meshes.push_back(std::move(mesh));
   }
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());
+  if (SceneMesh veil = veil_mesh(world); !veil.triangles.empty()) scene.meshes.push_back(std::move(veil));
   return scene;
 }
 

@@ -22,6 +22,23 @@ Vec3 foot_of(const AnatomyDefinition& anatomy, const Vec3& about) {
 /// It is the liver that is seen.
 bool is_lobe(const OrganDefinition& organ) { return std::holds_alternative<LobeShape>(organ.shape); }
 
+/// Where there is a lobe, what stays is usually bowel's peritoneum; else it stands for the liver.
+Material material_of(const GroundDefinition& ground, bool lobe) {
+  switch (ground.looks) {
+    case GroundLooks::liver:
+      return Material::capsule;
+    case GroundLooks::bowel:
+      return Material::bowel;
+    case GroundLooks::fat:
+      return Material::fat;
+    case GroundLooks::peritoneum:
+      return Material::peritoneum;
+    case GroundLooks::usual:
+      return lobe || ground.type == GroundType::plane ? Material::peritoneum : Material::liver;
+  }
+  return Material::peritoneum;
+}
+
 }  // namespace
 
 std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
@@ -35,11 +52,12 @@ std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
                                    [](const OrganDefinition& organ) { return is_hollow(organ.shape); });
   const Vec3 about =
       organ_frame(hollow != anatomy.organs.end() ? *hollow : anatomy.organs.front()).translation();
-  // Where there is a lobe, what stays is bowel; else it stands for the liver.
   const bool liver = std::any_of(anatomy.organs.begin(), anatomy.organs.end(), is_lobe);
   for (const GroundDefinition& ground : anatomy.ground)
-    meshes.push_back(ground_mesh(ground, about, liver ? Material::peritoneum : Material::liver));
-  if (anatomy.support) meshes.push_back(plane_mesh(anatomy.support->point, anatomy.support->normal, about));
+    meshes.push_back(ground_mesh(ground, about, material_of(ground, liver)));
+  if (anatomy.support)
+    meshes.push_back(
+        plane_mesh(anatomy.support->point, anatomy.support->normal, about, Material::peritoneum));
   if (meshes.empty() && hollow != anatomy.organs.end()) {
     if (!liver) meshes.push_back(liver_mesh(*hollow));
     add(abdomen_meshes(*hollow));

@@ -1,5 +1,6 @@
 #include "view/surroundings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -127,10 +128,10 @@ std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ) {
   return {duodenum, omentum, abdominal_wall(middle + Vec3(40 * mm, -20 * mm, -30 * mm))};
 }
 
-SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about) {
+SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about, Material material) {
   const Vec3 n = normal.normalized(), a = n.unitOrthogonal(), b = n.cross(a);
   const Vec3 foot = about - n * n.dot(about - point);
-  return sheet(Material::peritoneum, 36, 36, [&](double u, double v) {
+  return sheet(material, 36, 36, [&](double u, double v) {
     const double x = (2 * u - 1) * 200 * mm, y = (2 * v - 1) * 200 * mm;
     // Flat where the organ lies, for contact must look like contact; wavy further out.
     const double wave = 4 * mm * lobes(x / (23 * mm), y / (20 * mm)) - 4 * mm;
@@ -138,8 +139,32 @@ SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about) {
   });
 }
 
+SceneMesh bowel_mesh(const GroundDefinition& capsule) {
+  const Vec3 way = capsule.to - capsule.point;
+  const double radius = capsule.radius, length = way.norm(), whole = length + pi * radius;
+  const Vec3 axis = length > 0 ? way.normalized() : Vec3::UnitZ(), a = axis.unitOrthogonal(),
+             b = axis.cross(a);
+  SceneMesh mesh = sheet(Material::bowel, 40, 80, [&](double u, double v) {
+    // By the way along it, so that the folds are met by enough rows.
+    const double lon = 2 * pi * u, s = v * whole, cap = 0.5 * pi * radius;
+    const double at = std::clamp(s - cap, 0.0, length);
+    const double angle = s < cap ? s / radius : s > cap + length ? (s - length) / radius : 0.5 * pi;
+    const double phase =
+        s / (1.5 * radius) + 0.35 * std::sin(s / (2.7 * radius)) + 0.25 * std::sin(2 * lon + 1.0);
+    const double fold = 1 - 0.11 * std::pow(std::cos(pi * phase), 8) * std::sin(angle);
+    const Vec3 out = std::sin(angle) * (std::cos(lon) * a + std::sin(lon) * b);
+    return Vec3(capsule.point + at * axis + radius * (fold * out - std::cos(angle) * axis));
+  });
+  for (Vec3& p : mesh.rest_positions) {
+    const Vec3 from = p - capsule.point;
+    p = Vec3(from.dot(a), from.dot(b), from.dot(axis));
+  }
+  return mesh;
+}
+
 SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about, Material material) {
-  if (ground.type == GroundType::plane) return plane_mesh(ground.point, ground.normal, about);
+  if (ground.type == GroundType::plane) return plane_mesh(ground.point, ground.normal, about, material);
+  if (material == Material::bowel) return bowel_mesh(ground);
   // A capsule is swept, a box grown along the same directions: of a sheet over the sphere around both.
   const bool box = ground.type == GroundType::box;
   const Vec3 along = ground.to - ground.point, axis = along.norm() > 0 ? along.normalized() : Vec3::UnitZ();

@@ -292,6 +292,16 @@ const std::vector<Refusal>& refusals() {
        "scene.anatomy.tissue", "2000 strands", "at most"},
       {"GroundTwice", [](auto& s) { s.anatomy.ground.resize(2); }, "scene.anatomy.ground[2].name",
        "\"ground\" is given twice", "rename"},
+      {"GroundLooks", [](auto& s) { s.anatomy.ground = {{.looks = GroundLooks::bowel}}; },
+       "scene.anatomy.ground[1].looks", "only a capsule looks like bowel", "capsule"},
+      {"OrganLooks",
+       [](auto& s) {
+         s.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+         s.anatomy.organs[1].looks = OrganLooks::pale;
+       },
+       "scene.anatomy.organs[2].looks", "is not filled with mucus", "leave looks out"},
+      {"Light", [](auto& s) { s.laparoscope.light = 11; }, "scene.laparoscope.light", "a light's brightness",
+       "10"},
       {"GroundNormal", [](auto& s) { s.anatomy.ground = {{.normal = Vec3(0, 0, 2)}}; },
        "scene.anatomy.ground[1].normal", "length must be 1", "give (0, 0, 1)"},
       {"SupportFriction", [](auto& s) { s.anatomy.support->friction = -0.1; },

@@ -226,6 +226,22 @@ TEST(Offscreen, HighlightsFollowTheLight) {
   EXPECT_GT(centre[1].x() - centre[0].x(), 3);
 }
 
+TEST(Offscreen, ALobeThatFacesTheLightHasAFewHighlightsAndNoGlareAllOver) {
+  OffscreenRenderer renderer = make();
+  const auto glaring = [&](Material material) {
+    Scene scene;
+    scene.meshes.push_back(plate(material, 105e-3, 40e-3));
+    const Image image = draw(renderer, scene);
+    int bright = 0;
+    for (int y = 60; y < 140; ++y)
+      for (int x = 80; x < 160; ++x) bright += brightness(image, x, y) > 450 ? 1 : 0;
+    return bright / 6400.0;
+  };
+  EXPECT_GT(glaring(Material::capsule), 0);
+  EXPECT_LT(glaring(Material::capsule), 0.1);
+  EXPECT_GT(glaring(Material::liver), 0.2);  // that of the scenery, which is seen from the side
+}
+
 TEST(Offscreen, AShadowFallsOnTheSideAwayFromTheLight) {
   OffscreenRenderer renderer = make(300, 300);
   Scene scene;

@@ -89,6 +89,14 @@ TEST(BuildScene, ASupportedOrganHasADrapeAndNoLiver) {
   EXPECT_NE(mesh_of(scene, Material::steel), nullptr);
 }
 
+TEST(BuildScene, AHydropsIsPale) {
+  SceneDefinition scene = sphere_scene();
+  scene.anatomy.organs[0].looks = OrganLooks::pale;
+  const Scene drawn = build_scene(make_world(scene));
+  EXPECT_NE(mesh_of(drawn, Material::hydrops), nullptr);
+  EXPECT_EQ(mesh_of(drawn, Material::membrane), nullptr);
+}
+
 TEST(BuildScene, ThePictureFollowsTheInstrumentAndTheCameraHoldsStill) {
   World world = make_world(sphere_scene());
   const SceneBuilder builder(world);

@@ -29,6 +29,16 @@ TEST(Laparoscope, LooksAtItsTargetFromItsDistance) {
   }
 }
 
+TEST(Laparoscope, APictureIsAsBrightAsLightTimesExposure) {
+  const auto intensity = [](const LaparoscopeDefinition& scope) {
+    return laparoscope_camera(scope, Vec3::Zero(), Vec3(0, 0.15, -0.08)).light_intensity;
+  };
+  LaparoscopeDefinition scope;
+  const double usual = intensity(scope);
+  scope.light = 0.5, scope.exposure = 3;
+  EXPECT_DOUBLE_EQ(intensity(scope), 1.5 * usual);
+}
+
 TEST(Laparoscope, TheShaftRunsThroughThePortAtTheOpticsAngleAboveTheView) {
   Rng rng(2);
   for (int i = 0; i < 100; ++i) {

@@ -1,5 +1,7 @@
 #include "view/surroundings.h"
 
+#include <algorithm>
+
 #include "anatomy/organ_frame.h"
 #include "render/offscreen.h"
 #include "view/build_scene.h"
@@ -63,7 +65,9 @@ TEST(Surroundings, EverySurfaceFacesTheWayItsTrianglesTurn) {
   for (const SceneMesh& mesh : still_meshes(scene)) meshes.push_back(mesh);
   GroundDefinition bar{.type = GroundType::capsule, .to = Vec3(0, 30e-3, 10e-3)};
   GroundDefinition block{.type = GroundType::box, .size = Vec3(10e-3, 20e-3, 5e-3), .radius = 2e-3};
-  scene.anatomy.ground = {bar, block};
+  GroundDefinition bowel = bar;
+  bowel.looks = GroundLooks::bowel;
+  scene.anatomy.ground = {bar, block, bowel};
   for (const SceneMesh& mesh : still_meshes(scene)) meshes.push_back(mesh);
   for (const SceneMesh& mesh : meshes)
     for (const Triangle& t : mesh.triangles) {
@@ -72,6 +76,42 @@ TEST(Surroundings, EverySurfaceFacesTheWayItsTrianglesTurn) {
       // Triangles that shrink to nothing at a pole turn either way by rounding: 1e-12 m^2.
       EXPECT_GT(turn.dot(mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]]), -1e-12);
     }
+}
+
+TEST(Surroundings, GroundLooksAsItsAuthorSays) {
+  SceneDefinition scene;
+  scene.anatomy.organs.push_back({});
+  const GroundDefinition bar{.type = GroundType::capsule, .to = Vec3(0, 30e-3, 10e-3)};
+  const auto looks = [&](GroundLooks wanted, GroundType type = GroundType::capsule) {
+    scene.anatomy.ground = {bar};
+    scene.anatomy.ground[0].looks = wanted;
+    scene.anatomy.ground[0].type = type;
+    return still_meshes(scene).front().material;
+  };
+  EXPECT_EQ(looks(GroundLooks::liver), Material::capsule);
+  EXPECT_EQ(looks(GroundLooks::bowel), Material::bowel);
+  EXPECT_EQ(looks(GroundLooks::fat), Material::fat);
+  EXPECT_EQ(looks(GroundLooks::fat, GroundType::plane), Material::fat);
+  EXPECT_EQ(looks(GroundLooks::peritoneum), Material::peritoneum);
+  EXPECT_EQ(looks(GroundLooks::usual), Material::liver);
+  EXPECT_EQ(looks(GroundLooks::usual, GroundType::plane), Material::peritoneum);
+  scene.anatomy.organs.push_back(OrganDefinition{});
+  scene.anatomy.organs.back().shape = LobeShape{};
+  EXPECT_EQ(looks(GroundLooks::usual), Material::peritoneum);
+}
+
+TEST(Surroundings, BowelIsDrawnWithinWhatIsTouchedAndNearlyAsThick) {
+  GroundDefinition bowel{.type = GroundType::capsule, .to = Vec3(0, 60e-3, 10e-3), .radius = 20e-3};
+  const Vec3 way = bowel.to - bowel.point;
+  double thinnest = 1;
+  for (const Vec3& p : bowel_mesh(bowel).positions) {
+    const double share = std::clamp((p - bowel.point).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    const double from_axis = (p - bowel.point - share * way).norm() / bowel.radius;
+    EXPECT_LT(from_axis, 1 + 1e-12);  // rounding
+    thinnest = std::min(thinnest, from_axis);
+  }
+  EXPECT_GT(thinnest, 0.88);
+  EXPECT_LT(thinnest, 0.92);  // there are folds
 }
 
 int black_pixels_of_the_field(const SceneCamera& camera, const std::vector<SceneMesh>& meshes) {
@@ -108,7 +148,7 @@ TEST(Surroundings, NoVoidIsSeenFromAnyUsualView) {
 TEST(Surroundings, ASupportIsFlatUnderTheOrganAndNeverAboveItsPlane) {
   const SupportDefinition support{Vec3(0.01, 0.02, -0.08), Vec3(0.1, 0.2, 1).normalized()};
   const Vec3 about = support.point + 20e-3 * support.normal;
-  const SceneMesh drape = plane_mesh(support.point, support.normal, about);
+  const SceneMesh drape = plane_mesh(support.point, support.normal, about, Material::peritoneum);
   for (const Vec3& p : drape.positions) {
     const double height = support.normal.dot(p - support.point);
     EXPECT_LT(height, 1e-12);
