@@ -31,7 +31,7 @@ TEST(Laparoscope, LooksAtItsTargetFromItsDistance) {
 
 TEST(Laparoscope, APictureIsAsBrightAsLightTimesExposure) {
   const auto intensity = [](const LaparoscopeDefinition& scope) {
-    return laparoscope_camera(scope, Vec3::Zero(), Vec3(0, 0.15, -0.08)).light_intensity;
+    return camera_of(scope, Vec3::Zero(), Vec3(0, 0.15, -0.08)).light_intensity;
   };
   LaparoscopeDefinition scope;
   const double usual = intensity(scope);
