@@ -146,7 +146,7 @@
 
 ---An instrument through a port.
 ---@class calot.instrument
----@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps" which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the semm_forceps have short broad flat ones; default "atraumatic_grasper"
+---@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps"|"maryland_dissector"|"l_hook"|"scissors"|"clip_applier" which instrument: atraumatic_grasper has long fenestrated jaws with teeth; bipolar_electrode (with channel) has no jaws and only pushes; semm_forceps has short broad flat jaws; maryland_dissector has slim curved jaws; l_hook is a wire that ends in a foot to one side, and has no jaws; scissors has blades; clip_applier has a shaft of 10 mm and sets clips; default "atraumatic_grasper"
 ---@field port string the port it goes through
 ---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N

@@ -223,10 +223,15 @@ struct PortDefinition {
   Vec3 position = Vec3::Zero();  ///< m
 };
 
+/// What each is: instrument_rows() (anatomy/instruments.h).
 enum class InstrumentType {
-  atraumatic_grasper,  ///< long fenestrated jaws with teeth
-  bipolar_electrode,   ///< bipolar electrode with channel: a rod with a rounded tip, no jaws: it only pushes
-  semm_forceps,        ///< Semm's endocoagulation forceps: short, broad, flat jaws, parallel when closed
+  atraumatic_grasper,
+  bipolar_electrode,
+  semm_forceps,  ///< Semm's endocoagulation forceps
+  maryland_dissector,
+  l_hook,
+  scissors,
+  clip_applier,
 };
 
 struct InstrumentDefinition {
@@ -252,7 +257,7 @@ enum class InstrumentAction {
   exchange,  ///< it leaves through its port for another one
 };
 
-/// "atraumatic_grasper", "bipolar_electrode", "semm_forceps", in the order of the types.
+/// In the order of the types.
 const std::vector<std::string>& instrument_type_names();
 std::string to_text(InstrumentType type);
 std::optional<InstrumentType> instrument_type_called(const std::string& name);
@@ -264,8 +269,7 @@ std::string to_text(InstrumentAction action);
 std::optional<InstrumentAction> instrument_action_called(const std::string& name);
 /// Whether an instrument of this type knows the action; each knows none.
 bool has_action(InstrumentType type, InstrumentAction action);
-/// An unnamed instrument with the defaults of its type. Semm's flat pads hold as smooth metal does, friction 0.3
-/// (c). Pinch and friction mean nothing without jaws.
+/// An unnamed instrument with the defaults of its type. Pinch and friction mean nothing without jaws.
 InstrumentDefinition default_instrument(InstrumentType type);
 
 struct LaparoscopeDefinition {
