@@ -234,6 +234,9 @@ enum class InstrumentType {
   clip_applier,
 };
 
+/// Of titanium clips, a row each in clip_rows() (anatomy/instruments.h).
+enum class ClipSize { m, ml };
+
 struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
   InstrumentType type = InstrumentType::atraumatic_grasper;
@@ -245,7 +248,11 @@ struct InstrumentDefinition {
   /// Coulomb's, of the wet skin on the shaft and on what of the jaws does not hold it; a smooth shaft has 0 to
   /// 0.3 (c).
   double friction = 0;
+  ClipSize clip = ClipSize::ml;
+  int clips = 8;  ///< that it carries at the start
 };
+
+inline constexpr int most_clips = 50;
 
 /// What an instrument can be made to do beside moving and closing, for as long as a foot or a finger asks for it.
 enum class InstrumentAction {
@@ -269,6 +276,8 @@ std::string to_text(InstrumentAction action);
 std::optional<InstrumentAction> instrument_action_called(const std::string& name);
 /// Whether an instrument of this type knows the action; each knows none.
 bool has_action(InstrumentType type, InstrumentAction action);
+/// The one that its pedal or trigger asks for; none: it has neither.
+InstrumentAction main_action(InstrumentType type);
 /// An unnamed instrument with the defaults of its type. Pinch and friction mean nothing without jaws.
 InstrumentDefinition default_instrument(InstrumentType type);
 

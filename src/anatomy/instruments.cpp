@@ -73,6 +73,21 @@ const std::vector<InstrumentRow>& instrument_rows() {
   return rows;
 }
 
+const std::vector<ClipRow>& clip_rows() {
+  // For vessels of 2 to 4 and of 3.5 to 7 mm, 6 and 9 mm long when they are shut (c); of wire as thick as that (d).
+  static const std::vector<ClipRow> rows = {{ClipSize::m, "M", 6e-3, 0.7e-3},
+                                            {ClipSize::ml, "ML", 9e-3, 0.8e-3}};
+  return rows;
+}
+
+const ClipRow& clip_row(ClipSize size) { return clip_rows()[static_cast<std::size_t>(size)]; }
+
+std::vector<std::string> clip_names() {
+  std::vector<std::string> out;
+  for (const ClipRow& row : clip_rows()) out.emplace_back(row.name);
+  return out;
+}
+
 const InstrumentRow& instrument_row(InstrumentType type) {
   return instrument_rows()[static_cast<std::size_t>(type)];
 }
@@ -109,6 +124,11 @@ std::optional<InstrumentAction> instrument_action_called(const std::string& name
 bool has_action(InstrumentType type, InstrumentAction action) {
   const std::vector<InstrumentAction>& known = instrument_row(type).actions;
   return action == InstrumentAction::none || std::find(known.begin(), known.end(), action) != known.end();
+}
+
+InstrumentAction main_action(InstrumentType type) {
+  const std::vector<InstrumentAction>& known = instrument_row(type).actions;
+  return known.empty() ? InstrumentAction::none : known.front();
 }
 
 bool has_jaws(InstrumentType type) { return instrument_row(type).geometry.has_jaws(); }

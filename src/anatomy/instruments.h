@@ -40,6 +40,17 @@ struct InstrumentRow {
   double pad_friction = InstrumentDefinition().pad_friction;
 };
 
+/// A clip that is shut: two legs side by side, m.
+struct ClipRow {
+  ClipSize size;
+  const char* name;
+  double leg, wire;  ///< a leg's length and thickness
+};
+/// In the order of the sizes.
+const std::vector<ClipRow>& clip_rows();
+const ClipRow& clip_row(ClipSize size);
+std::vector<std::string> clip_names();
+
 /// In the order of the types.
 const std::vector<InstrumentRow>& instrument_rows();
 const InstrumentRow& instrument_row(InstrumentType type);

@@ -135,7 +135,11 @@ std::vector<KeyTable> field_tables() {
            number("friction", &Instrument::friction, quantity::number, 0, 1,
                   "a coefficient of friction of a smooth tool",
                   "coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 "
-                  "for a smooth shaft on wet skin")}),
+                  "for a smooth shaft on wet skin"),
+           clips_only(choice("clip", &Instrument::clip, clip_names(),
+                             "the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML)")),
+           clips_only(count("clips", &Instrument::clips, 0, most_clips, "a number of clips",
+                            "how many it carries"))}),
       keys_of<Scope>("laparoscope", "The camera and its light.",
                      {text("port", &Scope::port, "the port it goes through"),
                       number("angle", &Scope::angle, quantity::angle, 0, 70 * deg,

@@ -19,6 +19,13 @@ enum class EventKind {
   overstretch,
   tear,
   parted,
+  clip,
+  clip_dropped,
+  cut,
+  cut_unclipped,
+  perforation,
+  cut_liver,
+  empty_cut,
   step_done,
   step_timeout,
 };

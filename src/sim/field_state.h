@@ -12,6 +12,8 @@ struct ToolSnapshot {
   bool touched = false, over_limit = false, jaw_stopped = false, lost = false, beside = false,
        slipping = false;
   InstrumentAction action = InstrumentAction::none;
+  bool has_cut = false;
+  int clips = 0;
 };
 
 struct FieldState {

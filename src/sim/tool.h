@@ -21,6 +21,8 @@ struct Tool {
       false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
   InstrumentAction action = InstrumentAction::none;
   bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
+  bool has_cut = false;   ///< its blades divided something since they opened last, for events
+  int clips = 0;          ///< that it still carries
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

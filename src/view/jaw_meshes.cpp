@@ -34,7 +34,7 @@ SceneMesh dissector_jaw(const InstrumentGeometry& g, int jaw) {
   const double middle = 0.4 * wide;
   const std::vector<JawRing> rings{{middle, 0.02e-3, true},
                                    {0.3 * wide, 0.02e-3},
-                                   {0.08 * wide, 0.28 * round},
+                                   {0.14 * wide, 0.28 * round},
                                    {0, 0.7 * round},
                                    {0, thick - 1.0 * round},
                                    {0.16 * wide, thick - 0.4 * round},

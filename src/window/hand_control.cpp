@@ -49,12 +49,12 @@ void HandControl::move(const HandMotion& motion, const SceneCamera& camera) {
   }
   pose.jaw = std::clamp(pose.jaw + motion.jaw, 0.0, instrument.geometry.jaw_opening);
   pose.roll = std::clamp(pose.roll + motion.roll, -most_roll, most_roll);
-  activate_ = motion.activate && has_action(instrument.definition.type, InstrumentAction::activate);
+  action_ = motion.activate ? main_action(instrument.definition.type) : InstrumentAction::none;
 }
 
 LiveInput HandControl::input() const {
   LiveInput input = held(selected_);
-  if (activate_) input.action = InstrumentAction::activate;
+  input.action = action_;
   return input;
 }
 

@@ -38,7 +38,8 @@ class HandControl {
   std::vector<LiveInstrument> instruments_;
   std::vector<InstrumentPose> poses_;
   int selected_ = 0;
-  bool out_of_reach_ = false, activate_ = false;
+  bool out_of_reach_ = false;
+  InstrumentAction action_ = InstrumentAction::none;  ///< that is asked of the hand selected
 };
 
 /// m at the depth of `place` that a pixel of the picture covers at its middle; `field` is the round field's diameter, px.

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "strand_rig.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
