@@ -11,6 +11,7 @@
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
 --   looks "bile": "pale" is how a gallbladder full of mucus looks (hydrops)
+--   without {}: names of organs and tissues that are gone already, in a field that is prepared for a later step
 --   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
@@ -101,6 +102,7 @@ local defaults = {
   nodes = 200,
   strands = 1,
   strength = 1,
+  without = {},
 }
 
 local function soft_wall(thickness) return { thickness = thickness, density = 1050 } end
@@ -157,6 +159,29 @@ local function course(from, places)
 end
 
 local function joint(from, to, radius) return { from = from, to = to, radius = radius } end
+
+--- Takes an organ with what ends on it, or a tissue, out of a field.
+local function take_out(field, name)
+  local names = {}
+  local function keep(list, stays)
+    local out = {}
+    for _, one in ipairs(list) do
+      if one.name then names[#names + 1] = one.name end
+      if stays(one) then out[#out + 1] = one end
+    end
+    return out, #out < #list
+  end
+  local function on(landmark) return landmark:match("^[^.]*") == name end
+  local organs, was_organ = keep(field.organs, function(organ) return organ.name ~= name end)
+  local tissue, was_tissue = keep(field.tissue, function(one)
+    return one.name ~= name and one.from ~= name and one.to ~= name
+  end)
+  if not was_organ and not was_tissue then
+    error('the field has no "' .. tostring(name) .. '" to leave out: there are ' .. table.concat(names, ", "), 3)
+  end
+  field.organs, field.tissue = organs, tissue
+  field.joints = keep(field.joints, function(one) return not on(one.from) and not on(one.to) end)
+end
 
 --- The anatomy of a standard field, or with other lengths: see the top of this file.
 function anatomy.standard(overrides)
@@ -230,12 +255,14 @@ function anatomy.standard(overrides)
   joints[#joints + 1] = joint("cystic_node.centre", "gallbladder.neck", 3 * radius)
   if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(-4, -9, 4.5)) end
 
-  return {
+  local field = {
     organs = organs,
     joints = joints,
     tissue = anatomy.tissue(p),
     ground = anatomy.surroundings(neck),
   }
+  for _, name in ipairs(p.without) do take_out(field, name) end
+  return field
 end
 
 --- What differs from the standard field, by name; how often it is seen, as published.

@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
@@ -149,13 +149,15 @@
 
 ---An instrument through a port.
 ---@class calot.instrument
----@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps" which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the semm_forceps have short broad flat ones; default "atraumatic_grasper"
+---@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps"|"maryland_dissector"|"l_hook"|"scissors"|"clip_applier" which instrument: atraumatic_grasper has long fenestrated jaws with teeth; bipolar_electrode (with channel) has no jaws and only pushes; semm_forceps has short broad flat jaws; maryland_dissector has slim curved jaws; l_hook is a wire that ends in a foot to one side, and has no jaws; scissors has blades; clip_applier has a shaft of 10 mm and sets clips; default "atraumatic_grasper"
 ---@field port string the port it goes through
 ---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
 ---@field power? number W of its current, where it can be activated: what strands of tissue it touches then share it, and are divided by it; default 30; 1 to 120
+---@field clip? "M"|"ML" the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML); clip_applier only; default "ML"
+---@field clips? number how many it carries; clip_applier only; default 8; 0 to 50
 
 ---The camera and its light.
 ---@class calot.laparoscope
@@ -303,6 +305,12 @@
 ---@field landmark string the landmark nearest to it, such as "gallbladder.fundus"
 ---@field force number of the tissue on the whole part, N
 
+---A clip on a tube, as clips returns it.
+---@class calot.clip
+---@field place number share of the tube's length from its start; 0 to 1
+---@field opening number share of the tube's width that it does not hold; 0: it is shut; 0 to 1
+---@field size "M"|"ML" the clip's size
+
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
 ---@class calot.Session
 local Session = {}
@@ -335,10 +343,26 @@ function Session:volume(organ) end
 ---@return number
 function Session:torn(tissue) end
 
+---Whether a tube, a duct or a vessel, has been divided. Its pieces then are organs of their own, "cystic_duct.patient" and "cystic_duct.specimen".
+---@param organ string a tube's name
+---@return boolean
+function Session:divided(organ) end
+
+---The clips on a tube, or on a piece of one, from its start to its end: each { place = a share of its length, opening = the share of its width that is not held, 0 where it is shut, size = "ML" }.
+---@param organ string a tube's name
+---@return calot.clip[]
+function Session:clips(organ) end
+
 ---Where a landmark is now on the skin, {x, y, z} in m.
 ---@param landmark string a landmark such as "gallbladder.fundus"
 ---@return calot.point
 function Session:place(landmark) end
+
+---A place on the middle of a tube, a duct or a vessel, now, and the direction from its start to its end there, of length 1: {x, y, z} each, the place in m.
+---@param organ string a tube's name
+---@param share number from its start, 0, to its end, 1; 0 to 1
+---@return calot.point, number[]
+function Session:along(organ, share) end
 
 ---How much of a triangle the laparoscope sees past organs and instruments, m^2, across its line of sight: from its edge it is seen as none.
 ---@param a calot.point a corner, {x, y, z} in m
@@ -447,6 +471,10 @@ function Instrument:touching(part) end
 ---@return boolean
 function Instrument:active() end
 
+---How many clips it still carries. An error for an instrument without clips.
+---@return number
+function Instrument:clips_left() end
+
 ---Where it touches, or the part named does, at the point that is pressed hardest; nil where it does not.
 ---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
 ---@return calot.contact?
@@ -484,6 +512,9 @@ function DemoInstrument:close() end
 ---Lets current flow for a while, and waits for that. An error for an instrument without current.
 ---@param duration number how long; 0.001 to 3600 s
 function DemoInstrument:activate(duration) end
+
+---Sets a clip on what is between its jaws. An error for an instrument without clips.
+function DemoInstrument:fire() end
 
 ---Moves the tip straight to a place.
 ---@param target calot.point|string a point, m, or a landmark such as "gallbladder.fundus"

@@ -235,11 +235,19 @@ struct PortDefinition {
   Vec3 position = Vec3::Zero();  ///< m
 };
 
+/// What each is: instrument_rows() (anatomy/instruments.h).
 enum class InstrumentType {
-  atraumatic_grasper,  ///< long fenestrated jaws with teeth
-  bipolar_electrode,   ///< bipolar electrode with channel: a rod with a rounded tip, no jaws: it only pushes
-  semm_forceps,        ///< Semm's endocoagulation forceps: short, broad, flat jaws, parallel when closed
+  atraumatic_grasper,
+  bipolar_electrode,
+  semm_forceps,  ///< Semm's endocoagulation forceps
+  maryland_dissector,
+  l_hook,
+  scissors,
+  clip_applier,
 };
+
+/// Of titanium clips, a row each in clip_rows() (anatomy/instruments.h).
+enum class ClipSize { m, ml };
 
 struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
@@ -253,7 +261,11 @@ struct InstrumentDefinition {
   /// 0.3 (c).
   double friction = 0;
   double power = 30;  ///< W of its current, where it has any: 25 to 40 in use (c)
+  ClipSize clip = ClipSize::ml;
+  int clips = 8;  ///< that it carries at the start
 };
+
+inline constexpr int most_clips = 50;
 
 /// What an instrument can be made to do beside moving and closing, for as long as a foot or a finger asks for it.
 enum class InstrumentAction {
@@ -265,7 +277,7 @@ enum class InstrumentAction {
   exchange,  ///< it leaves through its port for another one
 };
 
-/// "atraumatic_grasper", "bipolar_electrode", "semm_forceps", in the order of the types.
+/// In the order of the types.
 const std::vector<std::string>& instrument_type_names();
 std::string to_text(InstrumentType type);
 std::optional<InstrumentType> instrument_type_called(const std::string& name);
@@ -277,8 +289,9 @@ std::string to_text(InstrumentAction action);
 std::optional<InstrumentAction> instrument_action_called(const std::string& name);
 /// Whether an instrument of this type knows the action; each knows none.
 bool has_action(InstrumentType type, InstrumentAction action);
-/// An unnamed instrument with the defaults of its type. Semm's flat pads hold as smooth metal does, friction 0.3
-/// (c). Pinch and friction mean nothing without jaws.
+/// The one that its pedal or trigger asks for; none: it has neither.
+InstrumentAction main_action(InstrumentType type);
+/// An unnamed instrument with the defaults of its type. Pinch and friction mean nothing without jaws.
 InstrumentDefinition default_instrument(InstrumentType type);
 
 /// What it is called among instruments, by who moves them.

@@ -133,6 +133,11 @@ Key jaws_only(Key key) {
   return key;
 }
 
+Key clips_only(Key key) {
+  key.clips_only = true;
+  return key;
+}
+
 std::string written(double value, const Quantity& quantity) {
   if (quantity.multipliers.empty()) return fmt::format("{:g}", value);
   const UnitName& unit = quantity.multipliers.front();

@@ -54,7 +54,8 @@ struct Key {
   std::vector<std::string> choices{};  ///< for choices
   std::string signature{};             ///< for functions, as the editor's type
   std::string what{};  ///< completes "70 m is not ...": "a gallbladder's length"; empty: "a sensible <name>"
-  bool jaws_only = false;  ///< means nothing to an instrument without jaws
+  bool jaws_only = false;   ///< means nothing to an instrument without jaws
+  bool clips_only = false;  ///< means nothing to one that sets no clips
 
   std::function<KeyTarget(void* definition)> field{};
   /// Of tables that are members: the member; null for one that is absent, unless it is to be made.
@@ -107,6 +108,7 @@ Key function(std::string name, std::string signature, std::string doc);
 /// Has to be given, so that its default is none.
 Key required(Key key);
 Key jaws_only(Key key);
+Key clips_only(Key key);
 
 /// Binds a key to a member of T.
 template <class T, class M>

@@ -1,11 +1,19 @@
 // The keys of a scene's definitions, one row a key. Limits catch forgotten units and slips, not unusual patients.
 
-#include "anatomy/definitions.h"
+#include "anatomy/instruments.h"
 #include "anatomy/key_table.h"
 #include "base/units.h"
 
 namespace calot {
 namespace {
+
+/// "an atraumatic_grasper has ..., ..."
+std::string instruments_doc() {
+  std::string all;
+  for (const InstrumentRow& row : instrument_rows())
+    all += std::string(all.empty() ? "" : "; ") + row.name + " " + row.doc;
+  return all;
+}
 
 using units::deg;
 using units::kPa;
@@ -122,8 +130,7 @@ std::vector<KeyTable> field_tables() {
       keys_of<Instrument>(
           "instrument", "An instrument through a port.",
           {choice("type", &Instrument::type, instrument_type_names(),
-                  "which instrument; a bipolar_electrode (with channel) has no jaws and only pushes, the "
-                  "semm_forceps have short broad flat ones"),
+                  "which instrument: " + instruments_doc()),
            required(text("port", &Instrument::port, "the port it goes through")),
            number("force_limit", &Instrument::force_limit, quantity::force, 0.05, 100,
                   "a limit of force on tissue", "force on it above which the event overforce is raised"),
@@ -141,7 +148,11 @@ std::vector<KeyTable> field_tables() {
                   "for a smooth shaft on wet skin"),
            number("power", &Instrument::power, quantity::number, 1, 120, "a power of a generator, W",
                   "W of its current, where it can be activated: what strands of tissue it touches then share "
-                  "it, and are divided by it")}),
+                  "it, and are divided by it"),
+           clips_only(choice("clip", &Instrument::clip, clip_names(),
+                             "the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML)")),
+           clips_only(count("clips", &Instrument::clips, 0, most_clips, "a number of clips",
+                            "how many it carries"))}),
       keys_of<Scope>("laparoscope", "The camera and its light.",
                      {text("port", &Scope::port, "the port it goes through"),
                       number("angle", &Scope::angle, quantity::angle, 0, 70 * deg,

@@ -109,6 +109,16 @@ KeyTable contact_table() {
            required(number("force", quantity::force, 0, 0, "", "of the tissue on the whole part, N"))}};
 }
 
+/// Of what t:clips() returns each.
+KeyTable clip_table() {
+  return {"clip",
+          "A clip on a tube, as clips returns it.",
+          {required(number("place", quantity::number, 0, 1, "", "share of the tube's length from its start")),
+           required(number("opening", quantity::number, 0, 1, "",
+                           "share of the tube's width that it does not hold; 0: it is shut")),
+           required(choice("size", clip_names(), "", "the clip's size"))}};
+}
+
 std::string in_mm(const Vec3& place) {
   return fmt::format("{{ {:g} * mm, {:g} * mm, {:g} * mm }}", place.x() / units::mm, place.y() / units::mm,
                      place.z() / units::mm);
@@ -143,6 +153,7 @@ std::string generate_annotations() {
   text += fmt::format("---@alias calot.shape {}\n", shape_types());
   for (const KeyTable& table : api_tables()) text += annotate_table(table);
   text += annotate_table(contact_table());
+  text += annotate_table(clip_table());
   for (const ApiClass& handle : api_classes()) text += annotate_class(handle);
   text +=
       "\n---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.\n---@class "
@@ -196,6 +207,7 @@ std::string generate_reference() {
   text += "\n## Tables\n";
   for (const KeyTable& table : api_tables()) text += describe_table(table);
   text += describe_table(contact_table());
+  text += describe_table(clip_table());
   text += describe_names();
   text += "\n## Units\n\n";
   for (const ApiUnit& unit : api_units())

@@ -63,7 +63,7 @@ std::string type_text(const Key& key) {
 }
 
 std::string doc_text(const Key& key) {
-  std::string text = key.doc + (key.jaws_only ? "; jaws only" : "");
+  std::string text = key.doc + (key.jaws_only ? "; jaws only" : key.clips_only ? "; clip_applier only" : "");
   if (!key.fallback.empty()) text += fmt::format("; default {}", key.fallback);
   const std::string range = limits(key);
   if (!range.empty()) text += fmt::format("; {}", range);

@@ -55,6 +55,7 @@ void DemoScript::make_paths(const World& world) {
                         geometry(static_cast<int>(i)));
   }
   flows_.resize(paths_.size());
+  fires_.resize(paths_.size());
 }
 
 Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt) {
@@ -75,9 +76,7 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   if (failure) return *failure;
   StepInput input;
   for (const InstrumentPath& path : paths_) input.instruments.push_back(path.pose(end));
-  for (const Flow& flow : flows_)
-    input.actions.push_back(flow.from < end - slack && end <= flow.to + slack ? InstrumentAction::activate
-                                                                              : InstrumentAction::none);
+  input.actions = actions(end);
   return {std::optional<StepInput>(std::move(input))};
 }
 
@@ -276,6 +275,17 @@ bool DemoScript::can_reach(lua_State* L, const InstrumentPath& path, const Vec3&
   return false;
 }
 
+bool DemoScript::can_open(lua_State* L, int instrument, double jaw) {
+  const double most = geometry(instrument).jaw_opening;
+  if (jaw <= most + slack) return true;
+  const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
+  complain(L,
+           fmt::format("{} cannot open by {:.0f} degrees: a {} opens by {:.0f}", definition.name,
+                       jaw / units::deg, to_text(definition.type), most / units::deg),
+           "give a smaller angle, or none: as far as it opens");
+  return false;
+}
+
 template <typename Motion>
 int DemoScript::play_motion(lua_State* L, int instrument, double dry_duration, const Motion& motion) {
   if (checking() && !has_world()) return dry_wait(L, dry_duration);
@@ -287,6 +297,7 @@ int DemoScript::play_motion(lua_State* L, int instrument, double dry_duration, c
 
 int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
   if (how.jaw && !can_use_jaws(L, instrument, "approach's jaw")) return 0;
+  if (!can_open(L, instrument, how.jaw.value_or(0))) return 0;
   const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
     const Vec3 normal = landmark_normal(L, how.landmark);
     const Vec3 open_tip = landmark(L, how.landmark) + how.offset - how.depth * normal;
@@ -308,7 +319,7 @@ int DemoScript::approach(lua_State* L, int instrument, const Approach& how) {
 
 int DemoScript::set_jaw(lua_State* L, int instrument, const std::string& method,
                         std::optional<double> angle) {
-  if (!can_use_jaws(L, instrument, method)) return 0;
+  if (!can_use_jaws(L, instrument, method) || !can_open(L, instrument, angle.value_or(0))) return 0;
   return play_motion(L, instrument, dry_motion_duration, [&](InstrumentPath& path, double now) {
     path.set_jaw(now, angle.value_or(path.geometry().jaw_opening), jaw_duration);
     return path.busy_until();
@@ -368,11 +379,34 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
 }
 
 int DemoScript::activate(lua_State* L, int instrument, double duration) {
-  if (!can_activate(L, instrument, "activate")) return 0;
+  if (!can_act(L, instrument, InstrumentAction::activate, "activate")) return 0;
   return play_motion(L, instrument, duration, [&](InstrumentPath&, double now) {
     flows_[static_cast<std::size_t>(instrument)] = {now, now + duration};
     return now + duration;
   });
+}
+
+int DemoScript::fire(lua_State* L, int instrument) {
+  if (!can_act(L, instrument, InstrumentAction::fire, "fire")) return 0;
+  constexpr double trigger = 0.3;  // s, to press it and to let it go
+  return play_motion(L, instrument, trigger, [&](InstrumentPath&, double now) {
+    fires_[static_cast<std::size_t>(instrument)] = now;
+    return now + trigger;
+  });
+}
+
+/// What each instrument does in the step that ends then: current flows for a while, a trigger is pulled once.
+std::vector<InstrumentAction> DemoScript::actions(double end) {
+  std::vector<InstrumentAction> out;
+  for (std::size_t i = 0; i < flows_.size(); ++i) {
+    const Flow& flow = flows_[i];
+    const bool flows = flow.from < end - slack && end <= flow.to + slack;
+    out.push_back(flows ? InstrumentAction::activate : InstrumentAction::none);
+    if (!fires_[i] || *fires_[i] >= end - slack) continue;
+    out.back() = InstrumentAction::fire;
+    fires_[i].reset();
+  }
+  return out;
 }
 
 int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {

@@ -53,6 +53,8 @@ class DemoScript final : public ScriptSession, public InputSource {
   int move_until(lua_State* L, int instrument, const MoveUntil& how);
   /// Lets current flow for a duration, s, and waits for that.
   int activate(lua_State* L, int instrument, double duration);
+  /// Sets a clip, and waits until the trigger is let go.
+  int fire(lua_State* L, int instrument);
   int rotate(lua_State* L, int instrument, double angle, double speed);
 
  protected:
@@ -89,6 +91,8 @@ class DemoScript final : public ScriptSession, public InputSource {
   int play_motion(lua_State* L, int instrument, double dry_duration, const Motion& motion);
   InstrumentPath* free_path(lua_State* L, int instrument);
   bool can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip);
+  bool can_open(lua_State* L, int instrument, double jaw);
+  std::vector<InstrumentAction> actions(double end);
   std::optional<Failure> start();
   std::optional<Failure> ask_conditions(double now);
   /// Whether the wait of a task whose condition was just answered is over; pushes what it returns.
@@ -107,6 +111,7 @@ class DemoScript final : public ScriptSession, public InputSource {
     double from = 0, to = 0;
   };
   std::vector<Flow> flows_;
+  std::vector<std::optional<double>> fires_;  ///< s, one an instrument: when its trigger is pulled next
   int running_ = -1;
   double step_start_ = 0;  ///< s: the world's time in the present call
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "anatomy/instruments.h"
 #include "base/suggest.h"
 #include "lua/calot_module.h"
 #include "lua/demo_script.h"
@@ -15,9 +16,26 @@
 #include "script/lua_headers.h"
 #include "script/source_map.h"
 #include "sim/body_kinds.h"
+#include "sim/change_bodies.h"
 
 namespace calot {
 namespace {
+
+/// What blades may leave of a scene's tubes.
+std::vector<OrganDefinition> pieces_of_tubes(const SceneDefinition& scene) {
+  std::vector<OrganDefinition> out;
+  const bool blades = std::any_of(scene.instruments.begin(), scene.instruments.end(), [](const auto& tool) {
+    return instrument_row(tool.type).jaws == JawUse::cut;
+  });
+  for (const OrganDefinition& organ : scene.anatomy.organs) {
+    if (!blades || !std::holds_alternative<TubeShape>(organ.shape)) continue;
+    for (const std::string& name : piece_names(organ.name)) {
+      out.push_back(organ);
+      out.back().name = name;
+    }
+  }
+  return out;
+}
 
 namespace fs = std::filesystem;
 
@@ -204,6 +222,7 @@ ExerciseDefinition Loader::define(Script& script, FieldCheck& check) {
   definition.seed = options_.seed;
   definition.scene = read_scene(
       check, script.scene, {path_.has_parent_path() ? path_.parent_path() : fs::path("."), options_.assets});
+  definition.later_organs = pieces_of_tubes(definition.scene);
   return definition;
 }
 

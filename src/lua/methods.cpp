@@ -83,6 +83,31 @@ int torn(lua_State* L) {
   return 1;
 }
 
+int divided(lua_State* L) {
+  ScriptSession& session = session_target(L, "divided");
+  const Arguments arguments(L, session, "Session", "divided");
+  bool answer = arguments.good() && session.divided(L, arguments.text("organ"));
+  if (session.checking()) answer = session.next_guess();
+  lua_pushboolean(L, answer);
+  return 1;
+}
+
+int clips(lua_State* L) {
+  const OrganState state = organ_state(L, "clips");
+  lua_createtable(L, static_cast<int>(state.clips.size()), 0);
+  for (std::size_t i = 0; i < state.clips.size(); ++i) {
+    lua_createtable(L, 0, 3);
+    lua_pushnumber(L, state.clips[i].share);
+    lua_setfield(L, -2, "place");
+    lua_pushnumber(L, state.clips[i].opening);
+    lua_setfield(L, -2, "opening");
+    lua_pushstring(L, clip_row(state.clips[i].size).name);
+    lua_setfield(L, -2, "size");
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  return 1;
+}
+
 /// {x, y, z}
 int push_vector(lua_State* L, const Vec3& vector) {
   lua_createtable(L, 3, 0);
@@ -105,6 +130,16 @@ int place(lua_State* L) {
   ScriptSession& session = session_target(L, "place");
   const Arguments arguments(L, session, "Session", "place");
   return push_vector(L, landmark_argument(L, session, arguments).value_or(Vec3::Zero()));
+}
+
+int along(lua_State* L) {
+  ScriptSession& session = session_target(L, "along");
+  const Arguments arguments(L, session, "Session", "along");
+  if (!arguments.good()) return 0;
+  const auto [place, way] = session.along(L, arguments.text("organ"), arguments.number("share"));
+  push_vector(L, place);
+  push_vector(L, way);
+  return 2;
 }
 
 int seen_area(lua_State* L) {
@@ -183,9 +218,16 @@ int touching(lua_State* L) {
 
 int active(lua_State* L) {
   const HandleTarget target = instrument_target(L, "active");
-  target.session->can_activate(L, target.instrument, "active");
+  target.session->can_act(L, target.instrument, InstrumentAction::activate, "active");
   const bool flows = instrument_state(L, "active").action == InstrumentAction::activate;
   lua_pushboolean(L, target.session->checking() ? target.session->next_guess() : flows);
+  return 1;
+}
+
+int clips_left(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "clips_left");
+  target.session->can_act(L, target.instrument, InstrumentAction::fire, "clips_left");
+  lua_pushinteger(L, instrument_state(L, "clips_left").clips);
   return 1;
 }
 
@@ -462,6 +504,12 @@ int activate(lua_State* L) {
   return call.demo.activate(L, call.instrument, arguments.number("duration"));
 }
 
+int fire(lua_State* L) {
+  const DemoCall call = demo_call(L, "fire");
+  take_nothing(L, call.demo, "fire");
+  return call.demo.fire(L, call.instrument);
+}
+
 int instrument_wait(lua_State* L) {
   const DemoCall call = demo_call(L, "wait");
   const Arguments arguments(L, call.demo, "DemoInstrument", "wait");
@@ -480,7 +528,10 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "pressure", guarded<pressure>},
                           {"Session", "volume", guarded<volume>},
                           {"Session", "torn", guarded<torn>},
+                          {"Session", "divided", guarded<divided>},
+                          {"Session", "clips", guarded<clips>},
                           {"Session", "place", guarded<place>},
+                          {"Session", "along", guarded<along>},
                           {"Session", "seen_area", guarded<seen_area>},
                           {"Steps", "step", guarded<step>},
                           {"Steps", "hold", guarded<hold>},
@@ -502,12 +553,14 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Instrument", "pull", guarded<pull>},
                           {"Instrument", "push", guarded<push>},
                           {"Instrument", "grip", guarded<grip>},
+                          {"Instrument", "clips_left", guarded<clips_left>},
                           {"Instrument", "contact", guarded<contact>},
                           {"DemoInstrument", "move_until", guarded<move_until>},
                           {"DemoInstrument", "approach", guarded<approach>},
                           {"DemoInstrument", "open", guarded<open>},
                           {"DemoInstrument", "close", guarded<close>},
                           {"DemoInstrument", "activate", guarded<activate>},
+                          {"DemoInstrument", "fire", guarded<fire>},
                           {"DemoInstrument", "move_to", guarded<move_to>},
                           {"DemoInstrument", "move_by", guarded<move_by>},
                           {"DemoInstrument", "rotate", guarded<rotate>},

@@ -198,6 +198,7 @@ class SceneReader {
       instrument.name = name;
       reader.read(instrument);
       check_jaws(reader, instrument);
+      check_clips(reader, instrument);
       check_free(path, name);
       instruments.push_back(instrument);
     }
@@ -211,6 +212,14 @@ class SceneReader {
         check_.problem(reader.path_of(key.name),
                        fmt::format("a {} has no jaws to pinch with", to_text(instrument.type)),
                        fmt::format("leave {} out", key.name));
+  }
+
+  void check_clips(const TableReader& reader, const InstrumentDefinition& instrument) {
+    if (has_action(instrument.type, InstrumentAction::fire)) return;
+    for (const Key& key : api_table("instrument").keys)
+      if (key.clips_only && reader.has(key.name))
+        check_.problem(reader.path_of(key.name), fmt::format("a {} sets no clips", to_text(instrument.type)),
+                       fmt::format("leave {} out, or make it a clip_applier", key.name));
   }
 
   void check_free(const std::string& path, const std::string& name) {

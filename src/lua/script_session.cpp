@@ -6,10 +6,13 @@
 #include <cstdlib>
 #include <limits>
 
+#include "anatomy/instruments.h"
 #include "base/suggest.h"
 #include "base/units.h"
 #include "lua/handles.h"
 #include "script/lua_headers.h"
+#include "sim/between_jaws.h"
+#include "sim/change_bodies.h"
 
 namespace calot {
 namespace {
@@ -158,14 +161,46 @@ bool ScriptSession::can_use_jaws(lua_State* L, int instrument, const std::string
   return false;
 }
 
-bool ScriptSession::can_activate(lua_State* L, int instrument, const std::string& command) {
+bool ScriptSession::can_act(lua_State* L, int instrument, InstrumentAction action,
+                            const std::string& command) {
   const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
-  if (has_action(definition.type, InstrumentAction::activate)) return true;
+  if (has_action(definition.type, action)) return true;
+  std::string types;
+  for (const InstrumentRow& row : instrument_rows())
+    if (has_action(row.type, action)) types += (types.empty() ? "" : ", ") + std::string(row.name);
   complain(L,
-           fmt::format("{} is for what carries current, which {} does not: its type is {}", command,
+           fmt::format("{} is for what can {}, which {} cannot: its type is {}", command, to_text(action),
                        definition.name, to_text(definition.type)),
-           "give it another type, such as bipolar_electrode");
+           "give it another type: " + types);
   return false;
+}
+
+std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name, double share) {
+  const int index = organ(L, name);
+  if (index < 0) return {Vec3::Zero(), Vec3::UnitX()};
+  if (checking() && !has_world()) {
+    stand_in();
+    const OrganShape shape = known_organs()[static_cast<std::size_t>(index)].shape;
+    if (const auto* tube = std::get_if<TubeShape>(&shape))
+      return {tube->points.front(), (tube->points.back() - tube->points.front()).normalized()};
+  } else if (const Result<int> there = world(L).organ(name)) {
+    const Organ& organ = world(L).field().organs[static_cast<std::size_t>(there.value())];
+    if (const RodBody* rod = rod_of(organ)) {
+      const double at = rod->at_share(share);
+      return {rod->place_at(at, organ.state.x), rod->frame_at(at, organ.state.x).col(0)};
+    }
+  } else {
+    stand_in();  // it comes later
+    return {Vec3::Zero(), Vec3::UnitX()};
+  }
+  complain(L, fmt::format("'{}' is no tube", name), "name a duct or a vessel");
+  return {Vec3::Zero(), Vec3::UnitX()};
+}
+
+bool ScriptSession::divided(lua_State* L, const std::string& name) {
+  if (checking()) return organ(L, name) >= 0;
+  if (const BodyRecord* record = gone_body(world(L).field(), name)) return !record->gone->pieces.empty();
+  return organ(L, name) < 0;
 }
 
 Vec3 ScriptSession::landmark(lua_State* L, const std::string& name) const {

@@ -67,7 +67,11 @@ class ScriptSession {
   /// Complains about what needs jaws, of an instrument that has none.
   bool can_use_jaws(lua_State* L, int instrument, const std::string& command);
   /// The same of current.
-  bool can_activate(lua_State* L, int instrument, const std::string& command);
+  bool can_act(lua_State* L, int instrument, InstrumentAction action, const std::string& command);
+  /// A place on a tube, m, and its direction there, unit; of a stand-in where there is none, or after a complaint.
+  std::pair<Vec3, Vec3> along(lua_State* L, const std::string& tube, double share);
+  /// Whether a tube has been divided; complains about what is none.
+  bool divided(lua_State* L, const std::string& tube);
   /// Where a landmark of this scene is now, m; in a dry run without a world about where it will be.
   Vec3 landmark(lua_State* L, const std::string& name) const;
   /// The skin's outward normal there, unit; in a dry run needs a world.

@@ -37,6 +37,7 @@ std::optional<Failure> StepsScript::start() {
 }
 
 Result<StepsScript::Declared> StepsScript::run_dry() {
+  declared_.later = ScriptSession::later_organs();
   if (std::optional<Failure> failure = start()) return *failure;
   declared_.complete = finished_;
   end("it belonged to a dry run");

@@ -9,6 +9,7 @@
 
 #include "base/timed.h"
 #include "numerics/response.h"
+#include "sim/blades.h"
 #include "sim/body_rubbing.h"
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
@@ -590,25 +591,40 @@ void judge_tearing(Tissue& tissue, int torn_before, std::vector<WorldEvent>& eve
   if (torn == strands && torn_before < strands) events.push_back({EventKind::parted, 0, {}, name, 0});
 }
 
+std::vector<int> torn_strands(const Field& field) {
+  std::vector<int> out;
+  for (const Tissue& tissue : field.tissues) out.push_back(tissue.torn());
+  return out;
+}
+
+/// What it is that jaws close on what they hold.
+EventKind closed_on(const Field& field, int instrument) {
+  if (instrument_row(field.tools[instrument].definition.type).jaws != JawUse::cut) return EventKind::grasp;
+  const bool liver = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+    return grip_count(organ, instrument) > 0 && std::holds_alternative<LobeShape>(organ.definition.shape);
+  });
+  return liver ? EventKind::cut_liver : EventKind::perforation;
+}
+
 }  // namespace
 
 Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
   std::vector<WorldEvent> events;
-  std::vector<int> torn_before;
-  for (const Tissue& tissue : field.tissues) torn_before.push_back(tissue.torn());
+  std::vector<int> torn_before = torn_strands(field);
   std::vector<char> slipped_before;
   for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     // Opening lets go; so do jaws that stop closing before a fold fills them, as they press on nothing.
     const bool closing = targets[i].jaw < tool.pose.jaw;
-    if (targets[i].jaw > tool.pose.jaw) tool.lost = tool.beside = false;
+    if (targets[i].jaw > tool.pose.jaw) tool.lost = tool.beside = tool.has_cut = false;
     if (closing || (tool.jaw_stopped && targets[i].jaw == tool.pose.jaw)) continue;
     const int index = static_cast<int>(i);
     const std::string organ = held_organ(field, index);
     if (organ.empty()) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
-    if (tool.jaw_stopped) events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
+    const bool held = tool.jaw_stopped && closed_on(field, index) == EventKind::grasp;
+    if (held) events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
     tool.jaw_stopped = false;
   }
   const Poses to = reachable(field, targets), start = present_poses(field);
@@ -630,10 +646,22 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       const int index = static_cast<int>(i);
       const std::vector<double>& own = holding_stops[i];
       if (tool.jaw_stopped || !std::binary_search(own.begin(), own.end(), stop)) continue;
+      const JawUse use = instrument_row(tool.definition.type).jaws;
+      if (use == JawUse::cut) {
+        for (std::size_t t = 0; t < field.tissues.size(); ++t)
+          judge_tearing(field.tissues[t], torn_before[t], events);
+        if (Result<bool> cut = close_blades(field, index, events, statistics); !cut) return cut.failure();
+        torn_before = torn_strands(field);
+      }
       take_hold(field, index);
       if (!fold_fills_jaws(field, index)) {
         if (tool.pose.jaw > 0.5 * grip_grid) continue;
-        events.push_back({EventKind::empty_grasp, 0, tool.definition.name, {}, 0});
+        if (!tool.has_cut)
+          events.push_back({use == JawUse::cut ? EventKind::empty_cut : EventKind::empty_grasp,
+                            0,
+                            tool.definition.name,
+                            {},
+                            0});
         tool.beside = !held_organ(field, index).empty();
         if (!tool.beside) continue;
         // Closed, and only one pad holds: what it dragged along slips back.
@@ -642,9 +670,10 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       }
       tool.jaw_stopped = true;
       tool.lost = tool.beside = false;
-      events.push_back({EventKind::grasp, 0, tool.definition.name, held_organ(field, index), 0});
+      events.push_back({closed_on(field, index), 0, tool.definition.name, held_organ(field, index), 0});
     }
   }
+  feel_again(field);
   grow_damage(field);
   for (std::size_t t = 0; t < field.tissues.size(); ++t)
     judge_tearing(field.tissues[t], torn_before[t], events);

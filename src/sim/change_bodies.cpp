@@ -123,6 +123,12 @@ Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool firs
     if (!first) rubbing.point -= cut.point * 2 * contacts_each;
     piece.friction.points.push_back(rubbing);
   }
+  piece.unfelt = whole.unfelt;
+  for (Clip clip : whole.clips) {
+    if ((clip.at <= cut.point) != first) continue;
+    if (!first) clip.at -= cut.point;
+    piece.clips.push_back(clip);
+  }
   piece.landmarks = tube_landmarks(shape, body);
   piece.body = std::make_shared<const RodBody>(std::move(body));
   return piece;
@@ -295,7 +301,7 @@ bool start_is_patients(const Field& field, int organ, const Cut& cut, const std:
 std::optional<Failure> check_lengths(const Organ& organ, const RodBody& rod, int point) {
   const double share = rod.share_of_length(point);
   const double shorter = std::min(share, 1 - share) * rod.length();
-  const double thick = 2 * rod.thickest();
+  const double thick = 2 * rod.skin_radii()[point];
   if (shorter >= thick) return std::nullopt;
   const std::string hint = 2 * thick > rod.length()
                                ? "it is too short to be divided"
@@ -350,7 +356,9 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
   const bool start_first = start_is_patients(field, index, cut, pieces);
   const std::array<std::string, 2> names = piece_names(whole.definition.name);
   for (int half = 0; half < 2; ++half) {
-    const std::string& name = names[(half == 0) == start_first ? 0 : 1];
+    const bool patients = (half == 0) == start_first;
+    const std::string& name = names[patients ? 0 : 1];
+    pieces[half].of_specimen = whole.of_specimen || !patients;
     pieces[half].definition.name = name;
     pieces[half].body =
         std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*pieces[half].body).called(name));
@@ -362,6 +370,22 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
   replace(field, index, std::move(pieces), start_first, cut, rod->skin_rest()[cut.point]);
   finish_change(field);
   return out;
+}
+
+bool can_be_divided(const Organ& organ, double share) {
+  const auto* rod = dynamic_cast<const RodBody*>(organ.body.get());
+  const int point = rod == nullptr ? -1 : rod->point_to_divide_at(share);
+  return point >= 0 && !check_lengths(organ, *rod, point);
+}
+
+void set_clip(Field& field, int index, const Clip& clip) {
+  Organ& organ = field.organs[index];
+  organ.body = std::make_shared<const RodBody>(
+      dynamic_cast<const RodBody&>(*organ.body).pinched({clip.at, clip.opening, clip.pressed}));
+  const auto behind = std::find_if(organ.clips.begin(), organ.clips.end(),
+                                   [&](const Clip& other) { return other.at > clip.at; });
+  organ.clips.insert(behind, clip);
+  finish_change(field);
 }
 
 Result<bool> remove_body(Field& field, int index, const std::string& why, double time) {

@@ -23,6 +23,12 @@ std::array<std::string, 2> piece_names(const std::string& body);
 /// Also fails where it is no tube or a piece would be shorter than it is thick.
 Result<Division> divide_body(Field& field, int organ, double share, double time);
 
+/// Whether a body is a tube that is long enough for that.
+bool can_be_divided(const Organ& organ, double share);
+
+/// Sets a clip on a tube, which is held flat there from now on.
+void set_clip(Field& field, int organ, const Clip& clip);
+
 /// The joints of a body go with it, and tools let it go.
 Result<bool> remove_body(Field& field, int organ, const std::string& why, double time);
 

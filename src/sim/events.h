@@ -21,6 +21,13 @@ enum class EventKind {
   parted,
   divided,
   dry_activation,
+  clip,
+  clip_dropped,
+  cut,
+  cut_unclipped,
+  perforation,
+  cut_liver,
+  empty_cut,
   step_done,
   step_timeout,
 };

@@ -56,6 +56,7 @@ struct Field {
   Barrier barrier = contact_barrier;
   double tolerance = 1e-6;
   double step_time = 0;  ///< s that a step takes where masses count; 0: statics
+  double time = 0;       ///< s, at the end of the present step
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
   Assembly* assembly = nullptr;  ///< the world's threads; null: one does all

@@ -10,7 +10,7 @@ FieldState field_state(const Field& field) {
   state.group = snapshot(field);
   for (const Tool& tool : field.tools)
     state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
-                           tool.slipping, tool.action, tool.dry});
+                           tool.slipping, tool.action, tool.dry, tool.has_cut, tool.clips});
   return state;
 }
 
@@ -29,6 +29,8 @@ void restore(Field& field, const FieldState& state) {
     tool.slipping = was.slipping;
     tool.action = was.action;
     tool.dry = was.dry;
+    tool.has_cut = was.has_cut;
+    tool.clips = was.clips;
   }
 }
 

@@ -13,6 +13,8 @@ struct ToolSnapshot {
        slipping = false;
   InstrumentAction action = InstrumentAction::none;
   double dry = 0;
+  bool has_cut = false;
+  int clips = 0;
 };
 
 struct FieldState {

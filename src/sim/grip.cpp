@@ -25,6 +25,7 @@ bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
 void take_hold(Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
   for (Organ& organ : field.organs) {
+    if (std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
     const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     std::vector<char> held(skin.size(), 0);
     for (const GripPoint& grip : organ.grips) held[grip.skin_point] = 1;

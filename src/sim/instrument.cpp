@@ -49,30 +49,12 @@ std::vector<Shape> rod_end(const Pose& hinge, const InstrumentGeometry& geometry
   const double back = geometry.jaw_length - geometry.electrode_length + geometry.electrode_radius;
   const double front = geometry.jaw_length - geometry.electrode_radius;
   return {Capsule{at(-geometry.shaft_radius), at(back), geometry.neck_radius},
-          Capsule{at(back), at(front), geometry.electrode_radius}};
+          Capsule{at(back), hinge * Vec3(geometry.electrode_aside, 0, front), geometry.electrode_radius}};
 }
 
 }  // namespace
 
-InstrumentGeometry instrument_geometry(InstrumentType type) {
-  InstrumentGeometry geometry;
-  if (type == InstrumentType::bipolar_electrode) {
-    // A 5 mm rod (c) whose end is its own design (d).
-    geometry.fenestrated = false;
-    geometry.jaw_length = 12e-3;
-    geometry.jaw_width = geometry.jaw_thickness = geometry.jaw_rounding = geometry.jaw_opening = 0;
-    geometry.electrode_radius = 2.5e-3;
-    geometry.electrode_length = 6e-3;
-    geometry.neck_radius = 1.9e-3;
-  } else if (type == InstrumentType::semm_forceps) {
-    // 5 mm shaft (c), jaws broader and shorter than the grasper's (d); they pass a sleeve of 8 mm.
-    geometry.fenestrated = false;
-    geometry.jaw_length = 15e-3;
-    geometry.jaw_width = 7e-3;
-    geometry.jaw_thickness = 2.2e-3;
-  }
-  return geometry;
-}
+InstrumentGeometry instrument_geometry(InstrumentType type) { return instrument_row(type).geometry; }
 
 std::optional<JawWindow> jaw_window(const InstrumentGeometry& geometry) {
   if (!geometry.fenestrated) return std::nullopt;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "anatomy/definitions.h"
+#include "anatomy/instruments.h"
 #include "base/status.h"
 #include "collision/shapes.h"
 
@@ -27,23 +27,6 @@ struct JawWindow {
   double start, end, start_half, end_half;
 };
 
-/// An instrument's measures, all in m and rad. The defaults are the atraumatic grasper's: 5 mm shaft, 310 mm
-/// working length, jaws 20 mm (c). Without jaws, jaw_opening is 0 and the hinge, which cannot turn, is where the
-/// shaft ends: a neck and an electrode, jaw_length long in all, follow on the shaft's axis.
-struct InstrumentGeometry {
-  double shaft_radius = 2.5e-3;
-  double working_length = 310e-3;  ///< handle to the tip of the closed jaws
-  double jaw_length = 20e-3;       ///< hinge to tip
-  double jaw_width = 5e-3;
-  double jaw_thickness = 1.9e-3;
-  double jaw_rounding = 0.8e-3;             ///< edge radius of the jaw's box; at most half its thickness
-  double jaw_opening = 1.0471975511965976;  ///< 60 deg fully open (c)
-  double max_insertion = 300e-3;
-  bool fenestrated = true;  ///< jaws with a window; contact takes them for solid
-  double electrode_radius = 0, electrode_length = 0, neck_radius = 0;  ///< without jaws
-  bool has_jaws() const { return jaw_opening > 0; }
-};
-
 InstrumentGeometry instrument_geometry(InstrumentType type);
 /// None for jaws that are solid, or where there are none.
 std::optional<JawWindow> jaw_window(const InstrumentGeometry& geometry);
@@ -64,8 +47,9 @@ Vec3 handle_position(const Vec3& trocar, const InstrumentPose& pose, const Instr
 inline constexpr int shapes_per_tool = 3;  ///< shaft and two more, whatever the type
 
 /// Shaft (capsule from the handle whose round end stops at the hinge), jaw 0, jaw 1, in this order. A jaw's
-/// box spans 0 to jaw_thickness, -jaw_width/2 to jaw_width/2 and 0 to jaw_length of its frame. Without jaws: shaft,
-/// neck and electrode, capsules on the shaft's axis; the electrode's round end is the tip.
+/// box spans 0 to jaw_thickness, -jaw_width/2 to jaw_width/2 and 0 to jaw_length of its frame. Without jaws: shaft
+/// and neck, capsules on the shaft's axis, and the electrode, one whose end stands electrode_aside off it to the hinge
+/// frame's +x; where it is furthest in is the tip.
 std::vector<Shape> instrument_shapes(const Vec3& trocar, const InstrumentPose& pose,
                                      const InstrumentGeometry& geometry);
 

@@ -7,7 +7,8 @@ namespace calot {
 const ShellBody* shell_of(const Organ& organ) { return dynamic_cast<const ShellBody*>(organ.body.get()); }
 
 OrganSnapshot snapshot(const Organ& organ) {
-  return {organ.body, organ.state, organ.grips, organ.extensions, organ.refused_details, organ.friction};
+  return {organ.body,     organ.state, organ.grips, organ.extensions, organ.refused_details,
+          organ.friction, organ.clips, organ.unfelt};
 }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {
@@ -17,6 +18,8 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.extensions = snapshot.extensions;
   organ.refused_details = snapshot.refused_details;
   organ.friction = snapshot.friction;
+  organ.clips = snapshot.clips;
+  organ.unfelt = snapshot.unfelt;
 }
 
 Failure at_organ(Failure failure, std::size_t index) {

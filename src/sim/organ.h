@@ -45,6 +45,18 @@ struct ContactPlace {
   }
 };
 
+/// A clip on a tube.
+struct Clip {
+  ClipSize size = ClipSize::ml;
+  double at = 0;       ///< where: skin points from the tube's start
+  double opening = 0;  ///< share of its width that is not between the legs
+  /// Unit, where the legs point and along what they press, in the tube's frame there (RodBody::frame_at).
+  Vec3 legs = Vec3::Zero(), pressed = Vec3::Zero();
+  double reach = 0;  ///< m, by how much the legs' ends are past the tube's middle
+  bool shut() const { return opening <= 0; }
+  bool operator==(const Clip&) const = default;
+};
+
 struct Organ {
   OrganDefinition definition;
   BodyPointer body;  ///< never null
@@ -58,7 +70,11 @@ struct Organ {
   FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
   /// Where the details were found to be those that are wanted: remembered, no part of any result.
   std::optional<ContactPlace> looked_at;
-  int record = -1;  ///< on the field's roll (members.h)
+  int record = -1;               ///< on the field's roll (members.h)
+  std::vector<Clip> clips = {};  ///< ordered by place
+  /// Instruments whose jaws it does not feel, increasing: they cut it, and it is between them still.
+  std::vector<int> unfelt = {};
+  bool of_specimen = false;  ///< a piece that the patient's was cut off from
 };
 
 /// The body as a shell, which alone is refined; null: it is none.
@@ -72,6 +88,8 @@ struct OrganSnapshot {
   std::vector<Extension> extensions;
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;
+  std::vector<Clip> clips;
+  std::vector<int> unfelt;
 };
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);

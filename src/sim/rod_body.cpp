@@ -56,7 +56,75 @@ Result<RodBody> RodBody::part(int first, int last) const {
   body.skin_parameters_.assign(skin_parameters_.begin() + first, skin_parameters_.begin() + last + 1);
   body.skin_shares_.assign(skin_shares_.begin() + first, skin_shares_.begin() + last + 1);
   if (Result<bool> built = body.build(); !built) return built.failure();
+  for (Pinch pinch : pinches_) {
+    pinch.at -= first;
+    if (pinch.at < 0 || pinch.at > last - first) continue;
+    body.hold_flat(pinch);
+  }
   return body;
+}
+
+RodBody RodBody::pinched(const Pinch& pinch) const {
+  RodBody out = *this;
+  out.hold_flat(pinch);
+  return out;
+}
+
+void RodBody::hold_flat(const Pinch& pinch) {
+  pinches_.push_back(pinch);
+  const int last = static_cast<int>(radii_.size()) - 1, before = static_cast<int>(pinch.at);
+  const FlatRing ring = ring_at(pinch.at);
+  const double height = ring.half_height((1 - pinch.opening) * ring.lumen);
+  for (int row : {before, std::min(before + 1, last)})
+    radii_[row] = core_radii_[row] = std::min(radii_[row], height);
+  for (int k = std::max(before - 1, 0); k <= std::min(before + 1, last - 1); ++k)
+    rings_[k] = {0, 0, 0.5 * (radii_[k] + radii_[k + 1])};
+}
+
+FlatRing RodBody::ring_of(double radius) const {
+  return setup_.wall < radius
+             ? FlatRing::of_tube(4 * setup_.shear_modulus, radius - 0.5 * setup_.wall, setup_.wall)
+             : FlatRing{0, 0, radius};
+}
+
+namespace {
+
+/// What lies between two of the values that stand one at each skin point.
+template <class Value>
+Value between_points(const std::vector<Value>& values, double at) {
+  const auto before = std::min(static_cast<std::size_t>(at), values.size() - 2);
+  const double share = at - static_cast<double>(before);
+  return (1 - share) * values[before] + share * values[before + 1];
+}
+
+}  // namespace
+
+double RodBody::outer_radius(double at) const { return radius_along(between_points(skin_shares_, at)); }
+FlatRing RodBody::ring_at(double at) const { return ring_of(outer_radius(at)); }
+Vec3 RodBody::place_at(double at, const VecX& x) const { return between_points(skin_positions(x), at); }
+
+double RodBody::share_at(double at) const {
+  const int point = std::min(static_cast<int>(at), static_cast<int>(skin_rest_.size()) - 2);
+  const double before = share_of_length(point), after = share_of_length(point + 1);
+  return before + (at - point) * (after - before);
+}
+
+double RodBody::at_share(double share) const {
+  int before = 0;
+  while (before + 2 < static_cast<int>(skin_rest_.size()) && share_of_length(before + 1) < share) ++before;
+  const double low = share_of_length(before), high = share_of_length(before + 1);
+  return before + (share - low) / (high - low);
+}
+
+Mat3 RodBody::frame_at(double at, const VecX& x) const {
+  const std::vector<Vec3> line = skin_positions(x);
+  const auto before = std::min(static_cast<std::size_t>(at), line.size() - 2);
+  Mat3 out;
+  out.col(0) = (line[before + 1] - line[before]).normalized();
+  const Vec3 normal = between_points(skin_normals(x), at);
+  out.col(1) = (normal - out.col(0) * out.col(0).dot(normal)).normalized();
+  out.col(2) = out.col(0).cross(out.col(1));
+  return out;
 }
 
 double RodBody::share_of_length(int point) const {
@@ -158,9 +226,7 @@ void RodBody::lay_skin() {
     skin_.triangles.push_back({k + 1, k, k});
     segment_areas_.push_back(radius * (skin_rest_[k + 1] - skin_rest_[k]).norm());
     for (int end : {k, k + 1}) skin_areas_[end] += 0.5 * segment_areas_.back();
-    rings_.push_back(setup_.wall < radius ? FlatRing::of_tube(4 * setup_.shear_modulus,
-                                                              radius - 0.5 * setup_.wall, setup_.wall)
-                                          : FlatRing{0, 0, radius});
+    rings_.push_back(ring_of(radius));
     std::vector<int>& nodes = face_nodes_.emplace_back();
     for (int row : {k, k + 1})
       nodes.insert(nodes.end(), skin_.stencils.node.begin() + skin_.stencils.begin[row],
@@ -250,7 +316,21 @@ std::vector<Vec3> RodBody::skin_normals(const VecX& x) const {
 
 DrawnSurface RodBody::drawn(const VecX& x) const {
   std::vector<TubeSection> sections;
-  for (double radius : radii_) sections.push_back({radius, radius, Vec3::Zero()});
+  for (std::size_t row = 0; row < radii_.size(); ++row) {
+    const double radius = outer_radius(static_cast<double>(row));
+    sections.push_back({radius, radius, Vec3::Zero()});
+    constexpr double held = 0.6, reach = 3;  // skin points to either side, held flat and drawn in
+    for (const Pinch& pinch : pinches_) {
+      const double away =
+          std::clamp((std::abs(static_cast<double>(row) - pinch.at) - held) / (reach - held), 0.0, 1.0);
+      const double flat = 1 - away * away * (3 - 2 * away);
+      const FlatRing ring = ring_of(radius);
+      const double closing = flat * (1 - pinch.opening) * ring.lumen;
+      if (ring.half_height(closing) >= sections.back().flattened) continue;
+      sections.back() = {ring.half_width(closing), ring.half_height(closing),
+                         frame_at(pinch.at, x) * pinch.pressed};
+    }
+  }
   TubeMesh::Surface surface;
   tube_->place(skin_positions(x), sections, surface);
   return {std::move(surface.positions), std::move(surface.normals)};

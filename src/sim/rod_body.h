@@ -32,6 +32,12 @@ class RodBody : public Body {
     Vec3 up = Vec3::UnitZ();
     std::vector<HeldPart> held;
   };
+  /// A place at which something holds it flat.
+  struct Pinch {
+    double at = 0;                 ///< skin points from its start
+    double opening = 0;            ///< share of the lumen's height that is left
+    Vec3 pressed = Vec3::UnitY();  ///< in the frame there, see frame_at()
+  };
   /// Fails (scenario) where the line cannot be one.
   static Result<RodBody> create(const Setup& setup);
 
@@ -43,6 +49,16 @@ class RodBody : public Body {
     out.setup_.name = name;
     return out;
   }
+  /// The same held flat at one more place: there it does not give way to what presses, and is drawn flat.
+  RodBody pinched(const Pinch& pinch) const;
+  /// Columns: along the line, the skin's normal there, and across both. `at`: skin points from its start.
+  Mat3 frame_at(double at, const VecX& x) const;
+  Vec3 place_at(double at, const VecX& x) const;  ///< m, on the line
+  /// Of the tube as it is at rest where nothing pinches it.
+  double outer_radius(double at) const;
+  FlatRing ring_at(double at) const;    ///< of lumen 0 where it is solid
+  double share_at(double at) const;     ///< of its length at rest
+  double at_share(double share) const;  ///< the other way round
   /// Places or velocities of a part's nodes for which it moves as this body with its nodes at x does there.
   VecX in_part(const RodBody& part, const VecX& x) const { return line_.in_part(part.line_, x); }
   /// Of its skin points that which lies nearest to a share of the length at rest and can be divided at: at a knot, or
@@ -100,6 +116,8 @@ class RodBody : public Body {
   void lay_skin();
   void lay_bed();
   void weigh();
+  FlatRing ring_of(double radius) const;
+  void hold_flat(const Pinch& pinch);
   /// At a share of the whole line, by its parameter.
   double radius_along(double share) const;
 
@@ -123,6 +141,7 @@ class RodBody : public Body {
   std::vector<double> radii_, core_radii_, skin_areas_;
   std::vector<double> segment_areas_;  ///< m^2, that press, one a segment between two skin points
   std::vector<FlatRing> rings_;        ///< of each segment
+  std::vector<Pinch> pinches_;
   std::vector<Vec3> skin_rest_, drawn_rest_;
   std::vector<std::vector<int>> face_nodes_;
   std::optional<TubeMesh> tube_;

@@ -34,6 +34,13 @@ struct InstrumentState {
   int grip_points = 0;
   GripState grip = GripState::open;
   InstrumentAction action = InstrumentAction::none;
+  int clips = 0;  ///< that it still carries
+};
+
+struct ClipState {
+  ClipSize size = ClipSize::ml;
+  double share = 0;    ///< where it is, of the tube's length at rest from its start
+  double opening = 0;  ///< share of the tube's width that it leaves open; 0: shut
 };
 
 struct LaparoscopeState {
@@ -51,6 +58,7 @@ struct OrganState {
   double max_stretch = 1;  ///< largest principal stretch of the wall
   int extensions = 0;      ///< places where an instrument has structural extensions
   int details = 0;         ///< nodes that they add
+  std::vector<ClipState> clips = {};  ///< in the order of their places
 };
 
 struct TissueState {

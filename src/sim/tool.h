@@ -23,6 +23,8 @@ struct Tool {
   InstrumentAction action = InstrumentAction::none;
   double dry = 0;  ///< s for which its current has flowed and it touched nothing, up to what is an event
   bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
+  bool has_cut = false;   ///< its blades divided something since they opened last, for events
+  int clips = 0;          ///< that it still carries
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

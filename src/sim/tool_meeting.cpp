@@ -19,9 +19,12 @@ std::vector<double> even_places(double first, double last, double spacing) {
 }
 
 void add_rod(int part, const Capsule& rod, std::vector<ToolPoint>& out) {
-  const std::vector<double> places = even_places(rod.a.z(), rod.b.z(), rod_spacing);
+  const double length = (rod.b - rod.a).norm();
+  const std::vector<double> places = even_places(0, length, rod_spacing);
+  const Vec3 along = (rod.b - rod.a) / length;
   const double spacing = places[1] - places[0];
-  for (double z : places) out.push_back({part, {0, 0, z}, rod.radius, 2 * rod.radius * spacing});
+  for (double place : places)
+    out.push_back({part, rod.a + place * along, rod.radius, 2 * rod.radius * spacing});
 }
 
 void add_jaw(int part, const RoundedBox& box, std::vector<ToolPoint>& out) {

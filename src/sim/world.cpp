@@ -10,8 +10,10 @@
 #include "base/suggest.h"
 #include "fem/assembly.h"
 #include "sim/advance.h"
+#include "sim/between_jaws.h"
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
+#include "sim/clips.h"
 #include "sim/current.h"
 #include "sim/field_state.h"
 #include "sim/field_tissues.h"
@@ -129,6 +131,16 @@ void add_tissue(Hash& hash, const Tissue& tissue) {
   hash.add(tissue.now.tearing);
 }
 
+void add_acts(Hash& hash, const Organ& organ) {
+  for (const Clip& clip : organ.clips) {
+    hash.add(static_cast<int>(clip.size));
+    for (double v : {clip.at, clip.opening, clip.reach}) hash.add(v);
+    add_point(hash, clip.legs);
+    add_point(hash, clip.pressed);
+  }
+  for (int instrument : organ.unfelt) hash.add(instrument);
+}
+
 void add_stick_slip(Hash& hash, const StickSlip& hold) {
   hash.add(hold.limit);
   hash.add(hold.stiffness);
@@ -189,9 +201,10 @@ void add_pose(Hash& hash, const InstrumentPose& pose) {
 
 void add_tool(Hash& hash, const Tool& tool) {
   const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0) |
-                   static_cast<int>(tool.action) << 3;
+                   static_cast<int>(tool.action) << 3 | (tool.has_cut ? 64 : 0);
   hash.add(tool.jaw_stopped);
   hash.add(static_cast<unsigned char>(grip));
+  if (tool.definition.clips > 0) hash.add(tool.clips);
   hash.add(tool.touched);
   hash.add(tool.over_limit);
   if (tool.dry > 0) hash.add(tool.dry);
@@ -235,6 +248,7 @@ std::uint64_t World::Impl::hash_field() const {
   for (const Organ& organ : field.organs) {
     add_body_state(hash, organ);
     add_holds(hash, organ);
+    add_acts(hash, organ);
   }
   for (const Tissue& tissue : field.tissues) add_tissue(hash, tissue);
   add_missed(hash, field.group.missed);
@@ -282,6 +296,7 @@ InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad&
     state.grip_points += held;
     if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
   }
+  state.clips = tool.clips;
   state.touching = load.touches > 0;
   state.parts = load.parts;
   const bool closed = tool.pose.jaw <= 0.5 * grip_grid;
@@ -305,6 +320,9 @@ OrganState World::Impl::organ_state(const Organ& organ) const {
     state.pressure = liquid->pressure_at_top(x, organ.state.datum_pressure);
     state.volume = liquid->volume(x);
   }
+  if (const RodBody* rod = rod_of(organ))
+    for (const Clip& clip : organ.clips)
+      state.clips.push_back({clip.size, rod->share_at(clip.at), clip.opening});
   state.energy = organ.body->strain_energy(x);
   state.max_stretch = organ.body->max_stretch(x);
   state.extensions = static_cast<int>(organ.extensions.size());
@@ -463,6 +481,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     tool.definition = definition;
     tool.geometry = instrument_geometry(definition.type);
     tool.trocar = world.port_position(definition.port);
+    if (has_action(definition.type, InstrumentAction::fire)) tool.clips = definition.clips;
     // Waiting in the trocar, closed, pointing at the first organ, just far enough in to be seen to come.
     const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
                                                        : Vec3(world.skin_positions(0).front());
@@ -519,6 +538,7 @@ Result<StepReport> World::step(const StepInput& input) {
   }
   const FieldState before = state();
   const std::uint64_t hash_before = self.field_hash;
+  self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
   Result<std::vector<WorldEvent>> events = advance(self.field, input.instruments, self.report.statistics);
   if (!events) {
     self.failed = true;
@@ -529,6 +549,7 @@ Result<StepReport> World::step(const StepInput& input) {
     calot::restore(self.field, before);
     return self.failure;
   }
+  fire_clips(self.field, input.actions, events.value());
   ++self.steps;
   if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
   self.observe(std::move(events).value(), input.actions);

@@ -1,6 +1,7 @@
 #include "view/build_scene.h"
 
 #include "anatomy/organ_frame.h"
+#include "view/clip_mesh.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
 #include "view/structure_mesh.h"
@@ -55,7 +56,10 @@ Scene SceneBuilder::build(const World& world) const {
     for (SceneMesh& mesh :
          instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))
       scene.meshes.push_back(std::move(mesh));
+    for (SceneMesh& mesh : loaded_clip(world.field().tools[i])) scene.meshes.push_back(std::move(mesh));
   }
+  for (const Organ& organ : world.field().organs)
+    for (SceneMesh& mesh : clip_meshes(organ)) scene.meshes.push_back(std::move(mesh));
   for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
     const auto record = static_cast<std::size_t>(world.field().organs[i].record);
     // One that came since is laid out anew for each picture: a duct or a stone takes no time.

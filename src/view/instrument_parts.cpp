@@ -64,17 +64,66 @@ Vec2 Outline::at(double t, double inset) const {
   return {(half_width(z) - inset) * shape * c, z};
 }
 
+SceneMesh jaw_slab(Material material, const Outline& outline, const std::vector<JawRing>& rings,
+                   const std::function<void(int row, Vec3& at)>& place) {
+  constexpr int around = 112;
+  const int rows = static_cast<int>(rings.size()) - 1;
+  SceneMesh mesh = sheet(material, around, rows, [&](double u, double v) {
+    const auto row = static_cast<std::size_t>(std::lround(v * rows));
+    const Vec2 yz = outline.at(u, rings[row].inset);
+    Vec3 at(rings[row].x, rings[row].on_axis ? 0 : yz.x(), yz.y());
+    place(static_cast<int>(row), at);
+    return at;
+  });
+  give_creased_normals(mesh, instrument_crease);
+  return mesh;
+}
+
+SceneMesh bent_bar(Material material, const std::vector<Vec3>& line, double radius) {
+  struct Ring {
+    Vec3 at, along;
+    double radius;
+  };
+  std::vector<Ring> rings;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const Vec3 before = line[k] - line[k == 0 ? 0 : k - 1],
+               after = line[std::min(k + 1, line.size() - 1)] - line[k];
+    const Vec3 along = (before.normalized() + after.normalized()).normalized();
+    if (k == 0) rings.push_back({line[k], along, 0});
+    rings.push_back({line[k], along, radius});
+  }
+  const Ring last = rings.back();
+  constexpr int arc = 6;
+  for (int k = 1; k <= arc; ++k) {
+    const double a = pi / 2 * k / arc;
+    rings.push_back(
+        {last.at + radius * std::sin(a) * last.along, last.along, k == arc ? 0 : radius * std::cos(a)});
+  }
+  const int rows = static_cast<int>(rings.size()) - 1;
+  SceneMesh mesh = sheet(material, 24, rows, [&](double u, double v) {
+    const Ring& ring = rings[static_cast<std::size_t>(std::lround(v * rows))];
+    const Vec3 side = Vec3::UnitY(), up = ring.along.cross(side);
+    return Vec3(ring.at + ring.radius * (std::cos(2 * pi * u) * side + std::sin(2 * pi * u) * up));
+  });
+  give_creased_normals(mesh, instrument_crease);
+  return mesh;
+}
+
 ForcepsShaft forceps_shaft(const Vec3& trocar, const InstrumentPose& pose,
                            const InstrumentGeometry& geometry) {
   const double r = geometry.shaft_radius;
   const double outside = geometry.jaw_length - geometry.working_length;  // the handle, in the hinge's frame
-  SceneMesh insulation =
-      turned(Material::insulation,
-             {{0.97 * r, outside}, {0.97 * r, -16e-3}, {0.97 * r, -13.2e-3}, {0.88 * r, -13e-3}}, 40);
+  const double scale = r / 2.5e-3;                                       // lengths are those of a 5 mm shaft
+  SceneMesh insulation = turned(Material::insulation,
+                                {{0.97 * r, outside},
+                                 {0.97 * r, -16e-3 * scale},
+                                 {0.97 * r, -13.2e-3 * scale},
+                                 {0.88 * r, -13e-3 * scale}},
+                                40);
   SceneMesh steel = turned(Material::steel,
-                           {{0.86 * r, -13.5e-3},
-                            {0.86 * r, -9e-3},
-                            {0.92 * r, -8.6e-3},
+                           {{0.86 * r, -13.5e-3 * scale},
+                            {0.86 * r, -9e-3 * scale},
+                            {0.92 * r, -8.6e-3 * scale},
                             {0.92 * r, -1.9 * r},
                             {0.80 * r, -1.75 * r},
                             {0.0, -1.75 * r}},

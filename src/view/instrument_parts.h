@@ -1,6 +1,7 @@
 #pragma once
 // What drawn instruments have in common. All in the hinge's frame (sim/instrument.h) unless said otherwise.
 
+#include <functional>
 #include <vector>
 
 #include "render/scene.h"
@@ -23,6 +24,20 @@ struct Outline {
   /// t in [0, 1) runs once around, counter-clockwise seen from +x; `inset` moves inward.
   Vec2 at(double t, double inset) const;
 };
+
+/// How far inside a jaw's outline and how far behind its pad a ring of a jaw's surface runs, m.
+struct JawRing {
+  double inset, x;
+  bool on_axis = false;  ///< drawn together onto its middle: front and back close there
+};
+
+/// A solid within an outline: rings from the middle of its front over its flank to the middle of its back. `place` may
+/// move points of it, told of their row.
+SceneMesh jaw_slab(Material material, const Outline& outline, const std::vector<JawRing>& rings,
+                   const std::function<void(int row, Vec3& at)>& place);
+
+/// A round bar along a line in the plane of the hinge frame's x and z, its far end a half ball about the last point.
+SceneMesh bent_bar(Material material, const std::vector<Vec3>& line, double radius);
 
 /// Insulated shaft and its steel end with a clevis and its pin, where the instrument stands.
 struct ForcepsShaft {

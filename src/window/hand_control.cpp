@@ -43,9 +43,9 @@ void HandControl::move(const HandMotion& motion, const SceneCamera& camera) {
   if (motion.next_hand && !on_laparoscope_) hand_ = (hand_ + 1) % laparoscope();
   if (motion.next_hand) on_laparoscope_ = false;
   move(selected(), motion, camera);
-  activate_ =
-      motion.activate && !on_laparoscope_ &&
-      has_action(instruments_[static_cast<std::size_t>(hand_)].definition.type, InstrumentAction::activate);
+  action_ = motion.activate && !on_laparoscope_
+                ? main_action(instruments_[static_cast<std::size_t>(hand_)].definition.type)
+                : InstrumentAction::none;
 }
 
 void HandControl::move_laparoscope(const HandMotion& motion, const SceneCamera& camera) {
@@ -72,7 +72,7 @@ void HandControl::move(int which, const HandMotion& motion, const SceneCamera& c
 
 LiveInput HandControl::input() const {
   LiveInput input = held(selected());
-  if (activate_) input.action = InstrumentAction::activate;
+  input.action = action_;
   return input;
 }
 

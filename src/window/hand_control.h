@@ -47,7 +47,8 @@ class HandControl {
   std::vector<LiveInstrument> instruments_;  ///< the laparoscope is the last
   std::vector<InstrumentPose> poses_;
   int hand_ = 0;
-  bool on_laparoscope_ = false, out_of_reach_ = false, activate_ = false;
+  bool on_laparoscope_ = false, out_of_reach_ = false;
+  InstrumentAction action_ = InstrumentAction::none;  ///< that is asked of the hand selected
 };
 
 /// m at the depth of `place` that a pixel of the picture covers at its middle; `field` is the round field's diameter, px.

@@ -103,7 +103,7 @@ std::optional<MenuChoice> lay_out(const OverlayState& state, const LiveView& vie
   coloured(
       grey,
       "mouse: tip in the view's plane\nwheel: deeper, back\nleft, right button: close, open\nQ, E: roll\n"
-      "Tab: the other hand\nC: the laparoscope, and back\nSpace: activate\nShift: finely\nEsc: menu");
+      "Tab: the other hand\nC: the laparoscope, and back\nSpace: activate, or fire\nShift: finely\nEsc: menu");
   coloured(grey, fmt::format("{:.0f} pictures a second", state.pictures_a_second));
   ImGui::End();
   return chosen;

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "anatomy/instruments.h"
 #include "anatomy/scene_for_tests.h"
 #include "base/units.h"
 
@@ -98,8 +99,14 @@ TEST(Instruments, AreNamedBothWaysAndGiveWhatTheirTypeDoes) {
     EXPECT_EQ(to_text(*type), name);
     EXPECT_EQ(default_instrument(*type).type, *type);
   }
+  for (std::size_t i = 0; i < instrument_rows().size(); ++i)
+    EXPECT_EQ(instrument_rows()[i].type, static_cast<InstrumentType>(i))
+        << "rows stand in the order of types";
   EXPECT_FALSE(instrument_type_called("grasper"));
   EXPECT_FALSE(has_jaws(InstrumentType::bipolar_electrode));
+  EXPECT_TRUE(has_action(InstrumentType::l_hook, InstrumentAction::activate));
+  EXPECT_TRUE(has_action(InstrumentType::clip_applier, InstrumentAction::fire));
+  EXPECT_FALSE(has_action(InstrumentType::scissors, InstrumentAction::activate));
   EXPECT_LT(default_instrument(InstrumentType::semm_forceps).pad_friction,
             default_instrument(InstrumentType::atraumatic_grasper).pad_friction);
 }

@@ -4,6 +4,7 @@
 
 #include "base/rng.h"
 #include "base/units.h"
+#include "sim/contact_points.h"
 
 namespace calot {
 namespace {
@@ -222,8 +223,27 @@ TEST(Instrument, EveryTypeIsASoundBody) {
     EXPECT_LE(g.jaw_rounding, g.jaw_width / 2) << name;
     EXPECT_LT(g.max_insertion, g.working_length) << name;
     EXPECT_EQ(instrument_shapes(trocar, {}, g).size(), static_cast<std::size_t>(shapes_per_tool)) << name;
-    // What meets tissue is no narrower than the grasper: its skin must stand close enough for that one only.
-    EXPECT_GE(g.has_jaws() ? g.jaw_width : 2 * g.electrode_radius, geometry.jaw_width) << name;
+    // Skin stands closer than half a grasper is wide, and is felt eight times as densely: what meets it has two rows of
+    // these under it, and more than the guard to its middle.
+    const double felt_every = 0.5 * geometry.jaw_width / contact_parts;
+    const double width = g.has_jaws() ? g.jaw_width : 2 * g.electrode_radius;
+    EXPECT_GE(width, 2 * felt_every) << name;
+    EXPECT_GT(g.has_jaws() ? g.jaw_rounding : g.electrode_radius, contact_guard) << name;
+  }
+}
+
+TEST(Instrument, AHooksFootStandsToOneSideAndTurnsWithTheShaft) {
+  const InstrumentGeometry hook = instrument_geometry(InstrumentType::l_hook);
+  for (const double roll : {0.0, 1.2}) {
+    const InstrumentPose pose{0.2, -0.1, 0.1, roll, 0};
+    const Pose frame = hinge_frame(trocar, pose, hook);
+    const auto foot = std::get<Capsule>(instrument_shapes(trocar, pose, hook)[2]);
+    const Vec3 end = frame.inverse() * foot.b;
+    EXPECT_NEAR(end.x(), hook.electrode_aside, rounding);
+    EXPECT_NEAR(end.y(), 0, rounding);
+    EXPECT_NEAR(end.z(), hook.jaw_length - hook.electrode_radius, rounding);
+    // It and the neck meet in the bend.
+    EXPECT_LT((foot.a - std::get<Capsule>(instrument_shapes(trocar, pose, hook)[1]).b).norm(), rounding);
   }
 }
 

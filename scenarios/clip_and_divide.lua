@@ -1,0 +1,148 @@
+-- The cystic duct, or the cystic artery, is clipped and divided: two clips on the patient's side, one on the
+-- specimen's, and a cut between them. Calot's triangle has been cleared of its tissue before; for the artery the duct
+-- has been divided and drawn aside. The mistake that ends in bile or blood is a parameter, demo = "clumsy": it cuts
+-- before it clips, and then drops a clip.
+
+local calot = require "calot"
+local anatomy = require "anatomy"
+local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
+
+local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
+local function plus(a, b, share) return { a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3] } end
+local function unit(a) return plus({ 0, 0, 0 }, a, 1 / math.sqrt(dot(a, a))) end
+
+-- How many clips of a tube, or of a piece of one, are shut.
+local function shut(t, tube)
+  local count = 0
+  for _, clip in ipairs(t:clips(tube)) do
+    if clip.opening == 0 then count = count + 1 end
+  end
+  return count
+end
+
+-- How far a shaft from a port is to be turned for its jaws to open across a tube.
+local function roll_across(port, at, along)
+  local shaft = unit(plus(at, port, -1))
+  local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
+  local x = { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) }
+  local y = { 0, -math.cos(pitch), -math.sin(pitch) }
+  return math.atan(-dot(x, along) / dot(y, along))
+end
+
+local ports = { applier = { -10 * mm, 120 * mm, -5 * mm }, blades = { 0, 0, 0 } }
+
+-- An instrument as the demo moves it: it knows how it is turned.
+local function hand(t, name)
+  local self = { tool = t[name], rolled = 0 }
+  -- Open jaws come about a tube, their tips that far past its middle.
+  function self.about(tube, share, past, speed)
+    local at, along = t:along(tube, share)
+    local turn = roll_across(ports[name], at, along) - self.rolled
+    turn = turn - math.pi * math.floor(turn / math.pi + 0.5) -- jaws are alike on both sides
+    if math.abs(turn) > 15 * deg then
+      self.tool:rotate(turn, { speed = 300 * deg / s })
+      self.rolled = self.rolled + turn
+    end
+    self.tool:move_to(plus(at, unit(plus(at, ports[name], -1)), past), { speed = speed })
+  end
+  function self.back(way)
+    self.tool:move_by(plus({ 0, 0, 0 }, unit(plus(ports[name], self.tool:tip(), -1)), way), { speed = 150 * mm / s })
+  end
+  return self
+end
+
+return calot.exercise {
+  api = 1,
+  id = "clip-and-divide",
+  title = "Clip and divide the cystic duct",
+  time_limit = 60 * s,
+
+  params = {
+    structure = {
+      type = "choice",
+      default = "cystic_duct",
+      choices = { "cystic_duct", "cystic_artery" },
+      title = "what is clipped and divided",
+    },
+    demo = {
+      type = "choice",
+      default = "expert",
+      choices = { "expert", "clumsy" },
+      title = "how the demo goes about it: clips first, as an expert, or cuts first",
+    },
+  },
+
+  scene = function(p)
+    local without = { "triangle_fat", "artery_fat", "hilar_fat", "cystic_node" }
+    if p.structure == "cystic_artery" then without = { "cystic_duct", "hilar_fat", "cystic_node" } end
+    return {
+      anatomy = anatomy.standard {
+        cystic_duct_length = 26 * mm,
+        cystic_duct_diameter = 2.8 * mm,
+        without = without,
+      },
+      ports = { scope = { -40 * mm, 20 * mm, 10 * mm } },
+      instruments = {
+        applier = { type = "clip_applier", port = "epigastric" },
+        blades = { type = "scissors", port = "umbilical" },
+      },
+      laparoscope = { port = "scope", angle = 0, look_at = p.structure .. ".middle", distance = 95 * mm },
+      solver = { motion = "dynamic" },
+    }
+  end,
+
+  steps = function(t, p)
+    t:step("clip", "Set two clips on the patient's side and one on the specimen's", {
+      limit = 30 * s,
+      hint = "each all across it, with the tips of its legs in view beyond, and room to cut between",
+    })
+    t:wait_until(function() return t:divided(p.structure) or #t:clips(p.structure) == 3 end)
+    t:step("divide", "Divide it between the clips", { limit = 30 * s })
+    if t:wait_until(function() return t:divided(p.structure) end) then
+      t:note("patient_clips", shut(t, p.structure .. ".patient"))
+      t:note("specimen_clips", shut(t, p.structure .. ".specimen"))
+    end
+    t:wait(0.6 * s)
+  end,
+
+  demo = function(t, p)
+    local clips, cuts = hand(t, "applier"), hand(t, "blades")
+    local plan = {
+      cystic_duct = { clips = { 0.60, 0.80, 0.88 }, cut = 0.70, open = 36 * deg, past = 4.5 * mm },
+      cystic_artery = { clips = { 0.64, 0.36, 0.25 }, cut = 0.50, open = 20 * deg, past = 4 * mm },
+    }
+    local tube, plan_of = p.structure, plan[p.structure]
+    local function set_clips()
+      t.applier:open(plan_of.open)
+      clips.about(tube, plan_of.clips[1], -12 * mm, 150 * mm / s)
+      for _, share in ipairs(plan_of.clips) do
+        clips.about(tube, share, plan_of.past, 40 * mm / s)
+        t.applier:fire()
+      end
+      clips.back(25 * mm)
+    end
+    t:together(function()
+      t.blades:open(36 * deg)
+      cuts.about(tube, plan_of.cut, -25 * mm, 150 * mm / s)
+    end, function()
+      if p.demo == "expert" then set_clips() end
+    end)
+    cuts.about(tube, plan_of.cut, 6 * mm, 50 * mm / s)
+    t.blades:close()
+    if p.demo == "clumsy" then t.applier:fire() end
+    t.blades:open(20 * deg)
+    cuts.back(25 * mm)
+  end,
+
+  score = calot.score.weighted {
+    { calot.score.benchmark { metric = "note.patient_clips", novice = 0, expert = 2 }, weight = 0.4 },
+    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.2 },
+    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.2 },
+    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.2 },
+    critical = { "cut_unclipped", "perforation", "cut_liver" },
+    cap = 40,
+    pass = 80,
+  },
+
+  golden = { at = { 4.9 * s, 6.2 * s } },
+}

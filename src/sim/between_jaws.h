@@ -1,0 +1,29 @@
+#pragma once
+// What lies across open jaws: in the plane in which they open, y = 0 of the hinge's frame, between their pads.
+
+#include "sim/field.h"
+#include "sim/rod_body.h"
+
+namespace calot {
+
+/// Where a duct or a vessel passes between the pads.
+struct TubeBetween {
+  int organ = 0;
+  double at = 0;              ///< skin points from its start
+  Vec3 place = Vec3::Zero();  ///< m, in the hinge's frame
+  Vec3 along = Vec3::Zero();  ///< unit, the tube's way, in the hinge's frame
+  double gap = 0;             ///< m, of the pads there
+  double radius = 0;          ///< m, outer
+};
+
+/// Of all tubes that feel the jaws, in the order of organs and places.
+std::vector<TubeBetween> tubes_between(const Field& field, int instrument);
+
+/// Whether a line from one place to another (m) passes between the pads of a tool now, and no longer when its jaws have
+/// closed by an angle (rad) more: an edge passes it.
+bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle);
+
+/// The organ as a tube; null: it is none.
+const RodBody* rod_of(const Organ& organ);
+
+}  // namespace calot

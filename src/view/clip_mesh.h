@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "render/scene.h"
+#include "sim/field.h"
+
+namespace calot {
+
+/// The clips on a tube: two legs of wire, round at their ends, joined at the crown. None: none.
+std::vector<SceneMesh> clip_meshes(const Organ& organ);
+
+/// The legs of the clip that a tool has between its jaws, which lie in their grooves; none where it carries none.
+std::vector<SceneMesh> loaded_clip(const Tool& tool);
+
+}  // namespace calot

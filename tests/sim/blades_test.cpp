@@ -1,0 +1,142 @@
+// What scissors do, on one tube that is held at both ends.
+
+#include "sim/blades.h"
+
+#include <gtest/gtest.h>
+
+#include "act_rig.h"
+#include "rig.h"
+#include "sim/between_jaws.h"
+#include "sim/field_state.h"
+
+namespace calot {
+namespace {
+
+using test::about;
+using test::across;
+using test::Acting;
+using test::tube_depth;
+
+TEST(Scissors, DivideTheTubeThatIsBetweenTheirBladesWhereItIs) {
+  for (const SolverMotion motion : {SolverMotion::dynamics, SolverMotion::statics}) {
+    Acting scene(across(InstrumentType::scissors, motion));
+    ASSERT_TRUE(scene.reach());
+    EXPECT_TRUE(scene.has("duct"));
+    ASSERT_TRUE(scene.go(about(0), 12));
+    ASSERT_TRUE(scene.has("duct.patient"));
+    ASSERT_TRUE(scene.has("duct.specimen"));
+    EXPECT_EQ(scene.count(EventKind::cut), 1);
+    EXPECT_EQ(scene.count(EventKind::cut_unclipped), 1);
+    EXPECT_EQ(scene.count(EventKind::empty_cut) + scene.count(EventKind::empty_grasp), 0);
+    for (const WorldEvent& event : scene.events)
+      if (event.kind == EventKind::cut) {
+        EXPECT_EQ(event.instrument + " " + event.organ, "right duct");
+        EXPECT_NEAR(event.value, 0.5, 0.05);
+      }
+    // They open, leave, and are felt again.
+    ASSERT_TRUE(scene.go(about(0.7), 6) && scene.go(about(0.7, tube_depth - 25e-3), 12));
+    for (const Organ& organ : scene.world.field().organs) EXPECT_TRUE(organ.unfelt.empty());
+    EXPECT_EQ(scene.count(EventKind::release), 0);
+  }
+}
+
+TEST(Scissors, ADividedTubeCarriesNoForceAcross) {
+  // What is cut off hangs on a second tube, until it is untied from it.
+  SceneDefinition scene = across(InstrumentType::scissors);
+  scene.anatomy.organs[0].held.pop_back();
+  OrganDefinition wall = test::tube_across("wall");
+  std::get<TubeShape>(wall.shape).points = {{-15e-3, 17e-3, -tube_depth}, {15e-3, 17e-3, -tube_depth}};
+  scene.anatomy.organs.push_back(wall);
+  scene.anatomy.joints = {{"duct.end", "wall.middle", 4e-3, 2e3}};
+  Acting cut(scene);
+  ASSERT_TRUE(cut.reach() && cut.go(about(0), 12) && cut.go(about(0.7), 6));
+  ASSERT_TRUE(cut.has("duct.patient"));
+  const Vec3 start = cut.world.landmark("duct.patient.start"), end = cut.world.landmark("duct.specimen.end");
+  ASSERT_TRUE(cut.world.untie("duct.specimen", "wall"));
+  ASSERT_TRUE(cut.go(about(0.7, tube_depth - 25e-3), 12));
+  EXPECT_LT((cut.world.landmark("duct.patient.start") - start).norm(), 0.3e-3);
+  EXPECT_GT((cut.world.landmark("duct.specimen.end") - end).norm(), 50e-3);
+}
+
+TEST(Scissors, CloseOnAirAndSaySo) {
+  Acting scene(across(InstrumentType::scissors));
+  ASSERT_TRUE(scene.go(about(0.5, tube_depth - 30e-3), 2) && scene.go(about(0, tube_depth - 30e-3), 4));
+  EXPECT_EQ(scene.count(EventKind::empty_cut), 1);
+  EXPECT_EQ(scene.count(EventKind::empty_grasp), 0);
+  EXPECT_TRUE(scene.has("duct"));
+}
+
+TEST(Scissors, DivideAtTheSamePlaceAtEveryRate) {
+  std::vector<Vec3> ends;
+  for (const double rate : {25.0, 200.0}) {
+    SceneDefinition definition = across(InstrumentType::scissors, SolverMotion::statics);
+    definition.solver.rate = rate;
+    Acting scene(definition);
+    const int finer = rate > 100 ? 4 : 1;
+    ASSERT_TRUE(scene.reach() && scene.go(about(0), 4 * finer));
+    ASSERT_TRUE(scene.has("duct.patient"));
+    ends.push_back(scene.world.landmark("duct.patient.end"));
+  }
+  EXPECT_LT((ends[0] - ends[1]).norm(), 0.02e-3);
+}
+
+TEST(Scissors, SetBackToBeforeACutTheSameStepsHaveTheSameBits) {
+  Acting scene(across(InstrumentType::scissors));
+  ASSERT_TRUE(scene.reach());
+  const FieldState before = scene.world.state();
+  ASSERT_TRUE(scene.go(about(0), 12));
+  const std::uint64_t hash = scene.world.state_hash();
+  ASSERT_TRUE(scene.world.restore(before));
+  EXPECT_TRUE(scene.has("duct"));
+  ASSERT_TRUE(scene.go(about(0), 12));
+  EXPECT_EQ(scene.world.state_hash(), hash);
+}
+
+TEST(Scissors, DivideTheStrandsBetweenTheirBladesAndNoOthers) {
+  SceneDefinition definition = across(InstrumentType::scissors);
+  definition.anatomy.organs[0] = test::tube_across("duct", 0);
+  // Two ducts beside each other, to either side of the plane in which the blades open, and a sheet between them.
+  definition.anatomy.organs.push_back(test::tube_across("other"));
+  for (int k = 0; k < 2; ++k)
+    for (Vec3& p : std::get<TubeShape>(definition.anatomy.organs[static_cast<std::size_t>(k)].shape).points) {
+      std::swap(p.x(), p.y());
+      p.y() = k == 0 ? -6e-3 : 6e-3;
+    }
+  TissueDefinition sheet;
+  sheet.name = "sheet";
+  sheet.from = "duct";
+  sheet.to = "other";
+  sheet.within = 14e-3;
+  sheet.strands = 12;
+  sheet.stiffness = 4e3;
+  sheet.strength = 12e3;
+  sheet.break_energy = 300;
+  definition.anatomy.tissue = {sheet};
+  Acting scene(definition);
+  ASSERT_TRUE(scene.reach(0.6));
+  ASSERT_TRUE(scene.go(about(0), 10));
+  const TissueState& state = scene.world.report().tissues[0];
+  EXPECT_GT(state.torn, 0);
+  EXPECT_LT(state.torn, state.strands);
+  EXPECT_GE(scene.count(EventKind::cut), 1);
+  EXPECT_EQ(scene.count(EventKind::tear), 0) << "what is cut is not torn";
+  EXPECT_EQ(scene.count(EventKind::empty_cut), 0);
+  EXPECT_TRUE(scene.has("duct") && scene.has("other"));
+}
+
+TEST(Scissors, ClosedOnAWallPerforateItAndGoOn) {
+  SceneDefinition definition = test::ball_scene();
+  InstrumentDefinition tool = default_instrument(InstrumentType::scissors);
+  tool.name = "left";
+  tool.port = definition.instruments[0].port;
+  definition.instruments = {tool};
+  test::FundusPath path(definition);
+  ASSERT_TRUE(path.grasp()) << path.driver.why();
+  EXPECT_EQ(path.driver.count(EventKind::perforation), 1);
+  EXPECT_EQ(path.driver.count(EventKind::grasp), 0);
+  ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
+  EXPECT_EQ(path.driver.count(EventKind::release), 0);
+}
+
+}  // namespace
+}  // namespace calot

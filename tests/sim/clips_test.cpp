@@ -1,0 +1,209 @@
+// What a fired clip does, on one tube that is held at both ends.
+
+#include "sim/clips.h"
+
+#include <gtest/gtest.h>
+
+#include "act_rig.h"
+#include "sim/between_jaws.h"
+#include "sim/field_state.h"
+
+namespace calot {
+namespace {
+
+using test::about;
+using test::across;
+using test::Acting;
+using test::tube_depth;
+
+constexpr double applier_jaw = 0.5;  // rad
+
+/// The tip that many m past the tube's middle.
+InstrumentPose past(double reach) {
+  const double back = 18e-3 * (1 - std::cos(0.5 * applier_jaw));
+  return about(applier_jaw, tube_depth + reach + back);
+}
+
+/// The tube with the clip that an applier sets so far past its middle, and by how much it sags, m.
+std::pair<OrganState, double> clipped_at(double reach, ClipSize size = ClipSize::ml) {
+  SceneDefinition scene = across(InstrumentType::clip_applier);
+  scene.instruments[0].clip = size;
+  Acting acting(scene);
+  EXPECT_TRUE(acting.go(about(applier_jaw, tube_depth - 20e-3), 2) && acting.go(past(reach), 6) &&
+              acting.fire());
+  EXPECT_EQ(acting.count(EventKind::clip), 1);
+  for (const WorldEvent& event : acting.events) {
+    if (event.kind != EventKind::clip) continue;
+    EXPECT_EQ(event.value, acting.world.report().organs[0].clips.at(0).opening);
+  }
+  const Organ& organ = acting.world.field().organs[0];
+  const double middle = 0.5 * static_cast<double>(organ.body->skin_rest().size() - 1);
+  return {acting.world.report().organs[0], -tube_depth - rod_of(organ)->place_at(middle, organ.state.x).z()};
+}
+
+TEST(Clips, ShutATubeThatIsWhollyBetweenTheirLegs) {
+  const OrganState state = clipped_at(5e-3).first;
+  ASSERT_EQ(state.clips.size(), 1u);
+  EXPECT_EQ(state.clips[0].opening, 0);
+  EXPECT_NEAR(state.clips[0].share, 0.5, 0.01);
+}
+
+TEST(Clips, LeaveOpenWhatIsNotBetweenTheirLegs) {
+  // A duct of 1.8 mm radius and 0.8 mm wall is pressed to a stadium of its own outline, 4.74 mm wide.
+  const double width = 2 * (1.8e-3 + (std::numbers::pi / 2 - 1) * 1.0e-3);
+  for (const double reach : {1.5e-3, 0.6e-3}) {
+    const auto [state, sag] = clipped_at(reach);
+    ASSERT_EQ(state.clips.size(), 1u) << reach;
+    EXPECT_NEAR(state.clips[0].opening, 0.5 - (reach - sag) / width, 0.01) << reach;
+  }
+  // A smaller clip's crown is before the tube's near side when it is well past it.
+  EXPECT_EQ(clipped_at(3e-3, ClipSize::m).first.clips[0].opening, 0);
+  EXPECT_GT(clipped_at(5.5e-3, ClipSize::m).first.clips[0].opening, 0.2);
+}
+
+TEST(Clips, FallBesideATubeAndAreCounted) {
+  SceneDefinition scene = across(InstrumentType::clip_applier);
+  scene.instruments[0].clips = 2;
+  Acting acting(scene);
+  ASSERT_TRUE(acting.go(about(applier_jaw, tube_depth - 30e-3), 2));
+  for (int left : {1, 0, 0}) {
+    ASSERT_TRUE(acting.fire());
+    EXPECT_EQ(acting.world.report().instruments[0].clips, left);
+  }
+  EXPECT_EQ(acting.count(EventKind::clip_dropped), 2) << "there were no more";
+  EXPECT_EQ(acting.count(EventKind::clip), 0);
+  EXPECT_TRUE(acting.world.report().organs[0].clips.empty());
+}
+
+TEST(Clips, AreSetOnceHoweverLongTheTriggerIsHeld) {
+  Acting acting(across(InstrumentType::clip_applier));
+  ASSERT_TRUE(acting.go(about(applier_jaw, tube_depth - 20e-3), 2) && acting.go(past(5e-3), 6));
+  for (int k = 0; k < 3; ++k) ASSERT_TRUE(acting.world.step({{past(5e-3)}, {InstrumentAction::fire}}));
+  EXPECT_EQ(acting.world.report().organs[0].clips.size(), 1u);
+}
+
+TEST(Clips, AreInTheStateAndItsHash) {
+  Acting acting(across(InstrumentType::clip_applier));
+  ASSERT_TRUE(acting.go(about(applier_jaw, tube_depth - 20e-3), 2) && acting.go(past(5e-3), 6));
+  const FieldState before = acting.world.state();
+  ASSERT_TRUE(acting.fire());
+  const FieldState clipped = acting.world.state();
+  const std::uint64_t hash = acting.world.state_hash();
+  ASSERT_TRUE(acting.world.restore(before));
+  EXPECT_TRUE(acting.world.field().organs[0].clips.empty());
+  EXPECT_EQ(acting.world.field().tools[0].clips, before.tools[0].clips);
+  ASSERT_TRUE(acting.world.step({{past(5e-3)}}));
+  EXPECT_NE(acting.world.state_hash(), hash);
+  ASSERT_TRUE(acting.world.restore(clipped));
+  EXPECT_EQ(acting.world.state_hash(), hash);
+  ASSERT_EQ(acting.world.field().organs[0].clips.size(), 1u);
+}
+
+TEST(Clips, ATubeIsFlatUnderThemAndRoundAside) {
+  Acting acting(across(InstrumentType::clip_applier));
+  ASSERT_TRUE(acting.go(about(applier_jaw, tube_depth - 20e-3), 2) && acting.go(past(5e-3), 6) &&
+              acting.fire());
+  const Organ& organ = acting.world.field().organs[0];
+  const RodBody& rod = *rod_of(organ);
+  const auto height = [&](double from, double to) {  // across the legs, along x
+    double most = 0;
+    for (const Vec3& p : rod.drawn(organ.state.x).positions)
+      if (p.y() > from && p.y() < to) most = std::max(most, std::abs(p.x()));
+    return most;
+  };
+  EXPECT_NEAR(height(-0.6e-3, 0.6e-3), 0.8e-3, 0.05e-3);  // two walls of 0.8 mm
+  EXPECT_NEAR(height(5e-3, 9e-3), 1.8e-3, 0.05e-3);
+  const auto radius = std::minmax_element(rod.skin_radii().begin(), rod.skin_radii().end());
+  EXPECT_NEAR(*radius.first, 0.8e-3, 1e-9);
+  EXPECT_NEAR(*radius.second, 1.8e-3, 1e-9);
+}
+
+/// An applier and scissors whose ports are at one place; the one that is not used waits above.
+struct ClipAndCut {
+  World world;
+  std::vector<WorldEvent> events = {};
+  static SceneDefinition scene() {
+    SceneDefinition scene = across(InstrumentType::clip_applier);
+    InstrumentDefinition blades = default_instrument(InstrumentType::scissors);
+    blades.name = "blades";
+    blades.port = "beside";
+    scene.ports.push_back({blades.port, Vec3::Zero()});
+    scene.instruments.push_back(blades);
+    std::get<TubeShape>(scene.anatomy.organs[0].shape).points = {
+        {0, -20e-3, -tube_depth}, {0, 0, -tube_depth}, {0, 20e-3, -tube_depth}};
+    return scene;
+  }
+  ClipAndCut() : world(World::create(scene()).value()) {}
+  bool step(const InstrumentPose& applier, const InstrumentPose& blades, InstrumentAction action) {
+    const Result<StepReport> done = world.step({{applier, blades}, {action, InstrumentAction::none}});
+    EXPECT_TRUE(done) << to_text(done.failure());
+    if (!done) return false;
+    events.insert(events.end(), done->events.begin(), done->events.end());
+    return true;
+  }
+  static InstrumentPose away() { return {0, 0, 40e-3, 0, 0}; }
+  /// The applier about the tube at a place along it, which it comes to from above.
+  bool clip_at(double y) {
+    const double pitch = std::atan2(y, tube_depth);
+    const double far = std::hypot(y, tube_depth) + 5e-3 + 18e-3 * (1 - std::cos(0.5 * applier_jaw));
+    for (int k = 0; k <= 6; ++k)
+      if (!step({pitch, 0, far - 25e-3 * (1 - k / 6.0), 0, applier_jaw}, away(), InstrumentAction::none))
+        return false;
+    if (!step({pitch, 0, far, 0, applier_jaw}, away(), InstrumentAction::fire)) return false;
+    for (int k = 0; k <= 6; ++k)
+      if (!step({pitch, 0, far - 25e-3 * k / 6.0, 0, applier_jaw}, away(), InstrumentAction::none))
+        return false;
+    return step(away(), away(), InstrumentAction::none);
+  }
+  bool cut() {
+    for (int k = 0; k <= 6; ++k)
+      if (!step(away(), about(0.7, tube_depth + 6e-3 - 25e-3 * (1 - k / 6.0)), InstrumentAction::none))
+        return false;
+    for (int k = 0; k <= 12; ++k)
+      if (!step(away(), about(0.7 * (1 - k / 12.0)), InstrumentAction::none)) return false;
+    return true;
+  }
+  int count(EventKind kind) const {
+    return static_cast<int>(std::count_if(events.begin(), events.end(),
+                                          [&](const WorldEvent& event) { return event.kind == kind; }));
+  }
+};
+
+TEST(Clips, GoWithThePieceOfADividedTubeThatTheyAreOn) {
+  ClipAndCut hands;
+  ASSERT_TRUE(hands.clip_at(-6e-3) && hands.clip_at(-9e-3) && hands.clip_at(6e-3));
+  ASSERT_EQ(hands.world.report().organs[0].clips.size(), 3u);
+  std::vector<Vec3> places;
+  const auto note = [&] {
+    places.clear();
+    for (const Organ& organ : hands.world.field().organs)
+      for (const Clip& clip : organ.clips)
+        places.push_back(rod_of(organ)->place_at(clip.at, organ.body->rest()));
+    return places;
+  };
+  const std::vector<Vec3> before = note();
+  ASSERT_TRUE(hands.cut());
+  const OrganState &patient = hands.world.report().organs[0], &specimen = hands.world.report().organs[1];
+  EXPECT_EQ(patient.name + " " + specimen.name, "duct.patient duct.specimen");
+  ASSERT_EQ(patient.clips.size(), 2u);
+  ASSERT_EQ(specimen.clips.size(), 1u);
+  EXPECT_EQ(hands.count(EventKind::cut), 1);
+  EXPECT_EQ(hands.count(EventKind::cut_unclipped), 0);
+  const std::vector<Vec3> after = note();
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_LT((after[i] - before[i]).norm(), 1e-9) << "where it was on the tube";
+  for (const Organ& organ : hands.world.field().organs) {
+    const auto least =
+        *std::min_element(rod_of(organ)->skin_radii().begin(), rod_of(organ)->skin_radii().end());
+    EXPECT_NEAR(least, 0.8e-3, 1e-9) << "it is flat there still";
+  }
+}
+
+TEST(Clips, OnTheSpecimensSideAloneDoNotMakeACutSafe) {
+  ClipAndCut hands;
+  ASSERT_TRUE(hands.clip_at(6e-3) && hands.cut());
+  EXPECT_EQ(hands.count(EventKind::cut_unclipped), 1);
+}
+
+}  // namespace
+}  // namespace calot
