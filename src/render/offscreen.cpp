@@ -21,12 +21,11 @@ constexpr int samples = 4;
 constexpr std::array all_materials{Material::gallbladder, Material::membrane,   Material::liver,
                                    Material::fat,         Material::peritoneum, Material::steel,
                                    Material::insulation,  Material::artery,     Material::capsule,
-                                   Material::bowel,       Material::veil,       Material::hydrops};
+                                   Material::bowel,       Material::hydrops};
 
-/// Omentum, bowel and walls lie behind all else: their shadows are never seen. Light passes a veil.
+/// Omentum, bowel and walls lie behind all else: their shadows are never seen.
 bool casts_shadow(Material material) {
-  return material != Material::fat && material != Material::peritoneum && material != Material::bowel &&
-         material != Material::veil;
+  return material != Material::fat && material != Material::peritoneum && material != Material::bowel;
 }
 
 /// A vessel map on the card's side. Holding the map keeps its address from being given to another one.
@@ -251,7 +250,7 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
   const Eigen::Matrix4d to_shadow = shadow_projection(camera);
   const Vec3 light = camera_axes(camera).transpose() * camera.light_offset;
   GLuint current = 0;
-  const auto draw = [&](const ScenePart& part) {
+  for (const ScenePart& part : arrays.parts) {
     const GLuint program = scene_programs[static_cast<std::size_t>(part.material)];
     if (program != current) {
       gl.UseProgram(program);
@@ -264,19 +263,7 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
     }
     bind_vessels(program, part);
     draw_part(part);
-  };
-  for (const ScenePart& part : arrays.parts)
-    if (part.material != Material::veil) draw(part);
-  // Over all that it may veil; what the sensor could not keep (alpha) stays that of what is behind.
-  gl.Enable(GL_BLEND);
-  gl.BlendFunc(GL_ONE, GL_SRC_ALPHA);
-  gl.Disable(GL_CULL_FACE);
-  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-  for (const ScenePart& part : arrays.parts)
-    if (part.material == Material::veil) draw(part);
-  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  gl.Enable(GL_CULL_FACE);
-  gl.Disable(GL_BLEND);
+  }
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.framebuffer);
   gl.BlitFramebuffer(0, 0, drawn.width, drawn.height, 0, 0, drawn.width, drawn.height,

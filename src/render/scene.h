@@ -22,7 +22,6 @@ enum class Material {
   artery,       ///< pale red in a whitish sheath
   capsule,      ///< a lobe of the liver: dark red-brown, smooth, with a soft sheen
   bowel,        ///< pale pink; rest frame: its axis along z
-  veil,         ///< peritoneum as a thin sheet that what lies behind it shines through; both sides are seen
   hydrops,  ///< a gallbladder full of mucus: pale, its vessels pressed empty; rest frame as the gallbladder's
 };
 

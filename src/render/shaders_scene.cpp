@@ -196,28 +196,6 @@ void main() {
 }
 )";
 
-// A sheet with both its sides seen: alpha is the share of what lies behind it that shines through.
-const char* const veil_lighting = R"(
-void main() {
-  vec3 n = normalize(normal);
-  vec3 v = normalize(-place);
-  n = dot(n, v) < 0.0 ? -n : n;
-  vec4 middle = noise(rest + 2.0 * broad.rgb, 3.5);
-  vec4 fine = noise(rest, 1.2);
-  Light l = light_at(n);
-  float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
-  float vessel = smoothstep(0.26, 0.05, distance_to_zero(middle, 3.5)) * smoothstep(-0.1, 0.4, broad.r + 0.4 * fine.a);
-  vec3 albedo = mix(vec3(0.46, 0.27, 0.19), vec3(0.32, 0.03, 0.03), vessel);
-  float dense = 0.16 + 0.22 * away * away + 0.10 * smoothstep(0.0, 0.6, middle.a) + 0.45 * vessel;
-  float facing = abs(dot(n, l.towards));
-  vec3 lit = albedo * ((0.3 + 0.7 * facing) * l.strength * mix(0.3, 1.0, l.seen) + l.around);
-  vec3 h = normalize(l.towards + v);
-  vec3 film = normalize(n + 0.05 * broad.rgb + 0.06 * middle.rgb + 0.05 * fine.rgb);
-  float spot = 0.9 * exp2(430.0 * (dot(film, h) - 1.0)) + 0.03 * exp2(40.0 * (dot(n, h) - 1.0));
-  colour = vec4(exposed(lit).rgb * dense + exposed(vec3(spot) * l.strength * l.seen).rgb, 1.0 - dense);
-}
-)";
-
 const char* const light_functions = R"(
 struct Light {
   vec3 towards;    // unit
@@ -298,7 +276,6 @@ double broad_cell(Material material) {
     case Material::peritoneum:
       return 29;
     case Material::artery:
-    case Material::veil:
       return 9;
     case Material::steel:
     case Material::insulation:
@@ -337,8 +314,6 @@ std::string scene_fragment_shader(Material material) {
       return common + wall_of("vec3(0.34, 0.315, 0.25)", 0.25, "-0.15 - 0.028 * p.z") + tissue_lighting;
     case Material::capsule:
       return common + capsule_material + tissue_lighting;
-    case Material::veil:
-      return common + veil_lighting;
     case Material::bowel:
       return common + bowel_material + tissue_lighting;
     case Material::liver:

@@ -6,7 +6,6 @@
 #include "view/laparoscope.h"
 #include "view/structure_mesh.h"
 #include "view/tissue_mesh.h"
-#include "view/veil_mesh.h"
 #include "view/vessels.h"
 
 namespace calot {
@@ -77,7 +76,6 @@ Scene SceneBuilder::build(const World& world) const {
       scene.meshes.push_back(std::move(mesh));
   }
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());
-  if (SceneMesh veil = veil_mesh(world); !veil.triangles.empty()) scene.meshes.push_back(std::move(veil));
   return scene;
 }
 

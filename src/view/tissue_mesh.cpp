@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "sim/field.h"
-#include "view/strand_lines.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -30,6 +29,13 @@ const SceneMesh& ball() {
   });
   return mesh;
 }
+
+struct StrandLine {
+  Vec3 from, by, to;  ///< m: its ends, and its own node
+  Vec3 at(double share) const {
+    return share < 0.5 ? Vec3(from + 2 * share * (by - from)) : Vec3(by + (2 * share - 1) * (to - by));
+  }
+};
 
 /// Stretched along the strand, as lobules are; the volume stays.
 void add_lobule(const StrandLine& line, double share, double radius, std::size_t strand, int lobule,
@@ -58,12 +64,20 @@ void add_lobule(const StrandLine& line, double share, double radius, std::size_t
     out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
+Vec3 on_skin(const CarriedPlace& place, const std::vector<Vec3>& skin) {
+  Vec3 out = Vec3::Zero();
+  for (std::size_t i = 0; i < place.points.size(); ++i) out += place.weights[i] * skin[place.points[i]];
+  return out;
+}
+
 void add_tissue(const Tissue& tissue, const std::vector<std::vector<Vec3>>& skins, std::size_t first_strand,
                 SceneMesh& out) {
+  const auto& bodies = tissue.strands->bodies();
   const std::vector<PlacedStrand>& strands = tissue.strands->strands();
-  const std::vector<StrandLine> lines = strand_lines(tissue, tissue.now.state.x, skins);
   for (std::size_t k = 0; k < strands.size(); ++k) {
-    const StrandLine& line = lines[k];
+    const StrandLine line{on_skin(strands[k].one, skins[bodies[0]]),
+                          tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(k)),
+                          on_skin(strands[k].other, skins[bodies[1]])};
     const StrandLaw::Setup& law = strands[k].strand.law.setup();
     const double area = law.strength / tissue.definition.strength;
     const double radius = std::clamp(0.6 * std::sqrt(area), thinnest_lobule, thickest_lobule);
