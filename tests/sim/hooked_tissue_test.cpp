@@ -204,11 +204,11 @@ TEST(HookedTissue, CurrentDividesWhatItsElectrodeTouchesByPowerAndTime) {
   ASSERT_GT(steps, 3);
   EXPECT_EQ(kinds_of(keep_acting(world, InstrumentAction::activate, steps - 1)), std::vector{activation});
   const FieldState before = world.state();
-  const std::vector<WorldEvent> cut = keep_acting(world, InstrumentAction::activate, 1);
-  ASSERT_EQ(kinds_of(cut), std::vector{divided});
-  EXPECT_EQ(cut[0].instrument, "left");
-  EXPECT_EQ(cut[0].organ, "veil");
-  EXPECT_NEAR(cut[0].value, area / 1e-6, 1e-9);
+  const std::vector<WorldEvent> parted_now = keep_acting(world, InstrumentAction::activate, 1);
+  ASSERT_EQ(kinds_of(parted_now), std::vector{divided});
+  EXPECT_EQ(parted_now[0].instrument, "left");
+  EXPECT_EQ(parted_now[0].organ, "veil");
+  EXPECT_NEAR(parted_now[0].value, area / 1e-6, 1e-9);
   EXPECT_EQ(world.report().tissues[0].torn, 1);
   const std::uint64_t hash = world.report().state_hash;
   ASSERT_TRUE(world.restore(before));
