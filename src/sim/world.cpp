@@ -204,7 +204,7 @@ void add_tool(Hash& hash, const Tool& tool) {
                    static_cast<int>(tool.action) << 3 | (tool.has_cut ? 64 : 0);
   hash.add(tool.jaw_stopped);
   hash.add(static_cast<unsigned char>(grip));
-  if (tool.definition.clips > 0) hash.add(tool.clips);
+  if (has_action(tool.definition.type, InstrumentAction::fire)) hash.add(tool.clips);
   hash.add(tool.touched);
   hash.add(tool.over_limit);
   if (tool.dry > 0) hash.add(tool.dry);
