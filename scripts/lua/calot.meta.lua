@@ -49,7 +49,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---When pictures are compared with golden ones.
