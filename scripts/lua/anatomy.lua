@@ -317,8 +317,8 @@ function anatomy.surroundings(neck)
   local function near(x, y, z) return add(neck, { x, y, z }, mm) end
   return {
     capsule("duodenum", "bowel", near(-34, -60, -12), near(60, -62, -6), 13),
-    -- Beside the liver's lobe: the round ligament in its fissure, and the left lobe beyond; behind it the right lobe and,
-    -- behind the hilum, the caudate lobe.
+    -- Beside the liver's lobe: the round ligament in its fissure, and the left lobe beyond; behind it the right lobe
+    -- and, behind the hilum, the caudate lobe.
     capsule("round_ligament", "fat", place(22, -91, -20), place(17, -92, 90), 4),
     capsule("round_ligament_root", "fat", place(22, -91, -20), place(56, -92, -50), 4),
     capsule("left_lobe", "liver", place(49, -123, -30), place(49, -120, 70), 40),

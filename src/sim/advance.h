@@ -19,9 +19,6 @@
 
 namespace calot {
 
-/// Jaw angles (rad) at which closing jaws may take hold.
-inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
-
 /// Moves every tool to its target. The field is left at the last converged part on failure (simulation).
 /// Returns grasp, empty_grasp, release and slip events (time to be set by the caller).
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,

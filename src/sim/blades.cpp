@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "sim/advance.h"
 #include "sim/between_jaws.h"
 #include "sim/change_bodies.h"
+#include "sim/grip.h"
 #include "sim/settle_field.h"
 
 namespace calot {

@@ -10,6 +10,9 @@ namespace calot {
 /// each other and against the jaws, and stiffer ones would push it into them.
 inline constexpr double grip_stiffness = 4e4;
 
+/// Jaw angles (rad) at which closing jaws may take hold.
+inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
+
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/advance.h"
+#include "sim/grip.h"
 #include "support/bodies.h"
 
 namespace calot {
