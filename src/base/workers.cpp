@@ -1,5 +1,6 @@
 #include "base/workers.h"
 
+#include <algorithm>
 #include <chrono>
 #include <system_error>
 
@@ -59,44 +60,51 @@ Workers::~Workers() {
 }
 
 void Workers::run(int chunks, Call call, const void* on) {
-  if (threads_.empty() || chunks <= 1 || busy_.exchange(true)) {
-    for (int k = 0; k < chunks; ++k) call(on, k);
-    return;
-  }
-  call_ = call;
-  on_ = on;
-  left_ = chunks;
-  ticket_ = ((ticket_ >> 32) + 1) << 32 | static_cast<std::uint32_t>(chunks);
+  if (!threads_.empty() && chunks > 1)
+    for (Loop& loop : loops_)
+      if (!loop.busy.exchange(true)) return share(loop, chunks, call, on);
+  for (int k = 0; k < chunks; ++k) call(on, k);
+}
+
+void Workers::share(Loop& loop, int chunks, Call call, const void* on) {
+  loop.call = call;
+  loop.on = on;
+  loop.left = chunks;
+  loop.ticket = ((loop.ticket >> 32) + 1) << 32 | static_cast<std::uint32_t>(chunks);
   if (sleepers_ > 0) {
     { const std::lock_guard lock(mutex_); }  // who is about to sleep does so before it is woken
     wake_.notify_all();
   }
-  while (take_chunk()) {
+  while (loop.take_chunk()) {
   }
   Patience patience;
-  while (left_ > 0) patience.pause();
-  busy_ = false;
+  while (loop.left > 0) patience.pause();
+  loop.busy = false;
 }
 
-bool Workers::take_chunk() {
-  std::uint64_t ticket = ticket_;
+bool Workers::Loop::take_chunk() {
+  std::uint64_t taken = ticket;
   for (;;) {
-    const auto chunk = static_cast<std::uint32_t>(ticket);
+    const auto chunk = static_cast<std::uint32_t>(taken);
     if (chunk == 0) return false;
-    // Of this loop only if its ticket still stands: until all its chunks are done no other loop begins.
-    const Call call = call_;
-    const void* on = on_;
-    if (!ticket_.compare_exchange_weak(ticket, ticket - 1)) continue;
-    call(on, static_cast<int>(chunk) - 1);
-    --left_;
+    // Of this loop only if its ticket still stands: until all its chunks are done no other loop begins here.
+    const Call called = call;
+    const void* with = on;
+    if (!ticket.compare_exchange_weak(taken, taken - 1)) continue;
+    called(with, static_cast<int>(chunk) - 1);
+    --left;
     return true;
   }
 }
 
+bool Workers::has_work() const {
+  return std::any_of(loops_.begin(), loops_.end(), [](const Loop& loop) { return loop.has_work(); });
+}
+
 void Workers::work_on() {
+  // Of the outermost loop first: its chunks are the longest.
   while (wait_for_work())
-    while (take_chunk()) {
-    }
+    std::any_of(loops_.begin(), loops_.end(), [](Loop& loop) { return loop.take_chunk(); });
 }
 
 /// False when the workers end.

@@ -1,8 +1,9 @@
 #pragma once
-// Threads that share one loop at a time. A loop is cut into chunks whose number does not depend on how many threads
+// Threads that share loops. A loop is cut into chunks whose number does not depend on how many threads
 // there are; each chunk writes results of its own, which the caller puts together in the chunks' order: the bits are
 // the same whatever the number of threads.
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -35,8 +36,8 @@ class Workers {
   int threads() const { return static_cast<int>(threads_.size()) + 1; }
 
   /// Calls work(chunk), which must be noexcept, once for each of 0 .. chunks - 1, on any thread and in any order, and
-  /// returns when all are done; what they wrote is then seen. A loop within a chunk, or begun while another thread's
-  /// is under way, is done by its caller alone.
+  /// returns when all are done; what they wrote is then seen. Loops within a chunk, and those of several threads, are
+  /// shared as well; one that finds no room beside the others is done by its caller alone.
   template <class Work>
   void for_each(int chunks, const Work& work) {
     static_assert(std::is_nothrow_invocable_v<const Work&, int>, "no exception may leave a worker");
@@ -46,18 +47,26 @@ class Workers {
 
  private:
   using Call = void (*)(const void*, int) noexcept;
-  void run(int chunks, Call call, const void* on);
-  void work_on();
-  bool take_chunk();
-  bool wait_for_work();
-  bool has_work() const { return static_cast<std::uint32_t>(ticket_.load()) > 0; }
+  /// One loop under way, or room for one.
+  struct alignas(64) Loop {
+    /// Number of the loop, and in the lower half how many of its chunks nobody has taken yet.
+    std::atomic<std::uint64_t> ticket = 0;
+    std::atomic<Call> call = nullptr;
+    std::atomic<const void*> on = nullptr;
+    std::atomic<int> left = 0;  ///< chunks that are not done
+    std::atomic<bool> busy = false;
 
-  /// Number of the loop, and in the lower half how many of its chunks nobody has taken yet.
-  alignas(64) std::atomic<std::uint64_t> ticket_ = 0;
-  std::atomic<Call> call_ = nullptr;
-  std::atomic<const void*> on_ = nullptr;
-  alignas(64) std::atomic<int> left_ = 0;  ///< chunks that are not done
-  alignas(64) std::atomic<bool> busy_ = false;
+    bool take_chunk();
+    bool has_work() const { return static_cast<std::uint32_t>(ticket.load()) > 0; }
+  };
+  void run(int chunks, Call call, const void* on);
+  void share(Loop& loop, int chunks, Call call, const void* on);
+  void work_on();
+  bool wait_for_work();
+  bool has_work() const;
+
+  /// Loops within each other: bodies, what each of them does, and the elements of that.
+  std::array<Loop, 4> loops_;
   std::atomic<bool> ends_ = false;
   std::atomic<int> sleepers_ = 0;
   std::mutex mutex_;

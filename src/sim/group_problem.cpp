@@ -1,5 +1,6 @@
 #include "sim/group_problem.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fem/assembly.h"
@@ -17,15 +18,16 @@ GroupProblem::GroupProblem(std::span<const Member> members, std::span<const Join
     : members_(members), joins_(joins), patterns_(patterns) {
   problems_.reserve(members.size());
   for (const Member& member : members) {
-    const bool large = member.body.nodes() >= large_body;
-    (large ? large_ : small_).push_back(problems_.size());
+    by_size_.push_back(problems_.size());
     problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures,
-                           large ? members[0].assembly : nullptr);
+                           member.body.nodes() >= large_body ? members[0].assembly : nullptr);
     const Eigen::Index size = member.state.x.size(), constraints = problems_.back().constraints();
     ranges_.push_back({size_, size, constraints_, constraints});
     size_ += size;
     constraints_ += static_cast<int>(constraints);
   }
+  std::stable_sort(by_size_.begin(), by_size_.end(),
+                   [&](std::size_t a, std::size_t b) { return ranges_[a].size < ranges_[b].size; });
   if (joins.empty()) return;
   std::vector<GroupPlace> bodies;
   for (std::size_t k = 0; k < members.size(); ++k)
@@ -77,9 +79,8 @@ std::vector<Part> GroupProblem::parts() const {
 
 template <class Work>
 void GroupProblem::for_each_member(const Work& work) const {
-  for (std::size_t k : large_) work(k);
-  for_each_chunk(workers(), static_cast<int>(small_.size()),
-                 [&](int i) noexcept { work(small_[static_cast<std::size_t>(i)]); });
+  for_each_chunk(workers(), static_cast<int>(by_size_.size()),
+                 [&](int i) noexcept { work(by_size_[static_cast<std::size_t>(i)]); });
 }
 
 Workers* GroupProblem::workers() const {

@@ -106,8 +106,8 @@ class GroupProblem : public ConstrainedEnergy {
   VecX part_of(std::size_t member, const VecX& x) const {
     return x.segment(ranges_[member].first, ranges_[member].size);
   }
-  /// Calls work(member), which must be noexcept and write nothing that another's does, for each: large bodies one after
-  /// the other, each shared by all threads, then small ones whole.
+  /// Calls work(member), which must be noexcept and write nothing that another's does, for each; the largest is begun
+  /// first, and who has nothing left to begin helps with it.
   template <class Work>
   void for_each_member(const Work& work) const;
   /// Those that may act at x, or on a step from there (null: none).
@@ -128,8 +128,8 @@ class GroupProblem : public ConstrainedEnergy {
   GroupPatterns& patterns_;
   std::vector<BodyProblem> problems_;
   std::vector<Range> ranges_;
-  std::vector<std::size_t> large_, small_;  ///< members
-  Eigen::Index size_ = 0;                   ///< coordinates
+  std::vector<std::size_t> by_size_;  ///< members, the largest last
+  Eigen::Index size_ = 0;             ///< coordinates
   int constraints_ = 0;
 };
 

@@ -115,6 +115,20 @@ TEST(Workers, ShareALoopAmongThreads) {
   EXPECT_EQ(threads.size(), 2U);
 }
 
+TEST(Workers, ShareALoopWithinALoopOnceTheOuterOneHasNoMoreToBegin) {
+  Workers workers(2);
+  // Alone in the inner loop, its caller would stay in the first chunk for good.
+  std::atomic<int> begun = 0;
+  workers.for_each(2, [&](int outer) noexcept {
+    if (outer == 0) return;
+    workers.for_each(2, [&](int) noexcept {
+      ++begun;
+      while (begun < 2) std::this_thread::yield();
+    });
+  });
+  EXPECT_EQ(begun, 2);
+}
+
 TEST(Workers, OneThreadIsTheCallersAndItsChunksAreInOrder) {
   Workers workers(1);
   std::vector<int> order;
