@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/timed.h"
+#include "fem/assembly.h"
 #include "numerics/response.h"
 #include "sim/blades.h"
 #include "sim/body_rubbing.h"
@@ -364,15 +365,20 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
                 const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
                 Prediction& out) {
   const BodyParts parts(field);
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+  Workers* workers = field.assembly ? &field.assembly->workers() : nullptr;
+  std::vector<double> own(field.organs.size(), out.share);
+  for_each_chunk(workers, static_cast<int>(own.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
     const Organ& organ = field.organs[k];
-    out.share = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),
-                                            contact_keep, out.share);
-  }
+    own[k] = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),
+                                         contact_keep, own[k]);
+  });
+  for (double share : own) out.share = std::min(out.share, share);
   // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
   if (out.loaded && !field.group.joins.empty()) {
-    const VecX x = parts.present(field);
-    for (const JoinPointer& join : field.group.joins) out.share = join->safe_share(x, out.dx, out.share);
+    std::vector<const Join*> joins;
+    for (const JoinPointer& join : field.group.joins) joins.push_back(join.get());
+    out.share = safe_share(joins, parts.present(field), out.dx, out.share, workers);
   }
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Poses partly = between(from, to, out.share);

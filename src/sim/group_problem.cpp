@@ -18,9 +18,11 @@ GroupProblem::GroupProblem(std::span<const Member> members, std::span<const Join
     : members_(members), joins_(joins), patterns_(patterns) {
   problems_.reserve(members.size());
   for (const Member& member : members) {
+    const bool large = member.body.nodes() >= large_body;
+    small_ += large ? 0 : 1;
     by_size_.push_back(problems_.size());
     problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures,
-                           member.body.nodes() >= large_body ? members[0].assembly : nullptr);
+                           large ? members[0].assembly : nullptr);
     const Eigen::Index size = member.state.x.size(), constraints = problems_.back().constraints();
     ranges_.push_back({size_, size, constraints_, constraints});
     size_ += size;
@@ -78,9 +80,15 @@ std::vector<Part> GroupProblem::parts() const {
 }
 
 template <class Work>
-void GroupProblem::for_each_member(const Work& work) const {
-  for_each_chunk(workers(), static_cast<int>(by_size_.size()),
-                 [&](int i) noexcept { work(by_size_[static_cast<std::size_t>(i)]); });
+void GroupProblem::for_each_member(const Work& work, std::span<const Join* const> joins,
+                                   const VecX* x) const {
+  // The last are begun first: what takes longest.
+  const std::size_t found = small_ + joins.size();
+  for_each_chunk(workers(), static_cast<int>(by_size_.size() + joins.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    if (k >= small_ && k < found) return joins[k - small_]->find(*x);
+    work(by_size_[k < small_ ? k : k - joins.size()]);
+  });
 }
 
 Workers* GroupProblem::workers() const {
@@ -101,20 +109,14 @@ std::vector<const Join*> GroupProblem::joins_at(const VecX& x, const VecX* step)
   return out;
 }
 
-std::vector<const Join*> GroupProblem::find_joins(const VecX& x) const {
-  std::vector<const Join*> out = joins_at(x);
-  for_each_chunk(workers(), static_cast<int>(out.size()),
-                 [&](int j) noexcept { out[static_cast<std::size_t>(j)]->find(x); });
-  return out;
-}
-
 double GroupProblem::value(const VecX& x) const {
   std::vector<double> values(problems_.size());
-  for_each_member([&](std::size_t k) noexcept { values[k] = problems_[k].value(part_of(k, x)); });
+  const std::vector<const Join*> joins = joins_at(x);
+  for_each_member([&](std::size_t k) noexcept { values[k] = problems_[k].value(part_of(k, x)); }, joins, &x);
   double sum = 0;
   for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k) sum += values[k];
   if (!std::isfinite(sum)) return sum;
-  for (const Join* join : find_joins(x)) {
+  for (const Join* join : joins) {
     sum += join->value(x);
     if (!std::isfinite(sum)) return sum;
   }
@@ -127,28 +129,31 @@ double GroupProblem::cancelling() const {
   return sum;
 }
 
-void GroupProblem::add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const {
+void GroupProblem::add_joins(std::span<const Join* const> joins, const VecX& x, VecX& gradient,
+                             VecX& largest_internal) const {
   if (joins_.empty()) return;
-  for (const Join* join : find_joins(x)) join->add_gradient(x, gradient);
+  for (const Join* join : joins) join->add_gradient(x, gradient);
   for (std::size_t k = 0; k < problems_.size(); ++k)
     largest_internal[static_cast<Eigen::Index>(k)] =
         force_scale(largest_internal[static_cast<Eigen::Index>(k)], part_of(k, gradient));
 }
 
 void GroupProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const {
+  const std::vector<const Join*> joins = joins_at(x);
   if (alone()) {
     problems_[0].gradient(x, gradient, largest_internal);
-    return add_joins(x, gradient, largest_internal);
+    return add_joins(joins, x, gradient, largest_internal);
   }
   gradient.resize(size_);
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
-  for_each_member([&](std::size_t k) noexcept {
+  const auto own_part = [&](std::size_t k) noexcept {
     VecX own, internal;
     problems_[k].gradient(part_of(k, x), own, internal);
     gradient.segment(ranges_[k].first, ranges_[k].size) = own;
     largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
-  });
-  add_joins(x, gradient, largest_internal);
+  };
+  for_each_member(own_part, joins, &x);
+  add_joins(joins, x, gradient, largest_internal);
 }
 
 void GroupProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const {
@@ -195,15 +200,16 @@ VecX GroupProblem::constraint_values(const VecX& x) const {
 
 void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal,
                                            VecX& values, Eigen::MatrixXd& of_constraints) const {
+  const std::vector<const Join*> joins = joins_at(x);
   if (alone()) {
     problems_[0].gradient_and_constraint(x, of_energy, largest_internal, values, of_constraints);
-    return add_joins(x, of_energy, largest_internal);
+    return add_joins(joins, x, of_energy, largest_internal);
   }
   of_energy.resize(size_);
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
   values.resize(constraints_);
   of_constraints.setZero(size_, constraints_);
-  for_each_member([&](std::size_t k) noexcept {
+  const auto own_part = [&](std::size_t k) noexcept {
     VecX own, internal, own_values;
     Eigen::MatrixXd own_constraints;
     const Range& range = ranges_[k];
@@ -216,8 +222,9 @@ void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX&
     }
     of_energy.segment(range.first, range.size) = own;
     largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
-  });
-  add_joins(x, of_energy, largest_internal);
+  };
+  for_each_member(own_part, joins, &x);
+  add_joins(joins, x, of_energy, largest_internal);
 }
 
 VecX GroupProblem::constraint_scales() const {
@@ -306,7 +313,17 @@ double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
       [&](std::size_t k) noexcept { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
   double share = 1;
   for (double own : shares) share = std::min(share, own);
-  for (const Join* join : joins_at(x, &step)) share = join->safe_share(x, step, share);
+  return calot::safe_share(joins_at(x, &step), x, step, share, workers());
+}
+
+double safe_share(std::span<const Join* const> joins, const VecX& x, const VecX& step, double share,
+                  Workers* workers) {
+  std::vector<double> shares(joins.size(), share);
+  for_each_chunk(workers, static_cast<int>(joins.size()), [&](int j) noexcept {
+    const auto k = static_cast<std::size_t>(j);
+    shares[k] = joins[k]->safe_share(x, step, share);
+  });
+  for (double own : shares) share = std::min(share, own);
   return share;
 }
 

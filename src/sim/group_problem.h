@@ -60,6 +60,10 @@ class Join {
 
 using JoinPointer = std::shared_ptr<const Join>;
 
+/// The largest part of `share` of the step that all of these find safe; threads ask several at a time.
+double safe_share(std::span<const Join* const> joins, const VecX& x, const VecX& step, double share,
+                  Workers* workers);
+
 /// Matrices of the single bodies, with room for what couples each with itself, and the couplings that the joint one
 /// was made for. Of a body alone there is none: its matrix is the group's.
 struct GroupPatterns {
@@ -106,22 +110,22 @@ class GroupProblem : public ConstrainedEnergy {
   VecX part_of(std::size_t member, const VecX& x) const {
     return x.segment(ranges_[member].first, ranges_[member].size);
   }
-  /// Calls work(member), which must be noexcept and write nothing that another's does, for each; the largest is begun
-  /// first, and who has nothing left to begin helps with it.
+  /// Calls work(member), which must be noexcept and write nothing that another's does, for each, and meanwhile finds what
+  /// `joins` do at x; the largest is begun first, and who has nothing left to begin helps with it.
   template <class Work>
-  void for_each_member(const Work& work) const;
+  void for_each_member(const Work& work, std::span<const Join* const> joins = {},
+                       const VecX* x = nullptr) const;
   /// Those that may act at x, or on a step from there (null: none).
   std::vector<const Join*> joins_at(const VecX& x, const VecX* step = nullptr) const;
-  /// Likewise; what acts is found.
-  std::vector<const Join*> find_joins(const VecX& x) const;
   Workers* workers() const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
   /// One a node: what is not kept is condensed.
   std::vector<char> kept_nodes() const;
   void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
-  /// Adds what joins the bodies; residuals are judged beside these forces, too.
-  void add_joins(const VecX& x, VecX& gradient, VecX& largest_internal) const;
+  /// Adds what these joins, found at x, do to the bodies; residuals are judged beside these forces, too.
+  void add_joins(std::span<const Join* const> joins, const VecX& x, VecX& gradient,
+                 VecX& largest_internal) const;
 
   std::span<const Member> members_;
   std::span<const JoinPointer> joins_;
@@ -129,6 +133,7 @@ class GroupProblem : public ConstrainedEnergy {
   std::vector<BodyProblem> problems_;
   std::vector<Range> ranges_;
   std::vector<std::size_t> by_size_;  ///< members, the largest last
+  std::size_t small_ = 0;             ///< the first of these are not worth sharing
   Eigen::Index size_ = 0;             ///< coordinates
   int constraints_ = 0;
 };
