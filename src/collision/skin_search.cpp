@@ -14,6 +14,16 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
+/// Where some points are, and how they move.
+struct Bound {
+  Box place, motion;
+
+  void extend(const Bound& other) {
+    place.extend(other.place);
+    motion.extend(other.motion);
+  }
+};
+
 /// What of a skin is looked at: its points, simplices or edges, in a tree. `corners(item)`: its points.
 template <class Corners>
 class Items {
@@ -24,33 +34,35 @@ class Items {
         points_(&points),
         motions_(motions),
         corners_(std::move(corners)),
-        place_(tree.nodes.size()),
-        motion_(tree.nodes.size()) {
+        own_(tree.order.size()),
+        group_(tree.nodes.size()) {
+    for (std::size_t k = 0; k < own_.size(); ++k)
+      for (int point : corners_(tree.order[k])) {
+        own_[k].place.extend(points[point]);
+        own_[k].motion.extend(motion(point));
+      }
     for (int n = static_cast<int>(tree.nodes.size()) - 1; n >= 0; --n) {
       const ItemTree::Node& node = tree.nodes[n];
-      if (node.left >= 0) {
-        place_[n] = place_[node.left].merged(place_[node.right]);
-        motion_[n] = motion_[node.left].merged(motion_[node.right]);
-        continue;
-      }
-      for (int k = node.first; k < node.last; ++k)
-        for (int point : corners(tree.order[k]))
-          place_[n].extend(points[point]), motion_[n].extend(moves(point));
+      if (node.left >= 0)
+        group_[n].extend(group_[node.left]), group_[n].extend(group_[node.right]);
+      else
+        for (int k = node.first; k < node.last; ++k) group_[n].extend(own_[k]);
     }
   }
 
   const ItemTree& tree() const { return *tree_; }
   std::span<const int> corners(const int& item) const { return corners_(item); }
   const Vec3& at(int point) const { return (*points_)[point]; }
-  Vec3 moves(int point) const { return motions_ ? (*motions_)[point] : Vec3::Zero().eval(); }
-  const Box& place(int node) const { return place_[node]; }  ///< of a group
-  const Box& motion(int node) const { return motion_[node]; }
+  bool moves() const { return motions_ != nullptr; }
+  Vec3 motion(int point) const { return motions_ ? (*motions_)[point] : Vec3::Zero().eval(); }
+  const Bound& own(int place) const { return own_[place]; }  ///< of an item, by its place in the tree's order
+  const Bound& group(int node) const { return group_[node]; }
 
  private:
   const ItemTree* tree_;
   const std::vector<Vec3>*points_, *motions_;
   Corners corners_;
-  std::vector<Box> place_, motion_;
+  std::vector<Bound> own_, group_;
 };
 
 auto points_of(const PlacedSkin& placed) {
@@ -91,18 +103,22 @@ class Search {
  public:
   /// `radii`: sum of both, m.
   Search(const One& one, const Other& other, const SkinReach& wanted, double radii, Found found)
-      : one_(one), other_(other), wanted_(wanted), radii_(radii), found_(std::move(found)) {
+      : one_(one),
+        other_(other),
+        wanted_(wanted),
+        radii_(radii),
+        moving_(one.moves() || other.moves()),
+        still_reach_(reach(0)),
+        found_(std::move(found)) {
     if (!one.tree().nodes.empty() && !other.tree().nodes.empty()) visit(0, 0);
   }
 
  private:
   void visit(int a, int b) {
     const ItemTree::Node &p = one_.tree().nodes[a], &q = other_.tree().nodes[b];
-    const double near = group_reach(a, b);
-    if (one_.place(a).squaredExteriorDistance(other_.place(b)) >= near * near) return;
-    if (stay_apart(one_.place(a), one_.motion(a), other_.place(b), other_.motion(b))) return;
+    if (are_far(one_.group(a), other_.group(b))) return;
     if (p.left < 0 && q.left < 0) {
-      compare(a, b);
+      compare(p, q, other_.group(b));
     } else if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first)) {
       visit(p.left, b);
       visit(p.right, b);
@@ -117,58 +133,58 @@ class Search {
     return radii_ + std::min(std::max(wanted_.reach, motion / wanted_.lost), wanted_.nearer + motion);
   }
 
-  /// Whether what is in the boxes, and moves by what is in the others, stays too far apart.
-  bool stay_apart(const Box& one, const Box& moves, const Box& other, const Box& other_moves) const {
+  /// Whether what is in these bounds is too far apart, or stays so.
+  bool are_far(const Bound& one, const Bound& other) const {
+    const double near = moving_ ? reach(one.motion.merged(other.motion).sizes().norm()) : still_reach_;
+    return one.place.squaredExteriorDistance(other.place) >= near * near ||
+           (moving_ && stay_apart(one, other));
+  }
+
+  bool stay_apart(const Bound& one, const Bound& other) const {
     if (std::isinf(wanted_.nearer)) return false;
-    const Vec3 common = moves.merged(other_moves).center();
-    const auto swept = [&](const Box& at, const Box& by) {
-      return Box(at.min() + (by.min() - common).cwiseMin(0), at.max() + (by.max() - common).cwiseMax(0));
+    const Vec3 common = one.motion.merged(other.motion).center();
+    const auto swept = [&](const Bound& of) {
+      return Box(of.place.min() + (of.motion.min() - common).cwiseMin(0),
+                 of.place.max() + (of.motion.max() - common).cwiseMax(0));
     };
     const double near = radii_ + wanted_.nearer;
-    return swept(one, moves).squaredExteriorDistance(swept(other, other_moves)) >= near * near;
+    return swept(one).squaredExteriorDistance(swept(other)) >= near * near;
   }
 
-  double group_reach(int a, int b) const {
-    return reach(one_.motion(a).merged(other_.motion(b)).sizes().norm());
-  }
-
-  void compare(int a, int b) {
-    const ItemTree::Node &p = one_.tree().nodes[a], &q = other_.tree().nodes[b];
-    const double near = group_reach(a, b);
+  void compare(const ItemTree::Node& p, const ItemTree::Node& q, const Bound& others) {
     for (int i = p.first; i < p.last; ++i) {
-      const int& item = one_.tree().order[i];
-      Box box, moves;
-      for (int point : one_.corners(item)) box.extend(one_.at(point)), moves.extend(one_.moves(point));
-      if (other_.place(b).squaredExteriorDistance(box) >= near * near) continue;
-      for (int j = q.first; j < q.last; ++j) meet(item, box, moves, other_.tree().order[j]);
+      const Bound& own = one_.own(i);
+      if (are_far(own, others)) continue;
+      // Most are told apart by their boxes alone, which costs a tenth.
+      for (int j = q.first; j < q.last; ++j)
+        if (!are_far(own, other_.own(j))) meet(one_.tree().order[i], other_.tree().order[j]);
     }
   }
 
-  void meet(const int& item, const Box& around, const Box& moves, const int& other) {
+  void meet(const int& item, const int& other) {
     const std::span<const int> ids = one_.corners(item), other_ids = other_.corners(other);
     std::array<Vec3, 3> corners, other_corners;
-    Box box, other_moves;
-    double motion = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) corners[i] = one_.at(ids[i]);
-    for (std::size_t k = 0; k < other_ids.size(); ++k) {
-      other_corners[k] = other_.at(other_ids[k]);
-      box.extend(other_corners[k]);
-      other_moves.extend(other_.moves(other_ids[k]));
-      for (int id : ids)
-        motion = std::max(motion, (one_.moves(id) - other_.moves(other_ids[k])).squaredNorm());
-    }
-    const double near = reach(std::sqrt(motion));
-    // Most are told apart by the boxes alone, which costs a tenth.
-    if (box.squaredExteriorDistance(around) >= near * near) return;
-    if (stay_apart(around, moves, box, other_moves)) return;
+    for (std::size_t k = 0; k < other_ids.size(); ++k) other_corners[k] = other_.at(other_ids[k]);
+    const double near = moving_ ? reach(std::sqrt(largest_motion_squared(ids, other_ids))) : still_reach_;
     const double distance = distance_of(corners, ids.size(), other_corners, other_ids.size());
     if (distance < near) found_(item, other, distance);
+  }
+
+  /// Of a point of one against one of the other, m^2.
+  double largest_motion_squared(std::span<const int> ids, std::span<const int> other_ids) const {
+    double out = 0;
+    for (int id : ids)
+      for (int other : other_ids) out = std::max(out, (one_.motion(id) - other_.motion(other)).squaredNorm());
+    return out;
   }
 
   const One& one_;
   const Other& other_;
   const SkinReach& wanted_;
   double radii_;
+  bool moving_;
+  double still_reach_;  ///< m, where nothing moves
   Found found_;
 };
 
