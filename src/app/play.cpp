@@ -173,7 +173,9 @@ LoadOptions project_options() {
 /// Measures and scores; writes the report where there is an output folder.
 std::optional<Failure> make_report(Played& played) {
   const SessionResult& session = played.session;
-  played.report.score = score(played.exercise, session.metrics, session.progress);
+  Result<Score> scored = score(played.exercise, session.metrics, session.progress);
+  if (!scored) return scored.failure();
+  played.report.score = std::move(scored).value();
   played.json = report_json(played.exercise, session, played.report);
   if (played.output.empty()) return std::nullopt;
   if (const std::string plot = force_plot(played.exercise.scene, session.traces); !plot.empty()) {

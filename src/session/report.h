@@ -19,7 +19,8 @@ struct SessionReport {
   std::optional<LiveFigures> live;     ///< of a session that was operated
 };
 
-/// Total, verdict and parts; `aborted` as in the report.
+/// Total, verdict, the gates that were tripped (of these, critical events once more) and parts, each with its reason;
+/// `aborted` as in the report.
 OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted);
 
 /// Pretty-printed, keys in a fixed order, with a final line end.

@@ -258,7 +258,7 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   EXPECT_TRUE(result.notes.empty()) << "everything could be measured";
   result.notes = {"a note"};
   SessionReport report;
-  report.score = score(script.definition(), result.metrics, result.progress);
+  report.score = score(script.definition(), result.metrics, result.progress).value();
   const auto json = nlohmann::json::parse(report_json(script.definition(), result, report));
   for (const char* key :
        {"schema", "scenario", "seed", "steps", "events", "metrics", "score", "state_hash", "timing"}) {
