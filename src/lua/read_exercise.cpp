@@ -70,19 +70,20 @@ class ScoreReader {
     const TableReader reader(check_, &value, path, api_table("gate"));
     reader.read(gate);
     gate.place.path = path;
+    const auto given = [&](const char* key) { return value.field(key) != nullptr; };  // fit or not
     const auto expect = [&](bool good, const char* what, const char* hint) {
       if (!good) check_.problem(path, what, hint);
     };
     if (reader.has("reason"))
       expect(!gate.reason.empty(), "the gate's reason is empty", "say in a sentence why it fails");
-    expect(reader.has("event") || reader.has("metric"), "the gate has no condition",
+    expect(given("event") || given("metric"), "the gate has no condition",
            "give event = \"perforation\", or metric and below or above");
-    expect(reader.has("event") || !(reader.has("only_after") || reader.has("organ")),
+    expect(given("event") || !(given("only_after") || given("organ")),
            "only_after and organ say more of an event, and there is none", "give event too");
-    expect(reader.has("only_after") || !reader.has("after_organ"),
+    expect(given("only_after") || !given("after_organ"),
            "after_organ says more of only_after, and there is none", "give only_after too");
-    const bool bounded = gate.below.has_value() != gate.above.has_value();
-    expect(reader.has("metric") ? bounded : !gate.below && !gate.above,
+    const bool bounded = given("below") != given("above");
+    expect(given("metric") ? bounded : !given("below") && !given("above"),
            "a metric needs below or above, one of them, and they need a metric",
            "such as metric = \"note.critical_view_points\", below = 5");
     return gate;

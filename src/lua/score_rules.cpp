@@ -159,6 +159,7 @@ void push_run(lua_State* L, const RuleRun& run) {
 /// Calls `found` with the time of each event that run:method(event, organ) asks for.
 template <class Found>
 void for_events(lua_State* L, const char* method, const Found& found) {
+  lua_settop(L, 3);
   if (!lua_istable(L, 1) || lua_getfield(L, 1, "events") != LUA_TTABLE)
     luaL_error(L, "run:%s must be called with a colon, as in run:%s(\"cut\")", method, method);
   if (lua_type(L, 2) != LUA_TSTRING || !event_called(lua_tostring(L, 2))) {

@@ -254,8 +254,9 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
   const std::size_t end = csv.out.find("\r\n");
   const std::string head = csv.out.substr(0, end), row = csv.out.substr(end + 2);
   EXPECT_TRUE(
-      head.starts_with("file,from,end,whole,stopped_at_s,total,passed,completed,critical,"
-                       "left.path_length_mm points,left.path_length_mm measured,empty_grasp points,"))
+      head.starts_with("file,from,end,whole,stopped_at_s,total,passed,completed,critical,gates,"
+                       "left.path_length_mm points,left.path_length_mm measured,left.path_length_mm reason,"
+                       "empty_grasp points,"))
       << head;
   EXPECT_TRUE(row.starts_with("out/recording.jsonl,recording,done,true,0.2,")) << row;
   EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(row.begin(), row.end(), ','));
