@@ -99,12 +99,17 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
     if (!active || organ.definition.keep_clear == 0) continue;
     const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     const std::vector<double>& radii = organ.body->skin_radii();
-    for (std::size_t p = 0; p < skin.size(); ++p) {
-      const double distance = distance_to(tool, shapes, skin[p]) - radii[p];
+    // Of a tube, whose points stand far apart, between them too.
+    const std::size_t parts = rod_of(organ) == nullptr ? 1 : 8;
+    for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
+      const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
+      const Vec3 at =
+          skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
+      const double distance = distance_to(tool, shapes, at) - radii[p];
       if (distance >= organ.definition.keep_clear || distance >= nearest) continue;
       kept = &organ;
       nearest = distance;
-      place = skin[p];
+      place = at;
     }
   }
   if (kept != nullptr && !tool.beside_kept)
@@ -141,15 +146,6 @@ void burn_wall(const Organ* wall, Tool& tool, const Vec3& at, double energy,
 }
 
 }  // namespace
-
-bool burns(const Field& field) {
-  return std::any_of(field.tools.begin(), field.tools.end(), [&](const Tool& tool) {
-    return std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
-      return tool.burnt_record >= 0 && organ.record == tool.burnt_record &&
-             tool.burnt < organ.definition.wall.burn_energy;
-    });
-  });
-}
 
 std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
                                       double duration) {

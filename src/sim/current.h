@@ -13,7 +13,4 @@ namespace calot {
 std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
                                       double duration);
 
-/// Whether a wall is being burnt that is not yet open: the next step is another one though nothing moves.
-bool burns(const Field& field);
-
 }  // namespace calot

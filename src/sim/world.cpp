@@ -208,6 +208,12 @@ void add_tool(Hash& hash, const Tool& tool) {
   hash.add(tool.touched);
   hash.add(tool.over_limit);
   if (tool.dry > 0) hash.add(tool.dry);
+  if (tool.on_clip || tool.beside_kept)
+    hash.add(static_cast<unsigned char>((tool.on_clip ? 1 : 0) | (tool.beside_kept ? 2 : 0)));
+  if (tool.burnt > 0) {
+    hash.add(tool.burnt);
+    hash.add(tool.burnt_record);
+  }
   add_pose(hash, tool.pose);
 }
 
@@ -581,8 +587,7 @@ Result<StepReport> World::step(const StepInput& input) {
   if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
   self.observe(std::move(events).value(), input.actions);
   self.still.reset();
-  if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before) &&
-      !burns(self.field))
+  if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
     self.still = input;
   return self.report;
 }
