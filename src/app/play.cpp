@@ -182,6 +182,8 @@ std::optional<Failure> make_report(Played& played) {
     const Result<std::string> drawn = write_text(played.output / "force_over_way.svg", plot);
     if (!drawn) return drawn.failure();
   }
+  const Result<std::string> table = write_text(played.output / "events.csv", events_csv(session.progress));
+  if (!table) return table.failure();
   const Result<std::string> written = write_text(played.output / "report.json", played.json);
   return written ? std::nullopt : std::optional<Failure>(written.failure());
 }

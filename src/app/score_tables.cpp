@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/terminal.h"
+#include "session/csv.h"
 
 namespace calot {
 namespace {
@@ -90,21 +91,10 @@ OrderedJson benchmarks_json(const std::optional<BenchmarkTable>& table) {
   return {{"name", table->name}, {"version", table->version}, {"calibration", table->calibration}};
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 /// A text as it is, another value as JSON has it; nothing for null.
-std::string csv_field(const OrderedJson& value) {
+std::string csv_value(const OrderedJson& value) {
   if (value.is_null()) return {};
   return csv_field(value.is_string() ? value.get<std::string>() : value.dump());
-}
-
-std::string csv_row(const std::vector<std::string>& fields) {
-  return fmt::format("{}\r\n", fmt::join(fields, ","));
 }
 
 std::set<std::string> all_metrics(const ClassScores& scores) {
@@ -127,16 +117,16 @@ std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson&
                            gate["found"].get<std::string>());
   std::vector<std::string> fields;
   for (const char* key : {"file", "from", "end", "whole", "stopped_at_s"})
-    fields.push_back(csv_field(entry[key]));
-  for (const char* key : {"total", "passed", "completed"}) fields.push_back(csv_field(score[key]));
+    fields.push_back(csv_value(entry[key]));
+  for (const char* key : {"total", "passed", "completed"}) fields.push_back(csv_value(score[key]));
   fields.push_back(csv_field(critical));
   fields.push_back(csv_field(reasons));
   const OrderedJson* parts = parts_of(scores, entry);
   for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
     for (const char* key : {"points", "measured", "explanation"})
-      fields.push_back(parts != nullptr ? csv_field((*parts)[i][key]) : "");
+      fields.push_back(parts != nullptr ? csv_value((*parts)[i][key]) : "");
   for (const std::string& name : metrics)
-    fields.push_back(entry["metrics"].contains(name) ? csv_field(entry["metrics"][name]) : "");
+    fields.push_back(entry["metrics"].contains(name) ? csv_value(entry["metrics"][name]) : "");
   fields.emplace_back();
   return fields;
 }
@@ -251,7 +241,7 @@ std::string scores_csv(const ClassScores& scores) {
     if (is_scored(entry)) {
       fields = csv_entry(scores, entry, metrics);
     } else {
-      fields.front() = csv_field(entry["file"]);
+      fields.front() = csv_value(entry["file"]);
       fields.back() = csv_field(failure_text(entry));
     }
     text += csv_row(fields);

@@ -1,7 +1,11 @@
 #include "session/report.h"
 
+#include <fmt/format.h>
+
 #include "base/hash.h"
+#include "base/units.h"
 #include "session/build_info.h"
+#include "session/csv.h"
 #include "session/json.h"
 #include "session/progress_json.h"
 
@@ -118,6 +122,28 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
     json["parts"].push_back(std::move(entry));
   }
   return json;
+}
+
+std::string events_csv(const Progress& progress) {
+  std::string text = csv_row({"time_s", "event", "step", "instrument", "organ", "value", "unit", "x_mm",
+                              "y_mm", "z_mm", "cause", "text"});
+  for (const SessionEvent& event : progress.events()) {
+    const std::string key = event_row(event.kind).value;
+    const std::string value = key.empty() ? "" : fmt::format("{}", event.value);
+    std::vector<std::string> row{fmt::format("{}", event.time),
+                                 to_text(event.kind),
+                                 event.step,
+                                 event.instrument,
+                                 event.organ,
+                                 value,
+                                 key};
+    for (int i = 0; i < 3; ++i)
+      row.push_back(event.place ? fmt::format("{}", (*event.place)[i] / units::mm) : "");
+    row.push_back(to_text(event.cause));
+    row.push_back(csv_field(event.text));
+    text += csv_row(row);
+  }
+  return text;
 }
 
 double real_time_factor(const SessionResult& session) {
