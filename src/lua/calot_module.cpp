@@ -40,7 +40,7 @@ int benchmark(lua_State* L) { return marked(L, "calot.score.benchmark", "benchma
 int penalty(lua_State* L) { return marked(L, "calot.score.penalty", "penalty"); }
 
 int procedure(lua_State* L) { return marked(L, "calot.score.procedure", "procedure"); }
-int time(lua_State* L) { return marked(L, "calot.score.time", "time"); }
+int score_time(lua_State* L) { return marked(L, "calot.score.time", "time"); }
 
 /// Its table may be left out: everything in it has a default.
 int critical_view(lua_State* L) {
@@ -111,7 +111,7 @@ struct Function {
 const Function functions[] = {{"calot", "exercise", exercise}, {"calot", "anatomy", anatomy},
                               {"score", "weighted", weighted}, {"score", "benchmark", benchmark},
                               {"score", "penalty", penalty},   {"score", "procedure", procedure},
-                              {"score", "time", time},         {"score", "critical_view", critical_view},
+                              {"score", "time", score_time},   {"score", "critical_view", critical_view},
                               {"score", "rule", rule}};
 
 void push_functions(lua_State* L, const std::string& owner) {

@@ -12,7 +12,7 @@
 namespace calot {
 namespace {
 
-std::vector<std::string> names_of(const std::vector<EventKind>& kinds) {
+std::vector<std::string> kind_names(const std::vector<EventKind>& kinds) {
   std::vector<std::string> names;
   for (const EventKind kind : kinds) names.push_back(to_text(kind));
   return names;
@@ -29,15 +29,15 @@ OrderedJson benchmark_json(const ScorePart& part) {
       break;
     case ScorePartKind::procedure:
       json = {{"steps", part.steps},
-              {"minor", names_of(part.minor)},
+              {"minor", kind_names(part.minor)},
               {"minor_costs", part.minor_costs},
-              {"major", names_of(part.major)},
+              {"major", kind_names(part.major)},
               {"major_costs", part.major_costs}};
       break;
     case ScorePartKind::time:
       json = {{"reference_s", part.reference},
               {"limit_s", part.limit},
-              {"errors", names_of(part.errors)},
+              {"errors", kind_names(part.errors)},
               {"each_s", part.each_s}};
       break;
     case ScorePartKind::critical_view:
