@@ -29,6 +29,26 @@ local function roll_across(port, at, along)
   return math.atan(-dot(x, along) / dot(y, along))
 end
 
+-- A clip slides off a stump that is too short: how far the cut is from the nearest clip, on either side.
+local function stump(run)
+  local cuts = run:times("cut", run.params.structure)
+  if #cuts == 0 then return 0, "it was never cut" end
+  local nearest, behind = math.huge, cuts[1]
+  for _, cut in ipairs(run.events) do
+    for _, clip in ipairs(run.events) do
+      if cut.event == "cut" and cut.organ == run.params.structure and clip.event == "clip" and clip.time < cut.time then
+        local way = plus(clip.place, cut.place, -1)
+        local distance = math.sqrt(dot(way, way))
+        if distance < nearest then nearest, behind = distance, clip.time end
+      end
+    end
+  end
+  if nearest == math.huge then return 0, "there was no clip when it was cut", cuts end
+  local share = math.min(1, math.max(0, (nearest - 0.5 * mm) / (1.5 * mm)))
+  return share, string.format("it was cut %.1f mm from the nearest clip; 2 mm leave a stump", nearest / mm),
+    { behind, cuts[1] }
+end
+
 local ports = { applier = { -10 * mm, 120 * mm, -5 * mm }, blades = { 0, 0, 0 } }
 
 -- An instrument as the demo moves it: it knows how it is turned.
@@ -97,7 +117,10 @@ return calot.exercise {
       hint = "each all across it, with the tips of its legs in view beyond, and room to cut between",
     })
     t:wait_until(function() return t:divided(p.structure) or #t:clips(p.structure) == 3 end)
-    t:step("divide", "Divide it between the clips", { limit = 30 * s })
+    t:step("divide", "Divide it between the clips", {
+      limit = 30 * s,
+      hint = "first a time-out: say what is about to be divided, and what was seen of it",
+    })
     if t:wait_until(function() return t:divided(p.structure) end) then
       t:note("patient_clips", shut(t, p.structure .. ".patient"))
       t:note("specimen_clips", shut(t, p.structure .. ".specimen"))
@@ -127,6 +150,7 @@ return calot.exercise {
     end, function()
       if p.demo == "expert" then set_clips() end
     end)
+    if p.demo == "expert" then t:time_out("two structures and no more enter the gallbladder") end
     cuts.about(tube, plan_of.cut, 6 * mm, 50 * mm / s)
     t.blades:close()
     if p.demo == "clumsy" then t.applier:fire() end
@@ -136,10 +160,16 @@ return calot.exercise {
 
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "note.patient_clips", novice = 0, expert = 2 }, weight = 0.4 },
-    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.2 },
-    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.2 },
-    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.2 },
+    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.15 },
+    { calot.score.rule(stump), name = "stump", weight = 0.15 },
+    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.15 },
+    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.15 },
     critical = { "cut_unclipped", "perforation", "cut_liver" },
+    gates = {
+      { event = "injury", organ = "common_duct", reason = "the common duct was hurt" },
+      { event = "injury", organ = "right_hepatic_artery", reason = "the right hepatic artery was hurt" },
+      { event = "cut", only_after = "time_out", fails = false, cap = 70, reason = "it was divided without a time-out" },
+    },
     cap = 40,
     pass = 80,
   },

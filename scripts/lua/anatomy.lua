@@ -205,6 +205,8 @@ function anatomy.standard(overrides)
     { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
     { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
   }, { nodes = 13, patient_end = "start" })
+  common.injury = { cut = "Strasberg E", closed = "Strasberg E", partly = "Strasberg D" }
+  common.keep_clear = 3 * mm -- of current; uncalibrated
   local union = anatomy.along(common.shape.points, p.union)
 
   -- It leaves the neck without a step, and enters the common duct's side.
@@ -212,6 +214,7 @@ function anatomy.standard(overrides)
   local begins = add(neck, unit(minus(bladder.shape.along[2].at, neck)), 2.5 * mm)
   local cystic = tube("cystic_duct", bowed(begins, enters, p.cystic_duct_length, unit(add(caudal, back, -0.4))),
     5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
+  cystic.injury = { unclipped = "Strasberg A" } -- its stump leaks
 
   -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
   local to_hilum = { { 6, 3.5, -14 }, { 4, 10, -26 } }
@@ -223,6 +226,11 @@ function anatomy.standard(overrides)
     { name = "ligament", landmark = "middle", radius = 14 * mm, stiffness = 5e4 },
     { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
   }, { nodes = 15, patient_end = "start", carries = "blood" })
+  hepatic_artery.injury = {
+    cut = "right hepatic artery divided",
+    closed = "right hepatic artery closed",
+    partly = "right hepatic artery injured",
+  }
 
   local bed_width = math.max(35 * mm, 2 * p.gallbladder_width - 31 * mm)
   local organs = { bladder, {

@@ -31,7 +31,9 @@
 ---Parts of the score; their weights sum to 1, the total is 0 to 100.
 ---@class calot.weighted
 ---@field critical? string[] events that cap the total and fail the exercise
----@field cap? number the total's largest value after a critical event; default 40; 0 to 100 points
+---@field gates? calot.gate[] conditions that cap the total and fail the exercise
+---@field cap? number the total's largest value after a critical event, or behind a gate; default 40; 0 to 100 points
+---@field bail_out_completes? boolean true: who bails out may pass without the steps that are left; default false
 ---@field pass? number the total from which on the exercise is passed; default 80; 0 to 100 points
 ---@field [integer] calot.part
 
@@ -39,7 +41,7 @@
 ---@class calot.part
 ---@field weight number its share of the total; 0 to 1
 ---@field name? string its name in the report; default the metric or the event
----@field [integer] calot.benchmark|calot.penalty
+---@field [integer] calot.benchmark|calot.penalty|calot.procedure|calot.time_score|calot.critical_view|calot.rule
 
 ---A metric between a novice's value (no points) and an expert's (all points).
 ---@class calot.benchmark
@@ -49,8 +51,47 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
+
+---Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.
+---@class calot.procedure
+---@field steps? string[] the steps that earn; left out: all
+---@field minor? string[] events that are minor errors
+---@field minor_costs? number points of 100 that each of these costs; default 2; 0 to 100 points
+---@field major? string[] events that are major errors
+---@field major_costs? number points of 100 that each of these costs; default 10; 0 to 100 points
+
+---The session's time, lengthened by errors, between a limit (no points) and a reference (all).
+---@class calot.time_score
+---@field reference number earns all; 0 to 3600 s
+---@field limit number earns nothing; 0 to 3600 s
+---@field errors? string[] events that lengthen it
+---@field each? number by which each does; default 5 * s; 0 to 3600 s
+
+---The points of the critical view of safety, as steps noted them.
+---@class calot.critical_view
+---@field metric? string the metric that holds its points; default "note.critical_view_points"
+---@field satisfactory? number points from which on it is one; default 5; 0 to 100 points
+---@field full? number points that earn all; default 6; 0.1 to 100 points
+
+---A part that the author's own function judges.
+---@class calot.rule
+---@field judge fun(run: calot.Run): number, string, number[]? the function
+
+---Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came too early, a metric beyond a value. A metric that was never measured is beyond.
+---@class calot.gate
+---@field reason string one sentence for the trainee
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" this happened
+---@field organ? string to this organ or tissue, or a piece of it
+---@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" and this had not happened before
+---@field after_organ? string to this organ or tissue, or a piece of it
+---@field metric? string this metric is beyond a value
+---@field below? number below this
+---@field above? number above this
+---@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
+---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
+---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
 ---When pictures are compared with golden ones.
 ---@class calot.golden
@@ -198,6 +239,15 @@
 ---@field looks? "bile"|"pale" how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops); default "bile"
 ---@field extensions? boolean false: no structural extensions on this organ; default true
 ---@field compared_with? string another organ of the same shape; the metrics mean_difference_pct and largest_difference_pct then say how far this one's skin is from moving like that one's
+---@field injury? calot.injury what it is called when this organ, which should be kept, is hurt
+---@field keep_clear? number current that flows nearer to it is the event activation_beside; 0: it may; default 0 * mm; 0 to 100 mm
+
+---What an instructor calls an injury of this organ, such as "Strasberg E": the text of the event injury. What is left out is none.
+---@class calot.injury
+---@field cut? string it is divided
+---@field closed? string a clip shuts it
+---@field partly? string a clip holds a part of its width, or current goes through its wall
+---@field unclipped? string it is divided without a shut clip on the patient's side
 
 ---The organ's wall.
 ---@class calot.wall
@@ -206,6 +256,9 @@
 ---@field stiffening? number b of the exponential Fung (Demiray) law; 0: neo-Hookean; default 0; 0 to 100
 ---@field fibres? calot.fibres makes the wall anisotropic; {}: as measured in human gallbladders, whose shear_modulus is 85 * kPa
 ---@field overstretch? number principal stretch above which the event overstretch is raised; default 2.2; 1.01 to 10
+---@field perforation_stretch? number principal stretch above which a hollow organ's wall is opened: the event perforation; default 3; 1.01 to 20
+---@field pinch_limit? number jaws that pinch harder open a hollow organ's wall: 15 to 37 N by jaw; default 15 * N; 0.5 to 100 N
+---@field burn_energy? number J of current in one place that go through the wall; default 15; 0.1 to 1000
 ---@field density? number kg/m^3; 1050 is usual; 0: without weight and inertia; default 0; 0 to 2000 kg/m^3
 ---@field retardation? number how long stress lags behind a change of shape where motion is dynamic: it damps; default 0.005 * s; 0 to 1 s
 
@@ -310,6 +363,25 @@
 ---@field place number share of the tube's length from its start; 0 to 1
 ---@field opening number share of the tube's width that it does not hold; 0: it is shut; 0 to 1
 ---@field size "M"|"ML" the clip's size
+
+---An event of a session, as a rule sees it.
+---@class calot.event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" its kind
+---@field time number when, s
+---@field step string the step that ran
+---@field instrument? string whose it is
+---@field organ? string or tissue, that it happened to
+---@field value? number as the kind says, in the unit that it says
+---@field place? calot.point where, m
+---@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped" what did it
+---@field text? string an injury's class; what was said at a time-out or a bail-out
+
+---A step of a session, as a rule sees it.
+---@class calot.step
+---@field name string its name
+---@field outcome "done"|"timeout"|"bail_out"|"aborted" how it ended
+---@field started number when it began, s
+---@field ended number when it ended, s
 
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
 ---@class calot.Session
@@ -419,10 +491,24 @@ function Steps:tie(joint) end
 ---@param other string the other's name
 function Steps:untie(organ, other) end
 
+---How many events of a kind there have been, such as time_out; those of this step come before it.
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@param organ? string only those of this organ or tissue, or a piece of it
+---@return number
+function Steps:count(event, organ) end
+
 ---The t of demo = function(t, p): moves the instruments.
 ---@class calot.Demo: calot.Session
 ---@field [string] calot.DemoInstrument
 local Demo = {}
+
+---A time-out: the act of stopping to say what is seen. The event time_out has the words as its text.
+---@param words? string what is said, up to 200 bytes
+function Demo:time_out(words) end
+
+---Ends the operation otherwise than planned: the session ends in this step, and is scored.
+---@param how? string how, such as subtotal or convert, up to 200 bytes
+function Demo:bail_out(how) end
 
 ---Runs functions side by side, one for each instrument say, until all have ended.
 ---@param first fun() runs side by side with the others
@@ -541,6 +627,27 @@ function DemoInstrument:rotate(angle, options) end
 ---@param duration number how long; 0 to 3600 s
 function DemoInstrument:wait(duration) end
 
+---A session that has ended, as a rule of the score sees it. metrics holds those that were measured by their names, notes what t:note gave last, params what was chosen, events and steps lists in the order of time.
+---@class calot.Run
+---@field events calot.event[]
+---@field steps calot.step[]
+---@field metrics table<string, number>
+---@field notes table<string, number|string|boolean>
+---@field params table<string, any>
+local Run = {}
+
+---How many events of a kind there were.
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@param organ? string only those of this organ or tissue, or a piece of it
+---@return integer
+function Run:count(event, organ) end
+
+---When there were events of a kind, s, ascending.
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@param organ? string only those of this organ or tissue, or a piece of it
+---@return number[]
+function Run:times(event, organ) end
+
 ---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.
 ---@class calot.units
 ---@field mm number millimetre
@@ -578,6 +685,26 @@ function score.benchmark(definition) end
 ---@param definition calot.penalty the event
 ---@return calot.penalty
 function score.penalty(definition) end
+
+---Scores the steps that were done less errors by their severity.
+---@param definition calot.procedure steps and errors
+---@return calot.procedure
+function score.procedure(definition) end
+
+---Scores the session's time less penalties for errors.
+---@param definition calot.time_score the times, and errors
+---@return calot.time_score
+function score.time(definition) end
+
+---Scores the points of the critical view that steps noted.
+---@param definition? calot.critical_view the metric and its points
+---@return calot.critical_view
+function score.critical_view(definition) end
+
+---A part of the author's own; it needs a name. The function is asked when the session has ended, and whenever a recording is scored, in a Lua state of its own: it sees what was measured, and no world. It returns the share of the part that was earned, 0 to 1, the reason in a sentence, and the times (s) behind it.
+---@param judge fun(run: calot.Run): number, string, number[]? judges a session
+---@return calot.rule
+function score.rule(judge) end
 
 ---@class calot
 ---@field units calot.units

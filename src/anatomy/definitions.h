@@ -118,7 +118,12 @@ struct WallDefinition {
   double stiffening = 0;
   std::optional<FibreDefinition> fibres;  ///< none: isotropic
   double overstretch = 2.2;               ///< principal stretch above which `overstretch` is raised (d)
-  double density = 0;  ///< kg/m^3; soft tissue 1050 (c); 0: neither weight nor inertia, as in the paper
+  // What opens it, as the event `perforation`; holes are not cut.
+  double perforation_stretch =
+      3;                    ///< principal stretch: 0.9 MPa of the usual wall, which fails at 0.3 to 1.2 (d)
+  double pinch_limit = 15;  ///< N, of a jaw on a fold; damage is seen at 15 to 37 by jaw (c)
+  double burn_energy = 15;  ///< J of current in one place: a spot of 2 mm, 2 mm deep, boiled away (d)
+  double density = 0;       ///< kg/m^3; soft tissue 1050 (c); 0: neither weight nor inertia, as in the paper
   double retardation = 5e-3;  ///< s; its stress is that at x + this dx/dt, where it moves (d, uncalibrated)
 };
 
@@ -139,6 +144,15 @@ struct HeldRegion {
   bool while_filled = false;
 };
 
+/// What an instructor calls it when an organ that should be kept is hurt, such as "Strasberg E": the text of the event
+/// `injury`. Empty: it is none.
+struct InjuryDefinition {
+  std::string cut;        ///< it is divided
+  std::string closed;     ///< a clip shuts it
+  std::string partly;     ///< a clip holds a part of its width, or current goes through its wall
+  std::string unclipped;  ///< it is divided without a shut clip on the patient's side
+};
+
 /// How a hollow organ is drawn: full of bile, or pale, as one that mucus has filled (hydrops).
 enum class OrganLooks { bile, pale };
 
@@ -155,6 +169,8 @@ struct OrganDefinition {
   OrganLooks looks = OrganLooks::bile;
   bool extensions = true;     ///< false: none are laid on this organ, whatever the solver's levels
   std::string compared_with;  ///< another organ of the same shape and posture, see session/skin_difference.h
+  InjuryDefinition injury;
+  double keep_clear = 0;  ///< m: current nearer to it is the event `activation_beside`; 0: it may be (d)
 };
 
 /// What ties a place on one body to one on another, which follows it: where a duct grows out of an organ or enters

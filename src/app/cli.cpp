@@ -153,7 +153,8 @@ void add_operate(Program& program) {
   command.footer(
       "Lines of input: pose T NAME pitch yaw insertion roll jaw [ACTION], tip T NAME x y z roll jaw "
       "[ACTION],\n"
-      "pause, resume, restart, abandon, end. Times in s, places in m, angles in rad.");
+      "pause, resume, restart, abandon, end, time_out [WORDS], bail_out [HOW]. Times in s, places in m, "
+      "angles in rad.");
   command.callback([&program] { program.chosen = [&program] { return operate_command(program.operate); }; });
 }
 

@@ -249,6 +249,14 @@ void IgtlMessages::read_string(std::string_view content, std::vector<LiveEvent>&
 }
 
 void IgtlMessages::read_command(const std::string& text, std::vector<LiveEvent>& events) {
+  const std::size_t blank = text.find(' ');
+  if (const std::string name = text.substr(0, blank); is_session_act(name)) {
+    Result<SessionAct> act =
+        read_session_act(name, blank == std::string::npos ? std::string() : text.substr(blank + 1));
+    if (!act) return refuse(act.failure().problems[0].message, act.failure().problems[0].hint, events);
+    events.emplace_back(std::move(act).value());
+    return;
+  }
   const std::vector<std::string>& commands = live_command_names();
   const auto found = std::find(commands.begin(), commands.end(), text);
   if (found == commands.end())

@@ -5,7 +5,8 @@
 //   TRANSFORM, POSITION, TDATA   where a tool is, mm: its device name (TDATA: its own) is the registration's `source`
 //   SENSOR of one value          how far its jaws are open; device: the registration's `jaw`, else SOURCE/jaw
 //   STRING                       device SOURCE/action: an action (`activate`), or `none`, until the next;
-//                                device `session`: a command (`pause`, `resume`, `restart`, `abandon`, `end`)
+//                                device `session`: a command (`pause`, `resume`, `restart`, `abandon`, `end`), or an act
+//                                with what is said (`time_out landmarks named`, `bail_out subtotal`)
 //
 // What else is sent (STATUS, requests, images) is left out, and said once for each kind and device.
 

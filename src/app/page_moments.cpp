@@ -12,11 +12,14 @@ constexpr int jpeg_quality = 80;
 }  // namespace
 
 std::set<EventKind> error_kinds(const ExerciseDefinition& exercise) {
-  using enum EventKind;
-  std::set<EventKind> kinds{empty_grasp, slip, overforce, overstretch, step_timeout};
-  kinds.insert(exercise.score.critical.begin(), exercise.score.critical.end());
-  for (const ScorePart& part : exercise.score.parts)
+  std::set<EventKind> kinds(exercise.score.critical.begin(), exercise.score.critical.end());
+  for (const EventRow& row : event_rows())
+    if (row.error) kinds.insert(row.kind);
+  for (const ScorePart& part : exercise.score.parts) {
     if (part.kind == ScorePartKind::penalty) kinds.insert(part.event);
+    for (const auto* counted : {&part.minor, &part.major, &part.errors})
+      kinds.insert(counted->begin(), counted->end());
+  }
   return kinds;
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/page_plots.h"
 #include "app/score_tables.h"
+#include "base/units.h"
 #include "page/html.h"
 #include "session/live.h"
 #include "session/metrics.h"
@@ -17,10 +18,16 @@ namespace {
 /// "force 5.2 N" of 5.2 and "force_N".
 std::string value_text(const SessionEvent& event) {
   const std::string key = event_row(event.kind).value;
-  if (key.empty()) return {};
+  if (key.empty()) return event.text;
   const std::size_t bar = key.rfind('_');
   const std::string unit = bar == std::string::npos ? "" : " " + key.substr(bar + 1);
   return fmt::format("{} {:.4g}{}", key.substr(0, bar), event.value, unit);
+}
+
+std::string place_text(const SessionEvent& event) {
+  if (!event.place) return {};
+  const Vec3 mm = *event.place / units::mm;
+  return fmt::format("{:.0f}, {:.0f}, {:.0f}", mm.x(), mm.y(), mm.z());
 }
 
 /// The events that are listed, by their index, in the order of time.
@@ -44,7 +51,8 @@ void add_events(const Watched& watched, PageRecording& page) {
     page.events.push_back(
         {row.name, row.doc, event.time, event.step, event.instrument, event.organ, value_text(event),
          errors.contains(event.kind),
-         picture == watched.moments.events.end() ? std::nullopt : std::optional(picture->second)});
+         picture == watched.moments.events.end() ? std::nullopt : std::optional(picture->second),
+         to_text(event.cause), place_text(event)});
   }
   page.events_left_out = events.size() - page.events.size();
 }
@@ -88,6 +96,11 @@ PagePart part_of(const OrderedJson& json, const PageRecording& page) {
         events_at(json["event_times_s"], page, [&](const PageEvent& found) { return found.kind == event; });
     return part;
   }
+  if (!benchmark.contains("novice")) {
+    part.rule = json["kind"] == "rule" ? "A rule of the exercise's author." : std::string();
+    part.events = events_at(json["event_times_s"], page, [](const PageEvent&) { return true; });
+    return part;
+  }
   part.novice_expert = {benchmark["novice"].get<double>(), benchmark["expert"].get<double>()};
   const auto metric = benchmark["metric"].get<std::string>();
   const std::optional<EventKind> behind = event_behind(metric.substr(metric.rfind('.') + 1));
@@ -108,12 +121,12 @@ void add_score(const OrderedJson& entry, PageRecording& page) {
   page.verdict = verdict_text(entry);
   page.stopped_at = entry["stopped_at_s"].get<double>();
   for (const OrderedJson& part : score["parts"]) page.score.parts.push_back(part_of(part, page));
-  for (const OrderedJson& critical : score["critical"]) {
-    const auto event = critical["event"].get<std::string>();
-    page.score.critical.push_back(
-        {event, critical["cap"].get<double>(),
-         events_at(critical["times_s"], page, [&](const PageEvent& found) { return found.kind == event; })});
-  }
+  for (const OrderedJson& gate : score["gates"])
+    page.score.gates.push_back({gate["reason"].get<std::string>(), gate["found"].get<std::string>(),
+                                gate["cap"].get<double>(), gate["fails"].get<bool>(),
+                                events_at(gate["times_s"], page, [&](const PageEvent& found) {
+                                  return gate["event"] == found.kind;
+                                })});
 }
 
 /// The step that a metric is of, or in which it was noted; none of those of the whole session.

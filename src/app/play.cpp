@@ -173,13 +173,17 @@ LoadOptions project_options() {
 /// Measures and scores; writes the report where there is an output folder.
 std::optional<Failure> make_report(Played& played) {
   const SessionResult& session = played.session;
-  played.report.score = score(played.exercise, session.metrics, session.progress);
+  Result<Score> scored = score(played.exercise, session.metrics, session.progress);
+  if (!scored) return scored.failure();
+  played.report.score = std::move(scored).value();
   played.json = report_json(played.exercise, session, played.report);
   if (played.output.empty()) return std::nullopt;
   if (const std::string plot = force_plot(played.exercise.scene, session.traces); !plot.empty()) {
     const Result<std::string> drawn = write_text(played.output / "force_over_way.svg", plot);
     if (!drawn) return drawn.failure();
   }
+  const Result<std::string> table = write_text(played.output / "events.csv", events_csv(session.progress));
+  if (!table) return table.failure();
   const Result<std::string> written = write_text(played.output / "report.json", played.json);
   return written ? std::nullopt : std::optional<Failure>(written.failure());
 }

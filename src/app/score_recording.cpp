@@ -34,9 +34,12 @@ std::string end_of(const Recording& recording, const SessionResult& session) {
   return came_to_its_end(recording.end) ? to_text(session.end) : recording.end;
 }
 
-void add_measured(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
-                  const Progress& progress, const std::vector<std::string>& notes, OrderedJson& entry) {
-  Score total = score(exercise, metrics, progress);
+std::optional<Failure> add_measured(const ExerciseDefinition& exercise,
+                                    const std::map<std::string, double>& metrics, const Progress& progress,
+                                    const std::vector<std::string>& notes, OrderedJson& entry) {
+  Result<Score> scored = score(exercise, metrics, progress);
+  if (!scored) return scored.failure();
+  Score total = std::move(scored).value();
   const bool whole = entry["whole"].get<bool>();
   total.passed = total.passed && whole;
   entry["params"] = exercise.params;
@@ -44,6 +47,7 @@ void add_measured(const ExerciseDefinition& exercise, const std::map<std::string
   entry["metrics"] = metrics;
   entry["steps"] = steps_json(progress);
   entry["notes"] = notes;
+  return std::nullopt;
 }
 
 /// What a simulation measured otherwise than the recording says.
@@ -174,7 +178,9 @@ std::optional<Failure> RecordingScorer::add_score(const Recording& recording, Or
   const Measured& held = *recording.measured;
   std::vector<std::string> notes = held.notes;
   if (const std::optional<std::string> cut = cut_note(recording)) notes.push_back(*cut);
-  add_measured(exercise.definition, held.metrics, held.progress, notes, entry);
+  if (std::optional<Failure> wrong =
+          add_measured(exercise.definition, held.metrics, held.progress, notes, entry))
+    return wrong;
   if (!request_.watcher) return std::nullopt;
   if (request_.watcher->held) {
     request_.watcher->held(recording, exercise.definition);
@@ -221,8 +227,7 @@ std::optional<Failure> RecordingScorer::simulate(const Recording& recording, con
   entry["stopped_at_s"] = session.traces.time.back();
   std::vector<std::string> notes = session.notes;
   if (session.end == SessionEnd::failed) notes.push_back(to_text(session.failure));
-  add_measured(exercise.definition, session.metrics, session.progress, notes, entry);
-  return std::nullopt;
+  return add_measured(exercise.definition, session.metrics, session.progress, notes, entry);
 }
 
 }  // namespace calot

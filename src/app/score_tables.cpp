@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/terminal.h"
+#include "session/csv.h"
 
 namespace calot {
 namespace {
@@ -90,21 +91,10 @@ OrderedJson benchmarks_json(const std::optional<BenchmarkTable>& table) {
   return {{"name", table->name}, {"version", table->version}, {"calibration", table->calibration}};
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 /// A text as it is, another value as JSON has it; nothing for null.
-std::string csv_field(const OrderedJson& value) {
+std::string csv_value(const OrderedJson& value) {
   if (value.is_null()) return {};
   return csv_field(value.is_string() ? value.get<std::string>() : value.dump());
-}
-
-std::string csv_row(const std::vector<std::string>& fields) {
-  return fmt::format("{}\r\n", fmt::join(fields, ","));
 }
 
 std::set<std::string> all_metrics(const ClassScores& scores) {
@@ -121,17 +111,22 @@ std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson&
   std::string critical;
   for (const OrderedJson& event : score["critical"])
     critical += (critical.empty() ? "" : " ") + event["event"].get<std::string>();
+  std::string reasons;
+  for (const OrderedJson& gate : score["gates"])
+    reasons += fmt::format("{}{} ({})", reasons.empty() ? "" : "; ", gate["reason"].get<std::string>(),
+                           gate["found"].get<std::string>());
   std::vector<std::string> fields;
   for (const char* key : {"file", "from", "end", "whole", "stopped_at_s"})
-    fields.push_back(csv_field(entry[key]));
-  for (const char* key : {"total", "passed", "completed"}) fields.push_back(csv_field(score[key]));
+    fields.push_back(csv_value(entry[key]));
+  for (const char* key : {"total", "passed", "completed"}) fields.push_back(csv_value(score[key]));
   fields.push_back(csv_field(critical));
+  fields.push_back(csv_field(reasons));
   const OrderedJson* parts = parts_of(scores, entry);
   for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
-    for (const char* key : {"points", "measured"})
-      fields.push_back(parts != nullptr ? csv_field((*parts)[i][key]) : "");
+    for (const char* key : {"points", "measured", "explanation"})
+      fields.push_back(parts != nullptr ? csv_value((*parts)[i][key]) : "");
   for (const std::string& name : metrics)
-    fields.push_back(entry["metrics"].contains(name) ? csv_field(entry["metrics"][name]) : "");
+    fields.push_back(entry["metrics"].contains(name) ? csv_value(entry["metrics"][name]) : "");
   fields.emplace_back();
   return fields;
 }
@@ -169,11 +164,15 @@ std::string class_table(const ClassScores& scores) {
 
 std::string explained(const OrderedJson& entry) {
   std::vector<std::vector<std::string>> rows;
+  std::string gates;
+  for (const OrderedJson& gate : entry["score"]["gates"])
+    gates += fmt::format("  {} ({}): the total is capped at {:g}\n", gate["reason"].get<std::string>(),
+                         gate["found"].get<std::string>(), gate["cap"].get<double>());
   for (const OrderedJson& part : entry["score"]["parts"])
     rows.push_back({one_decimal(part["points"].get<double>()),
                     fmt::format("of {:.1f}", 100 * part["weight"].get<double>()),
                     part["name"].get<std::string>(), part["explanation"].get<std::string>()});
-  return table(rows, "rrll");
+  return gates + table(rows, "rrll");
 }
 
 std::string counts_text(const ClassScores& scores) {
@@ -208,6 +207,8 @@ std::string verdict_text(const OrderedJson& entry) {
   if (has_passed(entry)) return "passed";
   const OrderedJson& score = entry["score"];
   if (!score["critical"].empty()) return "critical: " + score["critical"][0]["event"].get<std::string>();
+  if (!score["gates"].empty() && score["gates"][0]["fails"].get<bool>())
+    return "failed: " + score["gates"][0]["reason"].get<std::string>();
   return score["completed"].get<bool>() ? "not passed" : "steps missing";
 }
 
@@ -224,11 +225,12 @@ std::string scores_json(const ClassScores& scores) {
 }
 
 std::string scores_csv(const ClassScores& scores) {
-  std::vector<std::string> head{"file",  "from",   "end",       "whole",   "stopped_at_s",
-                                "total", "passed", "completed", "critical"};
+  std::vector<std::string> head{"file",  "from",   "end",       "whole",    "stopped_at_s",
+                                "total", "passed", "completed", "critical", "gates"};
   for (const ScorePart& part : scores.exercise.score.parts) {
     head.push_back(csv_field(part.name + " points"));
     head.push_back(csv_field(part.name + " measured"));
+    head.push_back(csv_field(part.name + " reason"));
   }
   const std::set<std::string> metrics = all_metrics(scores);
   for (const std::string& name : metrics) head.push_back(csv_field(name));
@@ -239,7 +241,7 @@ std::string scores_csv(const ClassScores& scores) {
     if (is_scored(entry)) {
       fields = csv_entry(scores, entry, metrics);
     } else {
-      fields.front() = csv_field(entry["file"]);
+      fields.front() = csv_value(entry["file"]);
       fields.back() = csv_field(failure_text(entry));
     }
     text += csv_row(fields);

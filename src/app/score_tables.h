@@ -20,8 +20,8 @@ struct ClassScores {
 /// median, standard deviation (of a sample), least and most; and each part's mean points.
 std::string scores_json(const ClassScores& scores);
 
-/// RFC 4180, a row a recording: file, from, end, whole, stopped_at_s, total, passed, completed, critical, each part's
-/// points and what was measured, all metrics, failure. What is not known is empty.
+/// RFC 4180, a row a recording: file, from, end, whole, stopped_at_s, total, passed, completed, critical, gates with their reasons, each part's
+/// points, what was measured and the reason, all metrics, failure. What is not known is empty.
 std::string scores_csv(const ClassScores& scores);
 
 /// A table; of a single recording its parts, explained.

@@ -34,7 +34,9 @@ std::string events_text(const Progress& progress) {
   for (const SessionEvent& event : progress.events()) {
     if (ends_a_step(event.kind)) continue;  // the steps' table says it
     const std::string who = event.instrument.empty() ? event.organ : event.instrument;
-    const std::string name = fmt::format("{}{}{}", to_text(event.kind), who.empty() ? "" : " ", who);
+    std::string name = fmt::format("{}{}{}", to_text(event.kind), who.empty() ? "" : " ", who);
+    if (event.cause != EventCause::none) name += fmt::format(" ({})", to_text(event.cause));
+    if (!event.text.empty()) name += fmt::format(": {}", event.text);
     auto found =
         std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return kind.first == name; });
     if (found == kinds.end()) found = kinds.insert(kinds.end(), {name, {}});
@@ -75,7 +77,8 @@ std::string score_text(const Score& score) {
 
 std::string verdict(const Score& score) {
   if (score.passed) return green("passed");
-  if (!score.critical.empty()) return red("failed: critical event " + to_text(score.critical.front().event));
+  if (const TrippedGate* gate = failing_gate(score))
+    return red("failed: " + (gate->critical ? "critical event " + to_text(*gate->critical) : gate->reason));
   return red(score.completed ? "not passed" : "not passed: not every step was done");
 }
 
@@ -94,10 +97,9 @@ std::string summary(const Played& played) {
               ? fmt::format("\n{} none: the session did not come to its end\n", bold("Score"))
               : fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
                             verdict(score), played.exercise.score.pass);
-  for (const CriticalEvent& event : score.critical) {
-    text += fmt::format("  critical: {} {}; the total is capped at {:.0f}\n", to_text(event.event),
-                        times_text(event.times), played.exercise.score.cap);
-  }
+  for (const TrippedGate& gate : score.gates)
+    text += fmt::format("  {} ({}{}{}): the total is capped at {:.0f}\n", gate.reason, gate.explanation,
+                        gate.times.empty() ? "" : " ", times_text(gate.times), gate.cap);
   if (!played.report.aborted) text += score_text(score);
   text += "  Benchmarks are design values, uncalibrated.\n";
   text += fmt::format("\nState hash {}, {:.2f} x real time\n",

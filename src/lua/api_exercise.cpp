@@ -45,12 +45,16 @@ KeyTable exercise_table() {
 
 std::vector<KeyTable> score_tables() {
   using Score = ScoreDefinition;
+  using Gate = GateDefinition;
   Key part = bound(text("name", "the metric or the event", "its name in the report"), &ScorePart::name);
   KeyTable weighted =
       keys_of<Score>("weighted", "Parts of the score; their weights sum to 1, the total is 0 to 100.",
                      {list("critical", "text", "events that cap the total and fail the exercise"),
+                      list("gates", "gate", "conditions that cap the total and fail the exercise"),
                       number("cap", &Score::cap, quantity::points, 0, 100, "",
-                             "the total's largest value after a critical event"),
+                             "the total's largest value after a critical event, or behind a gate"),
+                      flag("bail_out_completes", &Score::bail_out_completes,
+                           "true: who bails out may pass without the steps that are left"),
                       number("pass", &Score::pass, quantity::points, 0, 100, "",
                              "the total from which on the exercise is passed")});
   weighted.items = "part";
@@ -58,7 +62,9 @@ std::vector<KeyTable> score_tables() {
       "part", "A part of the score: { calot.score.benchmark { ... }, weight = 0.5 }.",
       {required(number("weight", &ScorePart::weight, quantity::number, 0, 1, "", "its share of the total")),
        part});
-  weight.items = "benchmark|penalty";
+  weight.items = "benchmark|penalty|procedure|time_score|critical_view|rule";
+  Key view = bound(text("metric", "\"note.critical_view_points\"", "the metric that holds its points"),
+                   &ScorePart::metric);
   return {
       weighted,
       weight,
@@ -73,6 +79,48 @@ std::vector<KeyTable> score_tables() {
           "penalty", "Full marks, less a share for each event of a kind.",
           {required(choice("event", &ScorePart::event, event_names(), "the kind of event")),
            number("each", &ScorePart::each, quantity::number, 0, 1, "", "share lost with each")}),
+      keys_of<ScorePart>(
+          "procedure",
+          "Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.",
+          {list("steps", "text", "the steps that earn; left out: all"),
+           list("minor", "text", "events that are minor errors"),
+           number("minor_costs", &ScorePart::minor_costs, quantity::points, 0, 100, "",
+                  "points of 100 that each of these costs"),
+           list("major", "text", "events that are major errors"),
+           number("major_costs", &ScorePart::major_costs, quantity::points, 0, 100, "",
+                  "points of 100 that each of these costs")}),
+      keys_of<ScorePart>(
+          "time_score",
+          "The session's time, lengthened by errors, between a limit (no points) and a reference (all).",
+          {required(number("reference", &ScorePart::reference, quantity::time, 0, 3600 * s, "", "earns all")),
+           required(number("limit", &ScorePart::limit, quantity::time, 0, 3600 * s, "", "earns nothing")),
+           list("errors", "text", "events that lengthen it"),
+           number("each", &ScorePart::each_s, quantity::time, 0, 3600 * s, "", "by which each does")}),
+      keys_of<ScorePart>(
+          "critical_view", "The points of the critical view of safety, as steps noted them.",
+          {view,
+           number("satisfactory", &ScorePart::satisfactory, quantity::points, 0, 100, "",
+                  "points from which on it is one"),
+           number("full", &ScorePart::full, quantity::points, 0.1, 100, "", "points that earn all")}),
+      {"rule",
+       "A part that the author's own function judges.",
+       {required(function("judge", "fun(run: calot.Run): number, string, number[]?", "the function"))}},
+      keys_of<Gate>(
+          "gate",
+          "Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came "
+          "too early, a metric beyond a value. A metric that was never measured is beyond.",
+          {required(text("reason", &Gate::reason, "one sentence for the trainee")),
+           choice("event", &Gate::event, event_names(), "this happened"),
+           text("organ", &Gate::organ, "to this organ or tissue, or a piece of it"),
+           choice("only_after", &Gate::only_after, event_names(), "and this had not happened before"),
+           text("after_organ", &Gate::after_organ, "to this organ or tissue, or a piece of it"),
+           text("metric", &Gate::metric, "this metric is beyond a value"),
+           number("below", &Gate::below, quantity::number, -infinity, infinity, "", "below this"),
+           number("above", &Gate::above, quantity::number, -infinity, infinity, "", "above this"),
+           choice("unless", &Gate::unless, event_names(), "an event that excuses it, such as bail_out"),
+           number("cap", &Gate::cap, quantity::points, 0, 100, "",
+                  "the total's largest value then; left out: the score's"),
+           flag("fails", &Gate::fails, "false: it caps the total, and does not fail the exercise")}),
   };
 }
 

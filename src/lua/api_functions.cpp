@@ -4,6 +4,7 @@
 
 #include "base/units.h"
 #include "lua/api_parts.h"
+#include "sim/events.h"
 #include "sim/instrument.h"
 #include "sim/part_load.h"
 
@@ -56,6 +57,31 @@ std::vector<ApiFunction> module_functions() {
        "Takes off a share for each event.",
        {required(table("definition", "penalty", "the event"))},
        "calot.penalty"},
+      {"score",
+       "procedure",
+       "Scores the steps that were done less errors by their severity.",
+       {required(table("definition", "procedure", "steps and errors"))},
+       "calot.procedure"},
+      {"score",
+       "time",
+       "Scores the session's time less penalties for errors.",
+       {required(table("definition", "time_score", "the times, and errors"))},
+       "calot.time_score"},
+      {"score",
+       "critical_view",
+       "Scores the points of the critical view that steps noted.",
+       {table("definition", "critical_view", "the metric and its points")},
+       "calot.critical_view"},
+      {"score",
+       "rule",
+       "A part of the author's own; it needs a name. The function is asked when the session has ended, and "
+       "whenever a "
+       "recording is scored, in a Lua state of its own: it sees what was measured, and no world. It returns "
+       "the share "
+       "of "
+       "the part that was earned, 0 to 1, the reason in a sentence, and the times (s) behind it.",
+       {required(function("judge", "fun(run: calot.Run): number, string, number[]?", "judges a session"))},
+       "calot.rule"},
   };
 }
 
@@ -173,6 +199,22 @@ std::vector<ApiFunction> session_functions() {
        "Undoes all joints of two organs.",
        {required(text("organ", "", "an organ's name")), required(text("other", "", "the other's name"))},
        ""},
+      {"Steps",
+       "count",
+       "How many events of a kind there have been, such as time_out; those of this step come before it.",
+       {required(choice("event", event_names(), "", "the kind of event")),
+        text("organ", "", "only those of this organ or tissue, or a piece of it")},
+       "number"},
+      {"Demo",
+       "time_out",
+       "A time-out: the act of stopping to say what is seen. The event time_out has the words as its text.",
+       {text("words", "", "what is said, up to 200 bytes")},
+       ""},
+      {"Demo",
+       "bail_out",
+       "Ends the operation otherwise than planned: the session ends in this step, and is scored.",
+       {text("how", "", "how, such as subtotal or convert, up to 200 bytes")},
+       ""},
       {"Demo",
        "together",
        "Runs functions side by side, one for each instrument say, until all have ended.",
@@ -180,6 +222,13 @@ std::vector<ApiFunction> session_functions() {
         required(function("second", "fun()", "runs side by side with the others"))},
        ""},
   };
+}
+
+std::vector<ApiFunction> run_functions() {
+  const Key kind = required(choice("event", event_names(), "", "the kind of event"));
+  const Key on = text("organ", "", "only those of this organ or tissue, or a piece of it");
+  return {{"Run", "count", "How many events of a kind there were.", {kind, on}, "integer"},
+          {"Run", "times", "When there were events of a kind, s, ascending.", {kind, on}, "number[]"}};
 }
 
 std::vector<ApiFunction> instrument_functions() {
@@ -300,7 +349,7 @@ std::vector<ApiFunction> instrument_functions() {
 
 std::vector<ApiFunction> all_functions() {
   std::vector<ApiFunction> all = module_functions();
-  for (auto* more : {&session_functions, &instrument_functions})
+  for (auto* more : {&session_functions, &instrument_functions, &run_functions})
     for (ApiFunction& function : (*more)()) all.push_back(std::move(function));
   return all;
 }

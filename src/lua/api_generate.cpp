@@ -57,6 +57,11 @@ std::string annotate_class(const ApiClass& handle) {
   std::string text = fmt::format("\n---{}\n---@class calot.{}{}\n", handle.doc, handle.name, parent);
   if (handle.name == "Steps") text += "---@field [string] calot.Instrument\n";
   if (handle.name == "Demo") text += "---@field [string] calot.DemoInstrument\n";
+  if (handle.name == "Run")
+    text +=
+        "---@field events calot.event[]\n---@field steps calot.step[]\n---@field metrics table<string, "
+        "number>\n"
+        "---@field notes table<string, number|string|boolean>\n---@field params table<string, any>\n";
   return text + fmt::format("local {} = {{}}\n", handle.name) +
          annotate_functions(handle.name, fmt::format("{}:", handle.name));
 }
@@ -109,6 +114,30 @@ KeyTable contact_table() {
            required(number("force", quantity::force, 0, 0, "", "of the tissue on the whole part, N"))}};
 }
 
+/// Of what a rule's run.events has each.
+KeyTable event_table() {
+  return {"event",
+          "An event of a session, as a rule sees it.",
+          {required(choice("event", event_names(), "", "its kind")),
+           required(number("time", quantity::time, 0, 0, "", "when, s")),
+           required(text("step", "", "the step that ran")), text("instrument", "", "whose it is"),
+           text("organ", "", "or tissue, that it happened to"),
+           number("value", quantity::number, 0, 0, "", "as the kind says, in the unit that it says"),
+           point("place", quantity::length, 0, "", "where, m"),
+           choice("cause", event_cause_names(), "", "what did it"),
+           text("text", "", "an injury's class; what was said at a time-out or a bail-out")}};
+}
+
+/// Of its run.steps.
+KeyTable step_table() {
+  return {"step",
+          "A step of a session, as a rule sees it.",
+          {required(text("name", "", "its name")),
+           required(choice("outcome", {"done", "timeout", "bail_out", "aborted"}, "", "how it ended")),
+           required(number("started", quantity::time, 0, 0, "", "when it began, s")),
+           required(number("ended", quantity::time, 0, 0, "", "when it ended, s"))}};
+}
+
 /// Of what t:clips() returns each.
 KeyTable clip_table() {
   return {"clip",
@@ -154,6 +183,8 @@ std::string generate_annotations() {
   for (const KeyTable& table : api_tables()) text += annotate_table(table);
   text += annotate_table(contact_table());
   text += annotate_table(clip_table());
+  text += annotate_table(event_table());
+  text += annotate_table(step_table());
   for (const ApiClass& handle : api_classes()) text += annotate_class(handle);
   text +=
       "\n---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.\n---@class "
@@ -208,6 +239,8 @@ std::string generate_reference() {
   for (const KeyTable& table : api_tables()) text += describe_table(table);
   text += describe_table(contact_table());
   text += describe_table(clip_table());
+  text += describe_table(event_table());
+  text += describe_table(step_table());
   text += describe_names();
   text += "\n## Units\n\n";
   for (const ApiUnit& unit : api_units())

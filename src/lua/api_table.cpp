@@ -15,6 +15,7 @@ const Quantity points{"points", {}};
 std::string ApiFunction::full_name() const {
   if (owner == "calot") return "calot." + name;
   if (owner == "score") return "calot.score." + name;
+  if (owner == "Run") return "run:" + name;
   return (owner == "Instrument" || owner == "DemoInstrument" ? "t.<instrument>:" : "t:") + name;
 }
 
@@ -52,7 +53,12 @@ const std::vector<ApiClass>& api_classes() {
       {"Demo", "Session", "The t of demo = function(t, p): moves the instruments."},
       {"Instrument", "", "An instrument as steps see it: what it touches, holds and feels."},
       {"DemoInstrument", "Instrument",
-       "An instrument as the demo moves it. Motions return when they have ended."}};
+       "An instrument as the demo moves it. Motions return when they have ended."},
+      {"Run", "",
+       "A session that has ended, as a rule of the score sees it. metrics holds those that were measured by "
+       "their "
+       "names, "
+       "notes what t:note gave last, params what was chosen, events and steps lists in the order of time."}};
   return classes;
 }
 

@@ -39,6 +39,26 @@ int weighted(lua_State* L) { return marked(L, "calot.score.weighted", "weighted"
 int benchmark(lua_State* L) { return marked(L, "calot.score.benchmark", "benchmark"); }
 int penalty(lua_State* L) { return marked(L, "calot.score.penalty", "penalty"); }
 
+int procedure(lua_State* L) { return marked(L, "calot.score.procedure", "procedure"); }
+int score_time(lua_State* L) { return marked(L, "calot.score.time", "time"); }
+
+/// Its table may be left out: everything in it has a default.
+int critical_view(lua_State* L) {
+  if (lua_gettop(L) == 0) lua_newtable(L);
+  return marked(L, "calot.score.critical_view", "critical_view");
+}
+
+int rule(lua_State* L) {
+  if (!lua_isfunction(L, 1))
+    luaL_error(L, "calot.score.rule needs a function: calot.score.rule(function(run) ... end)");
+  lua_newtable(L);
+  lua_pushvalue(L, 1);
+  lua_setfield(L, -2, "judge");
+  lua_pushstring(L, "rule");
+  lua_setfield(L, -2, "kind");
+  return 1;
+}
+
 int anatomy(lua_State* L) {
   if (lua_type(L, 1) != LUA_TSTRING)
     return luaL_error(L, "calot.anatomy needs an anatomy's name, such as calot.anatomy(\"standard\")");
@@ -88,11 +108,11 @@ struct Function {
   lua_CFunction function;
 };
 
-const Function functions[] = {{"calot", "exercise", exercise},
-                              {"calot", "anatomy", anatomy},
-                              {"score", "weighted", weighted},
-                              {"score", "benchmark", benchmark},
-                              {"score", "penalty", penalty}};
+const Function functions[] = {{"calot", "exercise", exercise}, {"calot", "anatomy", anatomy},
+                              {"score", "weighted", weighted}, {"score", "benchmark", benchmark},
+                              {"score", "penalty", penalty},   {"score", "procedure", procedure},
+                              {"score", "time", score_time},   {"score", "critical_view", critical_view},
+                              {"score", "rule", rule}};
 
 void push_functions(lua_State* L, const std::string& owner) {
   lua_newtable(L);

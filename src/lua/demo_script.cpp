@@ -77,6 +77,7 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   StepInput input;
   for (const InstrumentPath& path : paths_) input.instruments.push_back(path.pose(end));
   input.actions = actions(end);
+  input.acts = std::exchange(acts_, {});
   return {std::optional<StepInput>(std::move(input))};
 }
 
@@ -407,6 +408,14 @@ std::vector<InstrumentAction> DemoScript::actions(double end) {
     fires_[i].reset();
   }
   return out;
+}
+
+/// In the step in which the calling function is.
+void DemoScript::act(lua_State* L, EventKind kind, const std::string& text) {
+  if (current(L) == nullptr) return;
+  Result<SessionAct> act = read_session_act(to_text(kind), text);
+  if (!act) return complain(L, act.failure());
+  if (!checking()) acts_.push_back(std::move(act).value());
 }
 
 int DemoScript::rotate(lua_State* L, int instrument, double angle, double speed) {

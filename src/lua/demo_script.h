@@ -5,6 +5,7 @@
 
 #include "lua/motion.h"
 #include "lua/script_session.h"
+#include "session/acts.h"
 
 namespace calot {
 
@@ -55,6 +56,7 @@ class DemoScript final : public ScriptSession, public InputSource {
   int activate(lua_State* L, int instrument, double duration);
   /// Sets a clip, and waits until the trigger is let go.
   int fire(lua_State* L, int instrument);
+  void act(lua_State* L, EventKind kind, const std::string& text);
   int rotate(lua_State* L, int instrument, double angle, double speed);
 
  protected:
@@ -111,6 +113,7 @@ class DemoScript final : public ScriptSession, public InputSource {
     double from = 0, to = 0;
   };
   std::vector<Flow> flows_;
+  std::vector<SessionAct> acts_;              ///< since the last step
   std::vector<std::optional<double>> fires_;  ///< s, one an instrument: when its trigger is pulled next
   int running_ = -1;
   double step_start_ = 0;  ///< s: the world's time in the present call

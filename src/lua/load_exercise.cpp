@@ -11,10 +11,12 @@
 #include "lua/handles.h"
 #include "lua/read_exercise.h"
 #include "lua/read_scene.h"
+#include "lua/score_rules.h"
 #include "lua/steps_script.h"
 #include "lua/table_file.h"
 #include "script/lua_headers.h"
 #include "script/source_map.h"
+#include "session/metrics.h"
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
 
@@ -55,6 +57,10 @@ class Loader {
   Result<std::unique_ptr<ExerciseScript>> load();
   /// Whether the file runs and returns something that is no exercise.
   bool is_module();
+  /// Asks the rules of the score in a fresh state: nothing that was played or asked before has touched it.
+  Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition& exercise,
+                                        const std::map<std::string, double>& metrics,
+                                        const Progress& progress);
 
  private:
   Result<Value> run_chunk(Sandbox& sandbox);
@@ -66,6 +72,8 @@ class Loader {
   /// A score that is a function of the parameters; a plain table has been read with the exercise.
   std::optional<Failure> call_score(Script& script, FieldCheck& check);
   ExerciseDefinition define(Script& script, FieldCheck& check);
+  /// The rules of the score, asked of a session in which nothing happened: names that do not exist are found so.
+  std::optional<Failure> try_rules(const Script& script, const ExerciseDefinition& definition);
   /// A failure is of resources; the scripts' own become problems.
   std::optional<Failure> run_dry(Script& script, ExerciseDefinition& definition, FieldCheck& check);
   void collect(const std::vector<Problem>& problems);
@@ -98,6 +106,21 @@ bool is_exercise(const Value& root) {
   const Value* kind = root.field("kind");
   return kind != nullptr && kind->text == "exercise";
 }
+
+/// Holds nothing but where the rules are: they are read again whenever they are asked.
+class LuaRules final : public ScoreRules {
+ public:
+  LuaRules(fs::path path, LoadOptions options) : path_(std::move(path)), options_(std::move(options)) {}
+  Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition& exercise,
+                                        const std::map<std::string, double>& metrics,
+                                        const Progress& progress) const override {
+    return Loader(path_, options_).judge(exercise, metrics, progress);
+  }
+
+ private:
+  fs::path path_;
+  LoadOptions options_;
+};
 
 class LuaExercise final : public ExerciseScript {
  public:
@@ -240,7 +263,8 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
       definition.note_names = declared->notes;
       definition.later_organs = declared->later;
       // Steps that were not reached have metrics nobody knows of: say nothing about them.
-      if (declared->complete) check_metrics(check, definition);
+      if (declared->complete) check_score(check, definition);
+      if (std::optional<Failure> failure = try_rules(script, definition)) return failure;
     } else if (declared.failure().kind == FailureKind::resource) {
       return declared.failure();
     } else {
@@ -250,6 +274,18 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
   std::optional<Failure> failure = demo.run_dry();
   if (failure && failure->kind == FailureKind::resource) return failure;
   if (failure && !demo.is_no_mistake(*failure)) collect(*failure);
+  return std::nullopt;
+}
+
+std::optional<Failure> Loader::try_rules(const Script& script, const ExerciseDefinition& definition) {
+  const std::vector<std::string> names = metric_names(definition);
+  const RuleRun nothing{definition, {}, Progress(), script.table.parameters, &names};
+  for (const ScorePart& part : definition.score.parts) {
+    if (part.kind != ScorePartKind::rule || part.rule == 0) continue;
+    const std::optional<Failure> failure = try_rule(*script.sandbox, part.rule, nothing);
+    if (failure && failure->kind != FailureKind::scenario) return failure;
+    if (failure) collect(*failure);
+  }
   return std::nullopt;
 }
 
@@ -335,9 +371,36 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   for (ScorePart& part : definition.score.parts) {
     part.place.file = path_.string();
     part.place.line = map_.line_of(part.place.path);
+    if (part.kind == ScorePartKind::rule && !definition.score.rules)
+      definition.score.rules = std::make_shared<LuaRules>(path_, options_);
   }
   return std::unique_ptr<ExerciseScript>(
       std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition), std::move(map_)));
+}
+
+Result<std::vector<RuleAnswer>> Loader::judge(const ExerciseDefinition& exercise,
+                                              const std::map<std::string, double>& metrics,
+                                              const Progress& progress) {
+  Result<std::string> text = Sandbox::read_text(path_);
+  if (!text) return text.failure();
+  text_ = std::move(text).value();
+  FieldCheck check;
+  Result<Script> script = open(true, check);
+  if (!script) return script.failure();
+  if (std::optional<Failure> failure = call_scene(script.value())) return *failure;
+  if (std::optional<Failure> failure = call_score(script.value(), check)) return *failure;
+  if (script->sandbox->source_hash() != exercise.source_hash)
+    return fail(FailureKind::usage, "the scenario has changed since it was read: its rules are not asked",
+                "play or score it again", {path_.string(), 0, {}});
+  const RuleRun run{exercise, metrics, progress, script->table.parameters, nullptr};
+  std::vector<RuleAnswer> answers;
+  for (const ScorePart& part : script->table.definition.score.parts) {
+    if (part.kind != ScorePartKind::rule) continue;
+    Result<RuleAnswer> answer = ask_rule(*script->sandbox, part.rule, run);
+    if (!answer) return answer.failure();
+    answers.push_back(std::move(answer).value());
+  }
+  return answers;
 }
 
 bool Loader::is_module() {

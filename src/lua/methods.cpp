@@ -9,6 +9,7 @@
 #include "lua/demo_script.h"
 #include "lua/handles.h"
 #include "lua/read_scene.h"
+#include "lua/score_rules.h"
 #include "lua/steps_script.h"
 #include "script/binding.h"
 
@@ -344,6 +345,13 @@ int note(lua_State* L) {
   return 0;
 }
 
+int count(lua_State* L) {
+  StepsScript& steps = steps_of(L, "count");
+  const Arguments arguments(L, steps, "Steps", "count");
+  lua_pushinteger(L, arguments.good() ? steps.count(L, arguments.text("event"), arguments.text("organ")) : 0);
+  return 1;
+}
+
 int hold(lua_State* L) {
   StepsScript& steps = steps_of(L, "hold");
   const Arguments arguments(L, steps, "Steps", "hold");
@@ -404,6 +412,20 @@ DemoScript& demo_of(lua_State* L, ScriptSession& session, const char* method) {
 DemoCall demo_call(lua_State* L, const char* method) {
   const HandleTarget target = instrument_target(L, method);
   return {demo_of(L, *target.session, method), target.instrument};
+}
+
+int time_out(lua_State* L) {
+  DemoScript& demo = demo_of(L, session_target(L, "time_out"), "time_out");
+  const Arguments arguments(L, demo, "Demo", "time_out");
+  if (arguments.good()) demo.act(L, EventKind::time_out, arguments.text("words"));
+  return 0;
+}
+
+int bail_out(lua_State* L) {
+  DemoScript& demo = demo_of(L, session_target(L, "bail_out"), "bail_out");
+  const Arguments arguments(L, demo, "Demo", "bail_out");
+  if (arguments.good()) demo.act(L, EventKind::bail_out, arguments.text("how"));
+  return 0;
 }
 
 int together(lua_State* L) {
@@ -541,7 +563,12 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Steps", "add", guarded<add>},
                           {"Steps", "tie", guarded<tie>},
                           {"Steps", "untie", guarded<untie>},
+                          {"Steps", "count", guarded<count>},
                           {"Demo", "together", guarded<together>},
+                          {"Demo", "time_out", guarded<time_out>},
+                          {"Demo", "bail_out", guarded<bail_out>},
+                          {"Run", "count", guarded<count_events_of_run>},
+                          {"Run", "times", guarded<times_of_events_of_run>},
                           {"Instrument", "holds", guarded<holds>},
                           {"Instrument", "force", guarded<force>},
                           {"Instrument", "handle_force", guarded<handle_force>},

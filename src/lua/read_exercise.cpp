@@ -38,7 +38,10 @@ class ScoreReader {
     }
     const TableReader reader(check_, &value_, "score", api_table("weighted"));
     reader.read(score);
-    if (const Value* critical = reader.take("critical")) score.critical = read_critical(*critical);
+    score.critical = read_events(reader, "critical");
+    if (const Value* gates = reader.take("gates"))
+      for (std::size_t i = 0; i < gates->items.size(); ++i)
+        score.gates.push_back(read_gate(gates->items[i], indexed("score.gates", i)));
     for (std::size_t i = 0; i < value_.items.size(); ++i) {
       ScorePart part;
       if (read_part(part, value_.items[i], indexed("score", i))) score.parts.push_back(part);
@@ -48,17 +51,42 @@ class ScoreReader {
   }
 
  private:
-  std::vector<EventKind> read_critical(const Value& list) {
+  std::vector<EventKind> read_events(const TableReader& reader, const std::string& key) {
     std::vector<EventKind> events;
-    for (std::size_t i = 0; i < list.items.size(); ++i) {
-      const std::string path = indexed("score.critical", i);
-      if (!list.items[i].is(Value::Kind::text)) {
+    const Value* list = reader.take(key);
+    for (std::size_t i = 0; list != nullptr && i < list->items.size(); ++i) {
+      const std::string path = indexed(reader.path_of(key), i);
+      if (!list->items[i].is(Value::Kind::text)) {
         check_.problem(path, "this must be an event's name", suggestion("", event_names()));
-      } else if (check_.known(path, list.items[i].text, event_names(), "event")) {
-        events.push_back(*event_called(list.items[i].text));
+      } else if (check_.known(path, list->items[i].text, event_names(), "event")) {
+        events.push_back(*event_called(list->items[i].text));
       }
     }
     return events;
+  }
+
+  GateDefinition read_gate(const Value& value, const std::string& path) {
+    GateDefinition gate;
+    const TableReader reader(check_, &value, path, api_table("gate"));
+    reader.read(gate);
+    gate.place.path = path;
+    const auto given = [&](const char* key) { return value.field(key) != nullptr; };  // fit or not
+    const auto expect = [&](bool good, const char* what, const char* hint) {
+      if (!good) check_.problem(path, what, hint);
+    };
+    if (reader.has("reason"))
+      expect(!gate.reason.empty(), "the gate's reason is empty", "say in a sentence why it fails");
+    expect(given("event") || given("metric"), "the gate has no condition",
+           "give event = \"perforation\", or metric and below or above");
+    expect(given("event") || !(given("only_after") || given("organ")),
+           "only_after and organ say more of an event, and there is none", "give event too");
+    expect(given("only_after") || !given("after_organ"),
+           "after_organ says more of only_after, and there is none", "give only_after too");
+    const bool bounded = given("below") != given("above");
+    expect(given("metric") ? bounded : !given("below") && !given("above"),
+           "a metric needs below or above, one of them, and they need a metric",
+           "such as metric = \"note.critical_view_points\", below = 5");
+    return gate;
   }
 
   bool read_part(ScorePart& part, const Value& value, const std::string& path) {
@@ -71,9 +99,19 @@ class ScoreReader {
       read_benchmark(part, value.items[0], path + "[1]");
     } else if (kind == "penalty") {
       read_penalty(part, value.items[0], path + "[1]");
+    } else if (kind == "procedure") {
+      read_procedure(part, value.items[0], path + "[1]");
+    } else if (kind == "time") {
+      read_time(part, value.items[0], path + "[1]");
+    } else if (kind == "critical_view") {
+      read_critical_view(part, value.items[0], path + "[1]");
+    } else if (kind == "rule") {
+      read_rule(part, value.items[0], path + "[1]");
+      if (!reader.has("name"))
+        check_.problem(path, "a rule needs a name",
+                       "write { calot.score.rule(...), name = \"order\", weight = 0.5 }");
     } else {
-      check_.problem(path,
-                     "a part of the score is one calot.score.benchmark or calot.score.penalty with a weight",
+      check_.problem(path, "a part of the score is one of calot.score's, such as a benchmark, with a weight",
                      "write { calot.score.benchmark { ... }, weight = 0.5 }");
       all_weighted_ = false;
       return false;
@@ -102,6 +140,48 @@ class ScoreReader {
     part.kind = ScorePartKind::penalty;
     reader.read(part);
     part.name = to_text(part.event);
+  }
+
+  void read_procedure(ScorePart& part, const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("procedure"));
+    part.kind = ScorePartKind::procedure;
+    reader.read(part);
+    part.name = "procedure";
+    part.minor = read_events(reader, "minor");
+    part.major = read_events(reader, "major");
+    const Value* steps = reader.take("steps");
+    for (std::size_t i = 0; steps != nullptr && i < steps->items.size(); ++i) {
+      if (!steps->items[i].is(Value::Kind::text))
+        check_.problem(indexed(reader.path_of("steps"), i), "this must be a step's name", "as t:step has it");
+      part.steps.push_back(steps->items[i].text);
+    }
+  }
+
+  void read_time(ScorePart& part, const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("time_score"));
+    part.kind = ScorePartKind::time;
+    reader.read(part);
+    part.name = "time";
+    part.errors = read_events(reader, "errors");
+    if (reader.has("reference") && reader.has("limit") && part.reference >= part.limit)
+      check_.problem(
+          path + ".limit",
+          fmt::format("the limit, {:g} s, is not after the reference, {:g} s", part.limit, part.reference),
+          "who takes as long as the limit earns nothing");
+  }
+
+  void read_critical_view(ScorePart& part, const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("critical_view"));
+    part.kind = ScorePartKind::critical_view;
+    part.metric = "note.critical_view_points";
+    reader.read(part);
+    part.name = "critical_view";
+  }
+
+  void read_rule(ScorePart& part, const Value& value, const std::string& path) {
+    const TableReader reader(check_, &value, path, api_table("rule"));
+    part.kind = ScorePartKind::rule;
+    if (const Value* judge = reader.take("judge")) part.rule = judge->function;
   }
 
   void check_weights(const std::vector<ScorePart>& parts) {
@@ -153,6 +233,15 @@ std::vector<std::string> likely(const std::string& name, const std::vector<std::
   return same.empty() ? names : same;
 }
 
+/// Of all organs and tissues that there are or may be.
+std::vector<std::string> organ_names(const ExerciseDefinition& exercise) {
+  std::vector<std::string> names;
+  for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+    for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
+  for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
+  return names;
+}
+
 }  // namespace
 
 ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
@@ -184,14 +273,24 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
 
 ScoreDefinition read_score(FieldCheck& check, const Value& score) { return ScoreReader(check, score).read(); }
 
-void check_metrics(FieldCheck& check, const ExerciseDefinition& exercise) {
-  const std::vector<std::string> names = metric_names(exercise);
+void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
+  const std::vector<std::string> names = metric_names(exercise), organs = organ_names(exercise);
+  const auto check_metric = [&](const std::string& path, const std::string& metric) {
+    if (metric.empty() || std::find(names.begin(), names.end(), metric) != names.end()) return;
+    std::string hint = suggestion(metric, names);
+    if (hint.starts_with("known")) hint = suggestion(metric, likely(metric, names));
+    check.problem(path, fmt::format("unknown metric \"{}\"", metric), hint);
+  };
   for (const ScorePart& part : exercise.score.parts) {
-    if (part.kind != ScorePartKind::benchmark || part.metric.empty()) continue;
-    if (std::find(names.begin(), names.end(), part.metric) != names.end()) continue;
-    std::string hint = suggestion(part.metric, names);
-    if (hint.starts_with("known")) hint = suggestion(part.metric, likely(part.metric, names));
-    check.problem(part.place.path + "[1].metric", fmt::format("unknown metric \"{}\"", part.metric), hint);
+    check_metric(part.place.path + "[1].metric", part.metric);
+    for (std::size_t i = 0; i < part.steps.size(); ++i)
+      check.known(indexed(part.place.path + "[1].steps", i), part.steps[i], exercise.step_names, "step");
+  }
+  for (const GateDefinition& gate : exercise.score.gates) {
+    check_metric(gate.place.path + ".metric", gate.metric);
+    if (!gate.organ.empty()) check.known(gate.place.path + ".organ", gate.organ, organs, "organ");
+    if (!gate.after_organ.empty())
+      check.known(gate.place.path + ".after_organ", gate.after_organ, organs, "organ");
   }
 }
 

@@ -28,7 +28,7 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
 /// Reads what the score's function returned.
 ScoreDefinition read_score(FieldCheck& check, const Value& score);
 
-/// Checks the score's metrics against those that the scene and the declared steps and holds have.
-void check_metrics(FieldCheck& check, const ExerciseDefinition& exercise);
+/// Checks the score's metrics, steps and organs against those that the scene and the declared steps and holds have.
+void check_score(FieldCheck& check, const ExerciseDefinition& exercise);
 
 }  // namespace calot

@@ -241,6 +241,14 @@ void StepsScript::note(lua_State* L, const std::string& name, const Value& value
   progress_->add_note(std::move(note));
 }
 
+int StepsScript::count(lua_State* L, const std::string& event, const std::string& organ) {
+  if (checking()) return next_guess() ? 100 : 0;  // more than any loop waits for, or none
+  world(L);                                       // raises what is wrong outside of steps
+  const std::vector<SessionEvent>& events = progress_->events();
+  return static_cast<int>(std::count_if(
+      events.begin(), events.end(), [&](const SessionEvent& one) { return is_event(one, event, organ); }));
+}
+
 bool StepsScript::may_change(lua_State* L, const char* method) {
   if (!may_wait(L, method)) return false;
   if (!checking()) world(L);  // raises what is wrong outside of steps

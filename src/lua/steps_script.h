@@ -31,6 +31,8 @@ class StepsScript final : public ScriptSession {
   void step(lua_State* L, const std::string& name, const std::string& title, double limit,
             const std::string& hint);
   void note(lua_State* L, const std::string& name, const Value& value, const std::string& unit);
+  /// Events of a kind so far, of an organ or a piece of it unless that is empty; in a dry run a stand-in.
+  int count(lua_State* L, const std::string& event, const std::string& organ);
   // What changes who is in the world, at once. In a dry run names are known from when they may come and are not forgotten.
   int divide(lua_State* L, const std::string& organ, double share);
   void remove(lua_State* L, const std::string& organ, const std::string& why);

@@ -30,6 +30,7 @@ struct PageEvent {
   std::string step, instrument, organ, value;
   bool error = false;
   std::optional<std::size_t> picture;
+  std::string cause, place;  ///< what did it; where, mm in the patient's frame; may be empty
 };
 
 struct PagePart {
@@ -42,16 +43,18 @@ struct PagePart {
   std::vector<std::size_t> events;  ///< behind it, ascending
 };
 
-struct PageCritical {
-  std::string event;
+/// What caps the total.
+struct PageGate {
+  std::string reason, found;
   double cap = 0;  ///< points
+  bool fails = true;
   std::vector<std::size_t> events;
 };
 
 struct PageScore {
   double total = 0, uncapped = 0;
   std::vector<PagePart> parts;
-  std::vector<PageCritical> critical;
+  std::vector<PageGate> gates;  ///< that were tripped
 };
 
 struct PageCurve {

@@ -55,11 +55,11 @@ class Section {
         "<p>Pass mark {:g}. The recording lasts {}.",
         escaped(recording_.file), score.total, verdict_html(recording_.verdict, recording_.passed),
         recording_.pass_mark, seconds(recording_.stopped_at));
-    for (const PageCritical& critical : score.critical)
-      out += fmt::format(
-          " <strong>{} is critical</strong>: it fails the exercise and caps the total at {:g} ({:.1f} "
-          "without it): {}.",
-          escaped(critical.event), critical.cap, score.uncapped, event_links(critical.events));
+    for (const PageGate& gate : score.gates)
+      out +=
+          fmt::format(" <strong>{}</strong> ({}): it {}caps the total at {:g} ({:.1f} without it){}{}.",
+                      escaped(gate.reason), escaped(gate.found), gate.fails ? "fails the exercise and " : "",
+                      gate.cap, score.uncapped, gate.events.empty() ? "" : ": ", event_links(gate.events));
     return out + "</p>\n";
   }
 
@@ -185,8 +185,9 @@ class Section {
   std::string events() const {
     HtmlTable table;
     table.caption = "Events; a row that is an error says so";
-    table.heads = {"no.", "time", "event", "instrument", "tissue", "value", "step", "see"};
-    table.numbers = "rrlllrll";
+    table.heads = {"no.",   "time",  "event",     "instrument", "tissue",
+                   "value", "cause", "place, mm", "step",       "see"};
+    table.numbers = "rrlllrllll";
     for (std::size_t i = 0; i < recording_.events.size(); ++i) {
       const PageEvent& event = recording_.events[i];
       std::string see = fmt::format(
@@ -197,8 +198,8 @@ class Section {
            {fmt::format("{}", i + 1), seconds(event.time),
             fmt::format("<span title=\"{}\">{}</span>{}", escaped(event.meaning), escaped(event.kind),
                         event.error ? " <b class=\"bad\">error</b>" : ""),
-            escaped(event.instrument), escaped(event.organ), escaped(event.value), escaped(event.step),
-            see}});
+            escaped(event.instrument), escaped(event.organ), escaped(event.value), escaped(event.cause),
+            escaped(event.place), escaped(event.step), see}});
     }
     return head("events", "Events") + (table.rows.empty() ? "<p>None happened.</p>\n" : calot::html(table));
   }

@@ -98,6 +98,8 @@ class Sandbox {
   void set_quiet(bool quiet) { quiet_ = quiet; }
   Watchdog& watchdog() { return watchdog_; }
 
+  /// The file that a function was written in, by its debug information ("S"); null: none of the script's.
+  const std::string* file_of(const lua_Debug& info) const;
   /// Where Lua code runs: file and line of the nearest frame of the script, starting at `level`.
   Place place_of(lua_State* L, int level = 1) const;
 
@@ -113,7 +115,6 @@ class Sandbox {
   [[noreturn]] void raise_trip(lua_State* L);
   std::string trip_text() const;
   std::vector<Place> trace_of(lua_State* L) const;
-  const std::string* file_of(const lua_Debug& info) const;
   /// From the error on top of L's stack and trace_.
   Failure failure_of(lua_State* L, int status) const;
   bool split_place(std::string& message, Place& place) const;

@@ -10,6 +10,11 @@ namespace {
 void replace(const PartBenchmark& benchmark, ScorePart& part, const std::string& calibration,
              std::vector<Problem>& problems) {
   const bool between = part.kind == ScorePartKind::benchmark;
+  if (!between && part.kind != ScorePartKind::penalty)
+    return problems.push_back({benchmark.place,
+                               fmt::format("{} is a {}: no table replaces its figures", part.name,
+                                           score_part_kinds()[static_cast<std::size_t>(part.kind)]),
+                               "leave it out: tables replace those of benchmarks and penalties"});
   if (between && benchmark.each)
     problems.push_back({benchmark.place,
                         fmt::format("{} lies between novice and expert: it has no \"each\"", part.name),

@@ -16,10 +16,17 @@
 
 namespace calot {
 
-enum class ScorePartKind { benchmark, penalty };
+enum class ScorePartKind { benchmark, penalty, procedure, time, critical_view, rule };
+/// "benchmark", "penalty", ...: what the function of calot.score is called that makes it.
+const std::vector<std::string>& score_part_kinds();
 
+/// What the parts earn, 0 to 1, with n events of a kind:
 /// benchmark: clamp((novice - measured) / (novice - expert), 0, 1), so expert < novice where lower is better.
-/// penalty: 1 - each * (number of events), not below 0.
+/// penalty: 1 - each n, not below 0.
+/// procedure: steps done / steps - (minor_costs n of minor + major_costs n of major) / 100, not below 0.
+/// time: clamp((limit - time - each_s n of errors) / (limit - reference), 0, 1), with the time of the whole session.
+/// critical_view: clamp(measured / full, 0, 1).
+/// rule: what the author's own function says.
 struct ScorePart {
   std::string name;  ///< the metric or the event unless the author names it
   ScorePartKind kind = ScorePartKind::benchmark;
@@ -27,15 +34,42 @@ struct ScorePart {
   double novice = 0, expert = 1;
   EventKind event = EventKind::contact;  ///< penalty
   double each = 0.25;
+  std::vector<std::string> steps;            ///< procedure; empty: all
+  std::vector<EventKind> minor, major;       ///< procedure
+  double minor_costs = 2, major_costs = 10;  ///< points of 100
+  double reference = 60, limit = 300;        ///< s: time
+  std::vector<EventKind> errors;             ///< time
+  double each_s = 5;                         ///< s
+  double satisfactory = 5, full = 6;         ///< points: critical_view
+  int rule = 0;                              ///< rule: its function, in the Lua state that it was read in
   double weight = 1;
   std::string calibration = "uncalibrated";  ///< where its figures come from
   Place place;                               ///< where the author wrote it
 };
 
+/// Caps the total, and fails the exercise, where all of its conditions hold: an event (before another one that should
+/// have come first), a metric beyond a value. A metric that was never measured is beyond.
+struct GateDefinition {
+  std::string reason;                   ///< one sentence for the trainee
+  std::string event, organ;             ///< a kind of event, on this organ or a piece of it; may be empty
+  std::string only_after, after_organ;  ///< what must have happened before that event; may be empty
+  std::string metric;                   ///< may be empty
+  std::optional<double> below, above;   ///< of the metric; one of them
+  std::string unless;                   ///< an event that excuses it; may be empty
+  std::optional<double> cap;            ///< points; none: the score's
+  bool fails = true;                    ///< false: it caps the total, and no more
+  Place place;                          ///< where the author wrote it
+};
+
+class ScoreRules;
+
 struct ScoreDefinition {
   std::vector<ScorePart> parts;     ///< weights sum to 1
-  std::vector<EventKind> critical;  ///< events that cap the total at `cap` and fail the exercise
-  double cap = 40, pass = 80;       ///< points of 100
+  std::vector<EventKind> critical;  ///< each a gate: it caps the total at `cap` and fails the exercise
+  std::vector<GateDefinition> gates;
+  double cap = 40, pass = 80;               ///< points of 100
+  bool bail_out_completes = false;          ///< who bails out need not have done the steps that are left
+  std::shared_ptr<const ScoreRules> rules;  ///< where a part is a rule
 };
 
 struct GoldenDefinition {
@@ -69,6 +103,24 @@ struct ExerciseDefinition {
   std::uint64_t source_hash = 0;                ///< of the scenario's text and the modules it required
   std::map<std::string, std::string> params;    ///< every parameter's value as text, defaults included
   std::vector<ParameterDefinition> parameters;  ///< ordered by name
+};
+
+/// What an author's rule says of a session.
+struct RuleAnswer {
+  double share = 0;  ///< of the part, 0 to 1
+  std::string reason;
+  std::vector<double> times;  ///< s, behind it, ascending
+};
+
+/// The author's own rules: they see what was measured, and no world.
+class ScoreRules {
+ public:
+  virtual ~ScoreRules() = default;
+  /// One for each part that is a rule, in the parts' order: the same however often it is asked. Fails (scenario, at the
+  /// author's line; resource) where one cannot be had; usage where the scenario has changed since it was read.
+  virtual Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition& exercise,
+                                                const std::map<std::string, double>& metrics,
+                                                const Progress& progress) const = 0;
 };
 
 /// Where inputs come from: a scenario's demo, a recording, live devices (session/live.h).

@@ -214,6 +214,10 @@ bool LiveSource::take_stamped(double time) {
     }
     taken = taken || input != nullptr;
     apply(*sent);
+    // Nothing need follow what ends the operation.
+    if (const auto* act = std::get_if<SessionAct>(&sent->event);
+        act != nullptr && act->kind == EventKind::bail_out && !asked_.acts.empty())
+      return true;
   }
   return false;
 }
@@ -230,6 +234,7 @@ void LiveSource::watch_silence() {
 void LiveSource::apply(const LiveMailbox::Sent& sent) {
   if (const auto* input = std::get_if<LiveInput>(&sent.event)) apply(*input, sent.at);
   if (const auto* command = std::get_if<LiveCommand>(&sent.event)) apply(*command);
+  if (const auto* act = std::get_if<SessionAct>(&sent.event)) apply(*act, sent.at);
   if (const auto* loss = std::get_if<LiveLoss>(&sent.event)) apply(*loss);
   if (const auto* refusal = std::get_if<LiveRefusal>(&sent.event)) refuse(refusal->problem);
   if (const auto* remark = std::get_if<LiveRemark>(&sent.event)) say(remark->text);
@@ -249,6 +254,18 @@ void LiveSource::apply(const LiveInput& input, double at) {
   last_input_ = fresh_ = at;
   said_silence_ = false;
   if (lost_at_) set_paused(false, "The input is back.");
+}
+
+/// It counts in the next step, and begins the session as an input does.
+void LiveSource::apply(const SessionAct& act, double at) {
+  if (paused_)
+    return refuse(
+        {{}, fmt::format("no {} while the session is paused", to_text(act.kind)), "`resume` first"});
+  if (!started_) due_ = clock_.now();
+  started_ = true;
+  asked_.acts.push_back(act);
+  last_input_ = at;
+  said_silence_ = false;
 }
 
 void LiveSource::apply(LiveCommand command) {
@@ -316,6 +333,7 @@ StepInput LiveSource::follow(double dt) {
     pose = share < 1 ? interpolate(pose, to, share) : to;
   }
   given_.actions = asked_.actions;
+  given_.acts = std::exchange(asked_.acts, {});
   figures_.following_steps += lags ? 1 : 0;
   StepInput input = given_;
   if (input.instruments.back() != scope_before) input.laparoscope = input.instruments.back();

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "session/acts.h"
 #include "session/exercise.h"
 
 namespace calot {
@@ -60,7 +61,7 @@ struct LiveLoss {
   bool may_return = false;  ///< another input or command may still come
 };
 
-using LiveEvent = std::variant<LiveInput, LiveCommand, LiveRefusal, LiveRemark, LiveLoss>;
+using LiveEvent = std::variant<LiveInput, LiveCommand, SessionAct, LiveRefusal, LiveRemark, LiveLoss>;
 
 class LiveClock {
  public:
@@ -155,6 +156,7 @@ class LiveSource : public InputSource {
   void apply(const LiveMailbox::Sent& sent);
   void apply(const LiveInput& input, double at);
   void apply(LiveCommand command);
+  void apply(const SessionAct& act, double at);
   void apply(const LiveLoss& loss);
   void set_paused(bool paused, const std::string& why);
   void end_by(const std::string& how);

@@ -83,11 +83,22 @@ Result<std::optional<LiveEvent>> LiveLines::read(std::string_view line) {
     if (!input) return input.failure();
     return std::optional<LiveEvent>(input.value());
   }
+  if (is_session_act(words[0])) {
+    const std::string_view said = words.size() > 1
+                                      ? line.substr(static_cast<std::size_t>(words[1].data() - line.data()))
+                                      : std::string_view();
+    const std::size_t end = said.find_last_not_of(" \t\r");
+    Result<SessionAct> act =
+        read_session_act(std::string(words[0]), std::string(said.substr(0, end == said.npos ? 0 : end + 1)));
+    if (!act) return wrong(act.failure().problems[0].message, act.failure().problems[0].hint);
+    return std::optional<LiveEvent>(std::move(act).value());
+  }
   const std::vector<std::string>& commands = live_command_names();
   const auto found = std::find(commands.begin(), commands.end(), words[0]);
   if (found == commands.end()) {
     std::vector<std::string> known = {"pose", "tip"};
     known.insert(known.end(), commands.begin(), commands.end());
+    known.insert(known.end(), session_act_names().begin(), session_act_names().end());
     return wrong(fmt::format("\"{}\" begins no line", shown(words[0])), suggestion(shown(words[0]), known));
   }
   if (words.size() > 1) return wrong(fmt::format("`{}` stands alone on its line", *found), "");

@@ -4,6 +4,7 @@
 //   pose T NAME pitch yaw insertion roll jaw [ACTION]   as recordings have it: rad and m, about the trocar
 //   tip T NAME x y z roll jaw [ACTION]                  the tip of the closed jaws, m in the patient's frame
 //   pause | resume | restart | abandon | end            a command alone on its line
+//   time_out [words] | bail_out [words]                 an act, and what is said at it
 //   # ...                                               a comment; empty lines are left out too
 //
 // T is the source's own time in s: 0 or more, and never less than in the line before (of this connection, or since

@@ -191,7 +191,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"cuts", instrument, "how often it divided something", EventKind::cut, true},
       {"cuts_unclipped", instrument, "how often it divided a duct or a vessel that was not clipped",
        EventKind::cut_unclipped, true},
-      {"perforations", instrument, "how often its blades closed on a hollow organ's wall",
+      {"perforations", instrument, "how often it opened a hollow organ's wall",
        EventKind::perforation, true},
       {"liver_cuts", instrument, "how often its blades closed on the liver", EventKind::cut_liver, true},
       {"empty_cuts", instrument, "how often its blades closed on nothing", EventKind::empty_cut, true},

@@ -2,6 +2,11 @@
 
 namespace calot {
 
+bool is_event(const WorldEvent& event, const std::string& kind, const std::string& organ) {
+  return to_text(event.kind) == kind &&
+         (organ.empty() || event.organ == organ || event.organ.starts_with(organ + "."));
+}
+
 void Progress::begin_step(double time, const std::string& name, const std::string& title, double limit,
                           const std::string& hint) {
   end_step(time, "done");

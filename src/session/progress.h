@@ -23,6 +23,9 @@ struct SessionEvent : WorldEvent {
   std::string step;  ///< empty before the first step
 };
 
+/// Whether it is of that kind, and happened to that organ or a piece of it; of an empty name, to any or none.
+bool is_event(const WorldEvent& event, const std::string& kind, const std::string& organ);
+
 /// A value that the script puts into the report.
 struct Note {
   double time = 0;   ///< s

@@ -2,10 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "session/json_fields.h"
 
 namespace calot {
 namespace {
+
+/// {x, y, z}; none, and a problem, where it is not that.
+std::optional<Vec3> read_place(JsonFields& fields, const std::string& key) {
+  const Json& place = fields.any(key);
+  const auto is_number = [](const Json& one) { return one.is_number(); };
+  if (place.is_array() && place.size() == 3 && std::all_of(place.begin(), place.end(), is_number))
+    return Vec3(place[0].get<double>(), place[1].get<double>(), place[2].get<double>());
+  fields.wrong(key, "must be three numbers");
+  return std::nullopt;
+}
 
 /// An entry's number, or what stands for one that is missing where it is null.
 double number_or(JsonFields& fields, const std::string& key, double missing) {
@@ -30,6 +42,13 @@ SessionEvent read_event(JsonFields& fields) {
   event.step = fields.text("step");
   if (fields.has("instrument")) event.instrument = fields.text("instrument");
   if (fields.has("organ")) event.organ = fields.text("organ");
+  if (fields.has("place_m")) event.place = read_place(fields, "place_m");
+  if (fields.has("cause")) {
+    const std::optional<EventCause> cause = event_cause_called(fields.text("cause"));
+    if (!cause) fields.wrong("cause", "is none that is known");
+    event.cause = cause.value_or(EventCause::none);
+  }
+  if (fields.has("text")) event.text = fields.text("text");
   const std::optional<EventKind> kind = event_called(name);
   if (!kind) {
     fields.wrong("event", "is of no kind that is known");
@@ -91,6 +110,9 @@ OrderedJson events_json(const Progress& progress) {
     if (!event.instrument.empty()) json["instrument"] = event.instrument;
     if (!event.organ.empty()) json["organ"] = event.organ;
     if (const char* key = event_row(event.kind).value; *key != 0) json[key] = event.value;
+    if (event.place) json["place_m"] = {event.place->x(), event.place->y(), event.place->z()};
+    if (event.cause != EventCause::none) json["cause"] = to_text(event.cause);
+    if (!event.text.empty()) json["text"] = event.text;
     list.push_back(std::move(json));
   }
   return list;

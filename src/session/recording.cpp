@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/suggest.h"
+#include "session/acts.h"
 #include "session/json_fields.h"
 #include "session/live.h"
 #include "session/runner.h"
@@ -98,6 +99,24 @@ std::vector<InstrumentAction> parse_actions(const std::vector<std::string>& name
   return result;
 }
 
+std::vector<SessionAct> parse_acts(const Json& json, std::vector<std::string>& problems) {
+  std::vector<SessionAct> result;
+  if (!json.is_array()) problems.emplace_back("acts must be a list");
+  for (std::size_t i = 0; json.is_array() && i < json.size(); ++i) {
+    JsonFields fields(json[i], problems, fmt::format("acts[{}].", i));
+    const std::string name = fields.text("act");
+    const std::string text = fields.has("text") ? fields.text("text") : std::string();
+    fields.expect_no_others();
+    Result<SessionAct> act = read_session_act(name, text);
+    if (act)
+      result.push_back(std::move(act).value());
+    else
+      problems.push_back(
+          fmt::format("{} ({})", act.failure().problems[0].message, act.failure().problems[0].hint));
+  }
+  return result;
+}
+
 /// `time` is that of a whole number of steps.
 RecordedStep parse_step(const Json& json, const RecordingHeader& header, double time,
                         std::vector<std::string>& problems) {
@@ -109,6 +128,7 @@ RecordedStep parse_step(const Json& json, const RecordingHeader& header, double 
     step.input.actions = parse_actions(fields.texts("actions"), problems);
   if (fields.has("laparoscope"))
     step.input.laparoscope = parse_laparoscope(fields.any("laparoscope"), problems);
+  if (fields.has("acts")) step.input.acts = parse_acts(fields.any("acts"), problems);
   if (header.state_hash) step.state_hash = fields.hash("state_hash");
   fields.expect_no_others();
   const std::size_t poses = step.input.instruments.size();
@@ -142,8 +162,8 @@ std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
         fmt::format("the lines before this one are not those that were recorded: their checksum is {}",
                     hex(before.value())));
   fields.expect_no_others();
-  const SessionEnd ends[] = {SessionEnd::steps_done, SessionEnd::time_limit, SessionEnd::source_ended,
-                             SessionEnd::interrupted, SessionEnd::failed};
+  const SessionEnd ends[] = {SessionEnd::steps_done,  SessionEnd::time_limit, SessionEnd::source_ended,
+                             SessionEnd::interrupted, SessionEnd::failed,     SessionEnd::bailed_out};
   if (end != cut_end &&
       std::none_of(std::begin(ends), std::end(ends), [&](SessionEnd known) { return to_text(known) == end; }))
     problems.push_back(fmt::format("a session does not end as \"{}\"", end));
@@ -307,6 +327,11 @@ bool RecordingWriter::write(const RecordedStep& step) {
   }
   if (const std::optional<InstrumentPose>& scope = step.input.laparoscope)
     json["laparoscope"] = {scope->pitch, scope->yaw, scope->insertion, scope->roll};
+  for (const SessionAct& act : step.input.acts) {
+    OrderedJson entry = {{"act", to_text(act.kind)}};
+    if (!act.text.empty()) entry["text"] = act.text;
+    json["acts"].push_back(std::move(entry));
+  }
   if (step.state_hash) json["state_hash"] = hex(*step.state_hash);
   ++steps_;
   return add_line(json.dump());

@@ -6,8 +6,10 @@
 //               "rate_Hz":50,"instruments":["left"],"mode":"practice","toolchain":...,"instruction_set":...,"mathematics":...,
 //               "state_hash":...}
 //   each step  {"time_s":0.02,"poses":[[pitch,yaw,insertion,roll,jaw],...],"actions":["activate",...],
-//               "laparoscope":[pitch,yaw,insertion,roll],"state_hash":"..."}
-//              (rad, m; actions where an instrument acts, "none" for one that does not; the laparoscope where it moves)
+//               "laparoscope":[pitch,yaw,insertion,roll],"acts":[{"act":"time_out","text":"landmarks named"}],
+//              "state_hash":"..."}
+//              (rad, m; actions where an instrument acts, "none" for one that does not; the laparoscope where it moves;
+//              acts, time_out and bail_out, where there are some)
 //   then       {"measured":{"exercise_hash":...,"metrics":{...},"steps":[...],"events":[...],"noted":[...],"notes":[...]}}
 //   last line  {"end":"done","steps":1234,"checksum":"..."}   (of all the text before; the end as to_text(SessionEnd), or
 //              "cut" of the replay of a recording without this line)

@@ -1,19 +1,50 @@
 #include "session/report.h"
 
+#include <fmt/format.h>
+
 #include "base/hash.h"
+#include "base/units.h"
 #include "session/build_info.h"
+#include "session/csv.h"
 #include "session/json.h"
 #include "session/progress_json.h"
 
 namespace calot {
 namespace {
 
+std::vector<std::string> kind_names(const std::vector<EventKind>& kinds) {
+  std::vector<std::string> names;
+  for (const EventKind kind : kinds) names.push_back(to_text(kind));
+  return names;
+}
+
 OrderedJson benchmark_json(const ScorePart& part) {
   OrderedJson json;
-  if (part.kind == ScorePartKind::benchmark) {
-    json = {{"metric", part.metric}, {"novice", part.novice}, {"expert", part.expert}};
-  } else {
-    json = {{"event", to_text(part.event)}, {"each", part.each}};
+  switch (part.kind) {
+    case ScorePartKind::benchmark:
+      json = {{"metric", part.metric}, {"novice", part.novice}, {"expert", part.expert}};
+      break;
+    case ScorePartKind::penalty:
+      json = {{"event", to_text(part.event)}, {"each", part.each}};
+      break;
+    case ScorePartKind::procedure:
+      json = {{"steps", part.steps},
+              {"minor", kind_names(part.minor)},
+              {"minor_costs", part.minor_costs},
+              {"major", kind_names(part.major)},
+              {"major_costs", part.major_costs}};
+      break;
+    case ScorePartKind::time:
+      json = {{"reference_s", part.reference},
+              {"limit_s", part.limit},
+              {"errors", kind_names(part.errors)},
+              {"each_s", part.each_s}};
+      break;
+    case ScorePartKind::critical_view:
+      json = {{"metric", part.metric}, {"satisfactory", part.satisfactory}, {"full", part.full}};
+      break;
+    case ScorePartKind::rule:
+      break;
   }
   json["calibration"] = part.calibration;
   return json;
@@ -66,13 +97,22 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
                       {"completed", score.completed},
                       {"uncapped_total", aborted ? OrderedJson() : OrderedJson(score.uncapped)}};
   json["critical"] = OrderedJson::array();
-  for (const CriticalEvent& event : score.critical) {
-    json["critical"].push_back(
-        {{"event", to_text(event.event)}, {"times_s", event.times}, {"cap", exercise.score.cap}});
+  json["gates"] = OrderedJson::array();
+  for (const TrippedGate& gate : score.gates) {
+    if (gate.critical)
+      json["critical"].push_back(
+          {{"event", to_text(*gate.critical)}, {"times_s", gate.times}, {"cap", gate.cap}});
+    json["gates"].push_back({{"reason", gate.reason},
+                             {"found", gate.explanation},
+                             {"event", gate.event.empty() ? OrderedJson() : OrderedJson(gate.event)},
+                             {"times_s", gate.times},
+                             {"cap", gate.cap},
+                             {"fails", gate.fails}});
   }
   json["parts"] = OrderedJson::array();
   for (const ScoredPart& part : score.parts) {
-    OrderedJson entry = {{"name", part.definition.name}};
+    OrderedJson entry = {{"name", part.definition.name},
+                         {"kind", score_part_kinds()[static_cast<std::size_t>(part.definition.kind)]}};
     entry["measured"] = part.measured ? OrderedJson(*part.measured) : OrderedJson();
     entry["benchmark"] = benchmark_json(part.definition);
     entry["points"] = part.points;
@@ -82,6 +122,28 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
     json["parts"].push_back(std::move(entry));
   }
   return json;
+}
+
+std::string events_csv(const Progress& progress) {
+  std::string text = csv_row({"time_s", "event", "step", "instrument", "organ", "value", "unit", "x_mm",
+                              "y_mm", "z_mm", "cause", "text"});
+  for (const SessionEvent& event : progress.events()) {
+    const std::string key = event_row(event.kind).value;
+    const std::string value = key.empty() ? "" : fmt::format("{}", event.value);
+    std::vector<std::string> row{fmt::format("{}", event.time),
+                                 to_text(event.kind),
+                                 event.step,
+                                 event.instrument,
+                                 event.organ,
+                                 value,
+                                 key};
+    for (int i = 0; i < 3; ++i)
+      row.push_back(event.place ? fmt::format("{}", (*event.place)[i] / units::mm) : "");
+    row.push_back(to_text(event.cause));
+    row.push_back(csv_field(event.text));
+    text += csv_row(row);
+  }
+  return text;
 }
 
 double real_time_factor(const SessionResult& session) {

@@ -19,12 +19,17 @@ struct SessionReport {
   std::optional<LiveFigures> live;     ///< of a session that was operated
 };
 
-/// Total, verdict and parts; `aborted` as in the report.
+/// Total, verdict, the gates that were tripped (of these, critical events once more) and parts, each with its reason;
+/// `aborted` as in the report.
 OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted);
 
 /// Pretty-printed, keys in a fixed order, with a final line end.
 std::string report_json(const ExerciseDefinition& exercise, const SessionResult& session,
                         const SessionReport& report);
+
+/// The session's events, a row each (RFC 4180): time_s, event, step, instrument, organ, value, unit, x_mm, y_mm, z_mm,
+/// cause, text. What there is none of is empty.
+std::string events_csv(const Progress& progress);
 
 /// Simulated seconds a wall-clock second, frames included: above 1 is faster than real time.
 double real_time_factor(const SessionResult& session);

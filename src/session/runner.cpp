@@ -78,10 +78,26 @@ class Session {
     if (!report) return note_failed_step(report.failure());
     note_report();
     for (const WorldEvent& event : report->events) result_.progress.add_event(event);
+    const bool bails_out = note_acts();
     if (ended_) return;  // the report could not be written
     Result<bool> done = script_.advance(world_, result_.progress, dt_);
     if (!done) return end(done.failure());
-    if (done.value()) end(SessionEnd::steps_done);
+    if (done.value()) return end(SessionEnd::steps_done);
+    if (bails_out) end(SessionEnd::bailed_out);
+  }
+
+  /// What who operates did besides moving; true where that ends the operation.
+  bool note_acts() {
+    bool bails_out = false;
+    for (const SessionAct& act : input_.acts) {
+      WorldEvent event;
+      event.kind = act.kind;
+      event.time = world_.report().time;
+      event.text = act.text;
+      result_.progress.add_event(event);
+      bails_out = bails_out || act.kind == EventKind::bail_out;
+    }
+    return bails_out;
   }
 
   /// The input that could not be followed is recorded too: its replay fails at the same place.
@@ -109,6 +125,7 @@ class Session {
       return false;
     } else {
       input_.actions.clear();  // poses are held, pedals are not
+      input_.acts.clear();
       input_.laparoscope.reset();
     }
     return true;
@@ -173,6 +190,7 @@ class Session {
   void close_steps() {
     const std::string outcome = result_.end == SessionEnd::steps_done   ? "done"
                                 : result_.end == SessionEnd::time_limit ? "timeout"
+                                : result_.end == SessionEnd::bailed_out ? "bail_out"
                                                                         : "aborted";
     result_.progress.end_step(world_.report().time, outcome);
   }
@@ -210,6 +228,8 @@ std::string to_text(SessionEnd end) {
       return "interrupted";
     case SessionEnd::failed:
       return "failed";
+    case SessionEnd::bailed_out:
+      return "bail_out";
   }
   return "failed";
 }

@@ -37,9 +37,10 @@ struct SessionOptions {
   StepObserver observer;
 };
 
-enum class SessionEnd { steps_done, time_limit, source_ended, interrupted, failed };
+/// bailed_out: who operated ended the operation otherwise than planned; it is scored as any.
+enum class SessionEnd { steps_done, time_limit, source_ended, interrupted, failed, bailed_out };
 
-/// "done", "time_limit", "source_ended", "interrupted", "failed".
+/// "done", "time_limit", "source_ended", "interrupted", "failed", "bail_out".
 std::string to_text(SessionEnd end);
 
 struct SessionResult {

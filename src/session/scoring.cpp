@@ -81,6 +81,101 @@ ScoredPart score_benchmark(const ScorePart& part, const std::map<std::string, do
   return scored;
 }
 
+double count_of(const Progress& progress, const std::vector<EventKind>& kinds, std::vector<double>& times,
+                std::string& counted) {
+  double sum = 0;
+  for (const EventKind kind : kinds) {
+    const std::vector<double> of_kind = times_of(progress, kind);
+    if (of_kind.empty()) continue;
+    sum += static_cast<double>(of_kind.size());
+    times.insert(times.end(), of_kind.begin(), of_kind.end());
+    counted += fmt::format("{}{} x {}", counted.empty() ? "" : ", ", of_kind.size(), to_text(kind));
+  }
+  std::sort(times.begin(), times.end());
+  return sum;
+}
+
+bool is_done(const Progress& progress, const std::string& step) {
+  return std::any_of(progress.steps().begin(), progress.steps().end(),
+                     [&](const StepRecord& one) { return one.name == step && one.outcome == "done"; });
+}
+
+ScoredPart score_procedure(const ScorePart& part, const std::vector<std::string>& all_steps,
+                           const Progress& progress) {
+  ScoredPart scored;
+  scored.definition = part;
+  const std::vector<std::string>& steps = part.steps.empty() ? all_steps : part.steps;
+  std::string missing, minor, major;
+  int done = 0;
+  for (const std::string& step : steps) {
+    if (is_done(progress, step))
+      ++done;
+    else
+      missing += (missing.empty() ? "" : ", ") + step;
+  }
+  const double costs = part.minor_costs * count_of(progress, part.minor, scored.times, minor) +
+                       part.major_costs * count_of(progress, part.major, scored.times, major);
+  const double earned = steps.empty() ? 0 : static_cast<double>(done) / static_cast<double>(steps.size());
+  scored.fraction = std::max(0.0, earned - costs / 100);
+  scored.measured = 100 * scored.fraction;
+  scored.explanation = fmt::format("{} of {} steps done{}", done, steps.size(),
+                                   missing.empty() ? "" : " (not " + missing + ")");
+  scored.explanation +=
+      minor.empty() && major.empty() ? ", no errors" : fmt::format(", less {:.4g} points", costs);
+  if (!minor.empty()) scored.explanation += fmt::format("; minor, {:.4g} each: {}", part.minor_costs, minor);
+  if (!major.empty()) scored.explanation += fmt::format("; major, {:.4g} each: {}", part.major_costs, major);
+  return scored;
+}
+
+ScoredPart score_time(const ScorePart& part, const std::map<std::string, double>& metrics,
+                      const Progress& progress) {
+  ScoredPart scored;
+  scored.definition = part;
+  const auto found = metrics.find("total.time_s");
+  if (found == metrics.end()) {
+    scored.explanation = "total.time_s was never measured in this session";
+    return scored;
+  }
+  std::string errors;
+  const double penalty = part.each_s * count_of(progress, part.errors, scored.times, errors);
+  scored.measured = found->second + penalty;
+  scored.fraction =
+      std::clamp((part.limit - *scored.measured) / (part.limit - part.reference), 0.0, 1.0) + 0.0;
+  scored.explanation = fmt::format(
+      "{:.4g} s{}, between {:.4g} s (all points) and {:.4g} s (no points)", found->second,
+      errors.empty() ? "" : fmt::format(" and {:.4g} s for {}", penalty, errors), part.reference, part.limit);
+  return scored;
+}
+
+ScoredPart score_critical_view(const ScorePart& part, const std::map<std::string, double>& metrics,
+                               const Progress& progress) {
+  ScoredPart scored;
+  scored.definition = part;
+  for (const Note& note : progress.notes())
+    if ("note." + note.name == part.metric) scored.times.push_back(note.time);
+  const auto found = metrics.find(part.metric);
+  if (found == metrics.end()) {
+    scored.explanation = why_not_measured(progress, part.metric);
+    return scored;
+  }
+  scored.measured = found->second;
+  scored.fraction = std::clamp(found->second / part.full, 0.0, 1.0) + 0.0;
+  const bool enough = found->second >= part.satisfactory;
+  scored.explanation =
+      fmt::format("the critical view has {:.4g} of {:.4g} points: {} is satisfactory, this {}", found->second,
+                  part.full, part.satisfactory, enough ? "is" : "is not");
+  return scored;
+}
+
+ScoredPart score_rule(const ScorePart& part, const RuleAnswer& answer) {
+  ScoredPart scored;
+  scored.definition = part;
+  scored.measured = scored.fraction = answer.share;
+  scored.times = answer.times;
+  scored.explanation = answer.reason;
+  return scored;
+}
+
 ScoredPart score_penalty(const ScorePart& part, const Progress& progress) {
   ScoredPart scored;
   scored.definition = part;
@@ -105,27 +200,134 @@ bool all_steps_done(const ExerciseDefinition& exercise, const Progress& progress
   return true;
 }
 
+/// The times at which its event came too soon, or at all; nothing where it has no event.
+std::vector<double> times_tripped(const GateDefinition& gate, const Progress& progress) {
+  std::vector<double> times;
+  bool prepared = gate.only_after.empty();
+  for (const SessionEvent& event : progress.events()) {
+    if (is_event(event, gate.event, gate.organ) && (gate.only_after.empty() || !prepared))
+      times.push_back(event.time);
+    prepared = prepared || is_event(event, gate.only_after, gate.after_organ);
+  }
+  return times;
+}
+
+/// Whether the metric is beyond the gate's value, and what was found.
+bool is_beyond(const GateDefinition& gate, const std::map<std::string, double>& metrics, std::string& found) {
+  const auto metric = metrics.find(gate.metric);
+  if (metric == metrics.end()) {
+    found = gate.metric + " was never measured";
+    return true;
+  }
+  const double limit = gate.below.value_or(gate.above.value_or(0));
+  found = fmt::format("{} = {:.6g}, {} {:.6g}", gate.metric, metric->second, gate.below ? "below" : "above",
+                      limit);
+  return gate.below ? metric->second < limit : metric->second > limit;
+}
+
+std::optional<TrippedGate> tripped(const GateDefinition& gate, double cap,
+                                   const std::map<std::string, double>& metrics, const Progress& progress) {
+  TrippedGate result{gate.reason, std::nullopt, gate.event, gate.cap.value_or(cap), gate.fails, {}, {}};
+  if (std::any_of(progress.events().begin(), progress.events().end(),
+                  [&](const WorldEvent& event) { return is_event(event, gate.unless, {}); }))
+    return std::nullopt;
+  if (!gate.event.empty()) {
+    result.times = times_tripped(gate, progress);
+    if (result.times.empty()) return std::nullopt;
+    const std::string on = gate.organ.empty() ? "" : " of " + gate.organ;
+    result.explanation = fmt::format("{} x {}{}", result.times.size(), gate.event, on);
+    if (!gate.only_after.empty())
+      result.explanation += fmt::format(", and no {}{} before", gate.only_after,
+                                        gate.after_organ.empty() ? "" : " of " + gate.after_organ);
+  }
+  if (!gate.metric.empty()) {
+    std::string found;
+    if (!is_beyond(gate, metrics, found)) return std::nullopt;
+    result.explanation += (result.explanation.empty() ? "" : "; ") + found;
+  }
+  return result;
+}
+
+std::vector<TrippedGate> tripped_gates(const ScoreDefinition& score,
+                                       const std::map<std::string, double>& metrics,
+                                       const Progress& progress) {
+  std::vector<TrippedGate> gates;
+  for (const EventKind kind : score.critical) {
+    std::vector<double> times = times_of(progress, kind);
+    if (times.empty()) continue;
+    const std::string counted = fmt::format("{} x {}", times.size(), to_text(kind));
+    gates.push_back(
+        {to_text(kind) + " is critical", kind, to_text(kind), score.cap, true, std::move(times), counted});
+  }
+  for (const GateDefinition& gate : score.gates)
+    if (std::optional<TrippedGate> found = tripped(gate, score.cap, metrics, progress))
+      gates.push_back(std::move(*found));
+  std::stable_partition(gates.begin(), gates.end(), [](const TrippedGate& gate) { return gate.fails; });
+  return gates;
+}
+
+bool is_completed(const ExerciseDefinition& exercise, const Progress& progress) {
+  const auto bails = [](const WorldEvent& event) { return event.kind == EventKind::bail_out; };
+  return all_steps_done(exercise, progress) ||
+         (exercise.score.bail_out_completes &&
+          std::any_of(progress.events().begin(), progress.events().end(), bails));
+}
+
 }  // namespace
 
-Score score(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
-            const Progress& progress) {
+const std::vector<std::string>& score_part_kinds() {
+  static const std::vector<std::string> names = {"benchmark", "penalty",       "procedure",
+                                                 "time",      "critical_view", "rule"};
+  return names;
+}
+
+const TrippedGate* failing_gate(const Score& score) {
+  return !score.gates.empty() && score.gates.front().fails ? &score.gates.front() : nullptr;
+}
+
+Result<Score> score(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
+                    const Progress& progress) {
+  std::vector<RuleAnswer> answers;
+  if (exercise.score.rules) {
+    Result<std::vector<RuleAnswer>> judged = exercise.score.rules->judge(exercise, metrics, progress);
+    if (!judged) return judged.failure();
+    answers = std::move(judged).value();
+  }
   Score result;
+  std::size_t rules = 0;
   for (const ScorePart& part : exercise.score.parts) {
-    ScoredPart scored = part.kind == ScorePartKind::benchmark ? score_benchmark(part, metrics, progress)
-                                                              : score_penalty(part, progress);
+    ScoredPart scored;
+    switch (part.kind) {
+      case ScorePartKind::benchmark:
+        scored = score_benchmark(part, metrics, progress);
+        break;
+      case ScorePartKind::penalty:
+        scored = score_penalty(part, progress);
+        break;
+      case ScorePartKind::procedure:
+        scored = score_procedure(part, exercise.step_names, progress);
+        break;
+      case ScorePartKind::time:
+        scored = score_time(part, metrics, progress);
+        break;
+      case ScorePartKind::critical_view:
+        scored = score_critical_view(part, metrics, progress);
+        break;
+      case ScorePartKind::rule:
+        scored = score_rule(part, answers.at(rules++));
+        break;
+    }
     scored.points = 100 * part.weight * scored.fraction;
     result.uncapped += scored.points;
     result.parts.push_back(std::move(scored));
   }
-  for (const EventKind kind : exercise.score.critical) {
-    std::vector<double> times = times_of(progress, kind);
-    if (!times.empty()) result.critical.push_back({kind, std::move(times)});
-  }
-  result.total = result.critical.empty() ? result.uncapped : std::min(result.uncapped, exercise.score.cap);
-  result.completed = all_steps_done(exercise, progress);
+  result.total = result.uncapped;
+  result.gates = tripped_gates(exercise.score, metrics, progress);
+  for (const TrippedGate& gate : result.gates) result.total = std::min(result.total, gate.cap);
+  result.completed = is_completed(exercise, progress);
   // A total that misses the pass mark by rounding alone has reached it.
-  result.passed =
-      result.completed && result.critical.empty() && result.total >= exercise.score.pass - 100 * rounding;
+  result.passed = result.completed && failing_gate(result) == nullptr &&
+                  result.total >= exercise.score.pass - 100 * rounding;
   return result;
 }
 

@@ -489,7 +489,8 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     tool.jaw_stopped = false;
     tool.lost = true;
-    events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
+    events.push_back(
+        {EventKind::release, 0, tool.definition.name, organ, 0, std::nullopt, EventCause::slipping});
   }
   return true;
 }
@@ -593,8 +594,15 @@ void judge_tearing(Tissue& tissue, int torn_before, std::vector<WorldEvent>& eve
   const bool was_tearing = std::exchange(tissue.now.tearing, torn > torn_before);
   const std::string& name = tissue.definition.name;
   if (tissue.now.tearing && !was_tearing)
-    events.push_back({EventKind::tear, 0, {}, name, static_cast<double>(torn) / strands});
-  if (torn == strands && torn_before < strands) events.push_back({EventKind::parted, 0, {}, name, 0});
+    events.push_back({EventKind::tear,
+                      0,
+                      {},
+                      name,
+                      static_cast<double>(torn) / strands,
+                      std::nullopt,
+                      EventCause::stretch});
+  if (torn == strands && torn_before < strands)
+    events.push_back({EventKind::parted, 0, {}, name, 0, std::nullopt, EventCause::stretch});
 }
 
 std::vector<int> torn_strands(const Field& field) {
@@ -610,6 +618,21 @@ EventKind closed_on(const Field& field, int instrument) {
     return grip_count(organ, instrument) > 0 && std::holds_alternative<LobeShape>(organ.definition.shape);
   });
   return liver ? EventKind::cut_liver : EventKind::perforation;
+}
+
+/// A wall that jaws pinch harder than it bears is opened; so is one that blades stand on.
+void note_hold(const Field& field, int instrument, std::vector<WorldEvent>& events) {
+  const InstrumentDefinition& tool = field.tools[instrument].definition;
+  const EventKind kind = closed_on(field, instrument);
+  const bool cuts = kind != EventKind::grasp;
+  events.push_back({kind, 0, tool.name, held_organ(field, instrument), 0, std::nullopt,
+                    cuts ? EventCause::blades : EventCause::none});
+  for (const Organ& organ : field.organs) {
+    if (cuts || !is_hollow(organ.definition.shape) || grip_count(organ, instrument) == 0) continue;
+    if (tool.pinch_force <= organ.definition.wall.pinch_limit) continue;
+    events.push_back(
+        {EventKind::perforation, 0, tool.name, organ.definition.name, 0, std::nullopt, EventCause::pinch});
+  }
 }
 
 }  // namespace
@@ -630,7 +653,9 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     if (organ.empty()) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     const bool held = tool.jaw_stopped && closed_on(field, index) == EventKind::grasp;
-    if (held) events.push_back({EventKind::release, 0, tool.definition.name, organ, 0});
+    if (held)
+      events.push_back(
+          {EventKind::release, 0, tool.definition.name, organ, 0, std::nullopt, EventCause::opening});
     tool.jaw_stopped = false;
   }
   const Poses to = reachable(field, targets), start = present_poses(field);
@@ -676,7 +701,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       }
       tool.jaw_stopped = true;
       tool.lost = tool.beside = false;
-      events.push_back({closed_on(field, index), 0, tool.definition.name, held_organ(field, index), 0});
+      note_hold(field, index, events);
     }
   }
   feel_again(field);

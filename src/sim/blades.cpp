@@ -22,6 +22,8 @@ void slide_out(Organ& organ, int instrument) {
 Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
                          std::vector<WorldEvent>& events) {
   const std::string name = field.organs[tube.organ].definition.name;
+  const InjuryDefinition injury = field.organs[tube.organ].definition.injury;
+  const Vec3 at = rod_of(field.organs[tube.organ])->place_at(tube.at, field.organs[tube.organ].state.x);
   const double share = rod_of(field.organs[tube.organ])->share_at(tube.at);
   if (!can_be_divided(field.organs[tube.organ], share)) {
     slide_out(field.organs[tube.organ], instrument);
@@ -31,10 +33,15 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
   if (!done) return done.failure();
   for (int piece : {done->patient, done->specimen}) slide_out(field.organs[piece], instrument);
   const std::string& tool = field.tools[instrument].definition.name;
-  events.push_back({EventKind::cut, 0, tool, name, done->share});
+  events.push_back({EventKind::cut, 0, tool, name, done->share, at, EventCause::blades});
   const Organ& left = field.organs[done->patient];
-  if (!left.of_specimen && !is_clipped(left))
-    events.push_back({EventKind::cut_unclipped, 0, tool, name, done->share});
+  const bool unclipped = !left.of_specimen && !is_clipped(left);
+  if (unclipped)
+    events.push_back({EventKind::cut_unclipped, 0, tool, name, done->share, at, EventCause::blades});
+  if (!injury.cut.empty())
+    events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, injury.cut});
+  if (unclipped && !injury.unclipped.empty())
+    events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, injury.unclipped});
   return true;
 }
 
@@ -83,9 +90,11 @@ Result<bool> close_blades(Field& field, int instrument, std::vector<WorldEvent>&
     if (cut == 0) continue;
     const double all = static_cast<double>(tissue.now.opened.size());
     tool.has_cut = true;
-    events.push_back({EventKind::cut, 0, tool.definition.name, tissue.definition.name, cut / all});
+    events.push_back({EventKind::cut, 0, tool.definition.name, tissue.definition.name, cut / all,
+                      std::nullopt, EventCause::blades});
     if (tissue.torn() == static_cast<int>(tissue.now.opened.size()))
-      events.push_back({EventKind::parted, 0, {}, tissue.definition.name, 0});
+      events.push_back(
+          {EventKind::parted, 0, {}, tissue.definition.name, 0, std::nullopt, EventCause::blades});
   }
   tool.has_cut |= divided;
   if (!divided || field.step_time > 0) return divided;

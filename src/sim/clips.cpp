@@ -37,8 +37,14 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
     const double open = left_open(tool, tube, rod, row.leg);
     const Mat3 to_tube = rod.frame_at(tube.at, organ.state.x).transpose() * hinge;
     Clip clip{row.size, tube.at, open, to_tube.col(2), to_tube.col(0), tip - tube.place.z()};
+    const Vec3 at = rod.place_at(tube.at, organ.state.x);
+    const std::string name = organ.definition.name;
+    const InjuryDefinition& injury = organ.definition.injury;
+    const std::string called = clip.shut() ? injury.closed : injury.partly;
     set_clip(field, tube.organ, clip);
-    events.push_back({EventKind::clip, 0, tool.definition.name, organ.definition.name, open});
+    events.push_back({EventKind::clip, 0, tool.definition.name, name, open, at});
+    if (!called.empty())
+      events.push_back({EventKind::injury, 0, tool.definition.name, name, 0, at, EventCause::clip, called});
     holds = true;
   }
   if (!holds) events.push_back({EventKind::clip_dropped, 0, tool.definition.name, {}, 0});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/units.h"
+#include "sim/between_jaws.h"
 #include "sim/field_tissues.h"
 
 namespace calot {
@@ -48,9 +49,106 @@ bool heat(Tissue& tissue, std::size_t strand, double energy) {
   return true;
 }
 
+/// What of the tool current flows through to a place there, m away.
+double distance_to(const Tool& tool, const std::vector<Shape>& shapes, const Vec3& place) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int part = 1; part < shapes_per_tool; ++part)
+    if (conducts(tool.geometry, part))
+      nearest = std::min(nearest, signed_distance(shapes[static_cast<std::size_t>(part)], place));
+  return nearest;
+}
+
+/// Where a shut clip's legs are: from their ends to what joins them, m.
+std::array<Vec3, 2> ends_of(const Organ& organ, const Clip& clip) {
+  const RodBody& rod = *rod_of(organ);
+  const Vec3 middle = rod.place_at(clip.at, organ.state.x);
+  const Vec3 legs = rod.frame_at(clip.at, organ.state.x) * clip.legs;
+  return {middle + clip.reach * legs, middle + (clip.reach - clip_row(clip.size).leg) * legs};
+}
+
+/// The organ whose clip is touched by what current flows through, and where.
+std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field, const Tool& tool,
+                                                          const std::vector<Shape>& shapes) {
+  constexpr double half = 0.6e-3;  // m, half as thick as a shut clip, and as near as touches
+  constexpr int looks = 8;         // along the legs: less than 1.5 mm apart
+  for (const Organ& organ : field.organs)
+    for (const Clip& clip : organ.clips) {
+      const auto [from, to] = ends_of(organ, clip);
+      for (int k = 0; k <= looks; ++k)
+        if (const Vec3 at = from + static_cast<double>(k) / looks * (to - from);
+            distance_to(tool, shapes, at) < half)
+          return {{&organ, at}};
+    }
+  return std::nullopt;
+}
+
+/// Current in or near what it should be kept from: raised when it begins.
+void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& events) {
+  const bool active = is_active(tool);
+  const std::vector<Shape> shapes =
+      active ? instrument_shapes(tool.trocar, tool.pose, tool.geometry) : std::vector<Shape>{};
+  const auto clip = active ? touched_clip(field, tool, shapes) : std::nullopt;
+  if (clip && !tool.on_clip)
+    events.push_back({EventKind::activation_on_clip, 0, tool.definition.name, clip->first->definition.name, 0,
+                      clip->second, EventCause::current});
+  tool.on_clip = clip.has_value();
+  const Organ* kept = nullptr;
+  double nearest = std::numeric_limits<double>::infinity();
+  Vec3 place = Vec3::Zero();
+  for (const Organ& organ : field.organs) {
+    if (!active || organ.definition.keep_clear == 0) continue;
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+    const std::vector<double>& radii = organ.body->skin_radii();
+    // Of a tube, whose points stand far apart, between them too.
+    const std::size_t parts = rod_of(organ) == nullptr ? 1 : 8;
+    for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
+      const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
+      const Vec3 at =
+          skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
+      const double distance = distance_to(tool, shapes, at) - radii[p];
+      if (distance >= organ.definition.keep_clear || distance >= nearest) continue;
+      kept = &organ;
+      nearest = distance;
+      place = at;
+    }
+  }
+  if (kept != nullptr && !tool.beside_kept)
+    events.push_back({EventKind::activation_beside, 0, tool.definition.name, kept->definition.name,
+                      std::max(0.0, nearest) / units::mm, place, EventCause::current});
+  tool.beside_kept = kept != nullptr;
+}
+
+/// The organ whose skin what current flows through touches; null: none.
+const Organ* touched_wall(const Field& field, const Tool& tool, const PartLoad& load) {
+  if (!is_active(tool) || load.touches == 0) return nullptr;
+  const auto touched = std::find_if(field.organs.begin(), field.organs.end(),
+                                    [&](const Organ& organ) { return organ.definition.name == load.organ; });
+  return touched == field.organs.end() ? nullptr : &*touched;
+}
+
+/// Raised when it has taken what opens it: once, as long as the current stays there.
+void burn_wall(const Organ* wall, Tool& tool, const Vec3& at, double energy,
+               std::vector<WorldEvent>& events) {
+  if (wall == nullptr || wall->record != tool.burnt_record) tool.burnt = 0;
+  tool.burnt_record = wall == nullptr ? -1 : wall->record;
+  if (wall == nullptr) return;
+  const OrganDefinition& organ = wall->definition;
+  const double limit = organ.wall.burn_energy;
+  if (tool.burnt >= limit) return;
+  tool.burnt += energy;
+  if (tool.burnt < limit) return;
+  const std::string& name = tool.definition.name;
+  if (is_hollow(organ.shape))
+    events.push_back({EventKind::perforation, 0, name, organ.name, 0, at, EventCause::current});
+  if (!organ.injury.partly.empty())
+    events.push_back(
+        {EventKind::injury, 0, name, organ.name, 0, at, EventCause::current, organ.injury.partly});
+}
+
 }  // namespace
 
-std::vector<WorldEvent> apply_current(Field& field, double duration) {
+std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
+                                      double duration) {
   std::vector<WorldEvent> events;
   const std::vector<std::vector<Heated>> heated = heated_strands(field);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -62,6 +160,11 @@ std::vector<WorldEvent> apply_current(Field& field, double duration) {
       if (tool.dry == dry_limit)
         events.push_back({EventKind::dry_activation, 0, tool.definition.name, {}, 0});
     }
+    judge_neighbours(field, tool, events);
+    const ToolPart end = tool.geometry.has_jaws() ? ToolPart::jaws : ToolPart::tip;
+    const PartLoad& load = instruments[i].parts[static_cast<std::size_t>(end)];
+    burn_wall(touched_wall(field, tool, load), tool, load.at,
+              heated[i].empty() ? tool.definition.power * duration : 0, events);
     std::vector<double> areas(field.tissues.size(), 0.0);
     for (const Heated& one : heated[i]) {
       Tissue& tissue = field.tissues[one.tissue];
@@ -72,10 +175,10 @@ std::vector<WorldEvent> apply_current(Field& field, double duration) {
       if (areas[t] == 0) continue;
       const Tissue& tissue = field.tissues[t];
       const std::string& name = tissue.definition.name;
-      events.push_back(
-          {EventKind::divided, 0, tool.definition.name, name, areas[t] / (units::mm * units::mm)});
+      events.push_back({EventKind::divided, 0, tool.definition.name, name, areas[t] / (units::mm * units::mm),
+                        std::nullopt, EventCause::current});
       if (tissue.torn() == static_cast<int>(tissue.now.opened.size()))
-        events.push_back({EventKind::parted, 0, {}, name, 0});
+        events.push_back({EventKind::parted, 0, {}, name, 0, std::nullopt, EventCause::current});
     }
   }
   return events;

@@ -9,16 +9,16 @@ const std::vector<EventRow>& event_rows() {
   static const std::vector<EventRow> rows = {
       {contact, "contact", "an instrument begins to touch tissue", "", true, true},
       {grasp, "grasp", "jaws close on a fold and hold it", "", true, true},
-      {empty_grasp, "empty_grasp", "jaws close and hold nothing", "", true, false},
+      {empty_grasp, "empty_grasp", "jaws close and hold nothing", "", true, false, true},
       {release, "release", "what was held is let go, by opening or because it slipped off", "", true, true},
       {slip, "slip", "what is held begins to slide through the jaws; with the pull that does it", "force_N",
-       true, true},
+       true, true, true},
       {activation, "activation", "current begins to flow in an instrument; with the organ it touches", "",
        true, true},
       {overforce, "overforce", "the force on an instrument rises above its force_limit", "force_N", true,
-       true},
+       true, true},
       {overstretch, "overstretch", "an organ's wall is stretched beyond its overstretch", "stretch", false,
-       true},
+       true, true},
       {tear, "tear", "strands of a tissue begin to tear; with the share of them that is torn", "share", false,
        true},
       {parted, "parted", "the last strand of a tissue is torn", "", false, true},
@@ -26,27 +26,67 @@ const std::vector<EventRow>& event_rows() {
        "area_mm2", true, true},
       {dry_activation, "dry_activation",
        "current has flowed in an instrument for a quarter of a second while it touched nothing", "", true,
-       false},
+       false, true},
       {clip, "clip", "a clip is set on a duct or a vessel; with the share of its width that it leaves open",
        "opening", true, true},
       {clip_dropped, "clip_dropped", "a clip is fired with no duct or vessel between its legs, and falls", "",
-       true, false},
+       true, false, true},
       {cut, "cut",
        "blades divide a duct or a vessel, at a share of its length, or a share of a tissue's strands",
        "share", true, true},
       {cut_unclipped, "cut_unclipped",
        "what is divided has no shut clip on the patient's side: it was cut before it was clipped", "share",
+       true, true, true},
+      {perforation, "perforation",
+       "a hollow organ's wall is opened: blades close on it, current flows into it, jaws pinch it too hard, "
+       "or "
+       "it is "
+       "stretched too far; its cause says which",
+       "", true, true, true},
+      {cut_liver, "cut_liver", "blades close on the liver", "", true, true, true},
+      {empty_cut, "empty_cut", "blades close and cut nothing", "", true, false, true},
+      {injury, "injury",
+       "what should be kept is cut, clipped or burnt; its text says what that is called (the organ's injury)",
+       "", true, true, true},
+      {activation_on_clip, "activation_on_clip",
+       "current flows in an instrument that touches a clip: it loosens, and burns what it holds", "", true,
        true, true},
-      {perforation, "perforation", "blades close on the wall of a hollow organ", "", true, true},
-      {cut_liver, "cut_liver", "blades close on the liver", "", true, true},
-      {empty_cut, "empty_cut", "blades close and cut nothing", "", true, false},
+      {activation_beside, "activation_beside",
+       "current flows nearer to an organ than its keep_clear; with the distance", "distance_mm", true, true,
+       true},
+      {time_out, "time_out", "who operates stops and says what has been seen; its text is what was said", "",
+       false, false},
+      {bail_out, "bail_out",
+       "who operates ends the operation otherwise than planned; its text says how: subtotal, convert", "",
+       false, false},
       {step_done, "step_done", "a step of the exercise ends as done", "duration_s", false, false},
-      {step_timeout, "step_timeout", "a step of the exercise reaches its limit", "duration_s", false, false},
+      {step_timeout, "step_timeout", "a step of the exercise reaches its limit", "duration_s", false, false,
+       true},
   };
   return rows;
 }
 
 const EventRow& event_row(EventKind kind) { return event_rows()[static_cast<std::size_t>(kind)]; }
+
+namespace {
+
+const std::vector<std::string>& cause_names() {
+  static const std::vector<std::string> names = {"",      "scissors",    "current", "clip",
+                                                 "pinch", "overstretch", "opened",  "slipped"};
+  return names;
+}
+
+}  // namespace
+
+std::string to_text(EventCause cause) { return cause_names()[static_cast<std::size_t>(cause)]; }
+
+std::optional<EventCause> event_cause_called(const std::string& name) {
+  const auto found = std::find(cause_names().begin() + 1, cause_names().end(), name);
+  if (found == cause_names().end()) return std::nullopt;
+  return static_cast<EventCause>(found - cause_names().begin());
+}
+
+std::vector<std::string> event_cause_names() { return {cause_names().begin() + 1, cause_names().end()}; }
 
 std::string to_text(EventKind kind) { return event_row(kind).name; }
 

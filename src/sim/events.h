@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/types.h"
+
 namespace calot {
 
 enum class EventKind {
@@ -28,6 +30,11 @@ enum class EventKind {
   perforation,
   cut_liver,
   empty_cut,
+  injury,
+  activation_on_clip,
+  activation_beside,
+  time_out,
+  bail_out,
   step_done,
   step_timeout,
 };
@@ -39,7 +46,16 @@ struct EventRow {
   const char*
       value;  ///< what its value is, with the unit, as the report's key: "force_N"; empty: it has none
   bool of_instrument, of_organ;
+  bool error = false;  ///< who operates well does not cause it, whatever the exercise
 };
+
+/// What did it.
+enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping };
+/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped"; of none empty.
+std::string to_text(EventCause cause);
+std::optional<EventCause> event_cause_called(const std::string& name);
+/// But for none.
+std::vector<std::string> event_cause_names();
 
 /// In the order of the kinds.
 const std::vector<EventRow>& event_rows();
@@ -53,10 +69,13 @@ inline bool ends_a_step(EventKind kind) {
 
 struct WorldEvent {
   EventKind kind = EventKind::contact;
-  double time = 0;         ///< s
-  std::string instrument;  ///< may be empty
-  std::string organ;       ///< or tissue; may be empty
-  double value = 0;        ///< as the kind's row says, else 0
+  double time = 0;                 ///< s
+  std::string instrument;          ///< may be empty
+  std::string organ;               ///< or tissue; may be empty
+  double value = 0;                ///< as the kind's row says, else 0
+  std::optional<Vec3> place = {};  ///< m, patient's frame; none where it has none or it is not known
+  EventCause cause = EventCause::none;
+  std::string text = {};  ///< an injury's class; what was said at a time-out or a bail-out
 };
 
 }  // namespace calot

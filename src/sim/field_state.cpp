@@ -10,7 +10,8 @@ FieldState field_state(const Field& field) {
   state.group = snapshot(field);
   for (const Tool& tool : field.tools)
     state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
-                           tool.slipping, tool.action, tool.dry, tool.has_cut, tool.clips});
+                           tool.slipping, tool.action, tool.dry, tool.has_cut, tool.clips, tool.on_clip,
+                           tool.beside_kept, tool.burnt, tool.burnt_record});
   return state;
 }
 
@@ -31,6 +32,10 @@ void restore(Field& field, const FieldState& state) {
     tool.dry = was.dry;
     tool.has_cut = was.has_cut;
     tool.clips = was.clips;
+    tool.on_clip = was.on_clip;
+    tool.beside_kept = was.beside_kept;
+    tool.burnt = was.burnt;
+    tool.burnt_record = was.burnt_record;
   }
 }
 

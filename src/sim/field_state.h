@@ -15,6 +15,9 @@ struct ToolSnapshot {
   double dry = 0;
   bool has_cut = false;
   int clips = 0;
+  bool on_clip = false, beside_kept = false;
+  double burnt = 0;
+  int burnt_record = -1;
 };
 
 struct FieldState {

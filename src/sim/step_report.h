@@ -13,6 +13,13 @@
 
 namespace calot {
 
+/// What who operates does besides moving instruments: it changes nothing in the world.
+struct SessionAct {
+  EventKind kind = EventKind::time_out;  ///< or bail_out, which ends the operation
+  std::string text;                      ///< what is said: "landmarks named", "subtotal"; may be empty
+  bool operator==(const SessionAct&) const = default;
+};
+
 /// Target poses at the end of the step, one an instrument in the definition's order: the only input there is,
 /// whatever its source (demo, recording, live device).
 struct StepInput {
@@ -20,6 +27,7 @@ struct StepInput {
   std::vector<InstrumentAction> actions = {};  ///< one an instrument; empty: none acts
   /// Where the laparoscope is to be, about its port (sim/laparoscope.h); none: where it is.
   std::optional<InstrumentPose> laparoscope = {};
+  std::vector<SessionAct> acts = {};  ///< in this step, in their order
   bool operator==(const StepInput&) const = default;
 };
 

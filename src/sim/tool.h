@@ -25,6 +25,9 @@ struct Tool {
   bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
   bool has_cut = false;   ///< its blades divided something since they opened last, for events
   int clips = 0;          ///< that it still carries
+  bool on_clip = false, beside_kept = false;  ///< its current was let flow there at the last step, for events
+  double burnt = 0;                           ///< J that a wall has taken at one go, up to what opens it
+  int burnt_record = -1;                      ///< on the world's roll: that wall's organ; none: -1
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

@@ -208,6 +208,12 @@ void add_tool(Hash& hash, const Tool& tool) {
   hash.add(tool.touched);
   hash.add(tool.over_limit);
   if (tool.dry > 0) hash.add(tool.dry);
+  if (tool.on_clip || tool.beside_kept)
+    hash.add(static_cast<unsigned char>((tool.on_clip ? 1 : 0) | (tool.beside_kept ? 2 : 0)));
+  if (tool.burnt > 0) {
+    hash.add(tool.burnt);
+    hash.add(tool.burnt_record);
+  }
   add_pose(hash, tool.pose);
 }
 
@@ -347,6 +353,36 @@ std::vector<TissueState> tissue_states(const Field& field) {
 
 }  // namespace
 
+namespace {
+
+/// Where an instrument is pressed hardest, m; none where it touches nothing.
+std::optional<Vec3> touched_place(const InstrumentState& state) {
+  const PartLoad* hardest = nullptr;
+  for (const PartLoad& load : state.parts)
+    if (load.touches > 0 && (hardest == nullptr || load.largest > hardest->largest)) hardest = &load;
+  return hardest == nullptr ? std::nullopt : std::optional<Vec3>(hardest->at);
+}
+
+/// Walls that are stretched so far that they open, or too far, since this step.
+void judge_stretch(const Field& field, const std::vector<OrganState>& before,
+                   const std::vector<OrganState>& now, std::vector<WorldEvent>& events) {
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const OrganDefinition& organ = field.organs[k].definition;
+    const auto begins = [&](double limit) {
+      return now[k].max_stretch > limit &&
+             std::none_of(before.begin(), before.end(), [&](const OrganState& one) {
+               return one.record == now[k].record && one.max_stretch > limit;
+             });
+    };
+    if (begins(organ.wall.overstretch))
+      events.push_back({EventKind::overstretch, 0, "", organ.name, now[k].max_stretch});
+    if (is_hollow(organ.shape) && begins(organ.wall.perforation_stretch))
+      events.push_back({EventKind::perforation, 0, "", organ.name, 0, std::nullopt, EventCause::stretch});
+  }
+}
+
+}  // namespace
+
 void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions) {
   const std::vector<ToolLoad> loads = tool_loads(field);
   report.time = time();
@@ -362,30 +398,27 @@ void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<Inst
     const InstrumentState& state = report.instruments[i];
     const std::string& organ = loads[i].organ;
     if (state.touching && !tool.touched)
-      events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0});
+      events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0, touched_place(state)});
     const InstrumentAction asked = actions.empty() ? InstrumentAction::none : actions[i];
     if (asked == InstrumentAction::activate && tool.action != asked)
-      events.push_back({EventKind::activation, 0, tool.definition.name, organ, 0});
+      events.push_back({EventKind::activation, 0, tool.definition.name, organ, 0, touched_place(state)});
     tool.action = report.instruments[i].action = asked;
     const double force = state.tip_force.norm();
     const bool over = force > tool.definition.force_limit;
     if (over && !tool.over_limit)
-      events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force});
+      events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
     tool.touched = state.touching;
     tool.over_limit = over;
   }
-  for (const WorldEvent& event : apply_current(field, 1 / scene.solver.rate)) events.push_back(event);
+  for (const WorldEvent& event : apply_current(field, report.instruments, 1 / scene.solver.rate))
+    events.push_back(event);
   report.tissues = tissue_states(field);
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    const double limit = field.organs[k].definition.wall.overstretch;
-    const bool was = std::any_of(before.begin(), before.end(), [&](const OrganState& one) {
-      return one.record == field.organs[k].record && one.max_stretch > limit;
-    });
-    if (report.organs[k].max_stretch > limit && !was)
-      events.push_back(
-          {EventKind::overstretch, 0, "", field.organs[k].definition.name, report.organs[k].max_stretch});
+  judge_stretch(field, before, report.organs, events);
+  for (WorldEvent& event : events) {
+    event.time = report.time;
+    for (std::size_t i = 0; i < field.tools.size() && !event.place; ++i)
+      if (field.tools[i].definition.name == event.instrument) event.place = report.instruments[i].tip;
   }
-  for (WorldEvent& event : events) event.time = report.time;
   report.events = std::move(events);
   field_hash = hash_field();
   report.state_hash = hash(field_hash);

@@ -27,12 +27,14 @@ const std::array axis_rows = {
     AxisRow{"right", &GamepadMap::right, "mm_s", mm_s},   AxisRow{"up", &GamepadMap::up, "mm_s", mm_s},
     AxisRow{"deeper", &GamepadMap::deeper, "mm_s", mm_s}, AxisRow{"roll", &GamepadMap::roll, "deg_s", deg_s},
     AxisRow{"close", &GamepadMap::close, "deg_s", deg_s}, AxisRow{"open", &GamepadMap::open, "deg_s", deg_s}};
-const std::array<std::pair<const char*, int GamepadMap::*>, 5> button_rows = {
+const std::array<std::pair<const char*, int GamepadMap::*>, 7> button_rows = {
     {{"clutch", &GamepadMap::clutch},
      {"next_hand", &GamepadMap::next_hand},
      {"laparoscope", &GamepadMap::laparoscope},
      {"activate", &GamepadMap::activate},
-     {"menu", &GamepadMap::menu}}};
+     {"menu", &GamepadMap::menu},
+     {"time_out", &GamepadMap::time_out},
+     {"bail_out", &GamepadMap::bail_out}}};
 
 /// Place of a name in a list; says so where it is none.
 int place_of(JsonFields& fields, const std::string& key, const std::vector<std::string>& names) {
@@ -133,6 +135,8 @@ HandMotion gamepad_motion(const GamepadMap& map, const GamepadState& state, cons
   motion.next_hand = pressed(map.next_hand);
   motion.laparoscope = pressed(map.laparoscope);
   motion.activate = down(state, map.activate);
+  motion.time_out = pressed(map.time_out);
+  motion.bail_out = down(state, map.clutch) && pressed(map.bail_out);
   if (down(state, map.clutch)) return motion;
   motion.in_view = Vec3(way(map.right), way(map.up), way(map.deeper));
   motion.roll = way(map.roll);

@@ -20,6 +20,8 @@ HandMotion& HandMotion::operator+=(const HandMotion& other) {
   activate = activate || other.activate;
   next_hand = next_hand || other.next_hand;
   laparoscope = laparoscope || other.laparoscope;
+  time_out = time_out || other.time_out;
+  bail_out = bail_out || other.bail_out;
   return *this;
 }
 

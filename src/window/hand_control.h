@@ -14,6 +14,7 @@ struct HandMotion {
   double roll = 0, jaw = 0;                     ///< rad: more
   bool activate = false;                        ///< the pedal is down
   bool next_hand = false, laparoscope = false;  ///< to the other hand; to the laparoscope, or back
+  bool time_out = false, bail_out = false;      ///< the acts, no motion
   bool moves() const { return in_view != Vec3::Zero() || roll != 0 || jaw != 0; }
   HandMotion& operator+=(const HandMotion& other);
 };

@@ -139,10 +139,12 @@ void OperateWindow::Impl::listen() {
   });
   glfwSetScrollCallback(
       window, [](GLFWwindow* from, double, double notches) { self(from)->events.wheel += notches; });
-  glfwSetKeyCallback(window, [](GLFWwindow* from, int code, int, int action, int) {
+  glfwSetKeyCallback(window, [](GLFWwindow* from, int code, int, int action, int held) {
     if (action != GLFW_PRESS) return;
     if (code == GLFW_KEY_TAB) self(from)->events.next_hand = true;
     if (code == GLFW_KEY_C) self(from)->events.laparoscope = true;
+    if (code == GLFW_KEY_T) self(from)->events.time_out = true;
+    if (code == GLFW_KEY_B && (held & GLFW_MOD_CONTROL) != 0) self(from)->events.bail_out = true;
     if (code == GLFW_KEY_ESCAPE) self(from)->events.menu = true;
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int, int action, int) {
@@ -182,6 +184,13 @@ void OperateWindow::Impl::go_on() {
 }
 
 void OperateWindow::Impl::choose(MenuChoice choice) {
+  const auto act = [this](EventKind kind, const char* text) {
+    go_on();  // no act while time stands still
+    send(SessionAct{kind, text});
+  };
+  if (choice == MenuChoice::time_out) act(EventKind::time_out, "");
+  if (choice == MenuChoice::subtotal) act(EventKind::bail_out, "subtotal");
+  if (choice == MenuChoice::convert) act(EventKind::bail_out, "convert");
   if (choice == MenuChoice::go_on) go_on();
   if (choice == MenuChoice::restart) send(LiveCommand::restart);
   if (choice == MenuChoice::abandon) send(LiveCommand::abandon);
@@ -201,6 +210,8 @@ HandMotion OperateWindow::Impl::device_motion(double dt) {
   motion.activate = key(GLFW_KEY_SPACE);
   motion.next_hand = events.next_hand;
   motion.laparoscope = events.laparoscope;
+  motion.time_out = events.time_out;
+  motion.bail_out = events.bail_out;
   return motion;
 }
 
@@ -220,6 +231,8 @@ void OperateWindow::Impl::move_hands(double dt) {
   motion += pad_motion(0, now, dt);
   const HandMotion assistant = pad_motion(1, now, dt);
   pads = now;
+  if (motion.time_out) send(SessionAct{EventKind::time_out, {}});
+  if (motion.bail_out) send(SessionAct{EventKind::bail_out, {}});
   const SceneCamera& camera = view->scene.camera;
   const bool changes = motion.next_hand || motion.laparoscope;
   if (changes) send(hands->held(hands->selected()));

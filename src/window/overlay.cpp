@@ -74,6 +74,11 @@ std::optional<MenuChoice> lay_out_menu(const OverlayState& state) {
     return chosen;
   }
   button(state.started ? "Go on (click)" : "Begin (click)", MenuChoice::go_on);
+  if (state.started) {
+    button("Time-out (T)", MenuChoice::time_out);
+    button("Bail out: subtotal", MenuChoice::subtotal);
+    button("Bail out: convert to open", MenuChoice::convert);
+  }
   if (state.started && state.mode == LiveMode::practice) button("Begin again", MenuChoice::restart);
   button(state.mode == LiveMode::exam ? "Give up: scored as it stands" : "Give up", MenuChoice::abandon);
   return chosen;
@@ -103,7 +108,8 @@ std::optional<MenuChoice> lay_out(const OverlayState& state, const LiveView& vie
   coloured(
       grey,
       "mouse: tip in the view's plane\nwheel: deeper, back\nleft, right button: close, open\nQ, E: roll\n"
-      "Tab: the other hand\nC: the laparoscope, and back\nSpace: activate, or fire\nShift: finely\nEsc: menu");
+      "Tab: the other hand\nC: the laparoscope, and back\nSpace: activate, or fire\nShift: finely\nEsc: "
+      "menu");
   coloured(grey, fmt::format("{:.0f} pictures a second", state.pictures_a_second));
   ImGui::End();
   return chosen;

@@ -18,7 +18,7 @@ struct OverlayState {
   double pictures_a_second = 0;
 };
 
-enum class MenuChoice { go_on, restart, abandon, close };
+enum class MenuChoice { go_on, time_out, subtotal, convert, restart, abandon, close };
 
 inline constexpr float panel_width = 290;  ///< px
 

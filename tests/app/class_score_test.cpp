@@ -254,11 +254,20 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
   const std::size_t end = csv.out.find("\r\n");
   const std::string head = csv.out.substr(0, end), row = csv.out.substr(end + 2);
   EXPECT_TRUE(
-      head.starts_with("file,from,end,whole,stopped_at_s,total,passed,completed,critical,"
-                       "left.path_length_mm points,left.path_length_mm measured,empty_grasp points,"))
+      head.starts_with("file,from,end,whole,stopped_at_s,total,passed,completed,critical,gates,"
+                       "left.path_length_mm points,left.path_length_mm measured,left.path_length_mm reason,"
+                       "empty_grasp points,"))
       << head;
   EXPECT_TRUE(row.starts_with("out/recording.jsonl,recording,done,true,0.2,")) << row;
-  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(row.begin(), row.end(), ','));
+  const auto fields = [](const std::string& line) {
+    bool quoted = false;
+    return 1 + std::count_if(line.begin(), line.end(), [&](char c) {
+             quoted ^= c == '"';
+             return c == ',' && !quoted;
+           });
+  };
+  EXPECT_EQ(fields(head), fields(row.substr(0, row.find("\r\n"))));
+  EXPECT_NE(row.find("\"left.path_length_mm = "), std::string::npos) << "its reason: " << row;
   EXPECT_NE(text.out.find("  out/recording.jsonl "), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("1 of 1 passed (pass mark 80)"), std::string::npos) << text.out;
   EXPECT_EQ(score({"out", "--fail-below", "99"}).code, 1);

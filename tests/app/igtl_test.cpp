@@ -177,6 +177,16 @@ TEST_F(Igtl, JawsActionsAndCommandsHaveMessagesOfTheirOwn) {
   EXPECT_EQ(std::get<LiveCommand>(events[7]), LiveCommand::end);
 }
 
+TEST_F(Igtl, ActsAreMessagesOfTheSessionWithWhatIsSaid) {
+  const std::vector<LiveEvent> events =
+      read(text("session", "time_out landmarks named") + text("session", "bail_out") +
+           text("session", "time_out " + std::string(300, 'x')));
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(std::get<SessionAct>(events[0]), (SessionAct{EventKind::time_out, "landmarks named"}));
+  EXPECT_EQ(std::get<SessionAct>(events[1]), (SessionAct{EventKind::bail_out, ""}));
+  EXPECT_THAT(std::get<LiveRefusal>(events[2]).problem.message, HasSubstr("too long"));
+}
+
 TEST_F(Igtl, WhatCannotBeUsedIsRefusedWithItsNumberAndWhyAndWhatFollowsIsRead) {
   const std::string good = transform("left", place);
   std::string damaged = good;

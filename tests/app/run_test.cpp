@@ -34,8 +34,8 @@ TEST_F(Run, PrintsStepsMetricsAndScoreAndWritesEverythingIntoItsFolder) {
   std::set<std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "here"))
     files.insert(entry.path().filename());
-  EXPECT_EQ(files, (std::set<std::string>{"end.png", "recording.jsonl", "report.json", "steps.csv",
-                                          "t000.00s.png", "t000.40s.png"}));
+  EXPECT_EQ(files, (std::set<std::string>{"end.png", "events.csv", "recording.jsonl", "report.json",
+                                          "steps.csv", "t000.00s.png", "t000.40s.png"}));
 }
 
 TEST_F(Run, WritesIntoOutByDefault) {

@@ -79,6 +79,18 @@ TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {
   }
 }
 
+TEST(Anatomy, SaysWhatItIsCalledWhenWhatShouldBeKeptIsHurt) {
+  std::map<std::string, OrganDefinition> organs;
+  for (const OrganDefinition& organ : scene_of("anatomy.standard()").anatomy.organs)
+    organs[organ.name] = organ;
+  const OrganDefinition& common = organs.at("common_duct");
+  EXPECT_EQ(common.injury.cut + ", " + common.injury.partly, "Strasberg E, Strasberg D");
+  EXPECT_EQ(common.keep_clear, 3 * mm);
+  EXPECT_EQ(organs.at("cystic_duct").injury.unclipped, "Strasberg A");
+  EXPECT_EQ(organs.at("cystic_duct").injury.cut, "") << "it is what is to be divided";
+  EXPECT_NE(organs.at("right_hepatic_artery").injury.closed, "");
+}
+
 TEST(Anatomy, TheSameSeedIsTheSamePatient) {
   const auto width = [](std::uint64_t seed) {
     const Folder folder;
@@ -122,7 +134,8 @@ TEST(Anatomy, ADuctThatEndsNowhereIsRefused) {
   const Failure failure = loaded.value()->located(world.failure());
   EXPECT_EQ(failure.problems[0].place.path, "scene.anatomy.joints[1]");
   EXPECT_GT(failure.problems[0].place.line, 0);
-  EXPECT_THAT(to_text(failure), ::testing::HasSubstr("duct.start ends nowhere: it lies 15.1 mm from 'stone'"));
+  EXPECT_THAT(to_text(failure),
+              ::testing::HasSubstr("duct.start ends nowhere: it lies 15.1 mm from 'stone'"));
 }
 
 }  // namespace

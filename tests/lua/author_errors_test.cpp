@@ -87,6 +87,18 @@ ScenarioText with_swept(const std::string& along, const std::string& more = "") 
                       "\n} } } } }");
 }
 
+ScenarioText part(const std::string& part) {
+  return score_function("calot.score.weighted {\n{ calot.score." + part + ", weight = 1 } }");
+}
+ScenarioText rule(const std::string& body) {
+  return part("rule(function(run) " + body + "\nend), name = 'own'");
+}
+ScenarioText gate(const std::string& keys) {
+  return score_function(
+      "calot.score.weighted {\n{ calot.score.penalty { event = 'slip' }, weight = 1 },\ngates = { { " + keys +
+      " } } }");
+}
+
 std::vector<Mistake> mistakes() {
   const std::string whole_weight =
       "{ calot.score.benchmark { metric = 'total.time_s', novice = 2, expert = 1 }, weight = 1 }";
@@ -207,8 +219,7 @@ std::vector<Mistake> mistakes() {
        "score =", "sum to 0.9", "sum to 1"},
       {"MissingWeight", with_score("\n{ calot.score.penalty { event = 'grasp' } }"), "event = 'grasp'",
        "\"weight\" is missing", "weight = "},
-      {"PartWithoutScore", with_score("\n{ weight = 1 }"), "{ weight", "benchmark or calot.score.penalty",
-       "write"},
+      {"PartWithoutScore", with_score("\n{ weight = 1 }"), "{ weight", "one of calot.score's", "write"},
       {"NoviceIsExpert",
        with_score(
            "{ calot.score.benchmark { metric = 'total.time_s', novice = 2,\n expert = 2 }, weight = 1 }"),
@@ -327,6 +338,37 @@ std::vector<Mistake> mistakes() {
        score_function("function(p) return calot.score.weighted {\n{ calot.score.benchmark {\n metric = "
                       "'total.tme_s', novice = 2, expert = 1 }, weight = 1 } } end"),
        "total.tme_s", "unknown metric", "total.time_s"},
+      {"UnknownEventInARule", rule("return run:count(\n'ctu') / 9, 'x'"), "run:count",
+       "unknown event \"ctu\"", "cut"},
+      {"UnknownMetricInARule", rule("return run.metrics[\n'total.tme_s'] / 9, 'x'"), "'total.tme_s'",
+       "unknown metric", "total.time_s"},
+      {"UnknownMemberOfARun", rule("\nreturn run.evnts[1], 'x'"), "run.evnts", "run has no \"evnts\"",
+       "events"},
+      {"RuleThatReturnsNothing", rule("\nreturn nil, 'x'"), "score.rule", "no share but nil",
+       "return a share"},
+      {"RuleThatIsNone",
+       score_function("calot.score.weighted {\n{ calot.score.rule { 1 },\nname = 'x', weight = 1 } }"),
+       "score.rule {", "needs a function", ""},
+      {"RuleWithoutAName",
+       score_function(
+           "calot.score.weighted {\n{ calot.score.rule(function() return 1, 'x' end), weight = 1 } }"),
+       "score.rule", "a rule needs a name", "name = "},
+      {"GateWithoutAReason", gate("event = 'cut'"), "event = 'cut'", "\"reason\" is missing", "trainee"},
+      {"GateWithoutACondition", gate("reason = 'x'"), "reason = 'x'", "no condition", "event"},
+      {"GateOnAnUnknownEvent", gate("event = 'ctu', reason = 'x'"), "event = 'ctu'", "ctu", "cut"},
+      {"GateOnAnUnknownMetric", gate("metric = 'total.tme_s', below = 1, reason = 'x'"),
+       "metric = 'total.tme", "unknown metric", "total.time_s"},
+      {"GateOnAMetricAlone", gate("metric = 'total.time_s', reason = 'x'"), "metric = 'total",
+       "needs below or above", "below = 5"},
+      {"GateOnAnUnknownOrgan", gate("event = 'cut', organ = 'galbladder', reason = 'x'"), "organ = 'galb",
+       "galbladder", "gallbladder"},
+      {"GateAfterAnOrganAlone", gate("event = 'cut', after_organ = 'gallbladder', reason = 'x'"),
+       "after_organ", "only_after", "give only_after"},
+      {"ProcedureOfAnUnknownStep", part("procedure { steps = { 'lok' } }"), "procedure", "lok", "look"},
+      {"ProcedureWithAnUnknownError", part("procedure { minor = { 'slp' } }"), "procedure", "slp", "slip"},
+      {"TimeThatEndsBeforeItBegins", part("time { reference = 9 * s, limit = 3 * s }"), "limit = 3",
+       "not after", "earns nothing"},
+      {"CriticalViewThatIsNeverNoted", part("critical_view()"), "critical_view", "unknown metric", "known"},
       {"MissingModule", with_head("local g = require 'grips'"), "require 'grips'", "no module", "looked for"},
       {"ModuleUpward", with_head("local g = require '../grips'"), "require '../grips'", "no module's name",
        "letters"},

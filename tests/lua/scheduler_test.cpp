@@ -1,11 +1,13 @@
 // Steps and demos keep time: what they do depends on the simulated time, not on the rate.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "base/log.h"
 #include "lua/demo_script.h"
 #include "lua/motion.h"
 #include "lua/scenario_files.h"
+#include "session/runner.h"
 
 namespace calot {
 namespace {
@@ -261,6 +263,28 @@ TEST(Demo, CurrentFlowsInTheStepsThatEndWithinItsTimeAndStepsSeeIt) {
   const Played played = play_own(text, 50, 0.6);
   ASSERT_FALSE(played.failure) << to_text(*played.failure);
   EXPECT_THAT(played.printed, ::testing::ElementsAre("0.12", "0.42"));
+}
+
+TEST(Demo, TakesTimeOutsInTheStepInWhichItIsAndStepsCountTheEvents) {
+  const Folder folder;
+  ScenarioText text;
+  text.scene = scene_at(50);
+  text.steps =
+      "t:step('look', 'Look')\nt:wait_until(function() return t:count('time_out') == 2 end)\n"
+      "t:note('seen', t:time(), 's')\nt:wait(9 * s)";
+  text.demo =
+      "t:time_out('first') t:wait(0.1 * s) t:time_out() t:wait(0.1 * s) t:bail_out('subtotal') t:wait(1 * s)";
+  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, text.text());
+  ASSERT_TRUE(script) << to_text(script.failure());
+  World world = World::create(script.value()->definition().scene).value();
+  const SessionResult result = run_session(world, *script.value(), script.value()->demo(), {});
+  EXPECT_EQ(result.end, SessionEnd::bailed_out) << to_text(result.failure);
+  std::vector<std::string> acts;
+  for (const SessionEvent& event : result.progress.events())
+    acts.push_back(fmt::format("{} {:.2f} {}", to_text(event.kind), event.time, event.text));
+  EXPECT_THAT(acts,
+              ::testing::ElementsAre("time_out 0.02 first", "time_out 0.10 ", "bail_out 0.20 subtotal"));
+  EXPECT_NEAR(result.metrics.at("note.seen"), 0.1, 1e-9) << "in the step of the second";
 }
 
 TEST(Demo, RefusesASecondMotionWhileItMovesUntilAConditionHolds) {

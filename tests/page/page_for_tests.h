@@ -34,10 +34,10 @@ inline PageRecording made_up(const std::string& prefix, std::size_t samples, std
                        end * 0.25 * static_cast<double>(i + 1), picture(i), picture(i + 1), word});
   for (std::size_t i = 0; i < events; ++i)
     r.events.push_back({word, word, end * static_cast<double>(i) / static_cast<double>(events), word, word,
-                        word, word, i % 3 == 0, picture(i)});
+                        word, word, i % 3 == 0, picture(i), word, word});
   PagePart part{word, word, 0.5, 20, 3.0, std::array{10.0, 2.0}, "", word, {}};
   for (std::size_t i = 0; i < events; ++i) part.events.push_back(i);
-  r.score = {40, 60, {part, part}, {{word, 40, part.events}}};
+  r.score = {40, 60, {part, part}, {{word, word, 40, true, part.events}}};
   r.score.parts[1].novice_expert.reset();
   r.score.parts[1].rule = word;
   for (const bool is_path : {false, false, false, false, false, false, true, true}) {

@@ -2,6 +2,7 @@
 
 #include "session/live.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <thread>
@@ -275,6 +276,62 @@ TEST(Live, ByTheirStampsInputsCountInTheSameStepHoweverTheyCome) {
     hashes.push_back(result.state_hashes);
   }
   EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+std::vector<std::string> acts_of(const SessionResult& result) {
+  std::vector<std::string> acts;
+  for (const SessionEvent& event : result.progress.events())
+    if (is_session_act(to_text(event.kind)))
+      acts.push_back(fmt::format("{} {:.2f} {}", to_text(event.kind), event.time, event.text));
+  return acts;
+}
+
+TEST(Live, ActsCountOnceInTheStepAfterThemAndABailOutEndsTheOperation) {
+  Rig rig;
+  rig.send_at(0.05, SessionAct{EventKind::time_out, "landmarks named"});
+  rig.send_at(0.09, SessionAct{EventKind::bail_out, "convert"});
+  const SessionResult result = rig.play(1);
+  EXPECT_EQ(result.end, SessionEnd::bailed_out);
+  EXPECT_THAT(acts_of(result), ElementsAre("time_out 0.08 landmarks named", "bail_out 0.12 convert"));
+}
+
+TEST(Live, AnActBeginsTheClockAndIsRefusedWhileItStands) {
+  Rig rig;
+  rig.options.begins_at_once = false;
+  rig.send_at(0.5, SessionAct{EventKind::time_out, ""});
+  rig.send_at(0.55, LiveCommand::pause);
+  rig.send_at(0.6, SessionAct{EventKind::bail_out, ""});
+  rig.send_at(0.7, LiveCommand::resume);
+  const SessionResult result = rig.play(0.2);
+  EXPECT_EQ(result.end, SessionEnd::steps_done);
+  EXPECT_THAT(acts_of(result), ElementsAre("time_out 0.02 "));
+  EXPECT_EQ(rig.source->figures().refused, 1);
+}
+
+TEST(Live, ByTheirStampsActsCountInTheStepOfTheInputsBeforeThem) {
+  const std::string text =
+      "pose 0 left 0 0 0.06 0 0\ntime_out  landmarks named \npose 0.05 left 0 0 0.06 0 0\nbail_out\n";
+  for (const std::size_t piece : {std::size_t{7}, text.size()}) {
+    Rig rig;
+    rig.options.stamped = true;
+    LiveLines lines(live_instruments(rig.world.scene()), "test");
+    std::vector<LiveEvent> events;
+    for (std::size_t from = 0; from < text.size(); from += piece) lines.add(text.substr(from, piece), events);
+    for (LiveEvent& event : events) rig.mailbox.put(std::move(event));
+    const SessionResult result = rig.play(1);
+    EXPECT_EQ(result.end, SessionEnd::bailed_out);
+    EXPECT_THAT(acts_of(result), ElementsAre("time_out 0.02 landmarks named", "bail_out 0.06 "));
+  }
+}
+
+TEST(Live, WhatIsSaidAtAnActIsPlainAndShort) {
+  LiveLines lines(live_instruments(test::small_scene()), "test");
+  std::vector<LiveEvent> events;
+  lines.add("time_out " + std::string(201, 'x') + "\ntime_out \xff\ntime_out a\x01\n", events);
+  ASSERT_EQ(events.size(), 3u);
+  for (const LiveEvent& event : events) EXPECT_TRUE(std::holds_alternative<LiveRefusal>(event));
+  EXPECT_FALSE(read_session_act("time-out", ""));
+  EXPECT_TRUE(read_session_act("bail_out", std::string(200, 'x')));
 }
 
 TEST(Live, AFullMailboxHoldsItsSenderUntilThereIsRoomOrItIsClosed) {

@@ -430,5 +430,32 @@ TEST_F(RecordingFile, AFolderThatDoesNotExistIsAUsageError) {
   EXPECT_EQ(writer.failure().kind, FailureKind::usage);
 }
 
+TEST_F(RecordingFile, AnActThatIsNoneIsRefusedWithItsLine) {
+  write({}, "");
+  append(R"({"time_s":0.02,"poses":[[0,0,0.03,0,0],[0,0,0.03,0,0]],"acts":[{"act":"time_uot"}],)"
+         R"("state_hash":"0123456789abcdef"})"
+         "\n");
+  EXPECT_NE(complaint().find(":2: \"time_uot\" is no act (did you mean"), std::string::npos) << complaint();
+}
+
+TEST_F(RecordingFile, EventsKeepPlaceCauseAndText) {
+  WorldEvent event{EventKind::injury,   4.5,          "blades", "common_duct", 0, Vec3(0.1, -0.0, 1.0 / 3),
+                   EventCause::current, "Strasberg E"};
+  Measured measured;
+  measured.progress.add_event(event);
+  measured.progress.add_event({EventKind::slip, 5, "left", "", 2.5});
+  Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
+  ASSERT_TRUE(writer && writer->write(measured) && writer->finish("done"));
+  const Result<Recording> recording = read_recording(path_);
+  ASSERT_TRUE(recording) << to_text(recording.failure());
+  const std::vector<SessionEvent>& events = recording->measured->progress.events();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(*events[0].place, *event.place);
+  EXPECT_EQ(events[0].cause, EventCause::current);
+  EXPECT_EQ(events[0].text, "Strasberg E");
+  EXPECT_FALSE(events[1].place) << "as in recordings made before events had one";
+  EXPECT_EQ(events[1].cause, EventCause::none);
+}
+
 }  // namespace
 }  // namespace calot

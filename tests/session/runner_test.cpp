@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "session/metrics.h"
+#include "session/progress_json.h"
 #include "session/report.h"
 #include "session/session_for_tests.h"
 #include "session/skin_difference.h"
@@ -162,6 +163,63 @@ TEST(Runner, AReplayOfAnInterruptedRunEndsWhereTheRunDid) {
   EXPECT_EQ(result.state_hashes.size(), 6u);
 }
 
+/// Acts in the steps that end then, besides swaying.
+class ActingSource : public InputSource {
+ public:
+  explicit ActingSource(std::map<int, SessionAct> acts) : acts_(std::move(acts)) {}
+  Result<std::optional<StepInput>> next(const World& world, double dt) override {
+    Result<std::optional<StepInput>> input = sway_.next(world, dt);
+    const auto act = acts_.find(++step_);
+    if (input && input.value() && act != acts_.end()) input.value()->acts = {act->second};
+    return input;
+  }
+
+ private:
+  test::SwayingSource sway_{1};
+  std::map<int, SessionAct> acts_;
+  int step_ = 0;
+};
+
+TEST(Runner, ATimeOutAndABailOutAreEventsAndTheirReplayHasTheSameBits) {
+  test::TimedScript script(1);
+  ActingSource source(
+      {{3, {EventKind::time_out, "landmarks \"named\""}}, {6, {EventKind::bail_out, "subtotal"}}});
+  const auto [run, recording] = recorded(script, source);
+  EXPECT_EQ(run.end, SessionEnd::bailed_out);
+  EXPECT_EQ(run.state_hashes.size(), 7u) << "the operation ends with the step of the bail-out";
+  EXPECT_EQ(run.progress.steps().at(0).outcome, "bail_out");
+  EXPECT_EQ(recording.end, "bail_out");
+  EXPECT_TRUE(came_to_its_end(recording.end)) << "it was not broken off";
+  test::TimedScript again(1);
+  ReplaySource replay(recording);
+  SessionOptions options;
+  options.end_with_source = true;
+  const SessionResult result = played(again, replay, options);
+  EXPECT_EQ(result.end, SessionEnd::bailed_out);
+  EXPECT_EQ(result.state_hashes, run.state_hashes);
+  EXPECT_EQ(result.metrics, run.metrics);
+  EXPECT_EQ(events_json(result.progress), events_json(run.progress));
+  for (const SessionResult* one : {&run, &result}) {
+    const SessionEvent& time_out = one->progress.events().at(0);
+    EXPECT_EQ(time_out.kind, EventKind::time_out);
+    EXPECT_EQ(time_out.text, "landmarks \"named\"");
+    EXPECT_NEAR(time_out.time, 0.06, 1e-12);
+    EXPECT_EQ(time_out.step, "only");
+    EXPECT_EQ(one->progress.events().back().text, "subtotal");
+  }
+  EXPECT_EQ(events_json(recording.measured->progress), events_json(run.progress));
+}
+
+TEST(Runner, AnActIsDoneOnceThoughTheLastPoseIsHeld) {
+  test::TimedScript script(1.2);
+  ActingSource source({{50, {EventKind::time_out, ""}}});  // the source's last
+  const SessionResult result = played(script, source);
+  const auto& events = result.progress.events();
+  EXPECT_EQ(std::count_if(events.begin(), events.end(),
+                          [](const WorldEvent& event) { return event.kind == EventKind::time_out; }),
+            1);
+}
+
 TEST(Runner, AScriptsErrorEndsTheSessionWithItsFailure) {
   class Broken : public test::TimedScript {
    public:
@@ -258,7 +316,7 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   EXPECT_TRUE(result.notes.empty()) << "everything could be measured";
   result.notes = {"a note"};
   SessionReport report;
-  report.score = score(script.definition(), result.metrics, result.progress);
+  report.score = score(script.definition(), result.metrics, result.progress).value();
   const auto json = nlohmann::json::parse(report_json(script.definition(), result, report));
   for (const char* key :
        {"schema", "scenario", "seed", "steps", "events", "metrics", "score", "state_hash", "timing"}) {

@@ -91,6 +91,9 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("beside", [](FieldState& s) { s.tools[0].beside ^= true; });
   differs("touch", [](FieldState& s) { s.tools[0].touched ^= true; });
   differs("limit", [](FieldState& s) { s.tools[0].over_limit ^= true; });
+  differs("on a clip", [](FieldState& s) { s.tools[0].on_clip ^= true; });
+  differs("beside what is kept", [](FieldState& s) { s.tools[0].beside_kept ^= true; });
+  differs("burnt", [](FieldState& s) { s.tools[0].burnt += 1; });
   ASSERT_TRUE(path.world.restore(state));
   EXPECT_EQ(path.world.state_hash(), hash);
 }

@@ -197,6 +197,18 @@ TEST(Gamepad, AButtonCountsOnceForEachTimeItGoesDown) {
   EXPECT_FALSE(gamepad_motion(map, state, state, 0.01).next_hand);
 }
 
+TEST(Gamepad, ABailOutTakesTheClutchTooAndATimeOutDoesNot) {
+  const GamepadMap map;
+  GamepadState state;
+  state.buttons[static_cast<std::size_t>(map.time_out)] = true;
+  state.buttons[static_cast<std::size_t>(map.bail_out)] = true;
+  EXPECT_TRUE(gamepad_motion(map, state, {}, 0.01).time_out);
+  EXPECT_FALSE(gamepad_motion(map, state, state, 0.01).time_out) << "once for each press";
+  EXPECT_FALSE(gamepad_motion(map, state, {}, 0.01).bail_out) << "a slip ends no operation";
+  state.buttons[static_cast<std::size_t>(map.clutch)] = true;
+  EXPECT_TRUE(gamepad_motion(map, state, {}, 0.01).bail_out);
+}
+
 TEST(Gamepad, ADeviceFileReadsBackAndChangesOnlyWhatItNames) {
   const Result<GamepadMap> same = read_gamepad_map(gamepad_map_text({}), "pad.json");
   ASSERT_TRUE(same) << to_text(same.failure());

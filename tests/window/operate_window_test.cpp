@@ -173,6 +173,13 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   EXPECT_EQ(std::get<LiveInput>(events[1]).instrument, 1);
   EXPECT_NE(std::get<LiveInput>(events[1]).pose, view->hands[1].pose);
 
+  window.events().time_out = window.events().bail_out = true;
+  ASSERT_TRUE(window.turn(nullptr).value());
+  events = taken(mailbox);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(std::get<SessionAct>(events[0]).kind, EventKind::time_out);
+  EXPECT_EQ(std::get<SessionAct>(events[1]).kind, EventKind::bail_out);
+
   window.events().menu = true;
   ASSERT_TRUE(window.turn(nullptr).value());
   window.go_on();
