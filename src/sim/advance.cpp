@@ -15,6 +15,7 @@
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/inertia.h"
+#include "sim/leak.h"
 #include "sim/rubbing.h"
 #include "sim/settle_field.h"
 #include "sim/structural_extension.h"
@@ -671,6 +672,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       tool.jaw_stopped = true;
       tool.lost = tool.beside = false;
       events.push_back({closed_on(field, index), 0, tool.definition.name, held_organ(field, index), 0});
+      if (events.back().kind == EventKind::perforation) perforate(field, index);
     }
   }
   feel_again(field);

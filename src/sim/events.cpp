@@ -40,6 +40,13 @@ const std::vector<EventRow>& event_rows() {
       {perforation, "perforation", "blades close on the wall of a hollow organ", "", true, true},
       {cut_liver, "cut_liver", "blades close on the liver", "", true, true},
       {empty_cut, "empty_cut", "blades close and cut nothing", "", true, false},
+      {bile_leak, "bile_leak",
+       "bile begins to leave a divided duct or a hole in a wall; at its rate, with what made the opening",
+       "rate_mL_min", true, true},
+      {bleeding, "bleeding", "a divided artery begins to bleed; at its rate, with what divided it",
+       "rate_mL_min", true, true},
+      {leak_stopped, "leak_stopped", "a leak or a bleeding is shut or has run dry; with what it lost",
+       "lost_mL", false, true},
       {step_done, "step_done", "a step of the exercise ends as done", "duration_s", false, false},
       {step_timeout, "step_timeout", "a step of the exercise reaches its limit", "duration_s", false, false},
   };

@@ -28,6 +28,9 @@ enum class EventKind {
   perforation,
   cut_liver,
   empty_cut,
+  bile_leak,
+  bleeding,
+  leak_stopped,
   step_done,
   step_timeout,
 };
