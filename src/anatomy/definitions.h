@@ -60,8 +60,8 @@ struct TubeShape {
   double pressure = 0;       ///< Pa, gauge, of what it carries
   PatientEnd patient_end = PatientEnd::held;
   Carries carries = Carries::bile;
-  /// What drives it out of an end that is cut open, and what it loses on its way there, if the patient feeds it: Pa,
-  /// gauge, and Pa s/m^3. None: as what it carries and its width have it, feed_of() (sim/leak.h).
+  /// What drives it out of an end that is cut open where the patient feeds it, Pa, gauge, and what resists on the way
+  /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (sim/leak.h).
   std::optional<double> feed_pressure = {}, feed_resistance = {};
   bool operator==(const TubeShape&) const = default;
 };

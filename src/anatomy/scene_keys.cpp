@@ -343,11 +343,12 @@ std::vector<KeyTable> shape_tables() {
                   "gauge pressure with which the patient feeds it where it is cut open; usually 12 kPa of "
                   "blood, "
                   "1 kPa of bile; uncalibrated"),
-           number(
-               "feed_resistance", &TubeShape::feed_resistance, quantity::number, 0, 1e15,
-               "a resistance of what feeds a tube",
-               "of what feeds it, Pa s/m^3: with it an open cystic artery loses some 45 mL a minute, an open "
-               "cystic duct 3; uncalibrated"),
+           number("feed_resistance", &TubeShape::feed_resistance, quantity::number, 0, 1e15,
+                  "a resistance of what feeds a tube",
+                  "of the way to where it is cut open, Pa s/m^3; usually such that an open cystic artery "
+                  "loses some 45 mL "
+                  "a minute, a cystic duct 3 of what the patient feeds, and 18 of a gallbladder's; "
+                  "uncalibrated"),
            choice(
                "patient_end", &TubeShape::patient_end, {"held", "start", "end"},
                "the end that stays with the patient where it is divided: what is held, itself or by what it "

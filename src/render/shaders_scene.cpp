@@ -324,15 +324,15 @@ std::string scene_fragment_shader(Material material) {
       return common + wall_of("vec3(0.34, 0.315, 0.25)", 0.25, "-0.15 - 0.028 * p.z") + tissue_lighting;
     case Material::bile:
       return common +
-             "#define THIN vec3(0.52, 0.36, 0.07)\n#define DEEP vec3(0.115, 0.125, 0.012)\n#define DEPTH "
+             "#define THIN vec3(0.58, 0.42, 0.06)\n#define DEEP vec3(0.200, 0.195, 0.014)\n#define DEPTH "
              "0.9\n"
              "#define SCATTER vec3(0.40, 0.30, 0.06)\n" +
              liquid_material + tissue_lighting;
     case Material::blood:
       return common +
-             "#define THIN vec3(0.36, 0.020, 0.014)\n#define DEEP vec3(0.105, 0.004, 0.005)\n#define DEPTH "
+             "#define THIN vec3(0.25, 0.012, 0.009)\n#define DEEP vec3(0.085, 0.003, 0.004)\n#define DEPTH "
              "0.5\n"
-             "#define SCATTER vec3(0.25, 0.02, 0.015)\n" +
+             "#define SCATTER vec3(0.15, 0.01, 0.008)\n" +
              liquid_material + tissue_lighting;
     case Material::capsule:
       return common + capsule_material + tissue_lighting;

@@ -11,10 +11,11 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double drains_in = 1.0;                 // s, for what a tube holds that nothing feeds (d)
-constexpr double pulse = 0.3;                     // of the pressure of blood, up and down (d)
-constexpr double gape = 0.5e-3;                   // m, of a slit in a wall (d)
-constexpr double least_slit = 1.0e-3;             // m: blades that stand on a wall have cut it
+constexpr double drains_in = 1.0;      // s, for what a tube holds that nothing feeds (d)
+constexpr double pulse = 0.3;          // of the pressure of blood, up and down (d)
+constexpr double of_folds = 5e9;       // Pa s/m^3, of a cystic duct's: 15 mL a minute at 10 mmHg (d)
+constexpr double gape = 0.5e-3;        // m, of a slit in a wall (d)
+constexpr double least_slit = 1.0e-3;  // m: blades that stand on a wall have cut it
 constexpr double begins = 1.0e-9, ends = 0.1e-9;  // m^3/s: a microlitre a second is a leak
 
 Carries liquid_of(const Organ& organ) {
@@ -69,7 +70,10 @@ class SourceSearch {
     const double whole = lumen_area(*rod, from);
     visited_.assign(field_.organs.size(), 0);
     if (std::optional<Source> found = along(organ, from, to, whole)) {
-      found->feed.resistance = feed_of(field_.organs[organ].definition).resistance;
+      const OrganDefinition& tube = field_.organs[organ].definition;
+      found->feed.resistance = feed_of(tube).resistance;
+      if (found->kind == Source::Kind::organ)
+        found->feed.resistance = std::get<TubeShape>(tube.shape).feed_resistance.value_or(of_folds);
       return *found;
     }
     // What it holds runs out if nothing shuts it, by the tightest place.
@@ -201,8 +205,9 @@ class Leaking {
         Reservoir& from = reservoir(source.organ);
         const double fallen = from.compliance > 0 ? from.taken / from.compliance : 0;
         const double left = field_.organs[source.organ].state.volume - from.taken;
-        const double out = std::min(left, elastic_outflow(outlet.pressure - fallen, from.compliance,
-                                                          source.area, density_of(organ), part));
+        const double out =
+            std::min(left, elastic_outflow(outlet.pressure - fallen, from.compliance, source.area,
+                                           density_of(organ), part, source.feed.resistance));
         from.taken += out;
         outlet.left += out;
         return;
@@ -276,8 +281,15 @@ double fed_flow(const TubeFeed& feed, double pressure, double area, double densi
          (feed.resistance + std::sqrt(feed.resistance * feed.resistance + 4 * by_square * pressure));
 }
 
-double elastic_outflow(double pressure, double compliance, double area, double density, double time) {
+double elastic_outflow(double pressure, double compliance, double area, double density, double time,
+                       double resistance) {
   if (!(pressure > 0) || !(area > 0)) return 0;
+  if (resistance > 0) {
+    const auto flow = [&](double at) { return fed_flow({at, resistance}, at, area, density); };
+    if (!(compliance > 0)) return time * flow(pressure);
+    const double half_way = pressure - 0.5 * time * flow(pressure) / compliance;
+    return std::min(time * flow(half_way), compliance * pressure);
+  }
   const double k = discharge * area * std::sqrt(2 / density), root = std::sqrt(pressure);
   if (!(compliance > 0)) return k * root * time;
   const double empty = 2 * compliance * root / k;  // s, until no pressure is left

@@ -14,17 +14,19 @@
 namespace calot {
 namespace {
 
-constexpr double longest_part = 5e-3;                           // s
-constexpr double drop_volume = 10e-9;                           // m^3; of a pipette 20 to 50 (d)
-constexpr double jet = 0.15;                                    // m/s: slower it drips
-constexpr double fastest = 2.5;                                 // m/s
-constexpr double reach = 600e-3;                                // m: what is farther has fallen away
-constexpr double landed = 0.5e-3;                               // m, thickness that a drop spreads to
-constexpr double sticks = 0.06e-3;                              // m, thickness that stays (d)
-constexpr double wets = 0.35e-3;                                // m, thickness that wets what is dry (d)
-constexpr double film_speed = 0.15;                             // m/s, at most
-constexpr double hangs = 15e-9;                                 // m^3, of what hangs before it drops off (d)
-constexpr double least_flow = 1e-14;                            // m^3: less than that lies still
+constexpr double longest_part = 5e-3;  // s
+constexpr double drop_volume = 10e-9;  // m^3; of a pipette 20 to 50 (d)
+constexpr double jet_volume = 3e-9;    // m^3, of a jet's drop
+constexpr double jet = 0.06;           // m/s: slower it drips
+constexpr double slowed = 0.4;         // share of its speed that a ragged end leaves a jet (d)
+constexpr double fastest = 2.5;        // m/s
+constexpr double reach = 600e-3;       // m: what is farther has fallen away
+constexpr double landed = 0.35e-3;     // m, thickness that a drop spreads to
+constexpr double sticks = 0.06e-3;     // m, thickness that stays (d)
+constexpr double wets = 0.2e-3;        // m, thickness that wets what is dry (d)
+constexpr double film_speed = 0.15;    // m/s, at most
+constexpr double hangs = 15e-9;        // m^3, of what hangs before it drops off (d)
+constexpr double least_flow = 1e-14;   // m^3: less than that lies still
 constexpr std::array<double, liquids> viscosity{1.5e-3, 4e-3};  // Pa s, of bile and of blood (c)
 
 double volume_of(const WetPoint& wet) { return std::accumulate(wet.volume.begin(), wet.volume.end(), 0.0); }
@@ -91,15 +93,18 @@ void spread_drop(const Drop& drop, const WetMesh& mesh, int point, Film& film) {
   add_to(film, added);
 }
 
-int nearest_point(const std::vector<Vec3>& points, const Vec3& place) {
+/// By the way to whichever neighbour is nearer, from the first point: the ground is convex.
+int nearest_point(const WetMesh& mesh, const Vec3& place) {
   int nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < static_cast<int>(points.size()); ++k) {
-    const double squared = (points[k] - place).squaredNorm();
-    if (squared >= least) continue;
-    least = squared;
-    nearest = k;
-  }
+  double least = (mesh.at[0] - place).squaredNorm();
+  for (bool more = true; std::exchange(more, false);)
+    for (int e = mesh.begin[nearest], end = mesh.begin[nearest + 1]; e < end; ++e) {
+      const double squared = (mesh.at[mesh.beside[e]] - place).squaredNorm();
+      if (squared >= least) continue;
+      least = squared;
+      nearest = mesh.beside[e];
+      more = true;
+    }
   return nearest;
 }
 
@@ -189,17 +194,22 @@ double width_of(const Organ& organ, const Opening& opening) {
 void let_fall(Field& field, double duration) {
   for (Organ& organ : field.organs)
     for (Opening& opening : organ.openings) {
-      if (!(opening.drop > 0) || (opening.drop < drop_volume && opening.leaks)) continue;
+      if (!(opening.drop > 0)) continue;
+      const double speed = std::min(fastest, slowed * opening.rate / width_of(organ, opening));
+      const double whole = speed > jet ? jet_volume : drop_volume;
+      const auto full = static_cast<int>(opening.drop / whole);
+      if (full == 0 && opening.rate > 0) continue;
       const auto [at, out] = mouth_of(organ, opening);
-      const double speed = std::min(fastest, opening.rate / width_of(organ, opening));
       const auto* tube = std::get_if<TubeShape>(&organ.definition.shape);
-      const int drops = std::max(1, static_cast<int>(opening.drop / drop_volume));
-      const double volume = opening.leaks ? drop_volume : opening.drop / drops;
+      const int drops = std::max(1, full);
+      const double volume = std::min(whole, opening.drop);
       for (int k = 0; k < drops; ++k) {
         Drop drop{tube ? tube->carries : Carries::bile, at + 0.5e-3 * out, Vec3::Zero(), volume};
         if (speed > jet) {  // one after the other
-          drop.velocity = speed * out;
-          drop.at += drop.velocity * (duration * k / drops);
+          const double since = duration * (k + 0.5) / drops;
+          const Vec3 g = -units::standard_gravity * field.up;
+          drop.velocity = speed * out + since * g;
+          drop.at += since * speed * out + 0.5 * since * since * g;
         }
         field.spill.drops.push_back(drop);
         opening.drop = std::max(0.0, opening.drop - volume);
@@ -223,7 +233,7 @@ bool fall(Field& field, const Skins& skins, Drop& drop, double part) {
     if (signed_distance(field.ground[k].shape, to) > 0) continue;
     remember_ground(field, static_cast<int>(k));
     const WetMesh& mesh = *field.spill.ground[k];
-    spread_drop(drop, mesh, nearest_point(mesh.at, to), film_on(field.spill, -1 - static_cast<int>(k)));
+    spread_drop(drop, mesh, nearest_point(mesh, to), film_on(field.spill, -1 - static_cast<int>(k)));
     return true;
   }
   if (to.norm() < reach) return false;
@@ -233,70 +243,88 @@ bool fall(Field& field, const Skins& skins, Drop& drop, double part) {
 
 // ---- films
 
+/// On one surface; what it knows of each point is of the present part of a step.
 class FilmFlow {
  public:
-  FilmFlow(const WetSurface& surface, const Vec3& up, Film& film) : surface_(surface), up_(up), film_(film) {
-    for (const WetPoint& wet : film.wet)
-      thickness_[wet.point] = volume_of(wet) / surface.mesh->areas[wet.point];
+  FilmFlow(WetSurface surface, const Vec3& up) : surface_(std::move(surface)), up_(up) {
+    thickness_.assign(surface_.at.size(), 0.0);
+    moved_.assign(surface_.at.size(), {});
+    touched_.assign(surface_.at.size(), 0);
   }
 
-  void run(double part, std::vector<Drop>& drops) {
-    Added added;
-    for (WetPoint& wet : film_.wet) flow_from(wet, part, added);
-    for (WetPoint& wet : film_.wet) drop_off(wet, drops);
-    add_to(film_, added);
+  void run(Film& film, double part, std::vector<Drop>& drops) {
+    for (const WetPoint& wet : film.wet)
+      thickness_[wet.point] = volume_of(wet) / surface_.mesh->areas[wet.point];
+    for (const WetPoint& wet : film.wet) flow_from(wet, part);
+    move(film);
+    for (WetPoint& wet : film.wet) drop_off(film, wet, drops);
   }
 
  private:
-  double thick(int point) const {
-    const auto found = thickness_.find(point);
-    return found == thickness_.end() ? 0.0 : found->second;
-  }
   double height(int point) const {
-    return up_.dot(surface_.at[point]) + up_.dot(surface_.normals[point]) * thick(point);
+    return up_.dot(surface_.at[point]) + up_.dot(surface_.normals[point]) * thickness_[point];
   }
   double loose(const WetPoint& wet) const {
     return std::max(0.0, volume_of(wet) - sticks * surface_.mesh->areas[wet.point]);
   }
 
   /// A sheet's flow to each neighbour that stands lower, until both stand alike.
-  void flow_from(WetPoint& wet, double part, Added& added) {
-    const double mobile = loose(wet), all = volume_of(wet), thickness = thick(wet.point);
+  void flow_from(const WetPoint& wet, double part) {
+    const double mobile = loose(wet), all = volume_of(wet), thickness = thickness_[wet.point];
     if (mobile < least_flow) return;
     const WetMesh& mesh = *surface_.mesh;
     double mu = 0;
     for (int l = 0; l < liquids; ++l) mu += viscosity[l] * wet.volume[l] / all;
     const double here = height(wet.point);
-    std::vector<std::pair<int, double>> flows;
+    flows_.clear();
     double sum = 0;
     for (int e = mesh.begin[wet.point]; e < mesh.begin[wet.point + 1]; ++e) {
       const int other = mesh.beside[e];
-      const double there = thick(other), lower = here - height(other);
-      if (!(lower > 0) || (there == 0 && thickness < wets)) continue;
+      const double lower = here - height(other);
+      if (!(lower > 0) || (thickness_[other] == 0 && thickness < wets)) continue;
       const double way = (surface_.at[other] - surface_.at[wet.point]).norm();
       const double speed = std::min(film_speed, blood_density * units::standard_gravity * thickness *
                                                     thickness * std::min(1.0, lower / way) / (3 * mu));
       // On level ground what makes both stand alike is less than what would run.
       const double level = 0.25 * lower * std::min(mesh.areas[other], mesh.areas[wet.point]);
-      const double flow = std::min(mobile * speed * part / way, std::max(level, 0.0));
+      const double flow = std::min(mobile * speed * part / way, level);
       if (flow < least_flow) continue;
-      flows.emplace_back(other, flow);
+      flows_.emplace_back(other, flow);
       sum += flow;
     }
-    if (flows.empty()) return;
-    const double share = std::min(1.0, 0.6 * mobile / sum);
-    std::array<double, liquids> left{};
-    for (const auto& [other, flow] : flows)
+    const double share = sum > 0.6 * mobile ? 0.6 * mobile / sum : 1.0;
+    for (const auto& [other, flow] : flows_) {
+      touched_[other] = 1;
+      touched_[wet.point] = 1;
       for (int l = 0; l < liquids; ++l) {
         const double moved = share * flow * wet.volume[l] / all;
-        added[other][l] += moved;
-        left[l] += moved;
+        moved_[other][l] += moved;
+        moved_[wet.point][l] -= moved;
       }
-    for (int l = 0; l < liquids; ++l) added[wet.point][l] -= left[l];
+      if (thickness_[other] == 0) fresh_.push_back(other);
+    }
+  }
+
+  void move(Film& film) {
+    for (WetPoint& wet : film.wet) {
+      if (!touched_[wet.point]) continue;
+      for (int l = 0; l < liquids; ++l) wet.volume[l] += std::exchange(moved_[wet.point][l], 0.0);
+      touched_[wet.point] = 0;
+    }
+    std::sort(fresh_.begin(), fresh_.end());
+    const auto middle = static_cast<std::ptrdiff_t>(film.wet.size());
+    for (int point : fresh_) {
+      if (!touched_[point]) continue;  // named twice
+      film.wet.push_back({point, std::exchange(moved_[point], {})});
+      touched_[point] = 0;
+    }
+    fresh_.clear();
+    std::inplace_merge(film.wet.begin(), film.wet.begin() + middle, film.wet.end(),
+                       [](const WetPoint& a, const WetPoint& b) { return a.point < b.point; });
   }
 
   /// What hangs at a lowest place of an underside.
-  void drop_off(WetPoint& wet, std::vector<Drop>& drops) {
+  void drop_off(Film& film, WetPoint& wet, std::vector<Drop>& drops) {
     if (up_.dot(surface_.normals[wet.point]) > -0.2) return;
     const WetMesh& mesh = *surface_.mesh;
     double hanging = loose(wet);
@@ -306,17 +334,16 @@ class FilmFlow {
     for (int e = mesh.begin[wet.point]; e < mesh.begin[wet.point + 1]; ++e) {
       const int other = mesh.beside[e];
       if (height(other) < here) return;
-      const auto at = std::lower_bound(film_.wet.begin(), film_.wet.end(), other,
+      const auto at = std::lower_bound(film.wet.begin(), film.wet.end(), other,
                                        [](const WetPoint& w, int point) { return w.point < point; });
-      if (at == film_.wet.end() || at->point != other) continue;
+      if (at == film.wet.end() || at->point != other) continue;
       hanging += loose(*at);
       all.push_back(&*at);
     }
     if (hanging < hangs) return;
     std::array<double, liquids> taken{};
     for (WetPoint* point : all) {
-      // Half, as what flows in this part comes off the rest.
-      const double share = 0.3 * loose(*point) / volume_of(*point);
+      const double share = loose(*point) / volume_of(*point);
       for (int l = 0; l < liquids; ++l) {
         taken[l] += share * point->volume[l];
         point->volume[l] -= share * point->volume[l];
@@ -329,10 +356,13 @@ class FilmFlow {
                          taken[l]});
   }
 
-  const WetSurface& surface_;
+  WetSurface surface_;
   const Vec3& up_;
-  Film& film_;
-  std::map<int, double> thickness_;
+  std::vector<double> thickness_;  ///< m, total; 0: dry
+  std::vector<std::array<double, liquids>> moved_;
+  std::vector<char> touched_;
+  std::vector<int> fresh_;  ///< dry until now
+  std::vector<std::pair<int, double>> flows_;
 };
 
 void forget_gone(Field& field) {
@@ -381,14 +411,14 @@ void spill(Field& field, double duration) {
   const int parts = std::max(1, static_cast<int>(std::ceil(duration / longest_part - 1e-9)));
   const double part = duration / parts;
   std::optional<Skins> skins;
-  std::map<int, WetSurface> surfaces;
+  std::map<int, FilmFlow> flows;
   for (int k = 0; k < parts; ++k) {
     if (!all.drops.empty() && !skins) skins.emplace(field);
     std::erase_if(all.drops, [&](Drop& drop) { return fall(field, *skins, drop, part); });
     for (Film& film : all.films) {
-      auto at = surfaces.find(film.on);
-      if (at == surfaces.end()) at = surfaces.emplace(film.on, wet_surface(field, film)).first;
-      FilmFlow(at->second, field.up, film).run(part, all.drops);
+      auto at = flows.find(film.on);
+      if (at == flows.end()) at = flows.emplace(film.on, FilmFlow(wet_surface(field, film), field.up)).first;
+      at->second.run(film, part, all.drops);
     }
   }
 }

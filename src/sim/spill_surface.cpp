@@ -6,9 +6,9 @@
 namespace calot {
 namespace {
 
-constexpr double spacing = 2e-3;        // m
+constexpr double spacing = 1.3e-3;      // m
 constexpr double plane_reach = 150e-3;  // m, to either side
-constexpr int most_points = 60'000;
+constexpr int most_points = 120'000;
 
 /// A grid over the sides of a box; only those points are there that are on it.
 class BoxGrid {

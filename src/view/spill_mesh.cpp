@@ -12,11 +12,15 @@
 namespace calot {
 namespace {
 
-constexpr double least_depth = 0.03e-3;  // m: what is thinner is not seen
-constexpr double lifted = 0.12e-3;       // m, of a film over its skin, beside its depth
 constexpr double greatest_depth = 4e-3;  // m
-constexpr double tucked_under =
-    -0.35e-3;  // m, of a film's dry rim: so its edge is where it comes out of the skin
+constexpr double rim = 0.03e-3;          // m: where a film is thinner its surface is drawn below the skin
+
+/// How far above the skin a film's surface is drawn, m: clear of it where it is thin, too.
+double drawn_height(double depth) {
+  constexpr double clear = 0.2e-3, soon = 0.05e-3;
+  const double over = std::min(depth, greatest_depth) - rim;
+  return over + clear * (1 - std::exp(-over / soon));
+}
 
 const SceneMesh& ball() {
   static const SceneMesh mesh = sheet(Material::bile, 14, 9, [](double u, double v) {
@@ -56,8 +60,7 @@ void add_film(const WetSurface& surface, const std::map<int, double>& depths, Sc
     if (!fresh) return at->second;
     const auto found = depths.find(point);
     const double depth = found == depths.end() ? 0.0 : std::min(found->second, greatest_depth);
-    film.positions.emplace_back(surface.at[point] +
-                                (depth > 0 ? lifted + depth : tucked_under) * surface.normals[point]);
+    film.positions.emplace_back(surface.at[point] + drawn_height(depth) * surface.normals[point]);
     film.normals.emplace_back(0.2 * surface.normals[point]);
     film.rest_positions.emplace_back(0, 0, depth);
     return at->second;
@@ -77,22 +80,22 @@ void add_film(const WetSurface& surface, const std::map<int, double>& depths, Sc
   append(out, film);
 }
 
-/// Depth of one liquid by points, smoothed over their neighbours as a liquid's surface is.
+/// Depth of one liquid by points, m, smoothed as a liquid's surface is, on beyond its edge.
 std::map<int, double> depths_of(const Film& film, const WetMesh& mesh, int liquid) {
-  std::map<int, double> depths, smooth;
+  std::map<int, double> depths;
   for (const WetPoint& wet : film.wet)
-    if (const double depth = wet.volume[liquid] / mesh.areas[wet.point]; depth > least_depth)
-      depths[wet.point] = depth;
-  for (const auto& [point, depth] : depths) {
-    double sum = depth, weight = 1;
-    for (int e = mesh.begin[point]; e < mesh.begin[point + 1]; ++e) {
-      const auto beside = depths.find(mesh.beside[e]);
-      sum += beside == depths.end() ? 0 : 0.5 * beside->second;
-      weight += 0.5;
+    if (wet.volume[liquid] > 0) depths[wet.point] = wet.volume[liquid] / mesh.areas[wet.point];
+  constexpr int passes = 2;
+  for (int pass = 0; pass < passes; ++pass) {
+    std::map<int, double> smooth;
+    for (const auto& [point, depth] : depths) {
+      const double share = depth / (1 + mesh.begin[point + 1] - mesh.begin[point]);
+      smooth[point] += share;
+      for (int e = mesh.begin[point]; e < mesh.begin[point + 1]; ++e) smooth[mesh.beside[e]] += share;
     }
-    smooth[point] = sum / weight;
+    depths = std::move(smooth);
   }
-  return smooth;
+  return depths;
 }
 
 Vec3 hanging_place(const Organ& organ, const Opening& opening) {

@@ -52,6 +52,11 @@ TEST(LeakLaw, AnElasticOrganEmptiesByTorricelliAlongAStraightRoot) {
   EXPECT_NEAR(sum, elastic_outflow(p0, compliance, area, bile_density, 0.2), 1e-12 * out);
   EXPECT_DOUBLE_EQ(elastic_outflow(p0, compliance, area, bile_density, 1e3), compliance * p0)
       << "then it is slack";
+  // What resists beside comes to the same where it is next to nothing, and rules where it is large.
+  EXPECT_NEAR(elastic_outflow(p0, compliance, area, bile_density, 1e-3, 1),
+              elastic_outflow(p0, compliance, area, bile_density, 1e-3), 1e-5 * area);
+  EXPECT_NEAR(elastic_outflow(p0, compliance, area, bile_density, 1e-3, 1e12), 1e-3 * p0 / 1e12,
+              1e-3 * p0 / 1e15);
   EXPECT_EQ(elastic_outflow(-10, compliance, area, bile_density, 1), 0);
   EXPECT_NEAR(elastic_outflow(p0, 0, area, bile_density, 1e-3), 1e-3 * orifice(p0, area), 1e-18);
 }
@@ -69,7 +74,7 @@ TEST(LeakLaw, WhatThePatientFeedsLosesItsPressureOnTheWayAndInTheOpening) {
 // ---- a bag with a duct
 
 /// A well filled ball with a duct out of its side, whose far end is held.
-SceneDefinition bag_and_duct(double rate = 50) {
+SceneDefinition bag_and_duct(double rate = 50, double resistance = 0) {
   SceneDefinition scene = test::ball_scene();
   const Vec3 side = scene.anatomy.organs[0].neck + Vec3(0, -20e-3, 20e-3);
   OrganDefinition duct;
@@ -77,6 +82,7 @@ SceneDefinition bag_and_duct(double rate = 50) {
   duct.shape = TubeShape{.points = {side, side + Vec3(0, -12e-3, 0), side + Vec3(0, -24e-3, 0)},
                          .radius = 1.8e-3,
                          .patient_end = PatientEnd::end};
+  std::get<TubeShape>(duct.shape).feed_resistance = resistance;
   duct.wall.thickness = 0.8e-3;
   duct.held = {{"far", "end", 4e-3, 1e6}};
   scene.anatomy.organs.push_back(duct);
@@ -135,7 +141,7 @@ TEST(Leaks, AnOpenDuctLosesByItsLumenAndThePressureThere) {
   bodies.field.group.work.factored = false;  // no wall that gives way: the pressure stays
   const double wanted = 0.02 * orifice(bodies.pressure(0, pieces.specimen, true), lumen);
   // Of the patient's side the bile duct leaves by what feeds it.
-  const double fed = 0.02 * fed_flow({1e3, 2e10}, 1e3, lumen, bile_density);
+  const double fed = 0.02 * fed_flow({1e3, 0}, 1e3, lumen, bile_density);
   const std::vector<WorldEvent> events = bodies.run(0.02);
   EXPECT_NEAR(bodies.lost(Carries::bile, "duct"), wanted + fed, 1e-9 * wanted);
   EXPECT_NEAR(volume - bodies.field.organs[0].state.volume, wanted, 1e-9 * volume);
@@ -143,7 +149,6 @@ TEST(Leaks, AnOpenDuctLosesByItsLumenAndThePressureThere) {
   for (const WorldEvent& event : events) EXPECT_EQ(event.kind, EventKind::bile_leak);
   EXPECT_EQ(events[1].organ, "duct.specimen");
   EXPECT_NEAR(events[1].value, 60e6 * wanted / 0.02, 1e-6 * events[1].value);
-  EXPECT_NEAR(60e6 * fed / 0.02, 3, 0.2) << "mL a minute";
 }
 
 TEST(Leaks, AClipLeaksByWhatItLeavesOpenAndAShutOneNothing) {
@@ -198,6 +203,16 @@ TEST(Leaks, ABagLosesWhatItsPressureDrivesOutAndAllOfItIsCounted) {
   EXPECT_EQ(begun, 2);
   EXPECT_EQ(ended, 1) << "the bag's has run dry, the patient's side goes on";
   EXPECT_GT(start - world.report().organs[0].volume, 0.2e-6);
+}
+
+TEST(Leaks, OfADuctAreUsuallyMillilitresAMinute) {
+  SceneDefinition scene = bag_and_duct();
+  std::get<TubeShape>(scene.anatomy.organs[1].shape).feed_resistance.reset();
+  Bodies bodies(scene);
+  const Division pieces = bodies.cut(1);
+  bodies.run(0.02);
+  EXPECT_NEAR(60e6 * bodies.field.organs[pieces.patient].openings[0].rate, 3, 0.2);
+  EXPECT_NEAR(60e6 * bodies.field.organs[pieces.specimen].openings[0].rate, 20, 4);
 }
 
 TEST(Leaks, WhatIsLostDependsLittleOnTheLengthOfSteps) {
