@@ -103,6 +103,10 @@ return calot.exercise {
       t:note("specimen_clips", shut(t, p.structure .. ".specimen"))
     end
     t:wait(0.6 * s)
+    if t:lost("bile") + t:lost("blood") > 0 then -- what runs is looked at
+      t:step("look", "It leaks: see where from", { limit = 2 * s })
+      t:wait(2 * s)
+    end
   end,
 
   demo = function(t, p)
@@ -136,9 +140,11 @@ return calot.exercise {
 
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "note.patient_clips", novice = 0, expert = 2 }, weight = 0.4 },
-    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.2 },
-    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.2 },
-    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.2 },
+    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.1 },
+    { calot.score.benchmark { metric = "total.bile_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
+    { calot.score.benchmark { metric = "total.blood_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
+    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.15 },
+    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.15 },
     critical = { "cut_unclipped", "perforation", "cut_liver" },
     cap = 40,
     pass = 80,

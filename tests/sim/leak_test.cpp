@@ -227,6 +227,36 @@ TEST(Leaks, WhatIsLostDependsLittleOnTheLengthOfSteps) {
   EXPECT_NEAR(out[0], out[3], 1e-2 * out[3]);
 }
 
+TEST(Leaks, AreInTheStateAndItsHashWhateverTheThreads) {
+  SceneDefinition scene = bag_and_duct();
+  scene.anatomy.ground.push_back({.name = "table", .point = {0, 0, -160e-3}});
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2}) {
+    World world = World::create(scene, nullptr, threads).value();
+    ASSERT_TRUE(world.divide("duct", 0.5));
+    const auto go = [&] {
+      for (int k = 0; k < 8; ++k) EXPECT_TRUE(world.step({}));
+      hashes.push_back(world.state_hash());
+      return lost(world, Carries::bile);
+    };
+    go();
+    const FieldState before = world.state();
+    EXPECT_FALSE(before.spill.films.empty());
+    const double once = go();
+    ASSERT_TRUE(world.restore(before));
+    EXPECT_EQ(go(), once);
+    EXPECT_NE(hashes[hashes.size() - 3], hashes.back());
+    EXPECT_EQ(hashes[hashes.size() - 2], hashes.back());
+    // What has left is on its way or lies somewhere.
+    double hanging = 0;
+    for (const Organ& organ : world.field().organs)
+      for (const Opening& opening : organ.openings) hanging += opening.drop;
+    const Spill& spill = world.field().spill;
+    EXPECT_NEAR(spill.lying(Carries::bile) + spill.out_of_sight[0] + hanging, once, 1e-9 * once);
+  }
+  EXPECT_EQ(hashes[2], hashes[5]);
+}
+
 // ---- blood
 
 /// A cystic artery, held at both ends.
