@@ -103,10 +103,7 @@ return calot.exercise {
       t:note("specimen_clips", shut(t, p.structure .. ".specimen"))
     end
     t:wait(0.6 * s)
-    if t:lost("bile") + t:lost("blood") > 0 then -- what runs is looked at
-      t:step("look", "It leaks: see where from", { limit = 2 * s })
-      t:wait(2 * s)
-    end
+    if t:lost("bile") + t:lost("blood") > 0 then t:wait(1.4 * s) end -- what runs is looked at
   end,
 
   demo = function(t, p)

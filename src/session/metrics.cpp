@@ -128,14 +128,18 @@ void count_events(const Progress& progress, const std::string& instrument, Metri
   }
 }
 
-/// What can leak has lost nothing until it did.
+/// By what it can lose; none where it can lose nothing.
+std::optional<MetricOwner> owner_by_filling(const OrganDefinition& organ) {
+  if (is_hollow(organ.shape)) return MetricOwner::holds_bile;
+  const auto* tube = std::get_if<TubeShape>(&organ.shape);
+  if (tube == nullptr) return std::nullopt;
+  return tube->carries == Carries::blood ? MetricOwner::holds_blood : MetricOwner::holds_bile;
+}
+
 void sum_lost(const SceneDefinition& scene, const std::vector<LostState>& lost, Metrics& metrics) {
-  for (const OrganDefinition& organ : scene.anatomy.organs) {
-    const auto* tube = std::get_if<TubeShape>(&organ.shape);
-    if (tube == nullptr && !is_hollow(organ.shape)) continue;
-    const bool blood = tube != nullptr && tube->carries == Carries::blood;
-    metrics[organ.name + (blood ? ".blood_lost_mL" : ".bile_lost_mL")] = 0;
-  }
+  for (const OrganDefinition& organ : scene.anatomy.organs)
+    if (const std::optional<MetricOwner> owner = owner_by_filling(organ))
+      metrics[organ.name + (owner == MetricOwner::holds_blood ? ".blood_lost_mL" : ".bile_lost_mL")] = 0;
   double bile = 0, blood = 0;
   for (const LostState& of : lost) {
     bile += of.bile, blood += of.blood;
@@ -157,6 +161,12 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
     case MetricOwner::organ:
       for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
         for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
+      return names;
+    case MetricOwner::holds_bile:
+    case MetricOwner::holds_blood:
+      for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+        for (const OrganDefinition& organ : *organs)
+          if (owner_by_filling(organ) == owner) names.push_back(organ.name);
       return names;
     case MetricOwner::tissue:
       for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
@@ -215,8 +225,8 @@ const std::vector<MetricRow>& metric_rows() {
       {"empty_cuts", instrument, "how often its blades closed on nothing", EventKind::empty_cut, true},
       {"peak_pressure_Pa", organ, "largest pressure of its filling"},
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
-      {"bile_lost_mL", organ, "bile that left it by openings", EventKind::bile_leak},
-      {"blood_lost_mL", organ, "blood that left it by openings", EventKind::bleeding},
+      {"bile_lost_mL", holds_bile, "bile that left it by openings", EventKind::bile_leak},
+      {"blood_lost_mL", holds_blood, "blood that left it by openings", EventKind::bleeding},
       {"lowest_frequency_Hz", organ,
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
       {"torn_pct", tissue, "share of its strands that were torn", EventKind::tear},
@@ -239,6 +249,8 @@ std::string pattern(const MetricRow& row) {
     case MetricOwner::instrument:
       return of("<instrument>");
     case MetricOwner::organ:
+    case MetricOwner::holds_bile:
+    case MetricOwner::holds_blood:
     case MetricOwner::compared_organ:
       return of("<organ>");
     case MetricOwner::tissue:

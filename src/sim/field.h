@@ -7,7 +7,7 @@
 
 #include "sim/members.h"
 #include "sim/skin_rubbing.h"
-#include "sim/spill.h"
+#include "sim/spilled.h"
 #include "sim/step_report.h"
 #include "sim/tissue.h"
 #include "sim/tool.h"

@@ -2,7 +2,7 @@
 // The points at which films are counted.
 
 #include "collision/shapes.h"
-#include "sim/spill.h"
+#include "sim/spilled.h"
 
 namespace calot {
 

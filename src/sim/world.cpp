@@ -23,6 +23,7 @@
 #include "sim/leak.h"
 #include "sim/settle_field.h"
 #include "sim/sight.h"
+#include "sim/spill.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
 #include "sim/vibration.h"

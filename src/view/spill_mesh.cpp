@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "sim/between_jaws.h"
-#include "sim/field.h"
+#include "sim/spill.h"
 #include "view/surfaces.h"
 
 namespace calot {
