@@ -151,7 +151,7 @@ Surface surface_at(vec3 p) {
 const char* const liquid_material = R"(
 Surface surface_at(vec3 p) {
   float deep = 1.0 - exp(-p.z / DEPTH);
-  return Surface(mix(THIN, DEEP, deep), SCATTER, vec3(0.0), 0.0, 900.0, 2.6);
+  return Surface(mix(THIN, DEEP, deep), SCATTER, vec3(0.0), 0.0, 900.0, 1.6);
 }
 )";
 

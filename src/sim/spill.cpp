@@ -117,9 +117,12 @@ class Skins {
     for (std::size_t k = 0; k < field.organs.size(); ++k) {
       const Organ& organ = field.organs[k];
       if (rod_of(organ) != nullptr) continue;
-      Skin skin{
-          static_cast<int>(k), organ.body->skin_positions(organ.state.x), {}, &organ.body->skin().triangles};
-      for (const Vec3& p : skin.at) skin.box.extend(p);
+      Skin skin{static_cast<int>(k), organ.body->skin_positions(organ.state.x), {}, {}, {}};
+      skin.triangles = &organ.body->skin().triangles;
+      skin.each = static_cast<std::size_t>(organ.body->triangles_each());
+      skin.patches.resize(skin.triangles->size() / skin.each);
+      for (std::size_t t = 0; t < skin.triangles->size(); ++t)
+        for (int corner : (*skin.triangles)[t]) skin.patches[t / skin.each].extend(skin.at[corner]);
       skins_.push_back(std::move(skin));
     }
   }
@@ -132,20 +135,21 @@ class Skins {
     way.extend(to);
     std::optional<Met> met;
     double first = 1;
-    for (const Skin& skin : skins_) {
-      if (!skin.box.intersects(way)) continue;
-      for (const Triangle& t : *skin.triangles) {
-        const std::optional<double> share =
-            crosses({skin.at[t[0]], skin.at[t[1]], skin.at[t[2]]}, way, from, to);
-        if (!share || *share > first) continue;
-        first = *share;
-        const Vec3 place = from + first * (to - from);
-        met = Met{skin.organ, t[0]};
-        for (int corner : t)
-          if ((skin.at[corner] - place).squaredNorm() < (skin.at[met->point] - place).squaredNorm())
-            met->point = corner;
+    for (const Skin& skin : skins_)
+      for (std::size_t patch = 0; patch < skin.patches.size(); ++patch) {
+        if (!skin.patches[patch].intersects(way)) continue;
+        for (std::size_t k = patch * skin.each; k < (patch + 1) * skin.each; ++k) {
+          const Triangle& t = (*skin.triangles)[k];
+          const std::optional<double> share =
+              crosses({skin.at[t[0]], skin.at[t[1]], skin.at[t[2]]}, from, to);
+          if (!share || *share > first) continue;
+          first = *share;
+          const Vec3 place = from + first * (to - from);
+          const auto away = [&](int corner) { return (skin.at[corner] - place).squaredNorm(); };
+          const auto nearer = [&](int one, int other) { return away(one) < away(other); };
+          met = Met{skin.organ, *std::min_element(t.begin(), t.end(), nearer)};
+        }
       }
-    }
     return met;
   }
 
@@ -153,16 +157,12 @@ class Skins {
   struct Skin {
     int organ;
     std::vector<Vec3> at;
-    Eigen::AlignedBox3d box;
+    std::vector<Eigen::AlignedBox3d> patches;  ///< around `each` triangles that follow each other
     const std::vector<Triangle>* triangles;
+    std::size_t each;
   };
   /// Share of the way at which it goes through a triangle from its outside.
-  static std::optional<double> crosses(const std::array<Vec3, 3>& t, const Eigen::AlignedBox3d& box,
-                                       const Vec3& from, const Vec3& to) {
-    for (int c = 0; c < 3; ++c)
-      if (std::min({t[0][c], t[1][c], t[2][c]}) > box.max()[c] ||
-          std::max({t[0][c], t[1][c], t[2][c]}) < box.min()[c])
-        return std::nullopt;
+  static std::optional<double> crosses(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& to) {
     const Vec3 way = to - from, normal = (t[1] - t[0]).cross(t[2] - t[0]);
     const double along = normal.dot(way);
     if (!(along < 0)) return std::nullopt;
