@@ -126,6 +126,7 @@ return calot.exercise {
       t:note("specimen_clips", shut(t, p.structure .. ".specimen"))
     end
     t:wait(0.6 * s)
+    if t:lost("bile") + t:lost("blood") > 0 then t:wait(1.4 * s) end -- what runs is looked at
   end,
 
   demo = function(t, p)
@@ -160,10 +161,12 @@ return calot.exercise {
 
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "note.patient_clips", novice = 0, expert = 2 }, weight = 0.4 },
-    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.15 },
-    { calot.score.rule(stump), name = "stump", weight = 0.15 },
-    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.15 },
-    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.15 },
+    { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.1 },
+    { calot.score.rule(stump), name = "stump", weight = 0.1 },
+    { calot.score.benchmark { metric = "total.bile_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
+    { calot.score.benchmark { metric = "total.blood_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
+    { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.1 },
+    { calot.score.penalty { event = "empty_cut", each = 0.5 }, weight = 0.1 },
     critical = { "cut_unclipped", "perforation", "cut_liver" },
     gates = {
       { event = "injury", organ = "common_duct", reason = "the common duct was hurt" },

@@ -51,7 +51,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.
@@ -82,14 +82,14 @@
 ---Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came too early, a metric beyond a value. A metric that was never measured is beyond.
 ---@class calot.gate
 ---@field reason string one sentence for the trainee
----@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" this happened
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" this happened
 ---@field organ? string to this organ or tissue, or a piece of it
----@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" and this had not happened before
+---@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" and this had not happened before
 ---@field after_organ? string to this organ or tissue, or a piece of it
 ---@field metric? string this metric is beyond a value
 ---@field below? number below this
 ---@field above? number above this
----@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
+---@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
 ---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
 ---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
@@ -142,6 +142,7 @@
 ---@field ground? calot.ground[] shapes that stay and are touched
 ---@field support? calot.support a plane that carries the organs
 ---@field friction? number coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated; default 0; 0 to 1
+---@field heart_rate? number beats a minute, with which what bleeds pulses; default 70; 20 to 240
 ---@field table_head_up? number reverse Trendelenburg tilt; default 15 * deg; -60 to 60 deg
 ---@field table_left_down? number tilt to the patient's left; default 10 * deg; -60 to 60 deg
 
@@ -321,6 +322,8 @@
 ---@field nodes? number of its middle line; default 11; 5 to 60
 ---@field pressure? number gauge pressure of what it carries; default 0 * kPa; -10 to 40 kPa
 ---@field carries? "bile"|"blood" a duct's bile, or an artery's blood; default "bile"
+---@field feed_pressure? number gauge pressure with which the patient feeds it where it is cut open; usually 12 kPa of blood, 1 kPa of bile; uncalibrated; 0 to 40 kPa
+---@field feed_resistance? number of the way to where it is cut open, Pa s/m^3; usually such that an open cystic artery loses some 45 mL a minute, a cystic duct 3 of what the patient feeds, and 18 of a gallbladder's; uncalibrated; 0 to 1e+15
 ---@field patient_end? "held"|"start"|"end" the end that stays with the patient where it is divided: what is held, itself or by what it is tied to (its end where both ends are, or neither), or always the start or the end; default "held"
 
 ---A rigid thing, such as a stone: a box with round edges, or a ball.
@@ -366,7 +369,7 @@
 
 ---An event of a session, as a rule sees it.
 ---@class calot.event
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" its kind
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" its kind
 ---@field time number when, s
 ---@field step string the step that ran
 ---@field instrument? string whose it is
@@ -424,6 +427,12 @@ function Session:divided(organ) end
 ---@param organ string a tube's name
 ---@return calot.clip[]
 function Session:clips(organ) end
+
+---What has left the organs by openings until now, m^3: of one organ with its pieces, or of all.
+---@param liquid "bile"|"blood" which
+---@param organ? string an organ of the scene; without it, all
+---@return number
+function Session:lost(liquid, organ) end
 
 ---Where a landmark is now on the skin, {x, y, z} in m.
 ---@param landmark string a landmark such as "gallbladder.fundus"
@@ -492,7 +501,7 @@ function Steps:tie(joint) end
 function Steps:untie(organ, other) end
 
 ---How many events of a kind there have been, such as time_out; those of this step come before it.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number
 function Steps:count(event, organ) end
@@ -637,13 +646,13 @@ function DemoInstrument:wait(duration) end
 local Run = {}
 
 ---How many events of a kind there were.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return integer
 function Run:count(event, organ) end
 
 ---When there were events of a kind, s, ascending.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number[]
 function Run:times(event, organ) end

@@ -60,6 +60,9 @@ struct TubeShape {
   double pressure = 0;       ///< Pa, gauge, of what it carries
   PatientEnd patient_end = PatientEnd::held;
   Carries carries = Carries::bile;
+  /// What drives it out of an end that is cut open where the patient feeds it, Pa, gauge, and what resists on the way
+  /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (sim/leak.h).
+  std::optional<double> feed_pressure = {}, feed_resistance = {};
   bool operator==(const TubeShape&) const = default;
 };
 
@@ -240,7 +243,8 @@ struct AnatomyDefinition {
   std::vector<TissueDefinition> tissue;
   std::vector<GroundDefinition> ground;
   std::optional<SupportDefinition> support;
-  double friction = 0;  ///< Coulomb's, of the organs on each other (d); the rest state is found without
+  double friction = 0;     ///< Coulomb's, of the organs on each other (d); the rest state is found without
+  double heart_rate = 70;  ///< a minute, with which what bleeds pulses; 60 to 80 at rest (c)
   double table_head_up = 0.2617993877991494;     ///< rad; reverse Trendelenburg 15 deg (c)
   double table_left_down = 0.17453292519943295;  ///< rad; left side down 10 deg (d)
 };

@@ -51,6 +51,8 @@ std::vector<KeyTable> field_tables() {
                "friction", &Anatomy::friction, quantity::number, 0, 1,
                "a coefficient of friction of organs on each other",
                "coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated"),
+           number("heart_rate", &Anatomy::heart_rate, quantity::number, 20, 240, "a heart's rate",
+                  "beats a minute, with which what bleeds pulses"),
            number("table_head_up", &Anatomy::table_head_up, quantity::angle, -60 * deg, 60 * deg,
                   "a tilt of an operating table", "reverse Trendelenburg tilt"),
            number("table_left_down", &Anatomy::table_left_down, quantity::angle, -60 * deg, 60 * deg,
@@ -357,6 +359,17 @@ std::vector<KeyTable> shape_tables() {
            number("pressure", &TubeShape::pressure, quantity::pressure, -10 * kPa, 40 * kPa,
                   "a pressure in a duct", "gauge pressure of what it carries"),
            choice("carries", &TubeShape::carries, {"bile", "blood"}, "a duct's bile, or an artery's blood"),
+           number("feed_pressure", &TubeShape::feed_pressure, quantity::pressure, 0, 40 * kPa,
+                  "a pressure that feeds a tube",
+                  "gauge pressure with which the patient feeds it where it is cut open; usually 12 kPa of "
+                  "blood, "
+                  "1 kPa of bile; uncalibrated"),
+           number("feed_resistance", &TubeShape::feed_resistance, quantity::number, 0, 1e15,
+                  "a resistance of what feeds a tube",
+                  "of the way to where it is cut open, Pa s/m^3; usually such that an open cystic artery "
+                  "loses some 45 mL "
+                  "a minute, a cystic duct 3 of what the patient feeds, and 18 of a gallbladder's; "
+                  "uncalibrated"),
            choice(
                "patient_end", &TubeShape::patient_end, {"held", "start", "end"},
                "the end that stays with the patient where it is divided: what is held, itself or by what it "

@@ -84,6 +84,15 @@ int torn(lua_State* L) {
   return 1;
 }
 
+int lost(lua_State* L) {
+  ScriptSession& session = session_target(L, "lost");
+  const Arguments arguments(L, session, "Session", "lost");
+  lua_pushnumber(L, arguments.good()
+                        ? session.lost(L, arguments.text("liquid") == "blood", arguments.text("organ"))
+                        : 0.0);
+  return 1;
+}
+
 int divided(lua_State* L) {
   ScriptSession& session = session_target(L, "divided");
   const Arguments arguments(L, session, "Session", "divided");
@@ -552,6 +561,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "torn", guarded<torn>},
                           {"Session", "divided", guarded<divided>},
                           {"Session", "clips", guarded<clips>},
+                          {"Session", "lost", guarded<lost>},
                           {"Session", "place", guarded<place>},
                           {"Session", "along", guarded<along>},
                           {"Session", "seen_area", guarded<seen_area>},

@@ -27,6 +27,7 @@ constexpr int levels = 3;
 constexpr double force_at[levels] = {0, 2, 10};  // N
 constexpr double share_of_filling[levels] = {0.5, 1, 2};
 constexpr double share_torn[levels] = {0, 0.5, 1};
+constexpr double share_lost[levels] = {0, 0.1, 1};
 constexpr double share_seen[levels] = {0, 0.5, 1};
 constexpr double usual_pressure = 12 * units::mmHg;
 constexpr double usual_volume = 40 * units::mL;
@@ -103,6 +104,20 @@ int ScriptSession::organ(lua_State* L, const std::string& name) {
 double ScriptSession::seen_area(lua_State* L, const std::array<Vec3, 3>& corners) {
   if (!checking()) return world(L).seen_area(corners);
   return share_seen[next_level()] * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+}
+
+double ScriptSession::lost(lua_State* L, bool blood, const std::string& name) {
+  std::vector<std::string> names;
+  for (const OrganDefinition& organ : known_organs()) names.push_back(organ.name);
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) {
+    complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
+    return 0;
+  }
+  if (checking()) return share_lost[next_level()] * usual_volume;
+  double sum = 0;
+  for (const LostState& one : world(L).report().lost)
+    if (name.empty() || one.name == name) sum += blood ? one.blood : one.bile;
+  return sum;
 }
 
 double ScriptSession::torn(lua_State* L, const std::string& name) {

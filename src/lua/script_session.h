@@ -58,6 +58,8 @@ class ScriptSession {
   void complain(lua_State* L, const Failure& failure);
   /// Index of the organ among those of the world's report, in a dry run among known_organs(); or -1 after a complaint.
   int organ(lua_State* L, const std::string& name);
+  /// What has left all organs, or one of the scene and its pieces, m^3; complains where there is none of that name.
+  double lost(lua_State* L, bool blood, const std::string& organ);
   /// Share of a tissue's strands that are torn; complains where there is none of that name.
   double torn(lua_State* L, const std::string& name);
   /// Of a triangle, m^2 (World::seen_area); in a dry run none, half or all of it.

@@ -18,10 +18,10 @@ namespace calot {
 namespace {
 
 constexpr int samples = 4;
-constexpr std::array all_materials{Material::gallbladder, Material::membrane,   Material::liver,
-                                   Material::fat,         Material::peritoneum, Material::steel,
-                                   Material::insulation,  Material::artery,     Material::capsule,
-                                   Material::bowel,       Material::hydrops};
+constexpr std::array all_materials{
+    Material::gallbladder, Material::membrane,   Material::liver,  Material::fat,     Material::peritoneum,
+    Material::steel,       Material::insulation, Material::artery, Material::capsule, Material::bowel,
+    Material::hydrops,     Material::bile,       Material::blood};
 
 /// Omentum, bowel and walls lie behind all else: their shadows are never seen.
 bool casts_shadow(Material material) {

@@ -23,6 +23,8 @@ enum class Material {
   capsule,      ///< a lobe of the liver: dark red-brown, smooth, with a soft sheen
   bowel,        ///< pale pink; rest frame: its axis along z
   hydrops,  ///< a gallbladder full of mucus: pale, its vessels pressed empty; rest frame as the gallbladder's
+  bile,     ///< film and drops: golden where thin, green where deep; rest positions: (0, 0, its depth, m)
+  blood,    ///< likewise, red and dark red
 };
 
 /// Blood vessels as a volume over rest positions: the share of each voxel that they fill.

@@ -147,6 +147,14 @@ Surface surface_at(vec3 p) {
 }
 )";
 
+// A liquid's own surface is a mirror without relief; the deeper it is the less of the tissue below shines through.
+const char* const liquid_material = R"(
+Surface surface_at(vec3 p) {
+  float deep = 1.0 - exp(-p.z / DEPTH);
+  return Surface(mix(THIN, DEEP, deep), SCATTER, vec3(0.0), 0.0, 900.0, 1.6);
+}
+)";
+
 const char* const peritoneum_material = R"(
 Surface surface_at(vec3 p) {
   vec4 middle = noise(p + 6.0 * broad.rgb, 9.0);
@@ -279,6 +287,8 @@ double broad_cell(Material material) {
       return 9;
     case Material::steel:
     case Material::insulation:
+    case Material::bile:
+    case Material::blood:
       return 10;
   }
   return 10;
@@ -312,6 +322,18 @@ std::string scene_fragment_shader(Material material) {
       return common + wall_of(bile, 0.75, "-2.0") + tissue_lighting;
     case Material::hydrops:
       return common + wall_of("vec3(0.34, 0.315, 0.25)", 0.25, "-0.15 - 0.028 * p.z") + tissue_lighting;
+    case Material::bile:
+      return common +
+             "#define THIN vec3(0.58, 0.42, 0.06)\n#define DEEP vec3(0.200, 0.195, 0.014)\n#define DEPTH "
+             "0.9\n"
+             "#define SCATTER vec3(0.40, 0.30, 0.06)\n" +
+             liquid_material + tissue_lighting;
+    case Material::blood:
+      return common +
+             "#define THIN vec3(0.25, 0.012, 0.009)\n#define DEEP vec3(0.085, 0.003, 0.004)\n#define DEPTH "
+             "0.5\n"
+             "#define SCATTER vec3(0.15, 0.01, 0.008)\n" +
+             liquid_material + tissue_lighting;
     case Material::capsule:
       return common + capsule_material + tissue_lighting;
     case Material::bowel:

@@ -128,6 +128,28 @@ void count_events(const Progress& progress, const std::string& instrument, Metri
   }
 }
 
+/// By what it can lose; none where it can lose nothing.
+std::optional<MetricOwner> owner_by_filling(const OrganDefinition& organ) {
+  if (is_hollow(organ.shape)) return MetricOwner::holds_bile;
+  const auto* tube = std::get_if<TubeShape>(&organ.shape);
+  if (tube == nullptr) return std::nullopt;
+  return tube->carries == Carries::blood ? MetricOwner::holds_blood : MetricOwner::holds_bile;
+}
+
+void sum_lost(const SceneDefinition& scene, const std::vector<LostState>& lost, Metrics& metrics) {
+  for (const OrganDefinition& organ : scene.anatomy.organs)
+    if (const std::optional<MetricOwner> owner = owner_by_filling(organ))
+      metrics[organ.name + (owner == MetricOwner::holds_blood ? ".blood_lost_mL" : ".bile_lost_mL")] = 0;
+  double bile = 0, blood = 0;
+  for (const LostState& of : lost) {
+    bile += of.bile, blood += of.blood;
+    if (of.bile > 0) metrics[of.name + ".bile_lost_mL"] = of.bile / units::mL;
+    if (of.blood > 0) metrics[of.name + ".blood_lost_mL"] = of.blood / units::mL;
+  }
+  metrics["total.bile_lost_mL"] = bile / units::mL;
+  metrics["total.blood_lost_mL"] = blood / units::mL;
+}
+
 /// The owners' names of the exercise, "" for the total.
 std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner owner) {
   std::vector<std::string> names;
@@ -139,6 +161,12 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
     case MetricOwner::organ:
       for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
         for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
+      return names;
+    case MetricOwner::holds_bile:
+    case MetricOwner::holds_blood:
+      for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+        for (const OrganDefinition& organ : *organs)
+          if (owner_by_filling(organ) == owner) names.push_back(organ.name);
       return names;
     case MetricOwner::tissue:
       for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
@@ -197,6 +225,8 @@ const std::vector<MetricRow>& metric_rows() {
       {"empty_cuts", instrument, "how often its blades closed on nothing", EventKind::empty_cut, true},
       {"peak_pressure_Pa", organ, "largest pressure of its filling"},
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
+      {"bile_lost_mL", holds_bile, "bile that left it by openings", EventKind::bile_leak},
+      {"blood_lost_mL", holds_blood, "blood that left it by openings", EventKind::bleeding},
       {"lowest_frequency_Hz", organ,
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
       {"torn_pct", tissue, "share of its strands that were torn", EventKind::tear},
@@ -207,6 +237,8 @@ const std::vector<MetricRow>& metric_rows() {
       {"time_s", step, "how long the step lasted"},
       {"note", note, "the number that t:note gave last under this name"},
       {"time_s", total, "how long the session lasted"},
+      {"bile_lost_mL", total, "bile that left all organs", EventKind::bile_leak},
+      {"blood_lost_mL", total, "blood that left all organs", EventKind::bleeding},
   };
   return rows;
 }
@@ -217,6 +249,8 @@ std::string pattern(const MetricRow& row) {
     case MetricOwner::instrument:
       return of("<instrument>");
     case MetricOwner::organ:
+    case MetricOwner::holds_bile:
+    case MetricOwner::holds_blood:
     case MetricOwner::compared_organ:
       return of("<organ>");
     case MetricOwner::tissue:
@@ -277,6 +311,7 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
   }
   for (const TissueState& tissue : traces.tissues)
     metrics[tissue.name + ".torn_pct"] = 100.0 * tissue.torn / tissue.strands;
+  sum_lost(scene, traces.lost, metrics);
   for (const StepRecord& step : progress.steps()) {
     if (step.ended >= 0) metrics[step.name + ".time_s"] = step.ended - step.started;
   }

@@ -15,7 +15,18 @@
 
 namespace calot {
 
-enum class MetricOwner { instrument, organ, tissue, compared_organ, step, hold, note, total };
+enum class MetricOwner {
+  instrument,
+  organ,
+  holds_bile,
+  holds_blood,
+  tissue,
+  compared_organ,
+  step,
+  hold,
+  note,
+  total
+};
 
 struct MetricRow {
   const char* name;  ///< without its owner's: "path_length_mm" of "left.path_length_mm"

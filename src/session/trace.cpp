@@ -66,6 +66,7 @@ void append_sample(const World& world, Traces& traces) {
     traces.organ_names[row] = organ.name;
     traces.organs[row].push_back({organ.pressure, organ.max_stretch});
   }
+  traces.lost = report.lost;
   for (const TissueState& tissue : report.tissues) {
     const auto same = [&](const TissueState& known) { return known.name == tissue.name; };
     const auto at = std::find_if(traces.tissues.begin(), traces.tissues.end(), same);

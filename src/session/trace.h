@@ -35,6 +35,7 @@ struct Traces {
   std::vector<std::vector<OrganSample>> organs;
   std::vector<std::string> organ_names;
   std::vector<TissueState> tissues;  ///< as they were last, by their names
+  std::vector<LostState> lost;       ///< in all, by the scene's organs
 };
 
 /// Appends the world's present report.

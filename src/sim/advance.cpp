@@ -16,6 +16,7 @@
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/inertia.h"
+#include "sim/leak.h"
 #include "sim/rubbing.h"
 #include "sim/settle_field.h"
 #include "sim/structural_extension.h"
@@ -621,7 +622,7 @@ EventKind closed_on(const Field& field, int instrument) {
 }
 
 /// A wall that jaws pinch harder than it bears is opened; so is one that blades stand on.
-void note_hold(const Field& field, int instrument, std::vector<WorldEvent>& events) {
+void note_hold(Field& field, int instrument, std::vector<WorldEvent>& events) {
   const InstrumentDefinition& tool = field.tools[instrument].definition;
   const EventKind kind = closed_on(field, instrument);
   const bool cuts = kind != EventKind::grasp;
@@ -633,6 +634,7 @@ void note_hold(const Field& field, int instrument, std::vector<WorldEvent>& even
     events.push_back(
         {EventKind::perforation, 0, tool.name, organ.definition.name, 0, std::nullopt, EventCause::pinch});
   }
+  if (events.back().kind == EventKind::perforation) perforate(field, instrument);
 }
 
 }  // namespace

@@ -31,8 +31,12 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
   }
   const Result<Division> done = divide_body(field, tube.organ, share, field.time);
   if (!done) return done.failure();
-  for (int piece : {done->patient, done->specimen}) slide_out(field.organs[piece], instrument);
   const std::string& tool = field.tools[instrument].definition.name;
+  for (int piece : {done->patient, done->specimen}) {
+    slide_out(field.organs[piece], instrument);
+    for (Opening& opening : field.organs[piece].openings)
+      if (opening.cause.empty()) opening.cause = tool;
+  }
   events.push_back({EventKind::cut, 0, tool, name, done->share, at, EventCause::blades});
   const Organ& left = field.organs[done->patient];
   const bool unclipped = !left.of_specimen && !is_clipped(left);

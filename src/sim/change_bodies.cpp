@@ -129,6 +129,17 @@ Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool firs
     if (!first) clip.at -= cut.point;
     piece.clips.push_back(clip);
   }
+  const int first_point = first ? 0 : cut.point, last = first ? cut.point : cut.points - 1;
+  for (Opening opening : whole.openings) {
+    if ((opening.point == 0) != first) continue;
+    if (!first) opening.point -= cut.point;
+    piece.openings.push_back(std::move(opening));
+  }
+  Opening opened;
+  opened.point = cut.point - first_point;
+  piece.openings.insert(first ? piece.openings.end() : piece.openings.begin(), opened);
+  if (whole.left_in)
+    piece.left_in = *whole.left_in * std::abs(rod.share_of_length(last) - rod.share_of_length(first_point));
   piece.landmarks = tube_landmarks(shape, body);
   piece.body = std::make_shared<const RodBody>(std::move(body));
   return piece;

@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "sim/between_jaws.h"
 #include "sim/field_tissues.h"
+#include "sim/leak.h"
 
 namespace calot {
 namespace {
@@ -119,7 +120,7 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
 }
 
 /// The organ whose skin what current flows through touches; null: none.
-const Organ* touched_wall(const Field& field, const Tool& tool, const PartLoad& load) {
+Organ* touched_wall(Field& field, const Tool& tool, const PartLoad& load) {
   if (!is_active(tool) || load.touches == 0) return nullptr;
   const auto touched = std::find_if(field.organs.begin(), field.organs.end(),
                                     [&](const Organ& organ) { return organ.definition.name == load.organ; });
@@ -127,8 +128,7 @@ const Organ* touched_wall(const Field& field, const Tool& tool, const PartLoad& 
 }
 
 /// Raised when it has taken what opens it: once, as long as the current stays there.
-void burn_wall(const Organ* wall, Tool& tool, const Vec3& at, double energy,
-               std::vector<WorldEvent>& events) {
+void burn_wall(Organ* wall, Tool& tool, const Vec3& at, double energy, std::vector<WorldEvent>& events) {
   if (wall == nullptr || wall->record != tool.burnt_record) tool.burnt = 0;
   tool.burnt_record = wall == nullptr ? -1 : wall->record;
   if (wall == nullptr) return;
@@ -138,8 +138,10 @@ void burn_wall(const Organ* wall, Tool& tool, const Vec3& at, double energy,
   tool.burnt += energy;
   if (tool.burnt < limit) return;
   const std::string& name = tool.definition.name;
-  if (is_hollow(organ.shape))
+  if (is_hollow(organ.shape)) {
+    perforate(*wall, at, name);
     events.push_back({EventKind::perforation, 0, name, organ.name, 0, at, EventCause::current});
+  }
   if (!organ.injury.partly.empty())
     events.push_back(
         {EventKind::injury, 0, name, organ.name, 0, at, EventCause::current, organ.injury.partly});

@@ -35,6 +35,9 @@ enum class EventKind {
   activation_beside,
   time_out,
   bail_out,
+  bile_leak,
+  bleeding,
+  leak_stopped,
   step_done,
   step_timeout,
 };

@@ -7,6 +7,7 @@
 
 #include "sim/members.h"
 #include "sim/skin_rubbing.h"
+#include "sim/spilled.h"
 #include "sim/step_report.h"
 #include "sim/tissue.h"
 #include "sim/tool.h"
@@ -55,8 +56,12 @@ struct Field {
   std::vector<Ground> ground;
   Barrier barrier = contact_barrier;
   double tolerance = 1e-6;
-  double step_time = 0;  ///< s that a step takes where masses count; 0: statics
-  double time = 0;       ///< s, at the end of the present step
+  double step_time = 0;   ///< s that a step takes where masses count; 0: statics
+  double time = 0;        ///< s, at the end of the present step
+  Spill spill;            ///< what has left the organs
+  double heart_rate = 0;  ///< a minute
+  Vec3 up = Vec3::UnitZ();
+  Vec3 middle = Vec3::Zero();  ///< m, of the first organ at rest
   std::optional<ViewedPlace> viewed;
   ExtensionScheme scheme = ExtensionScheme::condensed;
   Assembly* assembly = nullptr;  ///< the world's threads; null: one does all

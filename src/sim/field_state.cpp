@@ -8,6 +8,7 @@ FieldState field_state(const Field& field) {
   FieldState state;
   state.members = field.members;
   state.group = snapshot(field);
+  state.spill = field.spill;
   for (const Tool& tool : field.tools)
     state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
                            tool.slipping, tool.action, tool.dry, tool.has_cut, tool.clips, tool.on_clip,
@@ -18,6 +19,7 @@ FieldState field_state(const Field& field) {
 void restore(Field& field, const FieldState& state) {
   restore_members(field, state.members);
   restore(field, state.group);
+  field.spill = state.spill;
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     const ToolSnapshot& was = state.tools[i];

@@ -25,6 +25,7 @@ struct FieldState {
   std::shared_ptr<const FieldMembers> members;
   GroupSnapshot group;
   std::vector<ToolSnapshot> tools;
+  Spill spill;
   StepReport report;  ///< of the step that led here: events are raised by what differs from it
 };
 

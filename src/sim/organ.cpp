@@ -7,8 +7,8 @@ namespace calot {
 const ShellBody* shell_of(const Organ& organ) { return dynamic_cast<const ShellBody*>(organ.body.get()); }
 
 OrganSnapshot snapshot(const Organ& organ) {
-  return {organ.body,     organ.state, organ.grips, organ.extensions, organ.refused_details,
-          organ.friction, organ.clips, organ.unfelt};
+  return {organ.body,     organ.state, organ.grips,  organ.extensions, organ.refused_details,
+          organ.friction, organ.clips, organ.unfelt, organ.openings,   organ.left_in};
 }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {
@@ -20,6 +20,8 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.friction = snapshot.friction;
   organ.clips = snapshot.clips;
   organ.unfelt = snapshot.unfelt;
+  organ.openings = snapshot.openings;
+  organ.left_in = snapshot.left_in;
 }
 
 Failure at_organ(Failure failure, std::size_t index) {

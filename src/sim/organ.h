@@ -57,6 +57,17 @@ struct Clip {
   bool operator==(const Clip&) const = default;
 };
 
+/// Where what an organ holds can leave it: the end of a divided tube, or a hole in a wall (leak.h).
+struct Opening {
+  int point = 0;      ///< skin point: a tube's first or last, or where the hole is
+  double area = 0;    ///< m^2, of a hole; a tube's end is as wide as its lumen
+  std::string cause;  ///< the instrument that made it; may be empty
+  double rate = 0;    ///< m^3/s, in the last step
+  double lost = 0;    ///< m^3, since it began to leak last
+  double drop = 0;    ///< m^3, that has left it and hangs on it still
+  bool leaks = false;
+};
+
 struct Organ {
   OrganDefinition definition;
   BodyPointer body;  ///< never null
@@ -74,7 +85,10 @@ struct Organ {
   std::vector<Clip> clips = {};  ///< ordered by place
   /// Instruments whose jaws it does not feel, increasing: they cut it, and it is between them still.
   std::vector<int> unfelt = {};
-  bool of_specimen = false;  ///< a piece that the patient's was cut off from
+  bool of_specimen = false;            ///< a piece that the patient's was cut off from
+  std::vector<Opening> openings = {};  ///< ordered as they were made, but a tube's by their points
+  /// m^3, what is left in a tube that nothing feeds; none: it is full.
+  std::optional<double> left_in = {};
 };
 
 /// The body as a shell, which alone is refined; null: it is none.
@@ -90,6 +104,8 @@ struct OrganSnapshot {
   FrictionLoad friction;
   std::vector<Clip> clips;
   std::vector<int> unfelt;
+  std::vector<Opening> openings;
+  std::optional<double> left_in;
 };
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);

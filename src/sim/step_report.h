@@ -74,6 +74,12 @@ struct TissueState {
   int strands = 0, torn = 0;
 };
 
+/// What has left an organ of the scene and its pieces.
+struct LostState {
+  std::string name;
+  double bile = 0, blood = 0;  ///< m^3
+};
+
 struct SolveStatistics {
   int substeps = 0;
   int newton_iterations = 0;
@@ -90,6 +96,7 @@ struct StepReport {
   LaparoscopeState laparoscope;
   std::vector<OrganState> organs;
   std::vector<TissueState> tissues;
+  std::vector<LostState> lost;  ///< of those that have lost some, in the order in which they began to
   std::vector<WorldEvent> events;
   SolveStatistics statistics;
   std::uint64_t state_hash = 0;

@@ -20,8 +20,10 @@
 #include "sim/grip.h"
 #include "sim/join_bodies.h"
 #include "sim/laparoscope.h"
+#include "sim/leak.h"
 #include "sim/settle_field.h"
 #include "sim/sight.h"
+#include "sim/spill.h"
 #include "sim/structural_extension.h"
 #include "sim/tool_loads.h"
 #include "sim/vibration.h"
@@ -139,6 +141,33 @@ void add_acts(Hash& hash, const Organ& organ) {
     add_point(hash, clip.pressed);
   }
   for (int instrument : organ.unfelt) hash.add(instrument);
+  for (const Opening& opening : organ.openings) {
+    hash.add(opening.point);
+    for (double v : {opening.area, opening.rate, opening.lost, opening.drop}) hash.add(v);
+    hash.add(opening.leaks);
+  }
+  if (organ.left_in) hash.add(*organ.left_in);
+}
+
+void add_spill(Hash& hash, const Spill& spill) {
+  for (const LostState& lost : spill.lost) {
+    hash.add(lost.name);
+    hash.add(lost.bile);
+    hash.add(lost.blood);
+  }
+  for (const Drop& drop : spill.drops) {
+    hash.add(static_cast<int>(drop.liquid));
+    add_point(hash, drop.at);
+    add_point(hash, drop.velocity);
+    hash.add(drop.volume);
+  }
+  for (const Film& film : spill.films) {
+    hash.add(film.on);
+    for (const WetPoint& wet : film.wet) {
+      hash.add(wet.point);
+      for (double volume : wet.volume) hash.add(volume);
+    }
+  }
 }
 
 void add_stick_slip(Hash& hash, const StickSlip& hold) {
@@ -261,6 +290,7 @@ std::uint64_t World::Impl::hash_field() const {
   add_rubbing(hash, field.group.rubbing);
   add_factor(hash, field.group.work);
   for (const Tool& tool : field.tools) add_tool(hash, tool);
+  add_spill(hash, field.spill);
   return hash.value();
 }
 
@@ -413,6 +443,7 @@ void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<Inst
   for (const WorldEvent& event : apply_current(field, report.instruments, 1 / scene.solver.rate))
     events.push_back(event);
   report.tissues = tissue_states(field);
+  report.lost = field.spill.lost;
   judge_stretch(field, before, report.organs, events);
   for (WorldEvent& event : events) {
     event.time = report.time;
@@ -508,6 +539,10 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (Result<bool> made = add_tissues(scene.anatomy, impl->up, impl->field); !made) return made.failure();
   if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
     return rested.failure();
+  impl->field.up = impl->up;
+  impl->field.heart_rate = scene.anatomy.heart_rate;
+  if (!impl->field.organs.empty())
+    impl->field.middle = impl->field.organs[0].body->skin_point(0, impl->field.organs[0].state.x);
   World world(std::move(impl));
   for (const InstrumentDefinition& definition : scene.instruments) {
     Tool tool;
@@ -572,6 +607,8 @@ Result<StepReport> World::step(const StepInput& input) {
   const FieldState before = state();
   const std::uint64_t hash_before = self.field_hash;
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
+  const double duration = 1 / self.scene.solver.rate;
+  const std::vector<WorldEvent> leaked = leak(self.field, duration);
   Result<std::vector<WorldEvent>> events = advance(self.field, input.instruments, self.report.statistics);
   if (!events) {
     self.failed = true;
@@ -583,6 +620,8 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   fire_clips(self.field, input.actions, events.value());
+  events->insert(events->begin(), leaked.begin(), leaked.end());
+  spill(self.field, duration);
   ++self.steps;
   if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
   self.observe(std::move(events).value(), input.actions);

@@ -4,6 +4,7 @@
 #include "view/clip_mesh.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
+#include "view/spill_mesh.h"
 #include "view/structure_mesh.h"
 #include "view/tissue_mesh.h"
 #include "view/vessels.h"
@@ -70,6 +71,7 @@ Scene SceneBuilder::build(const World& world) const {
   }
   if (SceneMesh tissue = tissue_mesh(world); !tissue.triangles.empty())
     scene.meshes.push_back(std::move(tissue));
+  for (SceneMesh& mesh : spill_meshes(world)) scene.meshes.push_back(std::move(mesh));
   for (const Organ& organ : world.field().organs) {
     if (!definition.laparoscope.show_structure || shell_of(organ) == nullptr) continue;
     for (SceneMesh& mesh : structure_meshes(draw_structure(*shell_of(organ), organ.state.x)))

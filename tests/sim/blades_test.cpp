@@ -136,6 +136,19 @@ TEST(Scissors, ClosedOnAWallPerforateItAndGoOn) {
   EXPECT_EQ(path.driver.count(EventKind::grasp), 0);
   ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
   EXPECT_EQ(path.driver.count(EventKind::release), 0);
+  // By the hole bile leaves, as the blades made it.
+  const std::vector<Opening>& openings = path.world.field().organs[0].openings;
+  ASSERT_EQ(openings.size(), 1u);
+  EXPECT_GT(openings[0].area, 0.4e-6);
+  EXPECT_LT(openings[0].area, 10e-6);
+  EXPECT_LT((path.world.field().organs[0].body->skin_rest()[openings[0].point] - path.fundus).norm(), 8e-3);
+  EXPECT_EQ(path.driver.count(EventKind::bile_leak), 1);
+  for (const WorldEvent& event : path.driver.events) {
+    if (event.kind != EventKind::bile_leak) continue;
+    EXPECT_EQ(event.instrument + " " + event.organ, "left ball");
+  }
+  ASSERT_EQ(path.world.report().lost.size(), 1u);
+  EXPECT_GT(path.world.report().lost[0].bile, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+#pragma once
+// What leaves organs by openings: bile by the end of a duct that was cut or a hole in a wall, blood by an artery's end.
+//
+// An opening lets out Q = Cd A sqrt(2 p / rho) at the pressure p on its inside; A is the smallest area on the way there:
+// of the lumen, of what clips leave open of it, and of what jaws do that pinch it. What drives it:
+// - a hollow organ, of which its wall and the liquid's weight do. Its volume falls by what leaves, so that its pressure
+//   does too and it slackens: by the wall's compliance C, as the last factor knows it, sqrt(p) falls along a straight
+//   line. Of one opening the error of a step is what C changes in it.
+// - the patient, by a pressure behind a resistance: p = R Q + rho / 2 (Q / (Cd A))^2; blood's beats with the heart. A
+//   duct's folds (the valves of Heister) resist what an organ drives through it in the same way.
+// - nothing: what a tube holds runs out of it.
+// Steps are cut into milliseconds: a pulse is known to 1e-5 so, and two openings of one organ share its pressure.
+
+#include "sim/field.h"
+
+namespace calot {
+
+/// What feeds a tube: the patient, where it is whole.
+struct TubeFeed {
+  double pressure = 0;    ///< Pa, gauge
+  double resistance = 0;  ///< Pa s/m^3
+};
+/// As its definition has it; else what it carries, and of an artery its width, say.
+TubeFeed feed_of(const OrganDefinition& tube);
+
+/// Of Torricelli's flow through a sharp edge.
+inline constexpr double discharge = 0.6;
+inline constexpr double blood_density = 1060;  ///< kg/m^3
+
+/// m^3/s, through an opening of `area` (m^2) that the patient feeds at that pressure.
+double fed_flow(const TubeFeed& feed, double pressure, double area, double density);
+/// m^3 that leave an elastic organ in `time` s: `pressure` (Pa) at the beginning, `compliance` in m^3/Pa; 0: the pressure
+/// stays. Exact without a resistance (Pa s/m^3) on the way; with one of the second order in the time.
+double elastic_outflow(double pressure, double compliance, double area, double density, double time,
+                       double resistance = 0);
+
+/// Share of a tube's lumen that is open at its tightest between two of its places (skin points from its start), where
+/// clips and jaws are on it.
+double open_between(const Field& field, int organ, double one, double other);
+
+/// Lets out what leaves in `duration` s up to field.time: liquids' kept volumes fall, field.spill.lost grows, and drops
+/// begin to hang on openings. Returns the events bile_leak, bleeding and leak_stopped.
+std::vector<WorldEvent> leak(Field& field, double duration);
+
+/// Makes the holes that a tool's jaws, which hold them, cut or crush into hollow organs.
+void perforate(Field& field, int instrument);
+/// Makes one where current has burnt a wall, at the skin point nearest to `at`; what holds no liquid has nothing to lose.
+void perforate(Organ& organ, const Vec3& at, const std::string& instrument);
+
+}  // namespace calot
