@@ -191,32 +191,6 @@ double width_of(const Organ& organ, const Opening& opening) {
   return std::numbers::pi * std::pow(std::max(rod->outer_radius(opening.point) - rod->setup().wall, 1e-4), 2);
 }
 
-void let_fall(Field& field, double duration) {
-  for (Organ& organ : field.organs)
-    for (Opening& opening : organ.openings) {
-      if (!(opening.drop > 0)) continue;
-      const double speed = std::min(fastest, slowed * opening.rate / width_of(organ, opening));
-      const double whole = speed > jet ? jet_volume : drop_volume;
-      const auto full = static_cast<int>(opening.drop / whole);
-      if (full == 0 && opening.rate > 0) continue;
-      const auto [at, out] = mouth_of(organ, opening);
-      const auto* tube = std::get_if<TubeShape>(&organ.definition.shape);
-      const int drops = std::max(1, full);
-      const double volume = std::min(whole, opening.drop);
-      for (int k = 0; k < drops; ++k) {
-        Drop drop{tube ? tube->carries : Carries::bile, at + 0.5e-3 * out, Vec3::Zero(), volume};
-        if (speed > jet) {  // one after the other
-          const double since = duration * (k + 0.5) / drops;
-          const Vec3 g = -units::standard_gravity * field.up;
-          drop.velocity = speed * out + since * g;
-          drop.at += since * speed * out + 0.5 * since * since * g;
-        }
-        field.spill.drops.push_back(drop);
-        opening.drop = std::max(0.0, opening.drop - volume);
-      }
-    }
-}
-
 /// Whether it has met something, or is away.
 bool fall(Field& field, const Skins& skins, Drop& drop, double part) {
   const Vec3 from = drop.at, g = -units::standard_gravity * field.up;
@@ -239,6 +213,30 @@ bool fall(Field& field, const Skins& skins, Drop& drop, double part) {
   if (to.norm() < reach) return false;
   field.spill.out_of_sight[static_cast<std::size_t>(drop.liquid)] += drop.volume;
   return true;
+}
+
+/// Drops of what hangs on openings, with the way that they have made since.
+void let_fall(Field& field, double duration, std::optional<Skins>& skins) {
+  for (Organ& organ : field.organs) {
+    const auto* tube = std::get_if<TubeShape>(&organ.definition.shape);
+    for (Opening& opening : organ.openings) {
+      if (!(opening.drop > 0)) continue;
+      const double speed = std::min(fastest, slowed * opening.rate / width_of(organ, opening));
+      const double whole = speed > jet ? jet_volume : drop_volume;
+      const auto full = static_cast<int>(opening.drop / whole);
+      if (full == 0 && opening.rate > 0) continue;
+      const auto [at, out] = mouth_of(organ, opening);
+      const int drops = std::max(1, full);
+      const double volume = std::min(whole, opening.drop);
+      if (!skins) skins.emplace(field);
+      for (int k = 0; k < drops; ++k) {
+        Drop drop{tube ? tube->carries : Carries::bile, at + 0.5e-3 * out, Vec3::Zero(), volume};
+        if (speed > jet) drop.velocity = speed * out;
+        opening.drop = std::max(0.0, opening.drop - volume);
+        if (!fall(field, *skins, drop, duration * (k + 0.5) / drops)) field.spill.drops.push_back(drop);
+      }
+    }
+  }
 }
 
 // ---- films
@@ -388,9 +386,7 @@ WetSurface wet_surface(const Field& field, const Film& film) {
 }
 
 void spill(Field& field, double duration) {
-  let_fall(field, duration);
   Spill& all = field.spill;
-  if (all.drops.empty() && all.films.empty()) return;
   forget_gone(field);
   const int parts = std::max(1, static_cast<int>(std::ceil(duration / longest_part - 1e-9)));
   const double part = duration / parts;
@@ -405,6 +401,7 @@ void spill(Field& field, double duration) {
       at->second.run(film, part, all.drops);
     }
   }
+  let_fall(field, duration, skins);
 }
 
 }  // namespace calot
