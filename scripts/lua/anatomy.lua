@@ -10,13 +10,13 @@
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
---   cystic_artery_enters: where it reaches the gallbladder, in the bed's frame (towards the liver, to the patient's right and
---     back, towards the fundus, in mm from the neck): { -3.5, -13.5, 2 }
+--   cystic_artery_enters { -3.5, -13.5, 2 }: where it reaches the gallbladder, in mm from the bed's neck: towards the
+--     liver, to the patient's right and back, towards the fundus
 --   looks "bile": "pale" is how a gallbladder full of mucus looks (hydrops)
 --   without {}: names of organs and tissues that are gone already, in a field that is prepared for a later step
---   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on, strand by strand:
---     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } } of
---     its way from 0.5 to 1, up to one of its ends. What stands comes to rest without the rest
+--   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on:
+--     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } }
+--     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it
 --   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
@@ -190,7 +190,7 @@ local function take_out(field, name, level)
   field.joints = keep(field.joints, function(one) return not on(one.from) and not on(one.to) end)
 end
 
---- Clears a tissue from one of its ends on: its way becomes shorter, and its strands fewer, each for as much as before.
+--- Clears a tissue from one of its ends on: its way becomes shorter and its strands fewer, each for as much as before.
 local function clear(tissue, gone)
   local range = type(gone) == "table" and gone or { 0, gone }
   local from, to = tonumber(range[1]), tonumber(range[2])
