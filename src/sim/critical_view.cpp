@@ -15,13 +15,13 @@ namespace calot {
 namespace {
 
 /// What the triangle is stretched between is as thick as that: it hides no place of the triangle, m.
-constexpr double margin = 2e-3;
+constexpr double border = 2e-3;
 /// Of a side that is open to less than this share nothing is known.
 constexpr double least_open = 0.1;
 /// How far beyond a ray that no organ stops is looked for tissue, m.
-constexpr double deepest = 60e-3;
+constexpr double farthest_looked = 60e-3;
 /// Where a lens is put behind the triangle, m from its middle.
-constexpr double behind = 25e-3;
+constexpr double lens_behind = 25e-3;
 /// Tissue nearer to a structure's surface than that is on it, m.
 constexpr double on_surface = 1e-3;
 
@@ -70,12 +70,12 @@ CriticalView::Side seen_side(const Sight& sight, const std::array<Vec3, 3>& corn
   int open = 0, cleared = 0;
   for (const Vec3& weights : contact_rule) {
     const Vec3 place = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-    if (!sight.sees(place, margin)) continue;
+    if (!sight.sees(place, border)) continue;
     ++open;
     const Vec3 along = (place - sight.eye()).normalized();
     const double there = (place - sight.eye()).norm();
     const Vec3 end =
-        sight.eye() + std::min(sight.first_organ(along, there + margin), there + deepest) * along;
+        sight.eye() + std::min(sight.first_organ(along, there + border), there + farthest_looked) * along;
     cleared += std::none_of(fat.begin(), fat.end(),
                             [&](const Standing& strand) { return meets(strand, sight.eye(), end); })
                    ? 1
@@ -113,7 +113,16 @@ bool is_on(const Standing& strand, const Entering& tube) {
   });
 }
 
-bool is_tube(const Organ& organ) { return dynamic_cast<const RodBody*>(organ.body.get()) != nullptr; }
+/// A tube that is whole: what is left of a divided one ends blind.
+bool is_whole_tube(const Field& field, const Organ& organ) {
+  const std::vector<BodyRecord>& roll = field.membership.roll;
+  return dynamic_cast<const RodBody*>(organ.body.get()) != nullptr &&
+         std::none_of(roll.begin(), roll.end(), [&](const BodyRecord& record) {
+           if (!record.gone) return false;
+           const std::vector<std::string>& pieces = record.gone->pieces;
+           return std::find(pieces.begin(), pieces.end(), organ.definition.name) != pieces.end();
+         });
+}
 
 /// Tubes that are joined to it and have not been divided, by their places.
 std::vector<std::size_t> tubes_of(const Field& field, int gallbladder) {
@@ -123,14 +132,14 @@ std::vector<std::size_t> tubes_of(const Field& field, int gallbladder) {
       const std::array<int, 2>& bodies = joint.joint->links().bodies;
       if (bodies[k] != gallbladder) continue;
       const auto other = static_cast<std::size_t>(bodies[1 - k]);
-      if (is_tube(field.organs[other]) && !field.organs[other].of_specimen) out.push_back(other);
+      if (is_whole_tube(field, field.organs[other])) out.push_back(other);
     }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
-int points_of(double share, const CriticalViewQuestion& question) {
+int points_for(double share, const CriticalViewQuestion& question) {
   return share >= question.two_from ? 2 : share >= question.one_from ? 1 : 0;
 }
 
@@ -151,7 +160,7 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
   const std::array<Vec3, 3> corners{triangle.neck, triangle.junction, triangle.hilum};
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   const double side = normal.dot(eye - corners[0]) > 0 ? 1 : -1;
-  const Vec3 square = (corners[0] + corners[1] + corners[2]) / 3 - side * behind * normal;
+  const Vec3 square = (corners[0] + corners[1] + corners[2]) / 3 - side * lens_behind * normal;
   const Sight front(field, eye);
   const Sight back(field, question.behind.value_or(square), question.behind ? "" : question.liver);
   std::vector<Standing> fat;
@@ -159,10 +168,10 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
                [](const Standing& strand) { return !strand.of_plate; });
   out.front = seen_side(front.within(corners), corners, fat);
   out.back = seen_side(back.within(corners), corners, fat);
-  out.triangle_points = points_of(std::min(out.front.cleared, out.back.cleared), question);
+  out.triangle_points = points_for(std::min(out.front.cleared, out.back.cleared), question);
 
   out.plate = lower == 0 ? 1.0 : static_cast<double>(lower_torn) / lower;
-  out.plate_points = points_of(out.plate, question);
+  out.plate_points = points_for(out.plate, question);
 
   const int gallbladder = index_called(field, question.gallbladder);
   if (gallbladder < 0) return out;

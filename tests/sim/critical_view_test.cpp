@@ -97,7 +97,7 @@ struct Judged : ::testing::Test {
   static CriticalView judge(const Vec3& eye = beside_neck(22, -100, 0),
                             const CriticalViewQuestion& question = {}) {
     return critical_view(world().field(),
-                         {beside_neck(2, 0, -3), beside_neck(37, 0, -19), beside_neck(37, 0, 14)}, eye,
+                         {beside_neck(2, 0, -3), beside_neck(37, 0, -19), beside_neck(37, 0, -3)}, eye,
                          question);
   }
 };
