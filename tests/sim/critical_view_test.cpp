@@ -34,7 +34,7 @@ TissueDefinition tissue_between(const std::string& name, const std::string& from
   tissue.to = to;
   tissue.within = within;
   tissue.strands = strands;
-  tissue.slack = 0.2;
+  tissue.slack = 0;
   tissue.strength = 12e3;
   tissue.stiffness = 4e3;
   tissue.break_energy = 400;
@@ -129,14 +129,14 @@ TEST_F(Judged, TissueBetweenTheDuctsHidesTheTriangleUntilItIsTornAndChangesNothi
 TEST_F(Judged, OfASideThatOrgansCloseNothingIsClearAndTheLesserSideEarnsThePoints) {
   tear(fat, everywhere);
   const CriticalView from_liver = judge(beside_neck(22, 100, 0));
-  EXPECT_EQ(from_liver.front.open, 0);
+  EXPECT_LT(from_liver.front.open, 0.1);
   EXPECT_EQ(from_liver.front.cleared, 0);
   EXPECT_EQ(from_liver.triangle_points, 0);
   CriticalViewQuestion question;
   question.behind = beside_neck(22, 100, 0);
   const CriticalView behind_liver = judge(beside_neck(22, -100, 0), question);
   EXPECT_EQ(behind_liver.front.cleared, 1);
-  EXPECT_EQ(behind_liver.back.open, 0) << "a lens that an author has put there is hidden from";
+  EXPECT_LT(behind_liver.back.open, 0.1) << "a lens that an author has put there is hidden from";
   EXPECT_EQ(behind_liver.triangle_points, 0);
   question.behind = beside_neck(22, 18, 0);
   EXPECT_EQ(judge(beside_neck(22, -100, 0), question).triangle_points, 2);
