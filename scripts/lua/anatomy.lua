@@ -10,8 +10,13 @@
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
+--   cystic_artery_enters { -3.5, -13.5, 2 }: where it reaches the gallbladder, in mm from the bed's neck: towards the
+--     liver, to the patient's right and back, towards the fundus
 --   looks "bile": "pale" is how a gallbladder full of mucus looks (hydrops)
 --   without {}: names of organs and tissues that are gone already, in a field that is prepared for a later step
+--   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on:
+--     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } }
+--     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it
 --   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
@@ -94,6 +99,7 @@ local defaults = {
   union_lies = { 0, 0, 0 },
   cystic_artery_length = 17 * mm,
   cystic_artery_diameter = 1.6 * mm,
+  cystic_artery_enters = { -3.5, -13.5, 2 },
   second_cystic_artery = false,
   hepatic_artery_near_neck = false,
   node_diameter = 5 * mm,
@@ -103,6 +109,7 @@ local defaults = {
   strands = 1,
   strength = 1,
   without = {},
+  prepared = {},
 }
 
 local function soft_wall(thickness) return { thickness = thickness, density = 1050 } end
@@ -161,7 +168,7 @@ end
 local function joint(from, to, radius) return { from = from, to = to, radius = radius } end
 
 --- Takes an organ with what ends on it, or a tissue, out of a field.
-local function take_out(field, name)
+local function take_out(field, name, level)
   local names = {}
   local function keep(list, stays)
     local out = {}
@@ -177,10 +184,39 @@ local function take_out(field, name)
     return one.name ~= name and one.from ~= name and one.to ~= name
   end)
   if not was_organ and not was_tissue then
-    error('the field has no "' .. tostring(name) .. '" to leave out: there are ' .. table.concat(names, ", "), 3)
+    error('the field has no "' .. tostring(name) .. '" to leave out: there are ' .. table.concat(names, ", "), level)
   end
   field.organs, field.tissue = organs, tissue
   field.joints = keep(field.joints, function(one) return not on(one.from) and not on(one.to) end)
+end
+
+--- Clears a tissue from one of its ends on: its way becomes shorter and its strands fewer, each for as much as before.
+local function clear(tissue, gone)
+  local range = type(gone) == "table" and gone or { 0, gone }
+  local from, to = tonumber(range[1]), tonumber(range[2])
+  if not from or not to or from < 0 or to > 1 or from >= to or (from > 0 and to < 1) then
+    error('what is gone of "' .. tissue.name .. '" is a share of its way, 0 to 1, or a range up to one of its ends, '
+      .. "such as { 0.5, 1 }", 4)
+  end
+  local start, way = tissue.start or 0, (tissue.stop or 1) - (tissue.start or 0)
+  if from == 0 then tissue.start = start + to * way end
+  if to == 1 then tissue.stop = start + from * way end
+  tissue.strands = math.floor(tissue.strands * (1 - (to - from)) + 0.5)
+end
+
+--- Takes out what is gone of tissues in a field that is prepared.
+local function prepare(field, gone_of)
+  local names = {}
+  for name in pairs(gone_of) do names[#names + 1] = name end
+  table.sort(names)
+  for _, name in ipairs(names) do
+    local gone, found = gone_of[name], nil
+    for _, tissue in ipairs(field.tissue) do
+      if tissue.name == name then found = tissue end
+    end
+    if found and gone ~= 0 then clear(found, gone) end
+    if not found or found.strands < 1 then take_out(field, name, 4) end
+  end
 end
 
 --- The anatomy of a standard field, or with other lengths: see the top of this file.
@@ -251,7 +287,7 @@ function anatomy.standard(overrides)
     joints[#joints + 1] = joint(name .. ".start", "right_hepatic_artery.middle", 3 * mm)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
   end
-  cystic_artery("cystic_artery", 0.82, place(-3.5, -13.5, 2))
+  cystic_artery("cystic_artery", 0.82, place(table.unpack(p.cystic_artery_enters)))
 
   -- The node lies between neck and artery, fast to the neck by all of its skin. It gives way as lymph nodes do (20 to
   -- 80 kPa, uncalibrated): a stone there would cost the solver half of its time to turn.
@@ -269,7 +305,8 @@ function anatomy.standard(overrides)
     tissue = anatomy.tissue(p),
     ground = anatomy.surroundings(neck),
   }
-  for _, name in ipairs(p.without) do take_out(field, name) end
+  prepare(field, p.prepared)
+  for _, name in ipairs(p.without) do take_out(field, name, 3) end
   return field
 end
 

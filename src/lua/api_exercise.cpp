@@ -4,6 +4,7 @@
 #include "lua/api_parts.h"
 #include "lua/demo_script.h"
 #include "session/exercise.h"
+#include "sim/critical_view.h"
 
 namespace calot {
 namespace {
@@ -124,6 +125,30 @@ std::vector<KeyTable> score_tables() {
   };
 }
 
+KeyTable critical_view_options() {
+  using Question = CriticalViewQuestion;
+  const auto share = [](const char* name, double Question::*member, const char* doc) {
+    return number(name, member, quantity::number, 0, 1, "", doc);
+  };
+  return keys_of<Question>(
+      "critical_view_options", "Options of t:critical_view.",
+      {text("gallbladder", &Question::gallbladder, "the organ's name"),
+       text("liver", &Question::liver, "the organ's name"),
+       text("plate", &Question::plate, "the name of the tissue between the two"),
+       text("neck", &Question::neck, "a landmark, the triangle's corner at the gallbladder"),
+       text("junction", &Question::junction, "a landmark, its corner where the ducts meet"),
+       text("hilum", &Question::hilum, "a landmark, its corner at the liver"),
+       point("behind", quantity::length, 1.0, "",
+             "a lens on the other side, {x, y, z} in m; left out: square to the triangle, 25 mm "
+             "behind it, and the liver hides nothing"),
+       share("lower_part", &Question::lower_part,
+             "of the gallbladder's way from neck to fundus that has to be off the plate"),
+       number("near", &Question::near, quantity::length, 0, 50 * mm, "",
+              "how far off the gallbladder a structure has to be free around"),
+       share("one_from", &Question::one_from, "from this share on a criterion earns a point"),
+       share("two_from", &Question::two_from, "and from this on two")});
+}
+
 std::vector<KeyTable> option_tables() {
   const auto speed = [] {
     return number("speed", quantity::speed, 0.1 * mm / s, 500 * mm / s,
@@ -134,6 +159,7 @@ std::vector<KeyTable> option_tables() {
        "Options of t:step.",
        {number("limit", quantity::time, 0.1 * s, 3600 * s, "", "after it the step ends as timed out"),
         text("hint", "", "how it is done, shown to who practises and not in an exam")}},
+      critical_view_options(),
       {"move_options", "Options of motions.", {speed()}},
       {"rotate_options",
        "Options of a rotation.",

@@ -148,6 +148,20 @@ std::vector<ApiFunction> session_functions() {
         required(point("b", quantity::length, 1.0, "", "the next")),
         required(point("c", quantity::length, 1.0, "", "the last"))},
        "number"},
+      {"Session",
+       "critical_view",
+       "The critical view of safety as it is now, measured: the hepatocystic triangle cleared of tissue, by "
+       "rays "
+       "from the laparoscope and from behind; the plate's strands on the gallbladder's lower third torn; two "
+       "structures and no more still enter the gallbladder, each seen and free. 0 to 2 points each, 0 to 6 "
+       "in all; from which share on is uncalibrated.",
+       {table("options", "critical_view_options", "what the parts are called, and what earns points")},
+       "calot.critical_view"},
+      {"Session",
+       "strands",
+       "The strands of a tissue that stand, as they lie now: none where an organ that it held on to is gone.",
+       {required(text("tissue", "", "its name"))},
+       "calot.strand[]"},
       {"Steps",
        "step",
        "Ends the running step as done and starts the next.",

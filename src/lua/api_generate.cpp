@@ -148,6 +148,54 @@ KeyTable clip_table() {
            required(choice("size", clip_names(), "", "the clip's size"))}};
 }
 
+Key share_key(const char* name, const char* doc) {
+  return required(number(name, quantity::number, 0, 1, "", doc));
+}
+
+Key points_key(double most) { return required(number("points", quantity::number, 0, most, "", "earned")); }
+
+/// What t:critical_view() returns, with its parts.
+std::vector<KeyTable> critical_view_tables() {
+  const auto part = [](const char* name, const char* doc) {
+    return required(table(name, fmt::format("critical_view_{}", name), doc));
+  };
+  return {
+      {"critical_view_triangle",
+       "The hepatocystic triangle, by rays through it.",
+       {share_key("front", "cleared of tissue, of what organs and instruments leave open to the laparoscope"),
+        share_key("behind", "the same from behind"),
+        share_key("front_open",
+                  "left open by organs and instruments to the laparoscope; below 0.1 nothing "
+                  "counts as cleared"),
+        share_key("behind_open", "the same from behind"), points_key(2)}},
+      {"critical_view_plate",
+       "The cystic plate on the gallbladder's lower part.",
+       {share_key("share", "of its strands there that are torn; 1 where there are none"), points_key(2)}},
+      {"critical_view_structures",
+       "What enters the gallbladder.",
+       {required(number("count", quantity::number, 0, 100, "", "tubes joined to it that are not divided")),
+        required(number("free", quantity::number, 0, 100, "", "of those what is seen and free around")),
+        points_key(2)}},
+      {"critical_view",
+       "The critical view of safety, as critical_view returns it.",
+       {part("triangle", "the hepatocystic triangle"), part("plate", "the cystic plate"),
+        part("structures", "what enters the gallbladder"), points_key(6)}}};
+}
+
+/// Of what t:strands() returns each.
+KeyTable strand_table() {
+  const auto place = [](const char* name, const char* doc) {
+    return required(point(name, quantity::length, 0, "", doc));
+  };
+  return {"strand",
+          "A strand of a tissue, as strands returns it.",
+          {place("from", "its end on the tissue's first organ"), place("middle", "its own middle"),
+           place("to", "its end on the other organ"),
+           required(number("share", quantity::number, 0, 1, "",
+                           "of the first organ's way, where it begins: a tube's length, else from neck to "
+                           "fundus"))}};
+}
+
 std::string in_mm(const Vec3& place) {
   return fmt::format("{{ {:g} * mm, {:g} * mm, {:g} * mm }}", place.x() / units::mm, place.y() / units::mm,
                      place.z() / units::mm);
@@ -185,6 +233,8 @@ std::string generate_annotations() {
   text += annotate_table(clip_table());
   text += annotate_table(event_table());
   text += annotate_table(step_table());
+  for (const KeyTable& table : critical_view_tables()) text += annotate_table(table);
+  text += annotate_table(strand_table());
   for (const ApiClass& handle : api_classes()) text += annotate_class(handle);
   text +=
       "\n---Multipliers to write figures with: 70 * mm, 12 * mmHg. Everything is in SI.\n---@class "
@@ -241,6 +291,8 @@ std::string generate_reference() {
   text += describe_table(clip_table());
   text += describe_table(event_table());
   text += describe_table(step_table());
+  for (const KeyTable& table : critical_view_tables()) text += describe_table(table);
+  text += describe_table(strand_table());
   text += describe_names();
   text += "\n## Units\n\n";
   for (const ApiUnit& unit : api_units())

@@ -163,6 +163,66 @@ int seen_area(lua_State* L) {
   return 1;
 }
 
+void set_number(lua_State* L, const char* key, double value) {
+  lua_pushnumber(L, value);
+  lua_setfield(L, -2, key);
+}
+
+/// Points are whole numbers, as tables and reports show them.
+void set_count(lua_State* L, const char* key, int value) {
+  lua_pushinteger(L, value);
+  lua_setfield(L, -2, key);
+}
+
+int critical_view(lua_State* L) {
+  ScriptSession& session = session_target(L, "critical_view");
+  Arguments arguments(L, session, "Session", "critical_view");
+  CriticalViewQuestion question;
+  const TableReader options = arguments.options("critical_view_options");
+  options.read(question);
+  if (options.has("behind")) options.take("behind", question.behind.emplace(Vec3::Zero()));
+  const CriticalView view = arguments.finish() ? session.critical_view(L, question) : CriticalView{};
+  lua_createtable(L, 0, 4);
+  lua_createtable(L, 0, 5);
+  set_number(L, "front", view.front.cleared);
+  set_number(L, "behind", view.back.cleared);
+  set_number(L, "front_open", view.front.open);
+  set_number(L, "behind_open", view.back.open);
+  set_count(L, "points", view.triangle_points);
+  lua_setfield(L, -2, "triangle");
+  lua_createtable(L, 0, 2);
+  set_number(L, "share", view.plate);
+  set_count(L, "points", view.plate_points);
+  lua_setfield(L, -2, "plate");
+  lua_createtable(L, 0, 3);
+  set_count(L, "count", view.structures);
+  set_count(L, "free", view.free);
+  set_count(L, "points", view.structure_points);
+  lua_setfield(L, -2, "structures");
+  set_count(L, "points", view.points());
+  return 1;
+}
+
+int strands(lua_State* L) {
+  ScriptSession& session = session_target(L, "strands");
+  const Arguments arguments(L, session, "Session", "strands");
+  std::vector<ScriptSession::PresentStrand> found;
+  if (arguments.good()) found = session.strands(L, arguments.text("tissue"));
+  lua_createtable(L, static_cast<int>(found.size()), 0);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    lua_createtable(L, 0, 4);
+    push_vector(L, found[i].line.from);
+    lua_setfield(L, -2, "from");
+    push_vector(L, found[i].line.by);
+    lua_setfield(L, -2, "middle");
+    push_vector(L, found[i].line.to);
+    lua_setfield(L, -2, "to");
+    set_number(L, "share", found[i].share);
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  return 1;
+}
+
 // ---- instruments
 
 InstrumentState instrument_state(lua_State* L, const HandleTarget& target) {
@@ -565,6 +625,8 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "place", guarded<place>},
                           {"Session", "along", guarded<along>},
                           {"Session", "seen_area", guarded<seen_area>},
+                          {"Session", "critical_view", guarded<critical_view>},
+                          {"Session", "strands", guarded<strands>},
                           {"Steps", "step", guarded<step>},
                           {"Steps", "hold", guarded<hold>},
                           {"Steps", "note", guarded<note>},

@@ -13,6 +13,8 @@
 #include "script/lua_headers.h"
 #include "sim/between_jaws.h"
 #include "sim/change_bodies.h"
+#include "sim/critical_view.h"
+#include "sim/strand_places.h"
 
 namespace calot {
 namespace {
@@ -120,13 +122,53 @@ double ScriptSession::lost(lua_State* L, bool blood, const std::string& name) {
   return sum;
 }
 
-double ScriptSession::torn(lua_State* L, const std::string& name) {
+bool ScriptSession::is_tissue(lua_State* L, const std::string& name) {
   std::vector<std::string> names;
   for (const TissueDefinition& tissue : scene().anatomy.tissue) names.push_back(tissue.name);
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    complain(L, fmt::format("unknown tissue \"{}\"", name), suggestion(name, names));
-    return 0;
+  if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+  complain(L, fmt::format("unknown tissue \"{}\"", name), suggestion(name, names));
+  return false;
+}
+
+CriticalView ScriptSession::critical_view(lua_State* L, const CriticalViewQuestion& question) {
+  for (const std::string* name : {&question.neck, &question.junction, &question.hilum}) {
+    const bool gone =
+        !checking() && gone_body(world(L).field(), name->substr(0, name->rfind('.'))) != nullptr;
+    if (!gone && !is_landmark(L, *name)) return {};
   }
+  if (!checking()) return world(L).critical_view(question);
+  stand_in();
+  const int level = next_level();
+  CriticalView out;
+  out.front = out.back = {1, share_seen[level]};
+  out.plate = share_torn[level];
+  out.structures = out.free = level;
+  out.triangle_points = out.plate_points = out.structure_points = level;
+  return out;
+}
+
+std::vector<ScriptSession::PresentStrand> ScriptSession::strands(lua_State* L, const std::string& name) {
+  std::vector<PresentStrand> out;
+  if (!is_tissue(L, name)) return out;
+  if (checking()) {
+    stand_in();
+    const Vec3 at = landmark(L, scene().laparoscope.look_at);
+    if (next_guess()) out.push_back({{at, at, at}, 0});
+    return out;
+  }
+  const Field& field = world(L).field();
+  for (const Tissue& tissue : field.tissues) {
+    if (tissue.definition.name != name) continue;
+    const Organ& organ = field.organs[static_cast<std::size_t>(tissue.strands->bodies()[0])];
+    const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      if (!tissue.torn(i)) out.push_back({lines[i], share_along(organ, tissue.strands->strands()[i].one)});
+  }
+  return out;
+}
+
+double ScriptSession::torn(lua_State* L, const std::string& name) {
+  if (!is_tissue(L, name)) return 0;
   if (checking()) return share_torn[next_level()];
   for (const TissueState& tissue : world(L).report().tissues)
     if (tissue.name == name) return static_cast<double>(tissue.torn) / tissue.strands;

@@ -12,6 +12,7 @@
 #include "lua/table_reader.h"
 #include "script/sandbox.h"
 #include "session/exercise.h"
+#include "sim/tissue.h"
 
 namespace calot {
 
@@ -64,6 +65,15 @@ class ScriptSession {
   double torn(lua_State* L, const std::string& name);
   /// Of a triangle, m^2 (World::seen_area); in a dry run none, half or all of it.
   double seen_area(lua_State* L, const std::array<Vec3, 3>& corners);
+  /// The critical view of safety (World::critical_view); in a dry run nothing, half or all of it. Complains about names.
+  CriticalView critical_view(lua_State* L, const CriticalViewQuestion& question);
+  /// A strand of a tissue that stands.
+  struct PresentStrand {
+    StrandLine line;
+    double share = 0;  ///< of the first organ's way
+  };
+  /// All of a tissue; in a dry run none or one, a stand-in. Complains as torn() does.
+  std::vector<PresentStrand> strands(lua_State* L, const std::string& tissue);
   /// "organ.landmark" of this scene; complains when it is none.
   bool is_landmark(lua_State* L, const std::string& name);
   /// Complains about what needs jaws, of an instrument that has none.
@@ -126,6 +136,7 @@ class ScriptSession {
 
  private:
   int next_level();
+  bool is_tissue(lua_State* L, const std::string& name);
 
   Sandbox& sandbox_;
   const ExerciseDefinition& exercise_;

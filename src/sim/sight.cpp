@@ -2,87 +2,88 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/field.h"
 
 namespace calot {
-namespace {
 
-/// What may stand between an eye and places on a triangle.
-class Sight {
- public:
-  Sight(const Field& field, const Vec3& eye, const std::array<Vec3, 3>& corners) : eye_(eye) {
-    const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3 - eye;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 side = (corners[k] - eye).cross(corners[(k + 1) % 3] - eye);
-      sides_[k] = side.dot(middle) < 0 ? Vec3(-side) : side;
-    }
-    for (const Organ& organ : field.organs) {
-      const std::vector<Vec3> places = organ.body->drawn(organ.state.x).positions;
-      for (const Triangle& t : organ.body->drawn_triangles())
-        if (const Corners at{places[t[0]], places[t[1]], places[t[2]]}; may_hide(at))
-          triangles_.push_back(at);
-    }
-    for (const Tool& tool : field.tools)
-      for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry))
-        tools_.push_back(shape);
+Sight::Sight(const Field& field, const Vec3& eye, const std::string& through) : eye_(eye) {
+  for (const Organ& organ : field.organs) {
+    if (organ.definition.name == through) continue;
+    const std::vector<Vec3> places = organ.body->drawn(organ.state.x).positions;
+    for (const Triangle& t : organ.body->drawn_triangles())
+      triangles_.push_back({places[t[0]], places[t[1]], places[t[2]]});
   }
+  for (const Tool& tool : field.tools)
+    for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry))
+      tools_.push_back(shape);
+}
 
-  /// Whether nothing is met on the way to a place, but for the last `margin` m of it.
-  bool sees(const Vec3& place, double margin) const {
-    const Vec3 way = place - eye_;
-    const double length = way.norm() - margin;
-    if (!(length > 0)) return true;
-    const Vec3 along = way.normalized();
-    return std::none_of(triangles_.begin(), triangles_.end(),
-                        [&](const Corners& t) { return is_met(t, along, length); }) &&
-           std::none_of(tools_.begin(), tools_.end(),
-                        [&](const Shape& shape) { return is_met(shape, along, length); });
+Sight Sight::within(const std::array<Vec3, 3>& corners) const {
+  Corners sides;  // planes through the eye, normals to the inside
+  const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3 - eye_;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 side = (corners[k] - eye_).cross(corners[(k + 1) % 3] - eye_);
+    sides[k] = side.dot(middle) < 0 ? Vec3(-side) : side;
   }
-
- private:
-  using Corners = std::array<Vec3, 3>;
-
-  /// Not where all corners lie outside one side of what is looked through.
-  bool may_hide(const Corners& t) const {
-    return std::none_of(sides_.begin(), sides_.end(), [&](const Vec3& side) {
+  Sight out = *this;
+  // Not where all corners lie outside one side of what is looked through.
+  std::erase_if(out.triangles_, [&](const Corners& t) {
+    return std::any_of(sides.begin(), sides.end(), [&](const Vec3& side) {
       return std::all_of(t.begin(), t.end(), [&](const Vec3& p) { return side.dot(p - eye_) < 0; });
     });
+  });
+  return out;
+}
+
+bool Sight::sees(const Vec3& place, double margin) const {
+  const Vec3 way = place - eye_;
+  const double length = way.norm() - margin;
+  if (!(length > 0)) return true;
+  const Vec3 along = way.normalized();
+  return std::none_of(triangles_.begin(), triangles_.end(),
+                      [&](const Corners& t) {
+                        const std::optional<double> at = met_at(t, along);
+                        return at && *at > 0 && *at < length;
+                      }) &&
+         std::none_of(tools_.begin(), tools_.end(),
+                      [&](const Shape& shape) { return is_met(shape, along, length); });
+}
+
+double Sight::first_organ(const Vec3& along, double from) const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Corners& t : triangles_)
+    if (const std::optional<double> at = met_at(t, along); at && *at >= from) first = std::min(first, *at);
+  return first;
+}
+
+/// How far away, m, by Moeller and Trumbore 1997.
+std::optional<double> Sight::met_at(const Corners& t, const Vec3& along) const {
+  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = along.cross(ac);
+  const double volume = ab.dot(p);
+  if (volume == 0) return std::nullopt;  // seen from its edge
+  const Vec3 from = eye_ - t[0], q = from.cross(ab);
+  const double b = from.dot(p) / volume, c = along.dot(q) / volume;
+  if (!(b >= 0 && c >= 0 && b + c <= 1)) return std::nullopt;
+  return ac.dot(q) / volume;
+}
+
+/// On steps that are safe, as nothing is nearer than the distance.
+bool Sight::is_met(const Shape& shape, const Vec3& along, double length) const {
+  constexpr double touched = 1e-5;  // m
+  for (double way = 0; way < length;) {
+    const double free = signed_distance(shape, eye_ + way * along);
+    if (free < touched) return true;
+    way += free;
   }
-
-  /// Moeller and Trumbore 1997.
-  bool is_met(const Corners& t, const Vec3& along, double length) const {
-    const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = along.cross(ac);
-    const double volume = ab.dot(p);
-    if (volume == 0) return false;  // seen from its edge
-    const Vec3 from = eye_ - t[0], q = from.cross(ab);
-    const double b = from.dot(p) / volume, c = along.dot(q) / volume, way = ac.dot(q) / volume;
-    return b >= 0 && c >= 0 && b + c <= 1 && way > 0 && way < length;
-  }
-
-  /// On steps that are safe, as nothing is nearer than the distance.
-  bool is_met(const Shape& shape, const Vec3& along, double length) const {
-    constexpr double touched = 1e-5;  // m
-    for (double way = 0; way < length;) {
-      const double free = signed_distance(shape, eye_ + way * along);
-      if (free < touched) return true;
-      way += free;
-    }
-    return false;
-  }
-
-  Vec3 eye_;
-  std::array<Vec3, 3> sides_;  ///< planes through the eye, normals to the inside
-  std::vector<Corners> triangles_;
-  std::vector<Shape> tools_;
-};
-
-}  // namespace
+  return false;
+}
 
 double seen_area(const Field& field, const LaparoscopePose& lens, double field_of_view,
                  const std::array<Vec3, 3>& corners, double margin) {
   const Vec3 area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  const Sight sight(field, lens.position, corners);
+  const Sight sight = Sight(field, lens.position).within(corners);
   const double least_cosine = std::cos(0.5 * field_of_view);
   double sum = 0;
   for (const Vec3& weights : contact_rule) {

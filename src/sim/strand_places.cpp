@@ -18,21 +18,6 @@ struct Candidate {
   double area = 0;    ///< m^2
 };
 
-/// Share of an organ's way: of a tube's length, or from the neck to the fundus.
-double share_along(const Organ& organ, const Candidate& candidate) {
-  if (const auto* rod = dynamic_cast<const RodBody*>(organ.body.get())) {
-    double share = 0;
-    for (std::size_t i = 0; i < candidate.place.points.size(); ++i)
-      share += candidate.place.weights[i] * rod->share_of_length(candidate.place.points[i]);
-    return share;
-  }
-  const Vec3 axis = organ.definition.fundus - organ.definition.neck;
-  Vec3 rest = Vec3::Zero();
-  for (std::size_t i = 0; i < candidate.place.points.size(); ++i)
-    rest += candidate.place.weights[i] * organ.body->skin_rest()[candidate.place.points[i]];
-  return (rest - organ.definition.neck).dot(axis) / axis.squaredNorm();
-}
-
 /// A skin as places on its triangles, so close that each strand has several.
 std::vector<Candidate> candidates_of(const Organ& organ, int strands) {
   constexpr std::size_t fewest_each = 4;
@@ -121,11 +106,25 @@ std::vector<int> spread_out(const std::vector<Facing>& places, int count) {
 
 }  // namespace
 
+double share_along(const Organ& organ, const CarriedPlace& place) {
+  if (const auto* rod = dynamic_cast<const RodBody*>(organ.body.get())) {
+    double share = 0;
+    for (std::size_t i = 0; i < place.points.size(); ++i)
+      share += place.weights[i] * rod->share_of_length(place.points[i]);
+    return share;
+  }
+  const Vec3 axis = organ.definition.fundus - organ.definition.neck;
+  Vec3 rest = Vec3::Zero();
+  for (std::size_t i = 0; i < place.points.size(); ++i)
+    rest += place.weights[i] * organ.body->skin_rest()[place.points[i]];
+  return (rest - organ.definition.neck).dot(axis) / axis.squaredNorm();
+}
+
 Result<std::vector<StrandPlace>> strand_places(const TissueDefinition& definition, const Organ& one,
                                                const Organ& other) {
   std::vector<Candidate> candidates = candidates_of(one, definition.strands);
   std::erase_if(candidates, [&](const Candidate& candidate) {
-    const double share = share_along(one, candidate);
+    const double share = share_along(one, candidate.place);
     return share < definition.start || share > definition.stop;
   });
   const SkinFinder there(*other.body, other.body->skin_positions(other.state.x));

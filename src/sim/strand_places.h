@@ -15,6 +15,9 @@ struct StrandPlace {
   double area = 0;                              ///< m^2 of the first one's rest surface that it stands for
 };
 
+/// Where a place on an organ lies at rest, as a share of its way: a tube's length, else from its neck to its fundus.
+double share_along(const Organ& organ, const CarriedPlace& place);
+
 /// As many as the definition asks for, or as the place has room for. Fails (scenario), with a path from the tissue,
 /// where the two surfaces are nowhere nearer than definition.within.
 Result<std::vector<StrandPlace>> strand_places(const TissueDefinition& definition, const Organ& one,

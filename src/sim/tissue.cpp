@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/strand_places.h"
 
@@ -39,8 +40,7 @@ std::shared_ptr<const TissueBody> nodes_of(const TissueDefinition& definition, s
 
 int Tissue::torn() const {
   int count = 0;
-  for (std::size_t i = 0; i < now.opened.size(); ++i)
-    count += strands->strands()[i].strand.law.torn(now.opened[i]) ? 1 : 0;
+  for (std::size_t i = 0; i < now.opened.size(); ++i) count += torn(i) ? 1 : 0;
   return count;
 }
 
@@ -70,6 +70,30 @@ Tissue Tissue::part(std::array<int, 2> bodies, std::vector<PlacedStrand> strands
     out.now.opened.push_back(now.opened[strand]);
     out.now.heated.push_back(now.heated[strand]);
   }
+  return out;
+}
+
+double lobule_radius(const PlacedStrand& strand) {
+  constexpr double thinnest = 1.1e-3, thickest = 2.8e-3;
+  return std::clamp(0.6 * std::sqrt(strand.area), thinnest, thickest);
+}
+
+std::vector<StrandLine> strand_lines(const Tissue& tissue, const std::vector<Organ>& organs) {
+  std::array<std::vector<Vec3>, 2> skins;
+  for (int k = 0; k < 2; ++k) {
+    const Organ& organ = organs[static_cast<std::size_t>(tissue.strands->bodies()[k])];
+    skins[k] = organ.body->skin_positions(organ.state.x);
+  }
+  const auto on_skin = [](const CarriedPlace& place, const std::vector<Vec3>& skin) {
+    Vec3 out = Vec3::Zero();
+    for (std::size_t i = 0; i < place.points.size(); ++i) out += place.weights[i] * skin[place.points[i]];
+    return out;
+  };
+  std::vector<StrandLine> out;
+  for (const PlacedStrand& strand : tissue.strands->strands())
+    out.push_back({on_skin(strand.one, skins[0]),
+                   tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(out.size())),
+                   on_skin(strand.other, skins[1])});
   return out;
 }
 

@@ -26,12 +26,28 @@ struct Tissue {
   mutable ContactSearch search = {};  ///< finds nothing
 
   int torn() const;
+  bool torn(std::size_t strand) const {
+    return strands->strands()[strand].strand.law.torn(now.opened[strand]);
+  }
   /// The same between bodies that have other places in the group now.
   Tissue between(std::array<int, 2> bodies) const;
   /// `which` of its strands, increasing, as `strands` between two bodies; they move on as they do.
   Tissue part(std::array<int, 2> bodies, std::vector<PlacedStrand> strands_of,
               const std::vector<int>& which) const;
 };
+
+/// How thick the fat along a strand is, m: half of that of its lobules, as they are drawn and hide what lies behind.
+double lobule_radius(const PlacedStrand& strand);
+
+/// A strand as it lies now, m: its ends on the skins and its own node between them.
+struct StrandLine {
+  Vec3 from, by, to;
+  Vec3 at(double share) const {
+    return share < 0.5 ? Vec3(from + 2 * share * (by - from)) : Vec3(by + (2 * share - 1) * (to - by));
+  }
+};
+/// Of all strands of a tissue, torn ones too.
+std::vector<StrandLine> strand_lines(const Tissue& tissue, const std::vector<Organ>& organs);
 
 /// Strands between two organs where they are now, slack as the definition has them, spread evenly over the place; each
 /// stands for the area around it. Problems' paths begin at the tissue (".within"). Fails (scenario) where the two are

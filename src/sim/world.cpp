@@ -690,6 +690,12 @@ double World::seen_area(const std::array<Vec3, 3>& corners) const {
                           impl_->scene.laparoscope.field_of_view, corners, margin);
 }
 
+CriticalView World::critical_view(const CriticalViewQuestion& question) const {
+  const HepatocysticTriangle triangle{landmark(question.neck), landmark(question.junction),
+                                      landmark(question.hilum)};
+  return calot::critical_view(impl_->field, triangle, impl_->report.laparoscope.view.position, question);
+}
+
 const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }
 std::vector<Vec3> World::skin_positions(int organ) const {
   return impl_->field.organs[organ].body->skin_positions(impl_->field.organs[organ].state.x);

@@ -11,6 +11,7 @@
 #include "anatomy/definitions.h"
 #include "geometry/stencil.h"
 #include "sim/body_handle.h"
+#include "sim/critical_view.h"
 #include "sim/step_report.h"
 
 namespace calot {
@@ -77,6 +78,8 @@ class World {
   /// Of a triangle's area what the laparoscope sees, m^2, across its line of sight (sim/sight.h), from where
   /// it is now.
   double seen_area(const std::array<Vec3, 3>& corners) const;
+  /// The critical view of safety from where the laparoscope is now (sim/critical_view.h). Throws as landmark() does.
+  CriticalView critical_view(const CriticalViewQuestion& question) const;
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
 

@@ -10,7 +10,6 @@
 namespace calot {
 namespace {
 
-constexpr double thinnest_lobule = 1.1e-3, thickest_lobule = 2.8e-3;  // lobules
 constexpr double torn_part = 0.3;  // of a strand's way that hangs on to either end after it is torn
 
 /// A number in [0, 1) that is the same in every picture.
@@ -29,13 +28,6 @@ const SceneMesh& ball() {
   });
   return mesh;
 }
-
-struct StrandLine {
-  Vec3 from, by, to;  ///< m: its ends, and its own node
-  Vec3 at(double share) const {
-    return share < 0.5 ? Vec3(from + 2 * share * (by - from)) : Vec3(by + (2 * share - 1) * (to - by));
-  }
-};
 
 /// Stretched along the strand, as lobules are; the volume stays.
 void add_lobule(const StrandLine& line, double share, double radius, std::size_t strand, int lobule,
@@ -64,24 +56,15 @@ void add_lobule(const StrandLine& line, double share, double radius, std::size_t
     out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
-Vec3 on_skin(const CarriedPlace& place, const std::vector<Vec3>& skin) {
-  Vec3 out = Vec3::Zero();
-  for (std::size_t i = 0; i < place.points.size(); ++i) out += place.weights[i] * skin[place.points[i]];
-  return out;
-}
-
-void add_tissue(const Tissue& tissue, const std::vector<std::vector<Vec3>>& skins, std::size_t first_strand,
+void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::size_t first_strand,
                 SceneMesh& out) {
-  const auto& bodies = tissue.strands->bodies();
-  const std::vector<PlacedStrand>& strands = tissue.strands->strands();
-  for (std::size_t k = 0; k < strands.size(); ++k) {
-    const StrandLine line{on_skin(strands[k].one, skins[bodies[0]]),
-                          tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(k)),
-                          on_skin(strands[k].other, skins[bodies[1]])};
-    const StrandLaw::Setup& law = strands[k].strand.law.setup();
-    const double area = law.strength / tissue.definition.strength;
-    const double radius = std::clamp(0.6 * std::sqrt(area), thinnest_lobule, thickest_lobule);
-    const bool torn = strands[k].strand.law.torn(tissue.now.opened[k]);
+  const std::vector<StrandLine> lines = strand_lines(tissue, organs);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const StrandLine& line = lines[k];
+    const PlacedStrand& strand = tissue.strands->strands()[k];
+    const StrandLaw::Setup& law = strand.strand.law.setup();
+    const double radius = lobule_radius(strand);
+    const bool torn = tissue.torn(k);
     // What was torn has drawn back to its ends.
     const double now = std::max((line.to - line.from).norm(), law.taut);
     const double drawn_back = torn ? 2 * torn_part * law.taut / now : 1.0;
@@ -100,12 +83,9 @@ SceneMesh tissue_mesh(const World& world) {
   SceneMesh out;
   out.material = Material::fat;
   const Field& field = world.field();
-  if (field.tissues.empty()) return out;
-  std::vector<std::vector<Vec3>> skins;
-  for (const Organ& organ : field.organs) skins.push_back(organ.body->skin_positions(organ.state.x));
   std::size_t strands = 0;
   for (const Tissue& tissue : field.tissues) {
-    add_tissue(tissue, skins, strands, out);
+    add_tissue(tissue, field.organs, strands, out);
     strands += tissue.strands->strands().size();
   }
   return out;

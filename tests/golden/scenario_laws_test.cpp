@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "golden/stored_goldens.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -33,6 +34,7 @@ struct Shipped {
   const char* scenario;
   bool pulls;            ///< an instrument exerts traction in it
   bool judges_pictures;  ///< small changes of the drawn scene are tried on its frames
+  bool is_long = false;  ///< its demo takes a minute: left to long runs
 };
 
 class Scenario : public ::testing::TestWithParam<Shipped> {};
@@ -41,9 +43,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Shipped{"grasp_and_traction", true, true}, Shipped{"paper/figure_1", false, false},
                       Shipped{"paper/figure_2", true, false}, Shipped{"paper/figure_4", true, false},
                       Shipped{"paper/section_6", true, false}, Shipped{"paper/section_7", true, false},
-                      Shipped{"exposure", true, false}, Shipped{"clip_and_divide", false, false}));
+                      Shipped{"exposure", true, false}, Shipped{"clip_and_divide", false, false},
+                      Shipped{"dissect_to_critical_view", true, false, true}));
 
 TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
+  if (GetParam().is_long && !test::long_run()) GTEST_SKIP() << "plays for a minute";
   std::vector<test::Stored> stored = test::stored_goldens();
   std::erase_if(stored, [](const test::Stored& golden) { return golden.scenario != GetParam().scenario; });
   ASSERT_FALSE(stored.empty()) << "accept some: calot golden accept " << GetParam().scenario;

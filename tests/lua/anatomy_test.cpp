@@ -106,7 +106,42 @@ TEST(Anatomy, TheSameSeedIsTheSamePatient) {
   EXPECT_NE(width(3), width(4));
 }
 
+/// Null: there is none of that name.
+const TissueDefinition* tissue_called(const SceneDefinition& scene, const std::string& name) {
+  for (const TissueDefinition& tissue : scene.anatomy.tissue)
+    if (tissue.name == name) return &tissue;
+  return nullptr;
+}
+
+TEST(Anatomy, ATissueThatIsPreparedEndsWhereItIsClearedToWithFewerStrandsOfTheSameArea) {
+  const SceneDefinition scene = scene_of(
+      "anatomy.standard { prepared = { triangle_fat = 0.5, cystic_plate = { 0.75, 1 }, artery_fat = 1, "
+      "hilar_fat = 0 } }");
+  const TissueDefinition* fat = tissue_called(scene, "triangle_fat");
+  ASSERT_TRUE(fat != nullptr);
+  EXPECT_DOUBLE_EQ(fat->start, 0.45);
+  EXPECT_DOUBLE_EQ(fat->stop, 0.9);
+  EXPECT_EQ(fat->strands, 8);
+  const TissueDefinition* plate = tissue_called(scene, "cystic_plate");
+  ASSERT_TRUE(plate != nullptr);
+  EXPECT_DOUBLE_EQ(plate->start, 0.2);
+  EXPECT_DOUBLE_EQ(plate->stop, 0.8);
+  EXPECT_EQ(plate->strands, 45);
+  EXPECT_EQ(tissue_called(scene, "artery_fat"), nullptr) << "all of it is gone";
+  EXPECT_EQ(tissue_called(scene, "hilar_fat")->strands, 14) << "nothing of it is";
+}
+
 TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
+  for (const auto& [wrong, what] :
+       {std::pair{"{ prepared = { triangel_fat = 1 } }", "no \"triangel_fat\" to leave out"},
+        std::pair{"{ prepared = { triangle_fat = { 0.3, 0.6 } } }", "up to one of its ends"},
+        std::pair{"{ prepared = { triangle_fat = 1.5 } }", "a share of its way"}}) {
+    const Folder folder;
+    const auto loaded = load_text(folder, field(std::string("anatomy.standard ") + wrong));
+    ASSERT_FALSE(loaded);
+    EXPECT_THAT(to_text(loaded.failure()), ::testing::HasSubstr(what));
+    EXPECT_GT(loaded.failure().problems[0].place.line, 0);
+  }
   for (const char* wrong : {"anatomy.standard { cystic_duct_lenght = 1 }", "anatomy.variant('low_onion')"}) {
     const Folder folder;
     const auto loaded = load_text(folder, field(wrong));

@@ -473,8 +473,15 @@ TEST(Steps, SeeTheWorldAsItIs) {
 
 TEST(Steps, SeeWhatIsTorn) {
   ScenarioText text = with_steps(
-      "t:step('a', 'A') print(t:torn('stalk')) t:wait(0.1 * s) t:remove('stone') "
-      "print(t:torn('stalk'))");
+      "t:step('a', 'A') print(t:torn('stalk'))\n"
+      "local all = t:strands('stalk') print(#all > 0 and #all <= 30)\n"
+      "for _, one in ipairs(all) do if one.share < 0.3 or one.share > 0.7 or one.from[3] < one.to[3] then "
+      "print(one.share) end end\n"
+      "local view = t:critical_view { gallbladder = 'stone', plate = 'stalk', neck = 'duct.start', junction "
+      "= "
+      "'duct.end', hilum = 'stone.centre', lower_part = 1 }\n"
+      "print(view.plate.share, view.plate.points, view.structures.count)\n"
+      "t:wait(0.1 * s) t:remove('stone') print(t:torn('stalk'), #t:strands('stalk'))");
   text.scene =
       "return { anatomy = { organs = { { name = 'duct', shape = { type = 'tube', points = { { -100 * mm, 70 "
       "* mm, "
@@ -490,7 +497,7 @@ TEST(Steps, SeeWhatIsTorn) {
       "instruments = { left = { port = 'right_subcostal' } } }";
   const Played played = play_own(text, 50, 0.3);
   ASSERT_FALSE(played.failure) << to_text(*played.failure);
-  EXPECT_THAT(played.printed, ::testing::ElementsAre("0.0", "1.0"));
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("0.0", "true", "0.0\t0\t0", "1.0\t0"));
 }
 
 TEST(Steps, ErrorsWhileTheyRunNameTheScriptsLines) {

@@ -1,0 +1,194 @@
+// What each criterion of the critical view of safety measures, and that it measures nothing else.
+
+#include "sim/critical_view.h"
+
+#include <gtest/gtest.h>
+
+#include "rig.h"
+#include "sim/change_bodies.h"
+#include "sim/field_state.h"
+#include "sim/strand_places.h"
+
+namespace calot {
+namespace {
+
+const Vec3 ball_neck(-80e-3, 70e-3, -150e-3);
+/// Of the patient's, m.
+Vec3 beside_neck(double x, double y, double z) { return ball_neck + 1e-3 * Vec3(x, y, z); }
+
+OrganDefinition straight_tube(const std::string& name, const Vec3& from, const Vec3& to, double radius) {
+  OrganDefinition organ;
+  organ.name = name;
+  organ.shape = TubeShape{.points = {from, 0.5 * (from + to), to}, .radius = radius};
+  organ.wall.thickness = 0.5 * radius;
+  organ.wall.density = 1050;
+  organ.held = {{"first", "start", 4e-3, 1e7}, {"last", "end", 4e-3, 1e7}};
+  return organ;
+}
+
+TissueDefinition tissue_between(const std::string& name, const std::string& from, const std::string& to,
+                                double within, int strands) {
+  TissueDefinition tissue;
+  tissue.name = name;
+  tissue.from = from;
+  tissue.to = to;
+  tissue.within = within;
+  tissue.strands = strands;
+  tissue.slack = 0;
+  tissue.strength = 12e3;
+  tissue.stiffness = 4e3;
+  tissue.break_energy = 400;
+  return tissue;
+}
+
+/// A ball as the gallbladder, a duct from its neck to a duct that stands upright beside it, an artery to it, all in a plane
+/// across y, and behind them a thick round bar as the liver.
+SceneDefinition triangle_scene() {
+  OrganDefinition gallbladder = test::bedded_ball();
+  gallbladder.name = "gallbladder";
+  SceneDefinition scene = test::ball_scene(gallbladder);
+  const OrganDefinition liver =
+      straight_tube("liver", beside_neck(-40, 40, 8), beside_neck(80, 40, 8), 17e-3);
+  scene.anatomy.organs.push_back(liver);
+  scene.anatomy.organs.push_back(
+      straight_tube("common_duct", beside_neck(40, 0, 25), beside_neck(40, 0, -30), 3e-3));
+  scene.anatomy.organs.push_back(
+      straight_tube("cystic_duct", beside_neck(0, 0, -1.8), beside_neck(33, 0, -18.5), 1.8e-3));
+  scene.anatomy.organs.push_back(
+      straight_tube("cystic_artery", beside_neck(34, 0, 18), beside_neck(20.5, 0, 18), 0.8e-3));
+  scene.anatomy.joints = {{"cystic_duct.start", "gallbladder.neck", 4e-3},
+                          {"cystic_artery.end", "gallbladder.neck", 4e-3}};
+  scene.anatomy.tissue = {tissue_between("cystic_plate", "gallbladder", "liver", 12e-3, 30),
+                          tissue_between("fat", "cystic_duct", "common_duct", 30e-3, 24)};
+  return scene;
+}
+
+struct Judged : ::testing::Test {
+  static World& world() {
+    static World made = [] {
+      Result<World> world = World::create(triangle_scene());
+      EXPECT_TRUE(world) << to_text(world.failure());
+      return std::move(world).value();
+    }();
+    return made;
+  }
+  static void SetUpTestSuite() { untouched() = world().state(); }
+  static FieldState& untouched() {
+    static FieldState state;
+    return state;
+  }
+  void TearDown() override { ASSERT_TRUE(world().restore(untouched())); }
+
+  static constexpr int plate = 0, fat = 1;
+  /// Tears the strands of a tissue for which `which(share of its way, place)` holds.
+  template <class Which>
+  static void tear(int tissue_index, const Which& which) {
+    FieldState state = world().state();
+    const Field& field = world().field();
+    const Tissue& tissue = field.tissues[tissue_index];
+    const Organ& from = field.organs[tissue.strands->bodies()[0]];
+    const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      if (which(share_along(from, tissue.strands->strands()[i].one), lines[i].from))
+        state.group.tissues[tissue_index].opened[i] = 1e3;
+    ASSERT_TRUE(world().restore(state));
+  }
+  static constexpr double lower = 1.0 / 3;
+  static CriticalView judge(const Vec3& eye = beside_neck(22, -100, 0),
+                            const CriticalViewQuestion& question = {}) {
+    return critical_view(world().field(),
+                         {beside_neck(2, 0, -3), beside_neck(37, 0, -19), beside_neck(37, 0, -3)}, eye,
+                         question);
+  }
+};
+constexpr auto everywhere = [](double, const Vec3&) { return true; };
+
+TEST_F(Judged, TissueBetweenTheDuctsHidesTheTriangleUntilItIsTornAndChangesNothingElse) {
+  const CriticalView before = judge();
+  EXPECT_GT(before.front.open, 0.5);
+  EXPECT_LT(before.front.cleared, 0.6);
+  EXPECT_LT(before.back.cleared, 0.6);
+  EXPECT_EQ(before.triangle_points, 0);
+  tear(fat, [](double share, const Vec3&) { return share < 0.5; });
+  const CriticalView half = judge();
+  EXPECT_GT(half.front.cleared, before.front.cleared + 0.1);
+  EXPECT_LT(half.front.cleared, 0.95);
+  EXPECT_GT(half.back.cleared, before.back.cleared + 0.1);
+  tear(fat, everywhere);
+  const CriticalView after = judge();
+  EXPECT_EQ(after.front.cleared, 1);
+  EXPECT_EQ(after.back.cleared, 1);
+  EXPECT_EQ(after.triangle_points, 2);
+  for (const CriticalView& view : {half, after}) {
+    EXPECT_EQ(view.front.open, before.front.open) << "tissue is not what closes a side";
+    EXPECT_EQ(view.plate, before.plate);
+    EXPECT_EQ(view.structures, before.structures);
+  }
+}
+
+TEST_F(Judged, OfASideThatOrgansCloseNothingIsClearAndTheLesserSideEarnsThePoints) {
+  tear(fat, everywhere);
+  const CriticalView from_liver = judge(beside_neck(22, 100, 0));
+  EXPECT_LT(from_liver.front.open, 0.1);
+  EXPECT_EQ(from_liver.front.cleared, 0);
+  EXPECT_EQ(from_liver.triangle_points, 0);
+  CriticalViewQuestion question;
+  question.behind = beside_neck(22, 100, 0);
+  const CriticalView behind_liver = judge(beside_neck(22, -100, 0), question);
+  EXPECT_EQ(behind_liver.front.cleared, 1);
+  EXPECT_LT(behind_liver.back.open, 0.1) << "a lens that an author has put there is hidden from";
+  EXPECT_EQ(behind_liver.triangle_points, 0);
+  question.behind = beside_neck(22, 18, 0);
+  EXPECT_EQ(judge(beside_neck(22, -100, 0), question).triangle_points, 2);
+}
+
+TEST_F(Judged, ThePlateCountsByItsStrandsOnTheLowerPartAlone) {
+  const CriticalView before = judge();
+  EXPECT_EQ(before.plate, 0);
+  tear(plate, [](double share, const Vec3&) { return share > lower; });
+  EXPECT_EQ(judge().plate, 0) << "the upper part is not asked for";
+  tear(plate, [](double, const Vec3& at) { return at.x() < ball_neck.x(); });
+  const CriticalView half = judge();
+  EXPECT_GT(half.plate, 0.2);
+  EXPECT_LT(half.plate, 0.8);
+  tear(plate, [](double share, const Vec3&) { return share <= lower; });
+  const CriticalView after = judge();
+  EXPECT_EQ(after.plate, 1);
+  EXPECT_EQ(after.plate_points, 2);
+  EXPECT_EQ(after.front.cleared, before.front.cleared);
+  EXPECT_EQ(after.back.cleared, before.back.cleared);
+  EXPECT_EQ(after.free, before.free);
+  CriticalViewQuestion higher;
+  higher.lower_part = 0.9;
+  ASSERT_TRUE(world().restore(untouched()));
+  tear(plate, [](double share, const Vec3&) { return share <= lower; });
+  EXPECT_LT(judge(beside_neck(22, -100, 0), higher).plate, 0.6);
+}
+
+TEST_F(Judged, TwoStructuresCountWhereEachIsFreeAround) {
+  const CriticalView before = judge();
+  EXPECT_EQ(before.structures, 2);
+  EXPECT_EQ(before.free, 1) << "fat is on the duct, not on the artery";
+  EXPECT_EQ(before.structure_points, 1);
+  tear(fat, [](double share, const Vec3&) { return share > 0.5; });
+  EXPECT_EQ(judge().free, 1) << "what was torn was far from the gallbladder";
+  tear(fat, everywhere);
+  EXPECT_EQ(judge().free, 2);
+  EXPECT_EQ(judge().structure_points, 2);
+  ASSERT_TRUE(world().divide("cystic_artery", 0.5));
+  EXPECT_EQ(judge().structures, 1) << "a stump does not enter";
+  EXPECT_EQ(judge().structure_points, 0);
+  ASSERT_TRUE(world().restore(untouched()));
+  tear(fat, everywhere);
+  EXPECT_EQ(judge().structure_points, 2);
+}
+
+TEST_F(Judged, AThirdStructureLeavesNoPoint) {
+  tear(fat, everywhere);
+  ASSERT_TRUE(world().tie({"common_duct.start", "gallbladder.neck", 4e-3}));
+  EXPECT_EQ(judge().structures, 3);
+  EXPECT_EQ(judge().structure_points, 0);
+}
+
+}  // namespace
+}  // namespace calot
