@@ -11,6 +11,7 @@
 #include "sim/between_jaws.h"
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
+#include "sim/field_state.h"
 #include "sim/join_bodies.h"
 
 namespace calot {
