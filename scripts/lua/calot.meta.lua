@@ -102,6 +102,20 @@
 ---@field limit? number after it the step ends as timed out; 0.1 to 3600 s
 ---@field hint? string how it is done, shown to who practises and not in an exam
 
+---Options of t:critical_view.
+---@class calot.critical_view_options
+---@field gallbladder? string the organ's name; default "gallbladder"
+---@field liver? string the organ's name; default "liver"
+---@field plate? string the name of the tissue between the two; default "cystic_plate"
+---@field neck? string a landmark, the triangle's corner at the gallbladder; default "cystic_duct.start"
+---@field junction? string a landmark, its corner where the ducts meet; default "cystic_duct.end"
+---@field hilum? string a landmark, its corner at the liver; default "common_duct.start"
+---@field behind? calot.point a lens on the other side, {x, y, z} in m; left out: square to the triangle, 25 mm behind it, and the liver hides nothing
+---@field lower_part? number of the gallbladder's way from neck to fundus that has to be off the plate; default 0.333333; 0 to 1
+---@field near? number how far off the gallbladder a structure has to be free around; default 5 * mm; 0 to 50 mm
+---@field one_from? number from this share on a criterion earns a point; default 0.6; 0 to 1
+---@field two_from? number and from this on two; default 0.9; 0 to 1
+
 ---Options of motions.
 ---@class calot.move_options
 ---@field speed? number largest speed of the tip; default 30 * mm / s; 0.1 to 500 mm / s
@@ -386,6 +400,39 @@
 ---@field started number when it began, s
 ---@field ended number when it ended, s
 
+---The hepatocystic triangle, by rays through it.
+---@class calot.critical_view_triangle
+---@field front number cleared of tissue, of what organs and instruments leave open to the laparoscope; 0 to 1
+---@field behind number the same from behind; 0 to 1
+---@field front_open number left open by organs and instruments to the laparoscope; below 0.1 nothing counts as cleared; 0 to 1
+---@field behind_open number the same from behind; 0 to 1
+---@field points number earned; 0 to 2
+
+---The cystic plate on the gallbladder's lower part.
+---@class calot.critical_view_plate
+---@field share number of its strands there that are torn; 1 where there are none; 0 to 1
+---@field points number earned; 0 to 2
+
+---What enters the gallbladder.
+---@class calot.critical_view_structures
+---@field count number tubes joined to it that are not divided; 0 to 100
+---@field free number of those what is seen and free around; 0 to 100
+---@field points number earned; 0 to 2
+
+---The critical view of safety, as critical_view returns it.
+---@class calot.critical_view
+---@field triangle calot.critical_view_triangle the hepatocystic triangle
+---@field plate calot.critical_view_plate the cystic plate
+---@field structures calot.critical_view_structures what enters the gallbladder
+---@field points number earned; 0 to 6
+
+---A strand of a tissue, as strands returns it.
+---@class calot.strand
+---@field from calot.point its end on the tissue's first organ
+---@field middle calot.point its own middle
+---@field to calot.point its end on the other organ
+---@field share number of the first organ's way, where it begins: a tube's length, else from neck to fundus; 0 to 1
+
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
 ---@class calot.Session
 local Session = {}
@@ -451,6 +498,16 @@ function Session:along(organ, share) end
 ---@param c calot.point the last
 ---@return number
 function Session:seen_area(a, b, c) end
+
+---The critical view of safety as it is now, measured: the hepatocystic triangle cleared of tissue, by rays from the laparoscope and from behind; the plate's strands on the gallbladder's lower third torn; two structures and no more still enter the gallbladder, each seen and free. 0 to 2 points each, 0 to 6 in all; from which share on is uncalibrated.
+---@param options? calot.critical_view_options what the parts are called, and what earns points
+---@return calot.critical_view
+function Session:critical_view(options) end
+
+---The strands of a tissue that stand, as they lie now: none where an organ that it held on to is gone.
+---@param tissue string its name
+---@return calot.strand[]
+function Session:strands(tissue) end
 
 ---The t of steps = function(t, p): the operation's steps, what to wait for, what to measure.
 ---@class calot.Steps: calot.Session
