@@ -10,17 +10,16 @@
 #include "base/suggest.h"
 #include "fem/assembly.h"
 #include "sim/advance.h"
-#include "sim/between_jaws.h"
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
 #include "sim/clips.h"
-#include "sim/current.h"
+#include "sim/field_hash.h"
 #include "sim/field_state.h"
 #include "sim/field_tissues.h"
-#include "sim/grip.h"
 #include "sim/join_bodies.h"
 #include "sim/laparoscope.h"
 #include "sim/leak.h"
+#include "sim/observe.h"
 #include "sim/settle_field.h"
 #include "sim/sight.h"
 #include "sim/spill.h"
@@ -66,10 +65,7 @@ struct World::Impl {
   std::optional<StepInput> still;
 
   void place_laparoscope(const InstrumentPose& pose);
-  void observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions);
-  InstrumentState instrument_state(std::size_t index, const ToolLoad& load) const;
-  OrganState organ_state(const Organ& organ) const;
-  std::uint64_t hash_field() const;
+  void keep_hash();
   bool same_factors(const FieldState& state) const;
   std::uint64_t hash(std::uint64_t of_field) const;
 
@@ -82,218 +78,6 @@ struct World::Impl {
   Result<bool> settle_change(const std::string& what);
 };
 
-namespace {
-
-/// Or a matrix, column by column.
-template <class Numbers>
-void add_vector(Hash& hash, const Numbers& v) {
-  hash.add(v.size());
-  hash.add(std::span<const double>(v.data(), static_cast<std::size_t>(v.size())));
-}
-
-void add_point(Hash& hash, const Vec3& p) { hash.add(std::span<const double>(p.data(), 3)); }
-
-void add_motion(Hash& hash, const MotionPart& motion) {
-  add_vector(hash, motion.begin.x);
-  add_vector(hash, motion.begin.velocity);
-  add_point(hash, motion.begin.centroid);
-  hash.add(motion.duration);
-}
-
-void add_body_state(Hash& hash, const Organ& organ) {
-  const BodyState& state = organ.state;
-  add_vector(hash, state.x);
-  hash.add(state.datum_pressure);
-  hash.add(state.volume);
-  for (int detail : organ.body->details()) hash.add(detail);
-  for (const DetailShare& detail : state.shares) {
-    hash.add(detail.share);
-    hash.add(detail.leaving);
-  }
-  add_vector(hash, state.fading_load);
-  if (state.motion.duration > 0) add_motion(hash, state.motion);
-  for (const Extension& extension : organ.extensions) {
-    hash.add(extension.shape);
-    hash.add(extension.centre);
-  }
-  hash.add(organ.refused_details.has_value());
-  if (organ.refused_details)
-    for (int detail : *organ.refused_details) hash.add(detail);
-}
-
-void add_tissue(Hash& hash, const Tissue& tissue) {
-  add_vector(hash, tissue.now.state.x);
-  if (tissue.now.state.motion.duration > 0) add_motion(hash, tissue.now.state.motion);
-  for (double opened : tissue.now.opened) hash.add(opened);
-  for (std::size_t i = 0; i < tissue.now.heated.size(); ++i) {
-    if (tissue.now.heated[i] == 0) continue;
-    hash.add(i);
-    hash.add(tissue.now.heated[i]);
-  }
-  hash.add(tissue.now.tearing);
-}
-
-void add_acts(Hash& hash, const Organ& organ) {
-  for (const Clip& clip : organ.clips) {
-    hash.add(static_cast<int>(clip.size));
-    for (double v : {clip.at, clip.opening, clip.reach}) hash.add(v);
-    add_point(hash, clip.legs);
-    add_point(hash, clip.pressed);
-  }
-  for (int instrument : organ.unfelt) hash.add(instrument);
-  for (const Opening& opening : organ.openings) {
-    hash.add(opening.point);
-    for (double v : {opening.area, opening.rate, opening.lost, opening.drop}) hash.add(v);
-    hash.add(opening.leaks);
-  }
-  if (organ.left_in) hash.add(*organ.left_in);
-}
-
-void add_spill(Hash& hash, const Spill& spill) {
-  for (const LostState& lost : spill.lost) {
-    hash.add(lost.name);
-    hash.add(lost.bile);
-    hash.add(lost.blood);
-  }
-  for (const Drop& drop : spill.drops) {
-    hash.add(static_cast<int>(drop.liquid));
-    add_point(hash, drop.at);
-    add_point(hash, drop.velocity);
-    hash.add(drop.volume);
-  }
-  for (const Film& film : spill.films) {
-    hash.add(film.on);
-    for (const WetPoint& wet : film.wet) {
-      hash.add(wet.point);
-      for (double volume : wet.volume) hash.add(volume);
-    }
-  }
-}
-
-void add_stick_slip(Hash& hash, const StickSlip& hold) {
-  hash.add(hold.limit);
-  hash.add(hold.stiffness);
-  add_point(hash, hold.anchor);
-  add_point(hash, hold.normal);
-}
-
-void add_holds(Hash& hash, const Organ& organ) {
-  for (const GripPoint& grip : organ.grips) {
-    hash.add(grip.instrument);
-    hash.add(grip.jaw);
-    hash.add(grip.skin_point);
-    add_point(hash, grip.local);
-    hash.add(grip.stiffness);
-  }
-  for (const RubbingPoint& rubbing : organ.friction.points) {
-    hash.add(rubbing.shape);
-    hash.add(rubbing.point);
-    add_stick_slip(hash, rubbing.hold);
-  }
-}
-
-/// The factor that is kept serves the next steps, so their bits depend on it: what it makes of the constraints'
-/// gradients, all together, stands for all of its entries, which would take a tenth of a step.
-void add_factor(Hash& hash, const NewtonWorkspace& work) {
-  hash.add(work.factored);
-  hash.add(work.shifted);
-  if (!work.factored) return;
-  add_vector(hash, VecX(work.border.gradients.rowwise().sum()));
-  add_vector(hash, VecX(work.border.answers.rowwise().sum()));
-  add_vector(hash, work.border.complement);
-}
-
-void add_missed(Hash& hash, const MissedMotion& missed) {
-  add_vector(hash, missed.dx);
-  add_vector(hash, missed.dpressures);
-  hash.add(missed.travel);
-  hash.add(missed.iterations);
-}
-
-void add_rubbing(Hash& hash, const std::vector<SkinHold>& rubbing) {
-  for (const SkinHold& held : rubbing) {
-    hash.add(held.pair.point.body);
-    hash.add(held.pair.point.row);
-    hash.add(held.pair.on);
-    for (const BodyPoint& point : held.place.points) {
-      hash.add(point.body);
-      hash.add(point.row);
-    }
-    hash.add(held.across);
-    add_stick_slip(hash, held.hold);
-  }
-}
-
-void add_pose(Hash& hash, const InstrumentPose& pose) {
-  for (double v : {pose.pitch, pose.yaw, pose.insertion, pose.roll, pose.jaw}) hash.add(v);
-}
-
-void add_tool(Hash& hash, const Tool& tool) {
-  const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0) |
-                   static_cast<int>(tool.action) << 3 | (tool.has_cut ? 64 : 0);
-  hash.add(tool.jaw_stopped);
-  hash.add(static_cast<unsigned char>(grip));
-  if (has_action(tool.definition.type, InstrumentAction::fire)) hash.add(tool.clips);
-  hash.add(tool.touched);
-  hash.add(tool.over_limit);
-  if (tool.dry > 0) hash.add(tool.dry);
-  if (tool.on_clip || tool.beside_kept)
-    hash.add(static_cast<unsigned char>((tool.on_clip ? 1 : 0) | (tool.beside_kept ? 2 : 0)));
-  if (tool.burnt > 0) {
-    hash.add(tool.burnt);
-    hash.add(tool.burnt_record);
-  }
-  add_pose(hash, tool.pose);
-}
-
-void add_place(Hash& hash, const CarriedPlace& place) {
-  for (int point : place.points) hash.add(point);
-  for (double weight : place.weights) hash.add(weight);
-}
-
-/// Who is there, where that is not who the scene has.
-void add_members(Hash& hash, const Field& field) {
-  if (is_as_in_scene(field)) return;
-  for (const Organ& organ : field.organs) {
-    hash.add(organ.definition.name);
-    add_vector(hash, organ.body->rest());
-  }
-  for (const FieldJoint& joint : field.membership.joints) {
-    const JointLinks& links = joint.joint->links();
-    for (int body : links.bodies) hash.add(body);
-    hash.add(links.stiffness);
-    for (const JointLinks::Link& link : links.links) {
-      add_place(hash, link.one);
-      add_place(hash, link.other);
-      hash.add(link.length);
-    }
-  }
-  for (const TiedPlace& tied : field.membership.tied) {
-    for (int body : tied.bodies) hash.add(body);
-    add_point(hash, tied.place.place);
-    hash.add(tied.place.within);
-  }
-}
-
-}  // namespace
-
-std::uint64_t World::Impl::hash_field() const {
-  Hash hash;
-  add_members(hash, field);
-  for (const Organ& organ : field.organs) {
-    add_body_state(hash, organ);
-    add_holds(hash, organ);
-    add_acts(hash, organ);
-  }
-  for (const Tissue& tissue : field.tissues) add_tissue(hash, tissue);
-  add_missed(hash, field.group.missed);
-  add_rubbing(hash, field.group.rubbing);
-  add_factor(hash, field.group.work);
-  for (const Tool& tool : field.tools) add_tool(hash, tool);
-  add_spill(hash, field.spill);
-  return hash.value();
-}
-
 /// The hash knows a factor only by what it makes of one vector.
 bool World::Impl::same_factors(const FieldState& state) const {
   return field.group.work.factor.shares_factor_with(state.group.factor.factor);
@@ -304,8 +88,14 @@ std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
   hash.add(of_field);
   hash.add(steps);
   const InstrumentPose& scope = report.laparoscope.pose;
-  if (scope != laparoscope.start()) add_pose(hash, scope);
+  if (scope != laparoscope.start())
+    for (double v : {scope.pitch, scope.yaw, scope.insertion, scope.roll, scope.jaw}) hash.add(v);
   return hash.value();
+}
+
+void World::Impl::keep_hash() {
+  field_hash = hash_of(field);
+  report.state_hash = hash(field_hash);
 }
 
 void World::Impl::place_laparoscope(const InstrumentPose& pose) {
@@ -314,145 +104,6 @@ void World::Impl::place_laparoscope(const InstrumentPose& pose) {
   report.laparoscope.distance = pose == laparoscope.start()
                                     ? scene.laparoscope.distance
                                     : (looked_at - report.laparoscope.view.position).norm();
-}
-
-InstrumentState World::Impl::instrument_state(std::size_t index, const ToolLoad& load) const {
-  const Tool& tool = field.tools[index];
-  InstrumentState state;
-  state.pose = tool.pose;
-  state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
-  state.tip_force = load.force;
-  // The force at the tip that has the same moment about the trocar: what touches the shaft has a shorter
-  // lever.
-  const Vec3 arm = state.tip - tool.trocar, axis = arm.normalized();
-  const Vec3 at_tip = axis * axis.dot(load.force) + load.moment.cross(axis) / arm.norm();
-  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, at_tip);
-  for (const Organ& organ : field.organs) {
-    const int held = grip_count(organ, static_cast<int>(index));
-    state.grip_points += held;
-    if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
-  }
-  state.clips = tool.clips;
-  state.touching = load.touches > 0;
-  state.parts = load.parts;
-  const bool closed = tool.pose.jaw <= 0.5 * grip_grid;
-  const bool touches_jaws = load.parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0;
-  if (!state.holds.empty()) {
-    state.grip = GripState::holding;
-  } else if (tool.lost) {
-    state.grip = GripState::slipped;
-  } else if (closed) {
-    state.grip = tool.beside || touches_jaws ? GripState::beside : GripState::empty;
-  }
-  return state;
-}
-
-OrganState World::Impl::organ_state(const Organ& organ) const {
-  OrganState state;
-  state.name = organ.definition.name;
-  state.record = organ.record;
-  const VecX& x = organ.state.x;
-  if (const Liquid* liquid = organ.body->liquid()) {
-    state.pressure = liquid->pressure_at_top(x, organ.state.datum_pressure);
-    state.volume = liquid->volume(x);
-  }
-  if (const RodBody* rod = rod_of(organ))
-    for (const Clip& clip : organ.clips)
-      state.clips.push_back({clip.size, rod->share_at(clip.at), clip.opening});
-  state.energy = organ.body->strain_energy(x);
-  state.max_stretch = organ.body->max_stretch(x);
-  state.extensions = static_cast<int>(organ.extensions.size());
-  state.details = static_cast<int>(organ.body->details().size());
-  return state;
-}
-
-namespace {
-
-/// Those of one name are pieces of one tissue, whose organ was divided.
-std::vector<TissueState> tissue_states(const Field& field) {
-  std::vector<TissueState> out;
-  for (const Tissue& tissue : field.tissues) {
-    const auto same = [&](const TissueState& state) { return state.name == tissue.definition.name; };
-    auto at = std::find_if(out.begin(), out.end(), same);
-    if (at == out.end()) at = out.insert(out.end(), {tissue.definition.name, 0, 0});
-    at->strands += static_cast<int>(tissue.now.opened.size());
-    at->torn += tissue.torn();
-  }
-  return out;
-}
-
-}  // namespace
-
-namespace {
-
-/// Where an instrument is pressed hardest, m; none where it touches nothing.
-std::optional<Vec3> touched_place(const InstrumentState& state) {
-  const PartLoad* hardest = nullptr;
-  for (const PartLoad& load : state.parts)
-    if (load.touches > 0 && (hardest == nullptr || load.largest > hardest->largest)) hardest = &load;
-  return hardest == nullptr ? std::nullopt : std::optional<Vec3>(hardest->at);
-}
-
-/// Walls that are stretched so far that they open, or too far, since this step.
-void judge_stretch(const Field& field, const std::vector<OrganState>& before,
-                   const std::vector<OrganState>& now, std::vector<WorldEvent>& events) {
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    const OrganDefinition& organ = field.organs[k].definition;
-    const auto begins = [&](double limit) {
-      return now[k].max_stretch > limit &&
-             std::none_of(before.begin(), before.end(), [&](const OrganState& one) {
-               return one.record == now[k].record && one.max_stretch > limit;
-             });
-    };
-    if (begins(organ.wall.overstretch))
-      events.push_back({EventKind::overstretch, 0, "", organ.name, now[k].max_stretch});
-    if (is_hollow(organ.shape) && begins(organ.wall.perforation_stretch))
-      events.push_back({EventKind::perforation, 0, "", organ.name, 0, std::nullopt, EventCause::stretch});
-  }
-}
-
-}  // namespace
-
-void World::Impl::observe(std::vector<WorldEvent> events, const std::vector<InstrumentAction>& actions) {
-  const std::vector<ToolLoad> loads = tool_loads(field);
-  report.time = time();
-  report.instruments.clear();
-  for (std::size_t i = 0; i < field.tools.size(); ++i)
-    report.instruments.push_back(instrument_state(i, loads[i]));
-  const std::vector<OrganState> before = std::exchange(report.organs, {});
-  for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
-
-  // Events are raised when a condition begins, not while it lasts.
-  for (std::size_t i = 0; i < field.tools.size(); ++i) {
-    Tool& tool = field.tools[i];
-    const InstrumentState& state = report.instruments[i];
-    const std::string& organ = loads[i].organ;
-    if (state.touching && !tool.touched)
-      events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0, touched_place(state)});
-    const InstrumentAction asked = actions.empty() ? InstrumentAction::none : actions[i];
-    if (asked == InstrumentAction::activate && tool.action != asked)
-      events.push_back({EventKind::activation, 0, tool.definition.name, organ, 0, touched_place(state)});
-    tool.action = report.instruments[i].action = asked;
-    const double force = state.tip_force.norm();
-    const bool over = force > tool.definition.force_limit;
-    if (over && !tool.over_limit)
-      events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
-    tool.touched = state.touching;
-    tool.over_limit = over;
-  }
-  for (const WorldEvent& event : apply_current(field, report.instruments, 1 / scene.solver.rate))
-    events.push_back(event);
-  report.tissues = tissue_states(field);
-  report.lost = field.spill.lost;
-  judge_stretch(field, before, report.organs, events);
-  for (WorldEvent& event : events) {
-    event.time = report.time;
-    for (std::size_t i = 0; i < field.tools.size() && !event.place; ++i)
-      if (field.tools[i].definition.name == event.instrument) event.place = report.instruments[i].tip;
-  }
-  report.events = std::move(events);
-  field_hash = hash_field();
-  report.state_hash = hash(field_hash);
 }
 
 namespace {
@@ -571,7 +222,8 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
   world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
   keep_members(world.impl_->field);
-  world.impl_->observe({}, {});
+  observe(world.impl_->field, {}, 1 / scene.solver.rate, {}, world.impl_->report);
+  world.impl_->keep_hash();
   return world;
 }
 
@@ -624,7 +276,9 @@ Result<StepReport> World::step(const StepInput& input) {
   spill(self.field, duration);
   ++self.steps;
   if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
-  self.observe(std::move(events).value(), input.actions);
+  self.report.time = self.time();
+  observe(self.field, input.actions, duration, std::move(events).value(), self.report);
+  self.keep_hash();
   self.still.reset();
   if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
     self.still = input;
@@ -633,7 +287,7 @@ Result<StepReport> World::step(const StepInput& input) {
 
 const SceneDefinition& World::scene() const { return impl_->scene; }
 const StepReport& World::report() const { return impl_->report; }
-std::uint64_t World::state_hash() const { return impl_->hash(impl_->hash_field()); }
+std::uint64_t World::state_hash() const { return impl_->hash(hash_of(impl_->field)); }
 
 FieldState World::state() const {
   FieldState state = field_state(impl_->field);
@@ -649,7 +303,7 @@ Result<bool> World::restore(const FieldState& state) {
   calot::restore(self.field, state);
   self.steps = state.steps;
   self.report = state.report;
-  self.field_hash = self.hash_field();
+  self.field_hash = hash_of(self.field);
   self.still.reset();
   self.failed = false;
   return true;
@@ -743,16 +397,8 @@ auto World::Impl::change(const std::string& what, const Change& change) -> declt
     calot::restore(field, before);
     return settled.failure();
   }
-  report.organs.clear();
-  for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
-  report.tissues = tissue_states(field);
-  const std::vector<ToolLoad> loads = tool_loads(field);
-  for (std::size_t i = 0; i < field.tools.size(); ++i) {
-    report.instruments[i] = instrument_state(i, loads[i]);
-    report.instruments[i].action = field.tools[i].action;
-  }
-  field_hash = hash_field();
-  report.state_hash = hash(field_hash);
+  report_states(field, report);
+  keep_hash();
   still.reset();
   return done;
 }

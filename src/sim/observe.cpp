@@ -1,0 +1,158 @@
+#include "sim/observe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/between_jaws.h"
+#include "sim/body_kinds.h"
+#include "sim/current.h"
+#include "sim/field_tissues.h"
+#include "sim/grip.h"
+#include "sim/tool_loads.h"
+
+namespace calot {
+namespace {
+
+InstrumentState instrument_state(const Field& field, std::size_t index, const ToolLoad& load) {
+  const Tool& tool = field.tools[index];
+  InstrumentState state;
+  state.pose = tool.pose;
+  state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
+  state.tip_force = load.force;
+  // The force at the tip that has the same moment about the trocar: what touches the shaft has a shorter
+  // lever.
+  const Vec3 arm = state.tip - tool.trocar, axis = arm.normalized();
+  const Vec3 at_tip = axis * axis.dot(load.force) + load.moment.cross(axis) / arm.norm();
+  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, at_tip);
+  for (const Organ& organ : field.organs) {
+    const int held = grip_count(organ, static_cast<int>(index));
+    state.grip_points += held;
+    if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
+  }
+  state.clips = tool.clips;
+  state.touching = load.touches > 0;
+  state.parts = load.parts;
+  const bool closed = tool.pose.jaw <= 0.5 * grip_grid;
+  const bool touches_jaws = load.parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0;
+  if (!state.holds.empty()) {
+    state.grip = GripState::holding;
+  } else if (tool.lost) {
+    state.grip = GripState::slipped;
+  } else if (closed) {
+    state.grip = tool.beside || touches_jaws ? GripState::beside : GripState::empty;
+  }
+  return state;
+}
+
+OrganState organ_state(const Organ& organ) {
+  OrganState state;
+  state.name = organ.definition.name;
+  state.record = organ.record;
+  const VecX& x = organ.state.x;
+  if (const Liquid* liquid = organ.body->liquid()) {
+    state.pressure = liquid->pressure_at_top(x, organ.state.datum_pressure);
+    state.volume = liquid->volume(x);
+  }
+  if (const RodBody* rod = rod_of(organ))
+    for (const Clip& clip : organ.clips)
+      state.clips.push_back({clip.size, rod->share_at(clip.at), clip.opening});
+  state.energy = organ.body->strain_energy(x);
+  state.max_stretch = organ.body->max_stretch(x);
+  state.extensions = static_cast<int>(organ.extensions.size());
+  state.details = static_cast<int>(organ.body->details().size());
+  return state;
+}
+
+/// Those of one name are pieces of one tissue, whose organ was divided.
+std::vector<TissueState> tissue_states(const Field& field) {
+  std::vector<TissueState> out;
+  for (const Tissue& tissue : field.tissues) {
+    const auto same = [&](const TissueState& state) { return state.name == tissue.definition.name; };
+    auto at = std::find_if(out.begin(), out.end(), same);
+    if (at == out.end()) at = out.insert(out.end(), {tissue.definition.name, 0, 0});
+    at->strands += static_cast<int>(tissue.now.opened.size());
+    at->torn += tissue.torn();
+  }
+  return out;
+}
+
+/// Where an instrument is pressed hardest, m; none where it touches nothing.
+std::optional<Vec3> touched_place(const InstrumentState& state) {
+  const PartLoad* hardest = nullptr;
+  for (const PartLoad& load : state.parts)
+    if (load.touches > 0 && (hardest == nullptr || load.largest > hardest->largest)) hardest = &load;
+  return hardest == nullptr ? std::nullopt : std::optional<Vec3>(hardest->at);
+}
+
+/// Walls that are stretched so far that they open, or too far, since this step.
+void judge_stretch(const Field& field, const std::vector<OrganState>& before,
+                   const std::vector<OrganState>& now, std::vector<WorldEvent>& events) {
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const OrganDefinition& organ = field.organs[k].definition;
+    const auto begins = [&](double limit) {
+      return now[k].max_stretch > limit &&
+             std::none_of(before.begin(), before.end(), [&](const OrganState& one) {
+               return one.record == now[k].record && one.max_stretch > limit;
+             });
+    };
+    if (begins(organ.wall.overstretch))
+      events.push_back({EventKind::overstretch, 0, "", organ.name, now[k].max_stretch});
+    if (is_hollow(organ.shape) && begins(organ.wall.perforation_stretch))
+      events.push_back({EventKind::perforation, 0, "", organ.name, 0, std::nullopt, EventCause::stretch});
+  }
+}
+
+void report_states(const Field& field, const std::vector<ToolLoad>& loads, StepReport& report) {
+  report.instruments.clear();
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    report.instruments.push_back(instrument_state(field, i, loads[i]));
+    report.instruments.back().action = field.tools[i].action;
+  }
+  report.organs.clear();
+  for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
+  report.tissues = tissue_states(field);
+  report.lost = field.spill.lost;
+}
+
+}  // namespace
+
+void report_states(const Field& field, StepReport& report) {
+  report_states(field, tool_loads(field), report);
+}
+
+void observe(Field& field, const std::vector<InstrumentAction>& actions, double duration,
+             std::vector<WorldEvent> events, StepReport& report) {
+  const std::vector<ToolLoad> loads = tool_loads(field);
+  const std::vector<OrganState> before = report.organs;
+  report_states(field, loads, report);
+
+  // Events are raised when a condition begins, not while it lasts.
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const InstrumentState& state = report.instruments[i];
+    const std::string& organ = loads[i].organ;
+    if (state.touching && !tool.touched)
+      events.push_back({EventKind::contact, 0, tool.definition.name, organ, 0, touched_place(state)});
+    const InstrumentAction asked = actions.empty() ? InstrumentAction::none : actions[i];
+    if (asked == InstrumentAction::activate && tool.action != asked)
+      events.push_back({EventKind::activation, 0, tool.definition.name, organ, 0, touched_place(state)});
+    tool.action = report.instruments[i].action = asked;
+    const double force = state.tip_force.norm();
+    const bool over = force > tool.definition.force_limit;
+    if (over && !tool.over_limit)
+      events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
+    tool.touched = state.touching;
+    tool.over_limit = over;
+  }
+  for (const WorldEvent& event : apply_current(field, report.instruments, duration)) events.push_back(event);
+  report.tissues = tissue_states(field);
+  judge_stretch(field, before, report.organs, events);
+  for (WorldEvent& event : events) {
+    event.time = report.time;
+    for (std::size_t i = 0; i < field.tools.size() && !event.place; ++i)
+      if (field.tools[i].definition.name == event.instrument) event.place = report.instruments[i].tip;
+  }
+  report.events = std::move(events);
+}
+
+}  // namespace calot
