@@ -89,15 +89,15 @@ void judge_stretch(const Field& field, const std::vector<OrganState>& before,
                    const std::vector<OrganState>& now, std::vector<WorldEvent>& events) {
   for (std::size_t k = 0; k < now.size(); ++k) {
     const OrganDefinition& organ = field.organs[k].definition;
-    const auto begins = [&](double limit) {
+    const auto goes_beyond = [&](double limit) {
       return now[k].max_stretch > limit &&
              std::none_of(before.begin(), before.end(), [&](const OrganState& one) {
                return one.record == now[k].record && one.max_stretch > limit;
              });
     };
-    if (begins(organ.wall.overstretch))
+    if (goes_beyond(organ.wall.overstretch))
       events.push_back({EventKind::overstretch, 0, "", organ.name, now[k].max_stretch});
-    if (is_hollow(organ.shape) && begins(organ.wall.perforation_stretch))
+    if (is_hollow(organ.shape) && goes_beyond(organ.wall.perforation_stretch))
       events.push_back({EventKind::perforation, 0, "", organ.name, 0, std::nullopt, EventCause::stretch});
   }
 }
