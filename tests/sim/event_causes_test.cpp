@@ -171,6 +171,7 @@ TEST(EventCauses, AWallThatIsPinchedOrStretchedTooFarIsOpenedAndSaysByWhat) {
       EXPECT_EQ(event.cause, pinch > 10 ? EventCause::pinch : EventCause::stretch);
       EXPECT_EQ(event.place.has_value(), pinch > 10) << "where a wall gives way is not known";
     }
+    EXPECT_EQ(path.world.field().organs[0].openings.size(), pinch > 10 ? 1u : 0u) << "that leak";
   }
 }
 

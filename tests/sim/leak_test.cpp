@@ -13,6 +13,7 @@
 #include "sim/change_bodies.h"
 #include "sim/field_state.h"
 #include "sim/join_bodies.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -183,6 +184,25 @@ TEST(Leaks, AHoleInTheWallLeaksByItsArea) {
   EXPECT_EQ(events[0].instrument, "blades");
 }
 
+TEST(Leaks, AHoleThatCurrentBurnsIsWhereItTouchedAndSaysWhatBurntIt) {
+  Bodies bodies(bag_and_duct());
+  bodies.field.group.work.factored = false;
+  Organ& bag = bodies.field.organs[0];
+  constexpr int touched = 17;
+  const Vec3 at = bag.body->skin_point(touched, bag.state.x);
+  perforate(bag, at + Vec3(1e-5, 0, 0), "hook");
+  ASSERT_EQ(bag.openings.size(), 1u);
+  EXPECT_EQ(bag.openings[0].point, touched);
+  const std::vector<WorldEvent> events = bodies.run(0.01);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, EventKind::bile_leak);
+  EXPECT_EQ(events[0].instrument, "hook");
+  ASSERT_TRUE(events[0].place);
+  EXPECT_EQ(*events[0].place, at);
+  perforate(bodies.field.organs[1], at, "hook");
+  EXPECT_TRUE(bodies.field.organs[1].openings.empty()) << "a duct is no bag";
+}
+
 TEST(Leaks, ABagLosesWhatItsPressureDrivesOutAndAllOfItIsCounted) {
   World world = World::create(bag_and_duct()).value();
   const double start = world.report().organs[0].volume;
@@ -217,6 +237,7 @@ TEST(Leaks, OfADuctAreUsuallyMillilitresAMinute) {
 }
 
 TEST(Leaks, WhatIsLostDependsLittleOnTheLengthOfSteps) {
+  CALOT_SLOW_WHEN_SANITIZED("two runs in small steps");
   std::vector<double> out;
   for (const double rate : {12.5, 25.0, 50.0, 100.0}) {
     World world = World::create(bag_and_duct(rate)).value();

@@ -6,6 +6,7 @@
 
 #include "field_rig.h"
 #include "sim/leak.h"
+#include "support/long_run.h"
 
 namespace calot {
 namespace {
@@ -66,6 +67,7 @@ TEST(Spills, ADropFallsFreelyAndSpreadsWhereItLands) {
 }
 
 TEST(Spills, AFilmRunsDownASlopeAndOffAnUndersideAndNothingIsLost) {
+  CALOT_SLOW_WHEN_SANITIZED("thousands of wet points for some seconds");
   Field field = ball_over_slope();
   const Vec3 top(2e-3, 0, ball_foot + 45e-3);
   for (int k = 0; k < 90; ++k)
@@ -95,6 +97,7 @@ TEST(Spills, AFilmRunsDownASlopeAndOffAnUndersideAndNothingIsLost) {
 }
 
 TEST(Spills, WhatLiesLevelComesToRestAndStaysAsItIs) {
+  CALOT_SLOW_WHEN_SANITIZED("thousands of wet points for some seconds");
   Field field = ball_over_slope(0);
   for (int k = 0; k < 20; ++k) drip(field, Vec3(40e-3, 0, 5e-3), 10e-9);
   wait(field, 8);
