@@ -40,8 +40,13 @@ std::optional<int> Border::dependent() const {
 VecX Border::keep(const VecX& values, VecX& step) const {
   if (constraints() == 0) return VecX();
   VecX left(constraints());
-  for (int k = 0; k < constraints(); ++k) left[k] = -(values[k] + gradients.col(k).dot(step));
-  const VecX multipliers = Eigen::LDLT<Eigen::MatrixXd>(complement).solve(left);
+  for (int k = 0; k < constraints(); ++k) left[k] = values[k] + gradients.col(k).dot(step);
+  return restore(left, step);
+}
+
+VecX Border::restore(const VecX& values, VecX& step) const {
+  if (constraints() == 0) return VecX();
+  const VecX multipliers = Eigen::LDLT<Eigen::MatrixXd>(complement).solve(-values);
   for (int k = 0; k < constraints(); ++k) step += multipliers[k] * answers.col(k);
   return multipliers;
 }

@@ -25,6 +25,8 @@ struct Border {
   std::optional<int> dependent() const;
   /// Turns K^-1 load into dx, for what the constraints and their compliances leave now; returns dm.
   VecX keep(const VecX& values, VecX& step) const;
+  /// Adds to a step what takes the constraints' values at its end to 0, to first order; returns dm.
+  VecX restore(const VecX& values, VecX& step) const;
 };
 
 }  // namespace calot

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "base/timed.h"
 #include "numerics/line_search.h"
@@ -49,6 +50,7 @@ class Iteration {
     while (!ended()) {
       if (result_.iterations++ == 0) problem_.prepare(work_);
       if (!chord() && !newton()) break;
+      ++result_.by_last_factor;
     }
     result_.residual = state_.worst_residual.value;
     result_.increment = increment_.value;
@@ -88,6 +90,12 @@ class Iteration {
   double imbalance(const State& state) const {
     return std::max(state.worst_residual.value / settings_.tolerance,
                     state.worst_constraint.value / settings_.constraint_tolerance);
+  }
+
+  /// How far the forces are from balance, in the same units. Constraints count no more than forces: that a volume is off
+  /// by more than 1e-10 does not say that forces are.
+  double force_imbalance(const State& state) const {
+    return std::max(state.worst_residual.value, state.worst_constraint.value) / settings_.tolerance;
   }
 
   bool balanced() const { return imbalance(state_) <= 1.0 && increment_.value <= settings_.tolerance; }
@@ -138,28 +146,54 @@ class Iteration {
     return step;
   }
 
-  /// A whole step, kept only if it brings the bodies much nearer to balance: then no energy need be asked.
-  bool leap(const VecX& step, const VecX& dmultipliers) {
-    constexpr double worth = 0.25;  // slower than this, a factorisation pays
+  /// Second-order correction (Nocedal and Wright, section 15.6): a whole step ends where the constraints hold, not where
+  /// their tangents say so; their values cost a share of what a whole evaluation does. It lies in what the factor
+  /// answers to them, so that balance is as near as before, to first order.
+  void correct_constraints(VecX& step, VecX& dmultipliers) {
+    constexpr int most_rounds = 3;
+    if (!constrained() || !step.allFinite()) return;
+    const Timed timed(result_.assembly_s);
+    double missed_before = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < most_rounds; ++round) {
+      const VecX missed =
+          problem_.constraint_values(x_ + step) + compliances_.cwiseProduct(multipliers_ + dmultipliers);
+      const double worst = missed.cwiseAbs().cwiseQuotient(scales_).maxCoeff();
+      if (!(worst < missed_before) || worst <= 0.1 * settings_.constraint_tolerance) return;
+      missed_before = worst;
+      dmultipliers += work_.border.restore(missed, step);
+    }
+  }
+
+  /// A whole step, kept only if it brings the bodies nearer to balance, by this share: then no energy need be asked.
+  bool leap(const VecX& step, const VecX& dmultipliers, double worth) {
     const VecX next = x_ + step, multipliers = multipliers_ + dmultipliers;
     State then;
     evaluate(next, multipliers, then);
-    if (!then.residual.allFinite() || imbalance(then) > worth * imbalance(state_)) return false;
+    if (!then.residual.allFinite()) return false;
+    const double far = force_imbalance(state_), left = force_imbalance(then);
+    if (left > std::max(worth * far, 1.0) ||
+        then.worst_constraint.value >
+            std::max(worth * state_.worst_constraint.value, settings_.constraint_tolerance))
+      return false;
     x_ = next;
     multipliers_ = multipliers;
     state_ = std::move(then);
     seen_.add(step, dmultipliers);
     increment_ = relative_increment(step, 1.0);
+    left_of_last_ = left / far;
     return true;
   }
 
   /// A step with the last factor.
   bool chord() {
-    if (!serves(work_, problem_)) return false;
+    constexpr double worth = 0.25;  // slower than this, a factorisation pays
+    // The next step gets no further than the last one, and a step that is not kept costs a whole evaluation.
+    if (left_of_last_ > worth || !serves(work_, problem_)) return false;
     VecX dmultipliers;
     VecX step = bordered_step(dmultipliers);
     seen_.correct(step, dmultipliers);
-    if (!step.allFinite() || safe_share(step) < 1.0 || !leap(step, dmultipliers)) return false;
+    correct_constraints(step, dmultipliers);
+    if (!step.allFinite() || safe_share(step) < 1.0 || !leap(step, dmultipliers, worth)) return false;
     ++result_.chords;
     return true;
   }
@@ -167,6 +201,7 @@ class Iteration {
   /// A full Newton step with a line search; false when it failed (result_.status says why).
   bool newton() {
     seen_.clear();
+    result_.by_last_factor = 0;
     work_.border.gradients = state_.constraint_gradients;  // no columns when there is no constraint
     work_.border.compliances = compliances_;
     factorise(problem_, parts_, x_, multipliers_, work_, result_);
@@ -177,9 +212,13 @@ class Iteration {
       result_.status = NewtonStatus::not_finite;
       return false;
     }
-    const double safe = safe_share(step);
-    if (!work_.shifted && safe == 1.0 && leap(step, dmultipliers)) return true;
-    return descend(step, dmultipliers, safe);
+    if (!work_.shifted) {
+      constexpr double worth = 0.5;  // a search along the step costs two more evaluations
+      VecX whole = step, with = dmultipliers;
+      correct_constraints(whole, with);
+      if (safe_share(whole) == 1.0 && leap(whole, with, worth)) return true;
+    }
+    return descend(step, dmultipliers, safe_share(step));
   }
 
   bool descend(const VecX& step, const VecX& dmultipliers, double safe) {
@@ -203,8 +242,10 @@ class Iteration {
     }
     x_ += share * step;
     multipliers_ += share * dmultipliers;
+    const double far = force_imbalance(state_);
     evaluate(x_, multipliers_, state_);
     increment_ = increment;
+    left_of_last_ = force_imbalance(state_) / far;
     return true;
   }
 
@@ -217,7 +258,8 @@ class Iteration {
   VecX scales_, compliances_;  ///< of the constraints
   NewtonResult result_;
   State state_;
-  Worst increment_;  ///< the last, relative
+  Worst increment_;          ///< the last, relative
+  double left_of_last_ = 0;  ///< share of the imbalance that the last step left
   SecantSteps seen_;
 };
 

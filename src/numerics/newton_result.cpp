@@ -6,6 +6,7 @@ void NewtonResult::add(const NewtonResult& next) {
   const NewtonResult before = *this;
   *this = next;
   iterations += before.iterations;
+  if (next.chords == next.iterations) by_last_factor += before.by_last_factor;
   chords += before.chords;
   shifts += before.shifts;
   assembly_s += before.assembly_s;

@@ -21,6 +21,7 @@ struct NewtonResult {
   int part = 0;  ///< that the status is of: the one furthest from converged, or that nothing holds
   int iterations = 0;
   int chords = 0;               ///< of the iterations, those that reused a factor
+  int by_last_factor = 0;       ///< of the iterations, those since the last factorisation
   int shifts = 0;               ///< factorisations that needed a diagonal shift
   double residual = 0;          ///< largest nodal residual / largest internal nodal force, of the worst part
   double increment = 0;         ///< largest coordinate of the last increment / length, of the worst part

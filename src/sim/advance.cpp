@@ -290,9 +290,9 @@ void add_missed(const MissedMotion& missed, Prediction& out) {
 
 /// What the answer to a part of a motion missed, once the organs are in equilibrium.
 MissedMotion missed_by(const Prediction& answer, double share, const GroupSnapshot& before,
-                       const Field& field, int iterations) {
+                       const Field& field, int by_last_factor) {
   if (!answer.loaded || share < 1.0) return {};
-  MissedMotion out{-answer.first_order, -answer.first_order_pressures, answer.travel, iterations};
+  MissedMotion out{-answer.first_order, -answer.first_order_pressures, answer.travel, by_last_factor};
   Eigen::Index first = 0;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const BodyState &was = before.organs[k].state, &is = field.organs[k].state;
@@ -309,7 +309,7 @@ MissedMotion missed_by(const Prediction& answer, double share, const GroupSnapsh
 }
 
 /// Whether the last factor answered the last motion well: a new one takes as long as three iterations.
-bool factor_serves(const Group& group) { return group.missed.dx.size() > 0 && group.missed.iterations <= 3; }
+bool factor_serves(const Group& group) { return group.missed.dx.size() > 0 && group.missed.by_last_factor <= 3; }
 
 /// What of dx is a body's: organs, then tissues.
 class BodyParts {
@@ -551,7 +551,7 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
       last = settle_group(field, poses, places, part_iterations, statistics);
       accepted = last.converged();
       if (accepted) {
-        field.group.missed = missed_by(prediction, share, before, field, last.iterations);
+        field.group.missed = missed_by(prediction, share, before, field, last.by_last_factor);
         for (std::size_t i = 0; i < field.tools.size(); ++i) field.tools[i].pose = poses[i];
         for (Organ& organ : field.organs) follow_contacts(field, organ, statistics);
         done = next;

@@ -17,10 +17,10 @@ namespace calot {
 /// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
 /// the second order in the way.
 struct MissedMotion {
-  VecX dx;             ///< m, 3 a node of all members; empty: none known
-  VecX dpressures;     ///< Pa, one an organ
-  double travel = 0;   ///< of the tool that travelled furthest, m
-  int iterations = 0;  ///< that it took to make good
+  VecX dx;                 ///< m, 3 a node of all members; empty: none known
+  VecX dpressures;         ///< Pa, one an organ
+  double travel = 0;       ///< of the tool that travelled furthest, m
+  int by_last_factor = 0;  ///< iterations that took it, of the last factor
 };
 
 /// How the organs of a field are solved together, kept from one solve to the next.

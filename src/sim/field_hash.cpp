@@ -129,7 +129,7 @@ void add_missed(Hash& hash, const MissedMotion& missed) {
   add_vector(hash, missed.dx);
   add_vector(hash, missed.dpressures);
   hash.add(missed.travel);
-  hash.add(missed.iterations);
+  hash.add(missed.by_last_factor);
 }
 
 void add_rubbing(Hash& hash, const std::vector<SkinHold>& rubbing) {

@@ -88,6 +88,26 @@ TEST(Newton, ConstraintIsKeptToItsTolerance) {
   }
 }
 
+TEST(Newton, AWholeStepEndsWhereTheConstraintHolds) {
+  Net net(true);
+  NewtonWorkspace work = net.workspace();
+  VecX x = net.rest();
+  double multiplier = 0;
+  ASSERT_TRUE(solve_equilibrium(net, {}, work, x, multiplier).converged());
+  net.volume *= 1.0001;
+  VecX gradient;
+  const double missed = net.constraint(x, gradient);
+  VecX step = work.factor.solve(VecX(-residual(net, x, multiplier)));
+  work.border.keep(VecX::Constant(1, missed), step);
+  EXPECT_GT(std::abs(net.constraint_value(x + step)), 1e-9 * net.constraint_scale())
+      << "its tangent leaves more";
+  NewtonSettings one;
+  one.max_iterations = 1;
+  const NewtonResult result = solve_equilibrium(net, one, work, x, multiplier);
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_LT(std::abs(net.constraint_value(x)), one.constraint_tolerance * net.constraint_scale());
+}
+
 TEST(Newton, MultiplierIsTheRateOfEnergyByTheConstraint) {
   Net net(true);
   const double unstressed = net.volume, h = 1e-4 * unstressed;
@@ -147,6 +167,7 @@ TEST(Newton, KeptFactorLeadsToTheSamePoint) {
   ASSERT_TRUE(chord.converged());
   ASSERT_TRUE(solve_equilibrium(net, tight, fresh, with_fresh, fresh_multiplier).converged());
   EXPECT_GT(chord.chords, 0);
+  EXPECT_EQ(chord.by_last_factor, chord.iterations);
   EXPECT_LT((with_kept - with_fresh).norm(), 1e-8);
   EXPECT_NEAR(kept_multiplier, fresh_multiplier, 1e-8);
 }

@@ -76,7 +76,7 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("missed motion", [](FieldState& s) { s.group.missed.dx[0] += 1e-15; });
   differs("missed pressure", [](FieldState& s) { s.group.missed.dpressures[0] += 1e-9; });
   differs("missed motion's way", [](FieldState& s) { s.group.missed.travel *= 1.0000001; });
-  differs("missed motion's iterations", [](FieldState& s) { ++s.group.missed.iterations; });
+  differs("missed motion's iterations by its factor", [](FieldState& s) { ++s.group.missed.by_last_factor; });
   differs("friction", [](FieldState& s) {
     s.group.organs[0].friction.points.push_back({0, 0, StickSlip{.limit = 1e-3, .stiffness = 1}});
   });
