@@ -5,71 +5,10 @@
 
 local calot = require "calot"
 local anatomy = require "anatomy"
+local technique = require "technique"
 local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
 
-local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
-local function plus(a, b, share) return { a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3] } end
-local function unit(a) return plus({ 0, 0, 0 }, a, 1 / math.sqrt(dot(a, a))) end
-
--- How many clips of a tube, or of a piece of one, are shut.
-local function shut(t, tube)
-  local count = 0
-  for _, clip in ipairs(t:clips(tube)) do
-    if clip.opening == 0 then count = count + 1 end
-  end
-  return count
-end
-
--- How far a shaft from a port is to be turned for its jaws to open across a tube.
-local function roll_across(port, at, along)
-  local shaft = unit(plus(at, port, -1))
-  local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
-  local x = { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) }
-  local y = { 0, -math.cos(pitch), -math.sin(pitch) }
-  return math.atan(-dot(x, along) / dot(y, along))
-end
-
--- A clip slides off a stump that is too short: how far the cut is from the nearest clip, on either side.
-local function stump(run)
-  local cuts = run:times("cut", run.params.structure)
-  if #cuts == 0 then return 0, "it was never cut" end
-  local nearest, behind = math.huge, cuts[1]
-  for _, cut in ipairs(run.events) do
-    for _, clip in ipairs(run.events) do
-      if cut.event == "cut" and cut.organ == run.params.structure and clip.event == "clip" and clip.time < cut.time then
-        local way = plus(clip.place, cut.place, -1)
-        local distance = math.sqrt(dot(way, way))
-        if distance < nearest then nearest, behind = distance, clip.time end
-      end
-    end
-  end
-  if nearest == math.huge then return 0, "there was no clip when it was cut", cuts end
-  local share = math.min(1, math.max(0, (nearest - 0.5 * mm) / (1.5 * mm)))
-  return share, string.format("it was cut %.1f mm from the nearest clip; 2 mm leave a stump", nearest / mm),
-    { behind, cuts[1] }
-end
-
 local ports = { applier = { -10 * mm, 120 * mm, -5 * mm }, blades = { 0, 0, 0 } }
-
--- An instrument as the demo moves it: it knows how it is turned.
-local function hand(t, name)
-  local self = { tool = t[name], rolled = 0 }
-  -- Open jaws come about a tube, their tips that far past its middle.
-  function self.about(tube, share, past, speed)
-    local at, along = t:along(tube, share)
-    local turn = roll_across(ports[name], at, along) - self.rolled
-    turn = turn - math.pi * math.floor(turn / math.pi + 0.5) -- jaws are alike on both sides
-    if math.abs(turn) > 15 * deg then
-      self.tool:rotate(turn, { speed = 300 * deg / s })
-      self.rolled = self.rolled + turn
-    end
-    self.tool:move_to(plus(at, unit(plus(at, ports[name], -1)), past), { speed = speed })
-  end
-  function self.back(way)
-    self.tool:move_by(plus({ 0, 0, 0 }, unit(plus(ports[name], self.tool:tip(), -1)), way), { speed = 150 * mm / s })
-  end
-  return self
-end
 
 return calot.exercise {
   api = 1,
@@ -122,34 +61,25 @@ return calot.exercise {
       hint = "first a time-out: say what is about to be divided, and what was seen of it",
     })
     if t:wait_until(function() return t:divided(p.structure) end) then
-      t:note("patient_clips", shut(t, p.structure .. ".patient"))
-      t:note("specimen_clips", shut(t, p.structure .. ".specimen"))
+      t:note("patient_clips", technique.shut(t, p.structure .. ".patient"))
+      t:note("specimen_clips", technique.shut(t, p.structure .. ".specimen"))
     end
     t:wait(0.6 * s)
     if t:lost("bile") + t:lost("blood") > 0 then t:wait(1.4 * s) end -- what runs is looked at
   end,
 
   demo = function(t, p)
-    local clips, cuts = hand(t, "applier"), hand(t, "blades")
+    local clips, cuts = technique.hand(t, "applier", ports.applier), technique.hand(t, "blades", ports.blades)
     local plan = {
       cystic_duct = { clips = { 0.60, 0.80, 0.88 }, cut = 0.70, open = 36 * deg, past = 4.5 * mm },
       cystic_artery = { clips = { 0.64, 0.36, 0.25 }, cut = 0.50, open = 20 * deg, past = 4 * mm },
     }
     local tube, plan_of = p.structure, plan[p.structure]
-    local function set_clips()
-      t.applier:open(plan_of.open)
-      clips.about(tube, plan_of.clips[1], -12 * mm, 150 * mm / s)
-      for _, share in ipairs(plan_of.clips) do
-        clips.about(tube, share, plan_of.past, 40 * mm / s)
-        t.applier:fire()
-      end
-      clips.back(25 * mm)
-    end
     t:together(function()
       t.blades:open(36 * deg)
       cuts.about(tube, plan_of.cut, -25 * mm, 150 * mm / s)
     end, function()
-      if p.demo == "expert" then set_clips() end
+      if p.demo == "expert" then clips.set_clips(tube, plan_of.clips, plan_of.open, plan_of.past) end
     end)
     if p.demo == "expert" then t:time_out("two structures and no more enter the gallbladder") end
     cuts.about(tube, plan_of.cut, 6 * mm, 50 * mm / s)
@@ -162,7 +92,8 @@ return calot.exercise {
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "note.patient_clips", novice = 0, expert = 2 }, weight = 0.4 },
     { calot.score.benchmark { metric = "note.specimen_clips", novice = 0, expert = 1 }, weight = 0.1 },
-    { calot.score.rule(stump), name = "stump", weight = 0.1 },
+    { calot.score.rule(function(run) return technique.judge_stump(run, run.params.structure) end), name = "stump",
+      weight = 0.1 },
     { calot.score.benchmark { metric = "total.bile_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
     { calot.score.benchmark { metric = "total.blood_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
     { calot.score.penalty { event = "clip_dropped", each = 0.5 }, weight = 0.1 },

@@ -2,18 +2,14 @@
 -- taken with the hook until the liver is seen behind them, and the gallbladder's lower part comes off the cystic plate,
 -- so that two structures and no more are seen to enter the gallbladder. The field is prepared: fat at the hilum and
 -- most of that beside the common duct is gone. The mistakes are a parameter, demo = "clumsy": current in the air, and
--- an end before the view is there.
+-- an end before the view is there. In field = "frozen" the tissue is a scar that current and traction hardly divide:
+-- the view cannot be reached there, and who tries on fails; who bails out (demo = "bail_out") after tissue that does
+-- not yield passes.
 
 local calot = require "calot"
 local anatomy = require "anatomy"
+local technique = require "technique"
 local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
-
-local function plus(a, b, share)
-  share = share or 1
-  return { a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3] }
-end
-local function length(a) return math.sqrt(a[1] ^ 2 + a[2] ^ 2 + a[3] ^ 2) end
-local function unit(a) return plus({ 0, 0, 0 }, a, 1 / length(a)) end
 
 local hook_port = { -10 * mm, 120 * mm, -5 * mm }
 local lower_part = 0.4 -- of the gallbladder's way: its lower third in this field, from where its bed begins
@@ -30,6 +26,20 @@ local function note(t, when)
   t:note("free_structures" .. when, now.structures.free)
 end
 
+-- The view, or the way out where it cannot be had: current that divides little of what it flows through says so.
+local function judge_view(run)
+  local away = run:times("bail_out")
+  local area, time = run.metrics["hook.divided_mm2"], run.metrics["hook.activation_time_s"]
+  if #away > 0 then
+    local yields = time < 2 * s or area > 2 * time
+    local felt = string.format("%.1f s of current divided %.1f mm2", time, area)
+    return yields and 0 or 1, felt .. (yields and ": it yields, there was no need to bail out" or
+      ": it does not yield, and to bail out was right"), away
+  end
+  local points = run.notes.critical_view or 0
+  return math.min(1, points / 5), string.format("%d of 6 points, of which 5 are satisfactory", points)
+end
+
 return calot.exercise {
   api = 1,
   id = "dissect-to-critical-view",
@@ -40,14 +50,21 @@ return calot.exercise {
     demo = {
       type = "choice",
       default = "expert",
-      choices = { "expert", "clumsy" },
-      title = "how the demo goes about it: strand by strand with the hook, or hastily",
+      choices = { "expert", "clumsy", "bail_out" },
+      title = "how the demo goes about it: strand by strand with the hook, hastily, or until the tissue does not yield",
+    },
+    field = {
+      type = "choice",
+      default = "standard",
+      choices = { "standard", "frozen" },
+      title = "the patient's triangle: fat, or the scar of many inflammations",
     },
   },
 
-  scene = function()
+  scene = function(p)
     return {
       anatomy = anatomy.standard {
+        strength = p.field == "frozen" and 25 or 1,
         cystic_artery_enters = { -2, -17, 10 },
         cystic_artery_length = 24 * mm,
         without = { "cystic_node", "hilar_fat" },
@@ -86,40 +103,8 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
-    local function next_strand(tissue, wanted)
-      local tip, best = t.hook:tip(), nil
-      for _, strand in ipairs(t:strands(tissue)) do
-        local far = length(plus(strand.middle, tip, -1))
-        if wanted(strand) and (not best or far < best.far) then best = { at = strand.middle, far = far } end
-      end
-      return best
-    end
-
-    -- The hook's foot comes down on a strand, and current flows until one has parted; else it comes down nearer to its
-    -- heel.
-    local reach = { 4 * mm, 2 * mm, 0.5 * mm }
-    local function take(tissue, wanted, tries, hardest, is_done)
-      local missed = 0
-      while missed < 9 do
-        local strand = next_strand(tissue, wanted)
-        if not strand or is_done() then return end
-        local back = unit(plus(hook_port, strand.at, -1))
-        local aim = plus(strand.at, { reach[missed % 3 + 1], 0, 0 })
-        t.hook:move_to(plus(aim, back, 5 * mm), { speed = 80 * mm / s })
-        local function lies_on_it()
-          local contact = t.hook:contact()
-          return contact ~= nil and contact.organ == tissue or t.hook:force() > hardest
-        end
-        t.hook:move_until(lies_on_it, { along = plus({ 0, 0, 0 }, back, -1), speed = 25 * mm / s, limit = 8 * mm })
-        local standing = #t:strands(tissue)
-        for _ = 1, tries do
-          if not t.hook:touching() or #t:strands(tissue) < standing then break end
-          t.hook:activate(0.1 * s)
-        end
-        missed = #t:strands(tissue) < standing and 0 or missed + 1
-        t.hook:move_by(plus({ 0, 0, 0 }, back, 5 * mm), { speed = 80 * mm / s })
-      end
-    end
+    local begun = t:time()
+    local function gives_up() return p.demo == "bail_out" and t:time() - begun > 12 * s end
 
     t:together(function()
       t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })
@@ -131,21 +116,26 @@ return calot.exercise {
     end)
     t.left:wait(0.3 * s)
     if p.demo == "clumsy" then t.hook:activate(0.5 * s) end
-    take("artery_fat", function() return true end, 6, 0.4 * N, function()
-      return p.demo == "clumsy" and t:torn("artery_fat") > 0.2
-    end)
+    technique.take(t, t.hook, "artery_fat", {
+      port = hook_port, tries = 6, hardest = 0.4 * N, keep_off = t:place("cystic_duct.end"),
+      is_done = function() return p.demo == "clumsy" and t:torn("artery_fat") > 0.2 or gives_up() end,
+    })
     if p.demo == "clumsy" then return end
-    take("cystic_plate", function(strand) return strand.share <= lower_part end, 30, 1 * N, function()
-      return view(t).plate.points > 0
-    end)
+    if p.demo == "bail_out" then return t:bail_out("subtotal cholecystectomy: the triangle does not open") end
+    technique.take(t, t.hook, "cystic_plate", {
+      port = hook_port, tries = 30, hardest = 1 * N,
+      wanted = function(strand) return strand.share <= lower_part end,
+      is_done = function() return view(t).plate.points > 0 end,
+    })
     t.hook:move_by({ 10 * mm, 0, 40 * mm }, { speed = 100 * mm / s })
   end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "note.critical_view", novice = 0, expert = 5 }, weight = 0.7 },
+    { calot.score.rule(judge_view), name = "critical_view", weight = 0.7 },
     { calot.score.benchmark { metric = "hook.peak_force_N", novice = 3, expert = 1.5 }, weight = 0.15 },
     { calot.score.penalty { event = "dry_activation", each = 0.25 }, weight = 0.15 },
     critical = { "overforce", "perforation" },
+    bail_out_completes = true,
     cap = 40,
     pass = 80,
   },

@@ -5,26 +5,11 @@
 
 local calot = require "calot"
 local anatomy = require "anatomy"
+local technique = require "technique"
 local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
-
-local function minus(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
-local function dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
 
 -- Where the fundus goes: towards the patient's right shoulder, over the liver.
 local up = { -0.33, 0.6, 0.73 }
-
--- Calot's triangle: the gallbladder's neck, where cystic and common duct meet, and where the common duct leaves the
--- liver.
-local function triangle(t)
-  return t:place("cystic_duct.start"), t:place("cystic_duct.end"), t:place("common_duct.start")
-end
-
--- At the union, between the cystic duct and the common hepatic duct.
-local function angle_of_ducts(t)
-  local neck, union, hilum = triangle(t)
-  local a, b = minus(neck, union), minus(hilum, union)
-  return math.acos(dot(a, b) / math.sqrt(dot(a, a) * dot(b, b)))
-end
 
 return calot.exercise {
   api = 1,
@@ -70,7 +55,8 @@ return calot.exercise {
     })
     local hung = t:place("gallbladder.fundus")
     t:wait_until(function()
-      return t.fundus:holds("gallbladder") and dot(minus(t:place("gallbladder.fundus"), hung), up) > 15 * mm
+      local way = technique.minus(t:place("gallbladder.fundus"), hung)
+      return t.fundus:holds("gallbladder") and technique.dot(way, up) > 15 * mm
     end)
 
     t:step("grasp", "Take the gallbladder by its pouch", {
@@ -84,8 +70,8 @@ return calot.exercise {
       hint = "to the patient's right and down: the cystic duct should stand across the common duct, not along it",
     })
     t:wait(2.5 * s)
-    t:note("triangle_seen_mm2", t:seen_area(triangle(t)) / mm ^ 2, "mm2")
-    t:note("angle_of_ducts_deg", angle_of_ducts(t) / deg, "degrees")
+    t:note("triangle_seen_mm2", t:seen_area(technique.triangle(t)) / mm ^ 2, "mm2")
+    t:note("angle_of_ducts_deg", technique.angle_of_ducts(t) / deg, "degrees")
   end,
 
   demo = function(t, p)

@@ -17,6 +17,7 @@
 --   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on:
 --     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } }
 --     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it
+--   strength 1: how many times as strong tissue is, and as hard to divide: some 25 in a scarred triangle
 --   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
@@ -379,16 +380,18 @@ end
 
 --- The cystic plate and what fills the triangle. Nothing of it is calibrated.
 function anatomy.tissue(p)
+  local divide = 2.5e6 * p.strength -- J/m^2
   local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
   local function fat(name, from, to, within, strands, more)
     local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
-      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength }
+      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide }
     for key, value in pairs(more or {}) do out[key] = value end
     return out
   end
   return {
     { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2, strands = count(60),
-      slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength },
+      slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength,
+      divide_energy = divide },
     fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
     fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
     fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),

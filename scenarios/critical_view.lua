@@ -1,0 +1,207 @@
+-- From the covered triangle to the divided duct and artery: the fundus is pushed over the liver's edge, the pouch drawn
+-- aside, Calot's triangle dissected to the critical view of safety, and then cystic duct and artery are clipped and
+-- divided, each between two clips on the patient's side and one on the specimen's. Fat at the hilum and most of that
+-- beside the common duct is gone already. The mistakes are a parameter, demo = "clumsy": current on the gallbladder
+-- until its wall is open, a clip on the common duct, one dropped, and a cut without view, time-out or clips.
+
+local calot = require "calot"
+local anatomy = require "anatomy"
+local technique = require "technique"
+local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
+
+local ports = {
+  scope = { -40 * mm, 20 * mm, 10 * mm },
+  epigastric = { -10 * mm, 120 * mm, -5 * mm },
+  applier = { -10 * mm, 110 * mm, -5 * mm },
+  blades = { 0, 0, 0 },
+}
+-- Where the fundus goes: towards the patient's right shoulder, over the liver.
+local up = { -0.33, 0.6, 0.73 }
+local lower_part = 0.4 -- of the gallbladder's way: its lower third in this field, from where its bed begins
+
+-- Calot's own triangle, whose upper side is the cystic artery: there is the tissue.
+local function view(t) return t:critical_view { hilum = "cystic_artery.start", lower_part = lower_part } end
+
+local function divide(t, tube, title)
+  t:step("divide_" .. tube, title, {
+    limit = 30 * s,
+    hint = "two clips on the patient's side, one on the specimen's, all across it with their tips in view; then a "
+      .. "time-out, and a cut between",
+  })
+  if t:wait_until(function() return t:divided(tube) end) then
+    t:note(tube .. "_patient_clips", technique.shut(t, tube .. ".patient"))
+    t:note(tube .. "_specimen_clips", technique.shut(t, tube .. ".specimen"))
+  end
+end
+
+-- Two clips that are shut stay with the patient, and one with what is taken out.
+local function judge_clips(run, tube)
+  local patient, specimen = run.notes[tube .. "_patient_clips"], run.notes[tube .. "_specimen_clips"]
+  if not patient then return 0, "it was never divided" end
+  local share = 0.4 * math.min(patient, 2) + 0.2 * math.min(specimen, 1)
+  return share, string.format("%d shut on the patient's side of 2, %d on the specimen's of 1", patient, specimen),
+    run:times("cut", tube)
+end
+
+local function expert(t)
+  local clips, cuts = technique.hand(t, "applier", ports.applier), technique.hand(t, "blades", ports.blades)
+  technique.take(t, t.hook, "artery_fat", {
+    port = ports.epigastric, tries = 6, hardest = 0.4 * N, keep_off = t:place("cystic_duct.end"),
+  })
+  technique.take(t, t.hook, "cystic_plate", {
+    port = ports.epigastric, tries = 30, hardest = 1 * N,
+    wanted = function(strand) return strand.share <= lower_part end,
+    is_done = function() return view(t).plate.points > 0 end,
+  })
+  t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
+  for _, plan in ipairs {
+    { tube = "cystic_duct", clips = { 0.60, 0.80, 0.88 }, cut = 0.70, open = 36 * deg, past = 4.5 * mm, bite = 4 * mm },
+    { tube = "cystic_artery", clips = { 0.64, 0.36, 0.25 }, cut = 0.50, open = 20 * deg, past = 4 * mm, bite = 6 * mm },
+  } do
+    clips.set_clips(plan.tube, plan.clips, plan.open, plan.past)
+    t:time_out("two structures and no more enter the gallbladder")
+    t.blades:open(36 * deg)
+    cuts.about(plan.tube, plan.cut, -25 * mm, 150 * mm / s)
+    cuts.about(plan.tube, plan.cut, plan.bite, 50 * mm / s)
+    t.blades:close()
+    t.blades:open(20 * deg)
+    cuts.back(40 * mm)
+  end
+end
+
+local function clumsy(t)
+  local clips, cuts = technique.hand(t, "applier", ports.applier), technique.hand(t, "blades", ports.blades)
+  t.hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -14 * mm, 0, 6 * mm } })
+  t.hook:activate(1 * s)
+  t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
+  clips.set_clips("common_duct", { 0.3 }, 36 * deg, 4.5 * mm)
+  t.applier:fire()
+  t.blades:open(36 * deg)
+  cuts.about("cystic_duct", 0.70, -25 * mm, 150 * mm / s)
+  cuts.about("cystic_duct", 0.70, 4 * mm, 50 * mm / s)
+  t.blades:close()
+  t.blades:open(20 * deg)
+  cuts.back(40 * mm)
+  t.blades:wait(2 * s)
+end
+
+return calot.exercise {
+  api = 1,
+  id = "critical-view",
+  title = "From exposure to the divided duct and artery",
+  time_limit = 180 * s,
+
+  params = {
+    demo = {
+      type = "choice",
+      default = "expert",
+      choices = { "expert", "clumsy" },
+      title = "how the demo goes about it: strand by strand, clips before cuts; or hastily",
+    },
+  },
+
+  scene = function()
+    return {
+      anatomy = anatomy.standard {
+        assistant = false,
+        cystic_duct_length = 26 * mm,
+        cystic_duct_diameter = 2.8 * mm,
+        cystic_artery_enters = { -2, -17, 10 },
+        cystic_artery_length = 24 * mm,
+        without = { "cystic_node", "hilar_fat" },
+        prepared = { triangle_fat = 0.75 },
+      },
+      ports = ports,
+      instruments = {
+        fundus = { port = "right_lateral", force_limit = 5 * N },
+        left = { port = "right_subcostal", force_limit = 5 * N },
+        hook = { type = "l_hook", port = "epigastric", force_limit = 3 * N, power = 40 },
+        applier = { type = "clip_applier", port = "applier" },
+        blades = { type = "scissors", port = "blades" },
+      },
+      laparoscope = { port = "scope", angle = 30 * deg, look_at = "cystic_duct.start", distance = 78 * mm },
+      solver = { motion = "dynamic" },
+    }
+  end,
+
+  steps = function(t)
+    t:step("lift", "Take the fundus and push it up over the liver's edge", {
+      limit = 20 * s,
+      hint = "close the jaws on a fold of the fundus and push it towards the patient's right shoulder",
+    })
+    local hung = t:place("gallbladder.fundus")
+    t:wait_until(function()
+      local way = technique.minus(t:place("gallbladder.fundus"), hung)
+      return t.fundus:holds("gallbladder") and technique.dot(way, up) > 15 * mm
+    end)
+    t:step("expose", "Draw the pouch to the side and down", {
+      limit = 15 * s,
+      hint = "Hartmann's pouch to the patient's right and down opens the triangle between duct and artery",
+    })
+    t:wait_until(function() return t.left:holds("gallbladder") end)
+    t:wait(1.5 * s)
+    t:step("triangle", "Clear the triangle between duct and artery with the hook", {
+      limit = 40 * s,
+      hint = "lay the hook on a strand, let current flow until it parts, and go to the next; keep off the ducts",
+    })
+    t:wait_until(function() return t:torn("artery_fat") == 1 or t:divided("cystic_duct") end)
+    t:step("plate", "Take the gallbladder's lower part off the cystic plate", {
+      limit = 40 * s,
+      hint = "where the lowest lobules of fat join gallbladder and liver, from the triangle's side",
+    })
+    t:wait_until(function() return t:divided("cystic_duct") or view(t).plate.points > 0 end)
+    t:wait(0.5 * s)
+    t:note("critical_view_points", t:divided("cystic_duct") and 0 or view(t).points)
+    divide(t, "cystic_duct", "Clip and divide the cystic duct")
+    if t:lost("bile") + t:lost("blood") > 0 then return t:wait(2 * s) end -- what runs is looked at, and it is over
+    divide(t, "cystic_artery", "Clip and divide the cystic artery")
+    t:wait(0.6 * s)
+  end,
+
+  demo = function(t, p)
+    t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
+    t.fundus:close()
+    t.fundus:move_by({ -6.5 * mm, 12.3 * mm, 14.5 * mm }, { speed = 20 * mm / s })
+    t:together(function()
+      t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })
+      t.left:close()
+      t.left:move_by({ -16 * mm, -18 * mm, 5 * mm }, { speed = 15 * mm / s })
+    end, function()
+      t.hook:rotate(180 * deg, { speed = 400 * deg / s }) -- its foot points to the patient's right
+      t.hook:move_to({ -30 * mm, 120 * mm, -80 * mm }, { speed = 60 * mm / s })
+    end)
+    t.left:wait(0.3 * s)
+    if p.demo == "expert" then expert(t) else clumsy(t) end
+  end,
+
+  score = calot.score.weighted {
+    { calot.score.critical_view {}, weight = 0.3 },
+    { calot.score.rule(function(run) return judge_clips(run, "cystic_duct") end), name = "duct_clips", weight = 0.15 },
+    { calot.score.rule(function(run) return judge_clips(run, "cystic_artery") end), name = "artery_clips",
+      weight = 0.15 },
+    { calot.score.rule(function(run) return technique.judge_stump(run, "cystic_duct") end), name = "duct_stump",
+      weight = 0.1 },
+    { calot.score.rule(function(run) return technique.judge_stump(run, "cystic_artery") end), name = "artery_stump",
+      weight = 0.1 },
+    { calot.score.benchmark { metric = "total.bile_lost_mL", novice = 1, expert = 0 }, weight = 0.05 },
+    { calot.score.benchmark { metric = "total.blood_lost_mL", novice = 1, expert = 0 }, weight = 0.05 },
+    { calot.score.procedure {
+      minor = { "slip", "dry_activation", "empty_cut", "clip_dropped" },
+      major = { "activation_beside", "activation_on_clip", "perforation" },
+    }, weight = 0.1 },
+    critical = { "overforce", "perforation", "cut_unclipped", "cut_liver" },
+    gates = {
+      { event = "injury", organ = "common_duct", reason = "the common duct was hurt" },
+      { event = "injury", organ = "right_hepatic_artery", reason = "the right hepatic artery was hurt" },
+      { event = "cut", metric = "note.critical_view_points", below = 5,
+        reason = "it was divided without the critical view" },
+      { event = "cut", only_after = "time_out", fails = false, cap = 70, reason = "it was divided without a time-out" },
+    },
+    cap = 40,
+    pass = 80,
+  },
+
+  golden = {
+    at = { 0, 8.5 * s, 10.4 * s, 13.8 * s, 17.6 * s, 19.6 * s, 32 * s, 35 * s, 38.4 * s, 42.4 * s, 46.4 * s },
+  },
+}

@@ -1,0 +1,148 @@
+-- What demos of several exercises do with their hands: strands taken with the hook, clips set and tubes cut; and small
+-- sums with points, { x, y, z } in the patient's frame.
+
+local calot = require "calot"
+local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
+
+local technique = {}
+
+-- ---- points
+
+function technique.plus(a, b, share)
+  share = share or 1
+  return { a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3] }
+end
+function technique.minus(a, b) return technique.plus(a, b, -1) end
+function technique.dot(a, b) return a[1] * b[1] + a[2] * b[2] + a[3] * b[3] end
+function technique.length(a) return math.sqrt(technique.dot(a, a)) end
+function technique.unit(a) return technique.plus({ 0, 0, 0 }, a, 1 / technique.length(a)) end
+
+local plus, minus, dot, length, unit =
+  technique.plus, technique.minus, technique.dot, technique.length, technique.unit
+
+-- ---- exposure
+
+--- Calot's triangle: the gallbladder's neck, where cystic and common duct meet, and where the common duct leaves the
+--- liver.
+function technique.triangle(t)
+  return t:place("cystic_duct.start"), t:place("cystic_duct.end"), t:place("common_duct.start")
+end
+
+--- At the union, between the cystic duct and the common hepatic duct, rad.
+function technique.angle_of_ducts(t)
+  local neck, union, hilum = technique.triangle(t)
+  return math.acos(dot(unit(minus(neck, union)), unit(minus(hilum, union))))
+end
+
+-- ---- the hook
+
+local function nearest_strand(t, hook, tissue, wanted)
+  local tip, best = hook:tip(), nil
+  for _, strand in ipairs(t:strands(tissue)) do
+    local far = length(minus(strand.middle, tip))
+    if wanted(strand) and (not best or far < best.far) then best = { at = strand.middle, far = far } end
+  end
+  return best
+end
+
+--- Strand by strand: the hook's foot comes down on the nearest one, and current flows until one has parted; else it
+--- comes down nearer to its heel. `how`: port, where its shaft comes from; tries, of a tenth of a second; hardest, the
+--- force that ends its way down; wanted(strand), if given, those that are taken; is_done(), if given, asked before each
+--- strand; keep_off, a place that current keeps off: beside it the heel comes down first, and the foot points away.
+function technique.take(t, hook, tissue, how)
+  local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.5 * mm, 1.5 * mm, -0.5 * mm }
+  local wanted = how.wanted or function() return true end
+  local missed = 0
+  while missed < 9 and not (how.is_done and how.is_done()) do
+    local strand = nearest_strand(t, hook, tissue, wanted)
+    if not strand then return end
+    local back = unit(minus(how.port, strand.at))
+    local beside = how.keep_off and length(minus(strand.at, how.keep_off)) < 10 * mm
+    local aim = plus(strand.at, { (beside and by_heel or reach)[missed % 3 + 1], 0, 0 })
+    hook:move_to(plus(aim, back, 5 * mm), { speed = 80 * mm / s })
+    local function lies_on_it()
+      local contact = hook:contact()
+      return contact ~= nil and contact.organ == tissue or hook:force() > how.hardest
+    end
+    hook:move_until(lies_on_it, { along = plus({ 0, 0, 0 }, back, -1), speed = 25 * mm / s, limit = 8 * mm })
+    local standing = #t:strands(tissue)
+    for _ = 1, how.tries do
+      if not hook:touching() or #t:strands(tissue) < standing then break end
+      hook:activate(0.1 * s)
+    end
+    missed = #t:strands(tissue) < standing and 0 or missed + 1
+    hook:move_by(plus({ 0, 0, 0 }, back, 5 * mm), { speed = 80 * mm / s })
+  end
+end
+
+-- ---- clips and scissors
+
+--- How many clips of a tube, or of a piece of one, are shut.
+function technique.shut(t, tube)
+  local count = 0
+  for _, clip in ipairs(t:clips(tube)) do
+    if clip.opening == 0 then count = count + 1 end
+  end
+  return count
+end
+
+-- How far a shaft from a port is to be turned for its jaws to open across a tube.
+local function roll_across(port, at, along)
+  local shaft = unit(minus(at, port))
+  local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
+  local x = { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) }
+  local y = { 0, -math.cos(pitch), -math.sin(pitch) }
+  return math.atan(-dot(x, along) / dot(y, along))
+end
+
+--- An instrument as a demo moves it about tubes: it knows how it is turned, and where its port is.
+function technique.hand(t, name, port)
+  local self = { tool = t[name], rolled = 0 }
+  --- Open jaws come about a tube, their tips that far past its middle.
+  function self.about(tube, share, past, speed)
+    local at, along = t:along(tube, share)
+    local turn = roll_across(port, at, along) - self.rolled
+    turn = turn - math.pi * math.floor(turn / math.pi + 0.5) -- jaws are alike on both sides
+    if math.abs(turn) > 15 * deg then
+      self.tool:rotate(turn, { speed = 300 * deg / s })
+      self.rolled = self.rolled + turn
+    end
+    self.tool:move_to(plus(at, unit(minus(at, port)), past), { speed = speed })
+  end
+  function self.back(way, speed)
+    self.tool:move_by(plus({ 0, 0, 0 }, unit(minus(port, self.tool:tip())), way), { speed = speed or 150 * mm / s })
+  end
+  --- Clips at these shares of a tube's way: jaws that come about it, then fire.
+  function self.set_clips(tube, shares, open, past)
+    self.tool:open(open)
+    self.about(tube, shares[1], -12 * mm, 150 * mm / s)
+    for _, share in ipairs(shares) do
+      self.about(tube, share, past, 40 * mm / s)
+      self.tool:fire()
+    end
+    self.back(25 * mm)
+  end
+  return self
+end
+
+--- A rule: a clip slides off a stump that is too short: how far a tube was cut from the nearest clip, on either side.
+function technique.judge_stump(run, tube)
+  local cuts = run:times("cut", tube)
+  if #cuts == 0 then return 0, "it was never cut" end
+  local nearest, behind = math.huge, cuts[1]
+  for _, cut in ipairs(run.events) do
+    for _, clip in ipairs(run.events) do
+      if cut.event == "cut" and cut.organ == tube and clip.event == "clip" and clip.organ:find(tube, 1, true) == 1
+        and clip.time < cut.time then
+        local distance = length(minus(clip.place, cut.place))
+        if distance < nearest then nearest, behind = distance, clip.time end
+      end
+    end
+  end
+  if nearest == math.huge then return 0, "there was no clip when it was cut", cuts end
+  local share = math.min(1, math.max(0, (nearest - 0.5 * mm) / (1.5 * mm)))
+  return share, string.format("it was cut %.1f mm from the nearest clip; 2 mm leave a stump", nearest / mm),
+    { behind, cuts[1] }
+end
+
+return technique
