@@ -174,8 +174,9 @@ return calot.exercise {
     if p.demo == "expert" then expert(t) else clumsy(t) end
   end,
 
+  -- The plate's far side is not reached from here: 5 points are all that there is.
   score = calot.score.weighted {
-    { calot.score.critical_view {}, weight = 0.3 },
+    { calot.score.critical_view { full = 5 }, weight = 0.3 },
     { calot.score.rule(function(run) return judge_clips(run, "cystic_duct") end), name = "duct_clips", weight = 0.15 },
     { calot.score.rule(function(run) return judge_clips(run, "cystic_artery") end), name = "artery_clips",
       weight = 0.15 },
