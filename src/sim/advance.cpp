@@ -452,6 +452,24 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   return out;
 }
 
+/// The tools' motion while organs stay. Near the load at which a fold gives way the tangent is all but singular, and no
+/// part of its answer can be believed: that says nothing of the room that there is, and the solve finds where organs go.
+Prediction of_tools_alone(Field& field, const Poses& from, const Poses& to, SolveStatistics& statistics) {
+  Prediction out;
+  out.dx = out.first_order = VecX::Zero(BodyParts(field).total());
+  out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
+  out.travel = largest_travel(field, to);
+  std::vector<ContactLoads> loads;
+  std::vector<std::vector<ContactPair>> pairs;
+  const Timed timed(statistics.contact_s);
+  for (Organ& organ : field.organs) {
+    loads.push_back(solve_loads(field, organ, from));
+    pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads.back(), out.travel));
+  }
+  keep_apart(field, loads, pairs, from, to, out);
+  return out;
+}
+
 Failure cannot_follow(const Field& field, const std::string& why, double done) {
   std::string tools;
   for (const Tool& tool : field.tools) {
@@ -526,6 +544,7 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
     Result<Prediction> answer = predict(field, from, to, fresh, statistics);
     if (answer && answer->share < 1.0 && !fresh) answer = predict(field, from, to, true, statistics);
     if (!answer) return answer.failure();
+    if (answer->share < smallest_share && from != to) answer = of_tools_alone(field, from, to, statistics);
     const Prediction& prediction = answer.value();
     // Organs that move by themselves have all the time there is: no tool stands where they begin to be looked for.
     double share = from == to ? 1.0 : prediction.share;
