@@ -37,10 +37,6 @@ void erase(Scene& scene, const World&) {
   std::erase_if(scene.meshes, [](const SceneMesh& mesh) { return mesh.material == liquid; });
 }
 
-void erase_blood(Scene& scene, const World&) {
-  std::erase_if(scene.meshes, [](const SceneMesh& mesh) { return mesh.material == Material::blood; });
-}
-
 void erase_clips(Scene& scene, const World& world) {
   for (const Organ& organ : world.field().organs)
     for (const SceneMesh& clip : clip_meshes(organ))
@@ -130,7 +126,7 @@ TEST(OperationErrors, EachMistakeOfTheDivisionIsAnEventCostsPointsAndIsSeen) {
       {EventKind::perforation, "gallbladder", erase<Material::bile>},
       {EventKind::injury, "common_duct", erase_clips},
       {EventKind::clip_dropped, "", nullptr},
-      {EventKind::cut_unclipped, "cystic_artery", erase<Material::blood>},
+      {EventKind::cut_unclipped, "cystic_duct", erase<Material::bile>},
   };
   const Playback clumsy("critical_view.lua", {{"demo", "clumsy"}}, mistakes);
   ASSERT_TRUE(clumsy.played) << clumsy.failure;
@@ -148,7 +144,7 @@ TEST(OperationErrors, EachMistakeOfTheDivisionIsAnEventCostsPointsAndIsSeen) {
 }
 
 TEST(OperationErrors, AnArteryThatIsCutUnclippedBleedsAndIsSeenToDoSo) {
-  const std::vector<Mistake> mistakes{{EventKind::cut_unclipped, "cystic_artery", erase_blood}};
+  const std::vector<Mistake> mistakes{{EventKind::cut_unclipped, "cystic_artery", erase<Material::blood>}};
   const Playback clumsy("clip_and_divide.lua", {{"demo", "clumsy"}, {"structure", "cystic_artery"}},
                         mistakes);
   ASSERT_TRUE(clumsy.played) << clumsy.failure;
