@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "lua/scenario_files.h"
+#include "session/runner.h"
 #include "sim/field.h"
 #include "sim/world.h"
 #include "support/long_run.h"
@@ -171,6 +172,33 @@ TEST(Anatomy, ADuctThatEndsNowhereIsRefused) {
   EXPECT_GT(failure.problems[0].place.line, 0);
   EXPECT_THAT(to_text(failure),
               ::testing::HasSubstr("duct.start ends nowhere: it lies 15.1 mm from 'stone'"));
+}
+
+TEST(Anatomy, APouchThatGivesWayBetweenFastJawsIsTakenHoldOf) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole field");
+  // As the jaws close its fold comes to a load at which the tangent is all but singular: no answer of the first order can
+  // be believed there.
+  test::ScenarioText text;
+  text.head = "local anatomy = require 'anatomy'\n";
+  text.scene =
+      "return { anatomy = anatomy.standard { cystic_artery_enters = { -2, -17, 10 },\n"
+      "  cystic_artery_length = 24 * mm, without = { 'cystic_node', 'hilar_fat' },\n"
+      "  prepared = { triangle_fat = 0.75 } },\n"
+      " instruments = { left = { port = 'right_subcostal' } }, solver = { motion = 'dynamic' },\n"
+      " laparoscope = { look_at = 'cystic_duct.middle' } }";
+  text.steps =
+      "t:step('take', 'Take the pouch', { limit = 3 * s })\n"
+      "t:wait_until(function() return t.left:holds('gallbladder') end)";
+  text.demo =
+      "t.left:approach('gallbladder.infundibulum', { speed = 100 * mm / s, depth = 4 * mm })\n"
+      "t.left:close()";
+  const Folder folder;
+  const auto script = load_text(folder, text.text());
+  ASSERT_TRUE(script) << to_text(script.failure());
+  World world = World::create(script.value()->definition().scene).value();
+  const SessionResult result = run_session(world, *script.value(), script.value()->demo(), {});
+  EXPECT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
+  EXPECT_EQ(result.metrics.at("left.grasps"), 1);
 }
 
 }  // namespace
