@@ -272,7 +272,8 @@ enum class ClipSize { m, ml };
 struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
   InstrumentType type = InstrumentType::atraumatic_grasper;
-  std::string port;
+  std::string
+      port;  ///< of several with one port the first is in it, and the others wait outside for an exchange
   double force_limit = 8.0;  ///< N at the tip; above it `overforce` is raised (d)
   double pinch_force = 6.8;  ///< N, each jaw on the fold it holds: what surgeons apply (c)
   double pad_friction =
@@ -294,7 +295,7 @@ enum class InstrumentAction {
   fire,      ///< what it carries is set: a clip
   irrigate,
   aspirate,
-  exchange,  ///< it leaves through its port for another one
+  exchange,  ///< it comes in through its port for the one that is there
 };
 
 /// In the order of the types.
@@ -307,7 +308,7 @@ bool has_jaws(InstrumentType type);
 const std::vector<std::string>& instrument_action_names();
 std::string to_text(InstrumentAction action);
 std::optional<InstrumentAction> instrument_action_called(const std::string& name);
-/// Whether an instrument of this type knows the action; each knows none.
+/// Whether an instrument of this type knows the action; each knows none and exchange.
 bool has_action(InstrumentType type, InstrumentAction action);
 /// The one that its pedal or trigger asks for; none: it has neither.
 InstrumentAction main_action(InstrumentType type);

@@ -123,7 +123,8 @@ std::optional<InstrumentAction> instrument_action_called(const std::string& name
 
 bool has_action(InstrumentType type, InstrumentAction action) {
   const std::vector<InstrumentAction>& known = instrument_row(type).actions;
-  return action == InstrumentAction::none || std::find(known.begin(), known.end(), action) != known.end();
+  return action == InstrumentAction::none || action == InstrumentAction::exchange ||
+         std::find(known.begin(), known.end(), action) != known.end();
 }
 
 InstrumentAction main_action(InstrumentType type) {

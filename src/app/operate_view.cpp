@@ -35,8 +35,8 @@ void ViewMaker::look(const World& world, const Progress& progress) {
   const std::vector<InstrumentDefinition>& definitions = world.scene().instruments;
   for (std::size_t i = 0; i < definitions.size(); ++i) {
     const InstrumentState& state = report.instruments[i];
-    view->hands.push_back(
-        {definitions[i].name, state.holds, state.tip_force.norm(), definitions[i].force_limit, state.pose});
+    view->hands.push_back({definitions[i].name, state.holds, state.tip_force.norm(),
+                           definitions[i].force_limit, state.pose, state.waits});
   }
   view->hands.push_back({laparoscope_name, "", 0, 0, report.laparoscope.pose});
   latest_.put(std::move(view));

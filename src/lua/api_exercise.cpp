@@ -150,10 +150,11 @@ KeyTable critical_view_options() {
 }
 
 std::vector<KeyTable> option_tables() {
-  const auto speed = [] {
-    return number("speed", quantity::speed, 0.1 * mm / s, 500 * mm / s,
-                  written(default_speed, quantity::speed), "largest speed of the tip");
+  const auto speed_of = [](double usual) {
+    return number("speed", quantity::speed, 0.1 * mm / s, 500 * mm / s, written(usual, quantity::speed),
+                  "largest speed of the tip");
   };
+  const auto speed = [&] { return speed_of(default_speed); };
   return {
       {"step_options",
        "Options of t:step.",
@@ -165,6 +166,10 @@ std::vector<KeyTable> option_tables() {
        "Options of a rotation.",
        {number("speed", quantity::angle, 1 * deg, 1000 * deg, written(default_turning_speed, quantity::angle),
                "largest angular speed, rad/s")}},
+      keys_of<Exchange>("exchange_options", "Options of an exchange.",
+                        {bound(speed_of(Exchange{}.speed), &Exchange::speed),
+                         number("duration", &Exchange::duration, quantity::time, 0, 60 * s, "",
+                                "what an assistant takes to change one for the other")}),
       keys_of<MoveUntil>(
           "move_until_options", "Options of a motion that ends when a condition holds.",
           {along(), text("towards", &MoveUntil::towards, "a landmark to move towards, instead of along"),

@@ -292,6 +292,11 @@ std::vector<ApiFunction> instrument_functions() {
       {"Instrument", "handle_force", "Force felt at its handle, N.", {}, "number"},
       {"Instrument", "touching", "Whether it touches tissue, or the part named does.", {part}, "boolean"},
       {"Instrument",
+       "waits",
+       "Whether it waits outside, while another instrument is in its port.",
+       {},
+       "boolean"},
+      {"Instrument",
        "active",
        "Whether current flows in it. An error for an instrument without current.",
        {},
@@ -340,6 +345,15 @@ std::vector<ApiFunction> instrument_functions() {
        "fire",
        "Sets a clip on what is between its jaws. An error for an instrument without clips.",
        {},
+       ""},
+      {"DemoInstrument",
+       "exchange",
+       "Has it come in, where it waits outside while another one is in its port: that one is drawn back "
+       "along its "
+       "shaft, closed and taken out, and this one comes in closed, 30 mm deep, on the same way. Instruments "
+       "with one "
+       "port are exchanged so; the first of the scene is in it at the start.",
+       {table("options", "exchange_options", "how fast")},
        ""},
       {"DemoInstrument", "move_to", "Moves the tip straight to a place.", {target, options}, ""},
       {"DemoInstrument",

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <set>
 
 #include "base/units.h"
 #include "script/lua_headers.h"
+#include "sim/exchange.h"
 
 namespace calot {
 namespace {
@@ -15,11 +17,22 @@ constexpr double jaw_duration = 0.5;         // s to open or close
 constexpr double least_insertion = 25e-3;    // m: the jaws and a little more, out of the port
 constexpr double dry_motion_duration = 0.1;  // s: what a motion counts for in a dry run
 
+/// Of several with one port all but the first.
+std::vector<char> wait_at_start(const std::vector<InstrumentDefinition>& instruments) {
+  std::set<std::string> taken;
+  std::vector<char> out;
+  for (const InstrumentDefinition& instrument : instruments)
+    out.push_back(taken.insert(instrument.port).second ? 0 : 1);
+  return out;
+}
+
 }  // namespace
 
 DemoScript::DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
                        const Parameters& parameters, std::vector<Problem>* problems)
-    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", parameters, problems), function_(function) {}
+    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", parameters, problems),
+      function_(function),
+      waits_(wait_at_start(exercise.scene.instruments)) {}
 
 double DemoScript::time() const {
   if (checking()) return dry_time();
@@ -56,6 +69,7 @@ void DemoScript::make_paths(const World& world) {
   }
   flows_.resize(paths_.size());
   fires_.resize(paths_.size());
+  comings_.resize(paths_.size());
 }
 
 Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt) {
@@ -65,8 +79,8 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   set_world(&world);
   step_start_ = world.report().time;
   const double end = step_start_ + dt;
-  std::optional<Failure> failure;
-  if (tasks_.empty()) {
+  std::optional<Failure> failure = check_exchanges(world);
+  if (!failure && tasks_.empty()) {
     make_paths(world);
     failure = start();
   }
@@ -75,7 +89,10 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   set_world(nullptr);
   if (failure) return *failure;
   StepInput input;
-  for (const InstrumentPath& path : paths_) input.instruments.push_back(path.pose(end));
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const InstrumentState& state = world.report().instruments[i];
+    input.instruments.push_back(state.waits ? state.pose : paths_[i].pose(end));
+  }
   input.actions = actions(end);
   input.acts = std::exchange(acts_, {});
   return {std::optional<StepInput>(std::move(input))};
@@ -287,8 +304,28 @@ bool DemoScript::can_open(lua_State* L, int instrument, double jaw) {
   return false;
 }
 
+int DemoScript::in_port_of(int waiting) const {
+  const std::vector<InstrumentDefinition>& all = scene().instruments;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (waits_[i] == 0 && all[i].port == all[static_cast<std::size_t>(waiting)].port)
+      return static_cast<int>(i);
+  return waiting;
+}
+
+bool DemoScript::is_in_port(lua_State* L, int instrument) {
+  if (!waits(instrument)) return true;
+  const std::vector<InstrumentDefinition>& all = scene().instruments;
+  const std::string& name = all[static_cast<std::size_t>(instrument)].name;
+  complain(L,
+           fmt::format("{} waits outside: {} is in its port", name,
+                       all[static_cast<std::size_t>(in_port_of(instrument))].name),
+           fmt::format("have it come in first: t.{}:exchange()", name));
+  return false;
+}
+
 template <typename Motion>
 int DemoScript::play_motion(lua_State* L, int instrument, double dry_duration, const Motion& motion) {
+  if (!is_in_port(L, instrument)) return 0;
   if (checking() && !has_world()) return dry_wait(L, dry_duration);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
@@ -357,6 +394,7 @@ int DemoScript::dry_move_until(lua_State* L, const MoveUntil& how) {
 }
 
 int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
+  if (!is_in_port(L, instrument)) return 0;
   if (checking() && !has_world()) return dry_move_until(L, how);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
@@ -396,6 +434,50 @@ int DemoScript::fire(lua_State* L, int instrument) {
   });
 }
 
+int DemoScript::exchange(lua_State* L, int instrument, const Exchange& how) {
+  const auto i = static_cast<std::size_t>(instrument);
+  if (!waits(instrument)) {
+    complain(L, fmt::format("{} is in its port already", scene().instruments[i].name),
+             "exchange is for an instrument that waits outside, as others of its port do at the start");
+    return 0;
+  }
+  const auto there = static_cast<std::size_t>(in_port_of(instrument));
+  if (checking() && !has_world()) {
+    std::swap(waits_[i], waits_[there]);
+    return dry_wait(L, how.duration);
+  }
+  InstrumentPath* leaving = free_path(L, static_cast<int>(there));
+  if (leaving == nullptr) return 0;
+  const Vec3 way = (leaving->tip() - leaving->trocar()).normalized();
+  leaving->move(current(L)->clock, leaving->trocar() + port_depth * way, how.speed);
+  if (leaving->jaw() > 0) leaving->set_jaw(leaving->busy_until(), 0, jaw_duration);
+  const double out = leaving->busy_until();
+  InstrumentPose pose = leaving->pose(out);
+  pose.jaw = 0;
+  paths_[i] = InstrumentPath(leaving->trocar(), pose, geometry(instrument));
+  comings_[i] = Coming{out, sandbox().place_of(L)};
+  std::swap(waits_[i], waits_[there]);
+  return sleep_until(L, out + how.duration);
+}
+
+/// Those that were asked to come in with the last step have.
+std::optional<Failure> DemoScript::check_exchanges(const World& world) {
+  for (std::size_t i = 0; i < comings_.size(); ++i) {
+    if (!comings_[i] || comings_[i]->at) continue;
+    const Place place = comings_[i]->place;
+    comings_[i].reset();
+    if (!world.report().instruments[i].waits) continue;
+    const std::string& name = scene().instruments[i].name;
+    std::string why;
+    for (const WorldEvent& event : world.report().events)
+      if (event.kind == EventKind::blocked_exchange && event.instrument == name) why = event.text;
+    return fail(FailureKind::scenario, fmt::format("{} cannot come in: {}", name, why),
+                "let go of what is held, and draw the instrument back, before t." + name + ":exchange()",
+                place);
+  }
+  return std::nullopt;
+}
+
 /// What each instrument does in the step that ends then: current flows for a while, a trigger is pulled once.
 std::vector<InstrumentAction> DemoScript::actions(double end) {
   std::vector<InstrumentAction> out;
@@ -403,9 +485,14 @@ std::vector<InstrumentAction> DemoScript::actions(double end) {
     const Flow& flow = flows_[i];
     const bool flows = flow.from < end - slack && end <= flow.to + slack;
     out.push_back(flows ? InstrumentAction::activate : InstrumentAction::none);
-    if (!fires_[i] || *fires_[i] >= end - slack) continue;
-    out.back() = InstrumentAction::fire;
-    fires_[i].reset();
+    if (fires_[i] && *fires_[i] < end - slack) {
+      out.back() = InstrumentAction::fire;
+      fires_[i].reset();
+    }
+    if (comings_[i] && comings_[i]->at && *comings_[i]->at < end - slack) {
+      out.back() = InstrumentAction::exchange;
+      comings_[i]->at.reset();
+    }
   }
   return out;
 }

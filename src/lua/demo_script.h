@@ -29,6 +29,11 @@ struct MoveUntil {
   double limit = 20e-3;       ///< m
 };
 
+struct Exchange {
+  double speed = 150e-3;  ///< m/s, of the tip of the instrument that is drawn out
+  double duration = 3;    ///< s that an assistant takes to change one for the other (d)
+};
+
 class DemoScript final : public ScriptSession, public InputSource {
  public:
   /// `function` is a registry reference; 0: there is no demo, and the source ends at once.
@@ -56,6 +61,10 @@ class DemoScript final : public ScriptSession, public InputSource {
   int activate(lua_State* L, int instrument, double duration);
   /// Sets a clip, and waits until the trigger is let go.
   int fire(lua_State* L, int instrument);
+  /// Has an instrument that waits come in: the one in its port is drawn back there, taken out, and this one brought in.
+  int exchange(lua_State* L, int instrument, const Exchange& how);
+  /// Whether it waits outside, as far as the script has come.
+  bool waits(int instrument) const { return waits_[static_cast<std::size_t>(instrument)] != 0; }
   void act(lua_State* L, EventKind kind, const std::string& text);
   int rotate(lua_State* L, int instrument, double angle, double speed);
 
@@ -92,6 +101,10 @@ class DemoScript final : public ScriptSession, public InputSource {
   template <typename Motion>
   int play_motion(lua_State* L, int instrument, double dry_duration, const Motion& motion);
   InstrumentPath* free_path(lua_State* L, int instrument);
+  /// The instrument in the port of one that waits.
+  int in_port_of(int waiting) const;
+  bool is_in_port(lua_State* L, int instrument);
+  std::optional<Failure> check_exchanges(const World& world);
   bool can_reach(lua_State* L, const InstrumentPath& path, const Vec3& tip);
   bool can_open(lua_State* L, int instrument, double jaw);
   std::vector<InstrumentAction> actions(double end);
@@ -115,6 +128,13 @@ class DemoScript final : public ScriptSession, public InputSource {
   std::vector<Flow> flows_;
   std::vector<SessionAct> acts_;              ///< since the last step
   std::vector<std::optional<double>> fires_;  ///< s, one an instrument: when its trigger is pulled next
+  std::vector<char> waits_;                   ///< one an instrument
+  /// Of an instrument that comes in: when, s, and where the script says so.
+  struct Coming {
+    std::optional<double> at;  ///< none once it was asked for
+    Place place;
+  };
+  std::vector<std::optional<Coming>> comings_;  ///< one an instrument
   int running_ = -1;
   double step_start_ = 0;  ///< s: the world's time in the present call
 };

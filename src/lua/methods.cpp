@@ -294,6 +294,17 @@ int active(lua_State* L) {
   return 1;
 }
 
+int waits(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "waits");
+  bool waits = instrument_state(L, "waits").waits;
+  if (const auto* demo = dynamic_cast<const DemoScript*>(target.session); demo != nullptr)
+    waits = demo->waits(target.instrument);
+  else if (target.session->checking())
+    waits = target.session->next_guess();
+  lua_pushboolean(L, waits);
+  return 1;
+}
+
 int clips_left(lua_State* L) {
   const HandleTarget target = instrument_target(L, "clips_left");
   target.session->can_act(L, target.instrument, InstrumentAction::fire, "clips_left");
@@ -601,6 +612,14 @@ int fire(lua_State* L) {
   return call.demo.fire(L, call.instrument);
 }
 
+int exchange(lua_State* L) {
+  const DemoCall call = demo_call(L, "exchange");
+  Arguments arguments(L, call.demo, "DemoInstrument", "exchange");
+  Exchange how;
+  arguments.options("exchange_options").read(how);
+  return arguments.finish() ? call.demo.exchange(L, call.instrument, how) : 0;
+}
+
 int instrument_wait(lua_State* L) {
   const DemoCall call = demo_call(L, "wait");
   const Arguments arguments(L, call.demo, "DemoInstrument", "wait");
@@ -646,6 +665,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Instrument", "handle_force", guarded<handle_force>},
                           {"Instrument", "touching", guarded<touching>},
                           {"Instrument", "active", guarded<active>},
+                          {"Instrument", "waits", guarded<waits>},
                           {"Instrument", "tip", guarded<tip>},
                           {"Instrument", "distance", guarded<distance>},
                           {"Instrument", "force_vector", guarded<force_vector>},
@@ -660,6 +680,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"DemoInstrument", "close", guarded<close>},
                           {"DemoInstrument", "activate", guarded<activate>},
                           {"DemoInstrument", "fire", guarded<fire>},
+                          {"DemoInstrument", "exchange", guarded<exchange>},
                           {"DemoInstrument", "move_to", guarded<move_to>},
                           {"DemoInstrument", "move_by", guarded<move_by>},
                           {"DemoInstrument", "rotate", guarded<rotate>},

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "sim/exchange.h"
 #include "sim/tool.h"
 
 namespace calot {
@@ -39,14 +40,14 @@ double most(const std::vector<double>& values) {
 
 /// Share of the way to `to` that an instrument may go in dt.
 double share_within_speed(const LiveInstrument& instrument, const InstrumentPose& from,
-                          const InstrumentPose& to, double dt) {
+                          const InstrumentPose& to, double tip_speed, double dt) {
   const auto tip = [&](const InstrumentPose& pose) {
     return tip_position(instrument.trocar, pose, instrument.geometry);
   };
   const double way = (tip(to) - tip(from)).norm();
   const double turn = std::max(std::abs(to.roll - from.roll), std::abs(to.jaw - from.jaw));
-  return std::min({1.0, way > 0 ? LiveSource::most_tip_speed * dt / way : 1.0,
-                   turn > 0 ? LiveSource::most_turn_speed * dt / turn : 1.0});
+  return std::min(
+      {1.0, way > 0 ? tip_speed * dt / way : 1.0, turn > 0 ? LiveSource::most_turn_speed * dt / turn : 1.0});
 }
 
 }  // namespace
@@ -132,6 +133,7 @@ LiveSource::LiveSource(std::vector<LiveInstrument> instruments, LiveMailbox& mai
 Result<std::optional<StepInput>> LiveSource::next(const World& world, double dt) {
   if (!begun_) begin(world);
   note_step();
+  note_exchanges(world);
   const bool goes_on =
       options_.stamped ? take_stamped(world.report().time + dt + time_slack) : wait_until_due(dt);
   if (!goes_on) return conclude();
@@ -147,6 +149,8 @@ void LiveSource::begin(const World& world) {
   asked_.instruments.push_back(world.report().laparoscope.pose);
   asked_.actions.assign(asked_.instruments.size(), InstrumentAction::none);
   given_ = asked_;
+  states_now_ = world.report().instruments;
+  told_to_wait_.assign(states_now_.size(), 0);
   started_ = options_.begins_at_once || options_.stamped;
   last_input_ = due_ = clock_.now();
 }
@@ -240,10 +244,61 @@ void LiveSource::apply(const LiveMailbox::Sent& sent) {
   if (const auto* remark = std::get_if<LiveRemark>(&sent.event)) say(remark->text);
 }
 
+/// Whether the input is one of an instrument that waits, which asks for it to come in or changes nothing, or of one
+/// that is being drawn back.
+bool LiveSource::is_exchange(const LiveInput& input) {
+  const auto i = static_cast<std::size_t>(input.instrument);
+  if (i >= states_now_.size()) return false;
+  for (const Exchange& exchange : exchanges_)
+    if (exchange.coming == input.instrument || exchange.leaving == input.instrument) return true;
+  if (!states_now_[i].waits) return false;
+  const auto in_port = [&](std::size_t k) {
+    return !states_now_[k].waits && instruments_[k].definition.port == instruments_[i].definition.port;
+  };
+  std::size_t there = 0;
+  while (!in_port(there)) ++there;
+  const std::string &name = instruments_[i].definition.name, &other = instruments_[there].definition.name;
+  if (input.action != InstrumentAction::exchange) {
+    if (std::exchange(told_to_wait_[i], 1) == 0)
+      say(fmt::format("{} waits outside, and {} is in its port: the action exchange has it come in.", name,
+                      other));
+  } else if (!states_now_[there].holds.empty()) {
+    say(fmt::format("{} cannot come in: {} holds {}.", name, other, states_now_[there].holds));
+  } else {
+    exchanges_.push_back({input.instrument, static_cast<int>(there)});
+    asked_.instruments[there] = given_.instruments[there];
+    asked_.instruments[there].insertion = std::min(port_depth, given_.instruments[there].insertion);
+    asked_.actions[there] = InstrumentAction::none;
+  }
+  return true;
+}
+
+/// What came of those that were asked to come in; whoever changed places is where the world has it.
+void LiveSource::note_exchanges(const World& world) {
+  const StepReport& report = world.report();
+  for (std::size_t i = 0; i < states_now_.size(); ++i)
+    if (report.instruments[i].waits != states_now_[i].waits)
+      asked_.instruments[i] = given_.instruments[i] = report.instruments[i].pose;
+  states_now_ = report.instruments;
+  for (const Exchange& exchange : exchanges_) {
+    if (!exchange.asked) continue;
+    const std::string& name = instruments_[static_cast<std::size_t>(exchange.coming)].definition.name;
+    for (const WorldEvent& event : report.events) {
+      if (event.instrument != name) continue;
+      if (event.kind == EventKind::exchange) say(fmt::format("{} came in for {}.", name, event.text));
+      if (event.kind == EventKind::blocked_exchange)
+        say(fmt::format("{} cannot come in: {}.", name, event.text));
+    }
+  }
+  std::erase_if(exchanges_, [](const Exchange& exchange) { return exchange.asked; });
+}
+
 void LiveSource::apply(const LiveInput& input, double at) {
   const auto i = static_cast<std::size_t>(input.instrument);
-  asked_.instruments[i] = input.pose;
-  asked_.actions[i] = input.action;
+  if (!is_exchange(input)) {
+    asked_.instruments[i] = input.pose;
+    asked_.actions[i] = input.action;
+  }
   ++figures_.inputs;
   if (!started_) {
     started_ = true;
@@ -328,11 +383,21 @@ StepInput LiveSource::follow(double dt) {
   for (std::size_t i = 0; i < instruments_.size(); ++i) {
     InstrumentPose& pose = given_.instruments[i];
     const InstrumentPose& to = asked_.instruments[i];
-    const double share = share_within_speed(instruments_[i], pose, to, dt);
-    lags = lags || share < 1;
+    const bool drawn_back = std::any_of(exchanges_.begin(), exchanges_.end(), [&](const Exchange& exchange) {
+      return exchange.leaving == static_cast<int>(i);
+    });
+    const double share =
+        share_within_speed(instruments_[i], pose, to, drawn_back ? withdrawing_speed : most_tip_speed, dt);
+    lags = lags || (share < 1 && !drawn_back);
     pose = share < 1 ? interpolate(pose, to, share) : to;
   }
   given_.actions = asked_.actions;
+  for (Exchange& exchange : exchanges_) {
+    const auto leaving = static_cast<std::size_t>(exchange.leaving);
+    if (given_.instruments[leaving] != asked_.instruments[leaving]) continue;
+    given_.actions[static_cast<std::size_t>(exchange.coming)] = InstrumentAction::exchange;
+    exchange.asked = true;
+  }
   given_.acts = std::exchange(asked_.acts, {});
   figures_.following_steps += lags ? 1 : 0;
   StepInput input = given_;

@@ -136,6 +136,8 @@ class LiveSource : public InputSource {
   /// An instrument goes after what is asked of it at this speed and no faster: a jump of a tracker or the first place of
   /// all is not a blow. m/s at the tip; rad/s about the shaft and between the jaws.
   static constexpr double most_tip_speed = 1.0, most_turn_speed = 12.0;
+  /// m/s, of an instrument that is drawn back into its port for another one to come in.
+  static constexpr double withdrawing_speed = 0.15;
 
   LiveSource(std::vector<LiveInstrument> instruments, LiveMailbox& mailbox, LiveOptions options,
              LiveClock& clock = steady_clock());
@@ -163,6 +165,8 @@ class LiveSource : public InputSource {
   bool stopped() const { return options_.stop != nullptr && *options_.stop; }
   bool over() const { return !ended_by_.empty() || stopped(); }
   void refuse(const Problem& problem);
+  bool is_exchange(const LiveInput& input);
+  void note_exchanges(const World& world);
   void say(const std::string& text) const;
   Result<std::optional<StepInput>> conclude() const;
   StepInput follow(double dt);
@@ -171,8 +175,16 @@ class LiveSource : public InputSource {
   LiveMailbox& mailbox_;
   LiveOptions options_;
   LiveClock& clock_;
-  StepInput asked_, given_;               ///< the laparoscope is the last of their instruments
-  bool begun_ = false, started_ = false;  ///< called at all; an input has come, or need not
+  StepInput asked_, given_;  ///< the laparoscope is the last of their instruments
+  /// An instrument that comes in, and the one that is drawn back for it.
+  struct Exchange {
+    int coming = 0, leaving = 0;
+    bool asked = false;  ///< of the world, in the running step
+  };
+  std::vector<Exchange> exchanges_;
+  std::vector<InstrumentState> states_now_;  ///< of the world, but for the laparoscope
+  std::vector<char> told_to_wait_;           ///< the operator knows that it waits
+  bool begun_ = false, started_ = false;     ///< called at all; an input has come, or need not
   bool paused_ = false;
   std::optional<double> lost_at_;
   std::string ended_by_;

@@ -42,9 +42,12 @@ double sum_of_straight_legs(const std::vector<MotionSample>& motion, const std::
   return sum + (motion.back().tip - from).norm();
 }
 
-/// Idle spells and the span between the first and the last movement.
-void measure_idleness(const std::vector<MotionSample>& motion, const std::string& prefix, Metrics& metrics) {
+/// Idle spells, and when it first and last moved, s; before 0: never.
+struct Idleness {
   double idle = 0, first_move = -1, last_move = -1;
+};
+
+void add_idleness(const std::vector<MotionSample>& motion, Idleness& sum) {
   std::size_t i = 0;
   while (i + 1 < motion.size()) {
     const auto slow = [&](std::size_t k) {
@@ -54,32 +57,54 @@ void measure_idleness(const std::vector<MotionSample>& motion, const std::string
     while (end + 1 < motion.size() && slow(end) == slow(i)) ++end;
     const double span = motion[end].time - motion[i].time;
     if (slow(i) && span >= idle_duration) {
-      idle += span;
+      sum.idle += span;
     } else if (!slow(i)) {
-      if (first_move < 0) first_move = motion[i].time;
-      last_move = motion[end].time;
+      if (sum.first_move < 0) sum.first_move = motion[i].time;
+      sum.last_move = motion[end].time;
     }
     i = end;
   }
-  metrics[prefix + "idle_time_s"] = idle;
-  metrics[prefix + "time_s"] = first_move < 0 ? 0.0 : last_move - first_move;
 }
 
-void measure_motion(const std::vector<MotionSample>& motion, const std::vector<double>& ends,
+/// Its motion while it was in its port, a part for each stay: what waits outside does not move.
+std::vector<std::vector<MotionSample>> stays_in_port(const std::vector<double>& time,
+                                                     const std::vector<InstrumentSample>& samples) {
+  std::vector<std::vector<MotionSample>> out;
+  std::size_t begin = 0;
+  while (begin < samples.size()) {
+    std::size_t end = begin + 1;
+    while (end < samples.size() && samples[end].waits == samples[begin].waits) ++end;
+    const auto part = [&](const auto& all) {
+      return std::vector(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                         all.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    if (!samples[begin].waits) out.push_back(processed_motion(part(time), part(samples)));
+    begin = end;
+  }
+  return out;
+}
+
+void measure_motion(const std::vector<std::vector<MotionSample>>& stays, const std::vector<double>& ends,
                     const std::string& prefix, Metrics& metrics) {
-  double path = 0, depth = 0, angle = 0, roll = 0;
-  for (std::size_t i = 0; i + 1 < motion.size(); ++i) {
-    path += (motion[i + 1].tip - motion[i].tip).norm();
-    depth += std::abs(motion[i + 1].insertion - motion[i].insertion);
-    angle += angle_between(motion[i].axis, motion[i + 1].axis);
-    roll += std::abs(motion[i + 1].roll - motion[i].roll);
+  double path = 0, depth = 0, angle = 0, roll = 0, straight = 0;
+  Idleness idleness;
+  for (const std::vector<MotionSample>& motion : stays) {
+    for (std::size_t i = 0; i + 1 < motion.size(); ++i) {
+      path += (motion[i + 1].tip - motion[i].tip).norm();
+      depth += std::abs(motion[i + 1].insertion - motion[i].insertion);
+      angle += angle_between(motion[i].axis, motion[i + 1].axis);
+      roll += std::abs(motion[i + 1].roll - motion[i].roll);
+    }
+    straight += sum_of_straight_legs(motion, ends);
+    add_idleness(motion, idleness);
   }
   metrics[prefix + "path_length_mm"] = path / units::mm;
   metrics[prefix + "depth_perception_mm"] = depth / units::mm;
   metrics[prefix + "angular_path_deg"] = angle / units::deg;
   metrics[prefix + "response_orientation_deg"] = roll / units::deg;
-  if (path > smallest_path) metrics[prefix + "economy"] = sum_of_straight_legs(motion, ends) / path;
-  measure_idleness(motion, prefix, metrics);
+  if (path > smallest_path) metrics[prefix + "economy"] = straight / path;
+  metrics[prefix + "idle_time_s"] = idleness.idle;
+  metrics[prefix + "time_s"] = idleness.first_move < 0 ? 0.0 : idleness.last_move - idleness.first_move;
 }
 
 void measure_activation(const std::vector<double>& time, const std::vector<InstrumentSample>& samples,
@@ -219,8 +244,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"cuts", instrument, "how often it divided something", EventKind::cut, true},
       {"cuts_unclipped", instrument, "how often it divided a duct or a vessel that was not clipped",
        EventKind::cut_unclipped, true},
-      {"perforations", instrument, "how often it opened a hollow organ's wall",
-       EventKind::perforation, true},
+      {"perforations", instrument, "how often it opened a hollow organ's wall", EventKind::perforation, true},
       {"liver_cuts", instrument, "how often its blades closed on the liver", EventKind::cut_liver, true},
       {"empty_cuts", instrument, "how often its blades closed on nothing", EventKind::empty_cut, true},
       {"peak_pressure_Pa", organ, "largest pressure of its filling"},
@@ -286,9 +310,9 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
   Metrics metrics = progress.metrics();
   for (std::size_t i = 0; i < traces.instruments.size(); ++i) {
     const std::string& name = scene.instruments[i].name;
-    const std::vector<MotionSample> motion = processed_motion(traces.time, traces.instruments[i]);
-    if (motion.empty()) continue;
-    measure_motion(motion, leg_ends(progress, name), name + ".", metrics);
+    if (traces.instruments[i].empty()) continue;
+    measure_motion(stays_in_port(traces.time, traces.instruments[i]), leg_ends(progress, name), name + ".",
+                   metrics);
     measure_forces(traces.instruments[i], name + ".", metrics);
     measure_activation(traces.time, traces.instruments[i], name + ".", metrics);
     count_events(progress, name, metrics);

@@ -21,6 +21,7 @@ struct InstrumentSample {
   double handle_force = 0;                 ///< N, magnitude
   double jaws_force = 0, shaft_force = 0;  ///< N, magnitudes; what the jaws hold pulls on them
   bool active = false;                     ///< current flowed in the step that ended here
+  bool waits = false;                      ///< outside, while another one was in its port
 };
 
 struct OrganSample {

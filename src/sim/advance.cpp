@@ -309,7 +309,9 @@ MissedMotion missed_by(const Prediction& answer, double share, const GroupSnapsh
 }
 
 /// Whether the last factor answered the last motion well: a new one takes as long as three iterations.
-bool factor_serves(const Group& group) { return group.missed.dx.size() > 0 && group.missed.by_last_factor <= 3; }
+bool factor_serves(const Group& group) {
+  return group.missed.dx.size() > 0 && group.missed.by_last_factor <= 3;
+}
 
 /// What of dx is a body's: organs, then tissues.
 class BodyParts {
@@ -483,12 +485,6 @@ Failure cannot_follow(const Field& field, const std::string& why, double done) {
                   why),
       "move more slowly or less far, keep the tool out of the tissue it already squeezes, or give the "
       "organ more nodes where it is handled");
-}
-
-std::string held_organ(const Field& field, int instrument) {
-  for (const Organ& organ : field.organs)
-    if (grip_count(organ, instrument) > 0) return organ.definition.name;
-  return {};
 }
 
 /// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost.

@@ -38,6 +38,8 @@ enum class EventKind {
   bile_leak,
   bleeding,
   leak_stopped,
+  exchange,
+  blocked_exchange,
   step_done,
   step_timeout,
 };

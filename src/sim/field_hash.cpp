@@ -152,7 +152,7 @@ void add_pose(Hash& hash, const InstrumentPose& pose) {
 
 void add_tool(Hash& hash, const Tool& tool) {
   const int grip = (tool.slipping ? 1 : 0) | (tool.lost ? 2 : 0) | (tool.beside ? 4 : 0) |
-                   static_cast<int>(tool.action) << 3 | (tool.has_cut ? 64 : 0);
+                   static_cast<int>(tool.action) << 3 | (tool.has_cut ? 64 : 0) | (tool.waits ? 128 : 0);
   hash.add(tool.jaw_stopped);
   hash.add(static_cast<unsigned char>(grip));
   if (has_action(tool.definition.type, InstrumentAction::fire)) hash.add(tool.clips);

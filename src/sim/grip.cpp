@@ -56,6 +56,12 @@ int grip_count(const Organ& organ, int instrument) {
                                         [&](const GripPoint& g) { return g.instrument == instrument; }));
 }
 
+std::string held_organ(const Field& field, int instrument) {
+  for (const Organ& organ : field.organs)
+    if (grip_count(organ, instrument) > 0) return organ.definition.name;
+  return {};
+}
+
 bool both_pads_hold(const Field& field, int instrument) {
   for (const Organ& organ : field.organs) {
     bool holds[2] = {false, false};

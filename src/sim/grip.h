@@ -26,6 +26,9 @@ void make_room(Field& field, int instrument, double jaw);
 /// Skin points of the organ that tool `instrument` grips.
 int grip_count(const Organ& organ, int instrument);
 
+/// Name of the first organ of which a tool holds something; empty: none.
+std::string held_organ(const Field& field, int instrument);
+
 /// True while skin of one organ is held by both pads.
 bool both_pads_hold(const Field& field, int instrument);
 

@@ -22,7 +22,8 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   // The force at the tip that has the same moment about the trocar: what touches the shaft has a shorter
   // lever.
   const Vec3 arm = state.tip - tool.trocar, axis = arm.normalized();
-  const Vec3 at_tip = axis * axis.dot(load.force) + load.moment.cross(axis) / arm.norm();
+  Vec3 at_tip = load.force;  // of a tip in its trocar, which has no lever
+  if (arm.norm() > 0) at_tip = axis * axis.dot(load.force) + load.moment.cross(axis) / arm.norm();
   state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, at_tip);
   for (const Organ& organ : field.organs) {
     const int held = grip_count(organ, static_cast<int>(index));
@@ -30,6 +31,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
     if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
   }
   state.clips = tool.clips;
+  state.waits = tool.waits;
   state.touching = load.touches > 0;
   state.parts = load.parts;
   const bool closed = tool.pose.jaw <= 0.5 * grip_grid;

@@ -42,7 +42,8 @@ struct InstrumentState {
   int grip_points = 0;
   GripState grip = GripState::open;
   InstrumentAction action = InstrumentAction::none;
-  int clips = 0;  ///< that it still carries
+  int clips = 0;       ///< that it still carries
+  bool waits = false;  ///< outside: another one is in its port
 };
 
 struct ClipState {

@@ -28,6 +28,7 @@ struct Tool {
   bool on_clip = false, beside_kept = false;  ///< its current was let flow there at the last step, for events
   double burnt = 0;                           ///< J that a wall has taken at one go, up to what opens it
   int burnt_record = -1;                      ///< on the world's roll: that wall's organ; none: -1
+  bool waits = false;                         ///< outside: another one is in its port (sim/exchange.h)
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

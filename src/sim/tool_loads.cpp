@@ -104,28 +104,37 @@ Result<bool> check_clear(const Field& field) {
               {"", 0, name.empty() ? "scene.instruments" : fmt::format("scene.instruments.{}.port", name)});
 }
 
-double deepest_penetration(const Field& field) {
+double deepest_penetration(const Field& field, const Tool& tool) {
   constexpr int parts = 4;  // other points than those that are felt
   double deepest = 0;
-  for (const Tool& tool : field.tools) {
-    for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {
-      const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
-      for (const Organ& organ : field.organs) {
-        const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-        for (const Triangle& t : organ.body->skin().triangles) {
-          Eigen::AlignedBox3d around;
-          for (int corner : t) around.extend(skin[corner]);
-          if (!around.intersects(box)) continue;
-          for (int i = 0; i <= parts; ++i)
-            for (int j = 0; i + j <= parts; ++j) {
-              const Vec3 at = (i * skin[t[0]] + j * skin[t[1]] + (parts - i - j) * skin[t[2]]) / parts;
-              deepest = std::max(deepest, -signed_distance(shape, at));
-            }
-        }
+  for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry)) {
+    const Eigen::AlignedBox3d box(bounds(shape).lower, bounds(shape).upper);
+    for (const Organ& organ : field.organs) {
+      const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+      for (const Triangle& t : organ.body->skin().triangles) {
+        Eigen::AlignedBox3d around;
+        for (int corner : t) around.extend(skin[corner]);
+        if (!around.intersects(box)) continue;
+        for (int i = 0; i <= parts; ++i)
+          for (int j = 0; i + j <= parts; ++j) {
+            const Vec3 at = (i * skin[t[0]] + j * skin[t[1]] + (parts - i - j) * skin[t[2]]) / parts;
+            deepest = std::max(deepest, -signed_distance(shape, at));
+          }
       }
     }
   }
   return deepest;
+}
+
+double deepest_penetration(const Field& field) {
+  double deepest = 0;
+  for (const Tool& tool : field.tools) deepest = std::max(deepest, deepest_penetration(field, tool));
+  return deepest;
+}
+
+bool touches_nothing(const Field& field, int instrument) {
+  const auto i = static_cast<std::size_t>(instrument);
+  return tool_loads(field)[i].touches == 0 && deepest_penetration(field, field.tools[i]) <= 0;
 }
 
 }  // namespace calot

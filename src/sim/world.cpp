@@ -13,6 +13,7 @@
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
 #include "sim/clips.h"
+#include "sim/exchange.h"
 #include "sim/field_hash.h"
 #include "sim/field_state.h"
 #include "sim/field_tissues.h"
@@ -108,12 +109,6 @@ void World::Impl::place_laparoscope(const InstrumentPose& pose) {
 
 namespace {
 
-constexpr double waiting_depth = 30e-3;  // m: a tool in its trocar before its first move
-
-}  // namespace
-
-namespace {
-
 /// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on. Without
 /// friction, whose anchors belong to shapes that the tools' will come before.
 Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy, bool dynamic) {
@@ -205,9 +200,10 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
                                                        : Vec3(world.skin_positions(0).front());
     tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
-    tool.pose.insertion = waiting_depth;
+    tool.pose.insertion = port_depth;
     world.impl_->field.tools.push_back(tool);
   }
+  let_wait(world.impl_->field.tools);
   if (scene.laparoscope.distance < scene.solver.extension_view) {
     const auto [organ, skin_point] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
     if (skin_point >= 0) world.impl_->field.viewed = ViewedPlace{organ, skin_point};
@@ -244,6 +240,7 @@ Result<StepReport> World::step(const StepInput& input) {
     if (input.actions.empty()) continue;
     if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;
   }
+  if (std::optional<Failure> failure = check_waiting(self.field.tools, input.instruments)) return *failure;
   if (input.laparoscope)
     if (std::optional<Failure> failure =
             check_pose(laparoscope_name, laparoscope_geometry(), *input.laparoscope))
@@ -261,7 +258,10 @@ Result<StepReport> World::step(const StepInput& input) {
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
   const double duration = 1 / self.scene.solver.rate;
   const std::vector<WorldEvent> leaked = leak(self.field, duration);
-  Result<std::vector<WorldEvent>> events = advance(self.field, input.instruments, self.report.statistics);
+  std::vector<InstrumentPose> targets = input.instruments;
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    if (self.field.tools[i].waits) targets[i] = self.field.tools[i].pose;
+  Result<std::vector<WorldEvent>> events = advance(self.field, targets, self.report.statistics);
   if (!events) {
     self.failed = true;
     self.failure = events.failure();
@@ -274,6 +274,7 @@ Result<StepReport> World::step(const StepInput& input) {
   fire_clips(self.field, input.actions, events.value());
   events->insert(events->begin(), leaked.begin(), leaked.end());
   spill(self.field, duration);
+  exchange_tools(self.field, input.actions, events.value());
   ++self.steps;
   if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
   self.report.time = self.time();

@@ -52,6 +52,7 @@ Scene SceneBuilder::build(const World& world) const {
   Scene scene;
   scene.camera = laparoscope_camera(definition.laparoscope, world.report().laparoscope);
   for (std::size_t i = 0; i < definition.instruments.size(); ++i) {
+    if (world.report().instruments[i].waits) continue;
     const Vec3 trocar = world.port_position(definition.instruments[i].port);
     for (SceneMesh& mesh :
          instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))

@@ -27,11 +27,12 @@ const std::array axis_rows = {
     AxisRow{"right", &GamepadMap::right, "mm_s", mm_s},   AxisRow{"up", &GamepadMap::up, "mm_s", mm_s},
     AxisRow{"deeper", &GamepadMap::deeper, "mm_s", mm_s}, AxisRow{"roll", &GamepadMap::roll, "deg_s", deg_s},
     AxisRow{"close", &GamepadMap::close, "deg_s", deg_s}, AxisRow{"open", &GamepadMap::open, "deg_s", deg_s}};
-const std::array<std::pair<const char*, int GamepadMap::*>, 7> button_rows = {
+const std::array<std::pair<const char*, int GamepadMap::*>, 8> button_rows = {
     {{"clutch", &GamepadMap::clutch},
      {"next_hand", &GamepadMap::next_hand},
      {"laparoscope", &GamepadMap::laparoscope},
      {"activate", &GamepadMap::activate},
+     {"exchange", &GamepadMap::exchange},
      {"menu", &GamepadMap::menu},
      {"time_out", &GamepadMap::time_out},
      {"bail_out", &GamepadMap::bail_out}}};
@@ -134,6 +135,7 @@ HandMotion gamepad_motion(const GamepadMap& map, const GamepadState& state, cons
   const auto pressed = [&](int button) { return down(state, button) && !down(before, button); };
   motion.next_hand = pressed(map.next_hand);
   motion.laparoscope = pressed(map.laparoscope);
+  motion.exchange = pressed(map.exchange);
   motion.activate = down(state, map.activate);
   motion.time_out = pressed(map.time_out);
   motion.bail_out = down(state, map.clutch) && pressed(map.bail_out);

@@ -28,7 +28,7 @@ struct GamepadMap {
   AxisUse right{0, 0.15, 60e-3}, up{1, 0.15, -60e-3}, deeper{3, 0.15, -60e-3}, roll{2, 0.15, 2.5};
   AxisUse close{5, 0.05, 2.0}, open{4, 0.05, 2.0};
   /// Buttons; while the clutch is held the hand stays.
-  int clutch = 4, next_hand = 3, laparoscope = 5, activate = 0, menu = 7, time_out = 11;
+  int clutch = 4, next_hand = 3, laparoscope = 5, activate = 0, exchange = 1, menu = 7, time_out = 11;
   int bail_out = 6;  ///< with the clutch held: nobody ends an operation by a slip
 };
 

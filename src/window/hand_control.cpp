@@ -20,13 +20,37 @@ HandMotion& HandMotion::operator+=(const HandMotion& other) {
   activate = activate || other.activate;
   next_hand = next_hand || other.next_hand;
   laparoscope = laparoscope || other.laparoscope;
+  exchange = exchange || other.exchange;
   time_out = time_out || other.time_out;
   bail_out = bail_out || other.bail_out;
   return *this;
 }
 
 HandControl::HandControl(std::vector<LiveInstrument> instruments, const std::vector<InstrumentPose>& poses)
-    : instruments_(std::move(instruments)), poses_(poses) {}
+    : instruments_(std::move(instruments)), poses_(poses), waits_(poses.size(), 0) {}
+
+void HandControl::see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits) {
+  for (std::size_t i = 0; i < waits.size(); ++i)
+    if (waits[i] != waits_[i]) poses_[i] = poses[i];
+  waits_ = waits;
+  for (std::size_t k = 0; k < waits.size() && this->waits(hand_); ++k) hand_ = next_of_port();
+}
+
+int HandControl::next_of_port() const {
+  const auto hand = static_cast<std::size_t>(hand_);
+  const std::size_t tools = instruments_.size() - 1;  // without the laparoscope
+  std::size_t next = (hand + 1) % tools;
+  while (instruments_[next].definition.port != instruments_[hand].definition.port) next = (next + 1) % tools;
+  return static_cast<int>(next);
+}
+
+std::optional<LiveInput> HandControl::exchange() const {
+  const int coming = next_of_port();
+  if (!waits(coming)) return std::nullopt;
+  LiveInput input = held(coming);
+  input.action = InstrumentAction::exchange;
+  return input;
+}
 
 Vec3 HandControl::tip(int instrument) const {
   const auto i = static_cast<std::size_t>(instrument);
@@ -42,7 +66,10 @@ Vec3 HandControl::grasped(const SceneCamera& camera) const {
 
 void HandControl::move(const HandMotion& motion, const SceneCamera& camera) {
   if (motion.laparoscope) on_laparoscope_ = !on_laparoscope_;
-  if (motion.next_hand && !on_laparoscope_) hand_ = (hand_ + 1) % laparoscope();
+  if (motion.next_hand && !on_laparoscope_) {
+    do hand_ = (hand_ + 1) % laparoscope();
+    while (waits(hand_));
+  }
   if (motion.next_hand) on_laparoscope_ = false;
   move(selected(), motion, camera);
   action_ = motion.activate && !on_laparoscope_

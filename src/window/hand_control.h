@@ -1,6 +1,7 @@
 #pragma once
 // How a mouse, a keyboard or a gamepad moves instruments: one hand at a time, in the plane of the view.
 
+#include <optional>
 #include <vector>
 
 #include "render/scene.h"
@@ -14,7 +15,8 @@ struct HandMotion {
   double roll = 0, jaw = 0;                     ///< rad: more
   bool activate = false;                        ///< the pedal is down
   bool next_hand = false, laparoscope = false;  ///< to the other hand; to the laparoscope, or back
-  bool time_out = false, bail_out = false;      ///< the acts, no motion
+  bool exchange = false;  ///< the next instrument that waits for the hand's port is to come in
+  bool time_out = false, bail_out = false;  ///< the acts, no motion
   bool moves() const { return in_view != Vec3::Zero() || roll != 0 || jaw != 0; }
   HandMotion& operator+=(const HandMotion& other);
 };
@@ -32,6 +34,11 @@ class HandControl {
   /// The same of the laparoscope, selected or not: somebody else holds it.
   void move_laparoscope(const HandMotion& motion, const SceneCamera& camera);
   bool out_of_reach() const { return out_of_reach_; }
+  /// Where instruments are now, one each, and which wait outside. Hands pass over those; whose instrument was exchanged
+  /// holds the one that came in, from where it is.
+  void see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits);
+  /// For the mailbox: asks for the next instrument that waits for the selected hand's port; none: there is none.
+  std::optional<LiveInput> exchange() const;
   /// Of the closed jaws, m.
   Vec3 tip(int instrument) const;
   /// What goes as far in the view as the selected hand's device does, m: its tip. The laparoscope turns by what is as far
@@ -44,9 +51,13 @@ class HandControl {
 
  private:
   void move(int instrument, const HandMotion& motion, const SceneCamera& camera);
+  bool waits(int instrument) const { return waits_[static_cast<std::size_t>(instrument)] != 0; }
+  /// The next instrument after the hand's that goes through its port, itself the last.
+  int next_of_port() const;
 
   std::vector<LiveInstrument> instruments_;  ///< the laparoscope is the last
   std::vector<InstrumentPose> poses_;
+  std::vector<char> waits_;  ///< one an instrument
   int hand_ = 0;
   bool on_laparoscope_ = false, out_of_reach_ = false;
   InstrumentAction action_ = InstrumentAction::none;  ///< that is asked of the hand selected

@@ -15,6 +15,7 @@ struct HandView {
   std::string name, holds;      ///< the organ held, or empty
   double force = 0, limit = 8;  ///< N, at the tip; limit 0: it is not measured
   InstrumentPose pose;
+  bool waits = false;  ///< outside, while another one is in its port
 };
 
 struct LiveView {

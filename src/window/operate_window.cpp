@@ -143,6 +143,7 @@ void OperateWindow::Impl::listen() {
     if (action != GLFW_PRESS) return;
     if (code == GLFW_KEY_TAB) self(from)->events.next_hand = true;
     if (code == GLFW_KEY_C) self(from)->events.laparoscope = true;
+    if (code == GLFW_KEY_X) self(from)->events.exchange = true;
     if (code == GLFW_KEY_T) self(from)->events.time_out = true;
     if (code == GLFW_KEY_B && (held & GLFW_MOD_CONTROL) != 0) self(from)->events.bail_out = true;
     if (code == GLFW_KEY_ESCAPE) self(from)->events.menu = true;
@@ -210,6 +211,7 @@ HandMotion OperateWindow::Impl::device_motion(double dt) {
   motion.activate = key(GLFW_KEY_SPACE);
   motion.next_hand = events.next_hand;
   motion.laparoscope = events.laparoscope;
+  motion.exchange = events.exchange;
   motion.time_out = events.time_out;
   motion.bail_out = events.bail_out;
   return motion;
@@ -235,6 +237,8 @@ void OperateWindow::Impl::move_hands(double dt) {
   if (motion.bail_out) send(SessionAct{EventKind::bail_out, {}});
   const SceneCamera& camera = view->scene.camera;
   const bool changes = motion.next_hand || motion.laparoscope;
+  if (motion.exchange)
+    if (const std::optional<LiveInput> wanted = hands->exchange()) send(*wanted);
   if (changes) send(hands->held(hands->selected()));
   hands->move(motion, camera);
   if (motion.moves() || motion.activate || was_acting || changes) send(hands->input());
@@ -247,10 +251,15 @@ void OperateWindow::Impl::move_hands(double dt) {
 void OperateWindow::Impl::take(std::shared_ptr<const LiveView> newest) {
   const bool begins = !view || view->attempt != newest->attempt;
   view = std::move(newest);
-  if (!begins) return;
   std::vector<InstrumentPose> poses;
-  for (const HandView& hand : view->hands) poses.push_back(hand.pose);
-  hands.emplace(options.instruments, poses);
+  std::vector<char> waits;
+  for (const HandView& hand : view->hands) {
+    poses.push_back(hand.pose);
+    waits.push_back(hand.waits ? 1 : 0);
+  }
+  if (begins) hands.emplace(options.instruments, poses);
+  hands->see(poses, waits);
+  if (!begins) return;
   state.started = false;
   state.menu = true;
   set_captured(false);

@@ -26,7 +26,7 @@ struct WindowOptions {
 struct WindowEvents {
   double right = 0, down = 0;  ///< px, of the pointer
   double wheel = 0;            ///< notches, away from the hand
-  bool next_hand = false, laparoscope = false, menu = false, click = false;
+  bool next_hand = false, laparoscope = false, exchange = false, menu = false, click = false;
   bool time_out = false, bail_out = false;
 };
 

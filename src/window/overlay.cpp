@@ -40,6 +40,7 @@ void lay_out_light(bool runs) {
 }
 
 void lay_out_hand(const HandView& hand, bool selected) {
+  if (hand.waits) return coloured(grey, "  " + hand.name + " waits outside");
   coloured(selected ? ImVec4(1, 1, 1, 1) : grey,
            fmt::format("{}{}{}", selected ? "> " : "  ", hand.name,
                        hand.holds.empty() ? "" : " holds " + hand.holds));
@@ -108,7 +109,8 @@ std::optional<MenuChoice> lay_out(const OverlayState& state, const LiveView& vie
   coloured(
       grey,
       "mouse: tip in the view's plane\nwheel: deeper, back\nleft, right button: close, open\nQ, E: roll\n"
-      "Tab: the other hand\nC: the laparoscope, and back\nSpace: activate, or fire\nShift: finely\nEsc: "
+      "Tab: the other hand\nX: exchange the instrument\nC: the laparoscope, and back\nSpace: activate, or "
+      "fire\nShift: finely\nEsc: "
       "menu");
   coloured(grey, fmt::format("{:.0f} pictures a second", state.pictures_a_second));
   ImGui::End();

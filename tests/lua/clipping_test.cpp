@@ -71,6 +71,45 @@ TEST(Clipping, AStepSeesTheClipsOnThePiecesOfWhatWasDivided) {
   EXPECT_EQ(result.metrics.at("blades.cuts_unclipped"), 0);
 }
 
+/// The same through one port.
+test::ScenarioText through_one_port(const std::string& demo) {
+  test::ScenarioText text = clipped_duct(demo);
+  const std::string second = "port = 'two'";
+  text.scene.replace(text.scene.find("port = 'one'"), second.size(), second);
+  return text;
+}
+
+TEST(Clipping, ThroughOnePortInstrumentsAreExchanged) {
+  const SessionResult result = played(through_one_port(
+      "t.applier:open(28 * deg) t.applier:move_to({ 0, -6 * mm, -105 * mm }, { speed = 200 * mm / s })\n"
+      "t.applier:fire()\n"
+      "assert(t.blades:waits() and not t.applier:waits())\n"
+      "t.blades:exchange({ duration = 0.2 * s })\n"
+      "assert(t.applier:waits() and not t.blades:waits())\n" +
+      std::string(cut_it)));
+  EXPECT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
+  EXPECT_EQ(noted(result, "clips"), 1);
+  EXPECT_EQ(result.metrics.at("blades.cuts"), 1);
+  // 30 mm to 105 mm and back: what comes in does not go the way of what goes out.
+  EXPECT_NEAR(result.metrics.at("applier.path_length_mm"), 150, 5);
+  EXPECT_NEAR(result.metrics.at("blades.path_length_mm"), 76, 5);
+}
+
+TEST(Clipping, AnInstrumentThatWaitsIsNotMovedAndOneThatIsInDoesNotComeIn) {
+  const auto complaint = [](const std::string& demo) {
+    const Folder folder;
+    const Result<std::unique_ptr<ExerciseScript>> script =
+        test::load_text(folder, through_one_port(demo).text());
+    return script ? std::string("none") : to_text(script.failure());
+  };
+  EXPECT_NE(complaint("t.blades:close()").find("blades waits outside: applier is in its port"),
+            std::string::npos);
+  EXPECT_NE(complaint("t.blades:exchange() t.applier:fire() t.applier:open()").find("applier waits outside"),
+            std::string::npos);
+  EXPECT_NE(complaint("t.applier:exchange()").find("applier is in its port already"), std::string::npos);
+  EXPECT_EQ(complaint("t.blades:exchange() t.blades:open() t.applier:exchange() t.applier:open()"), "none");
+}
+
 TEST(Clipping, ARecordingOfItIsPlayedAgainToTheSameBits) {
   const test::ScenarioText text = clipped_duct(std::string(clip_it) + cut_it);
   const Folder folder;

@@ -70,7 +70,9 @@ struct Rig {
   }
   SessionResult play(double duration, double step_takes = 0) {
     source.emplace(live_instruments(world.scene()), mailbox, options, clock);
-    test::TimedScript script(duration);
+    ExerciseDefinition exercise = test::small_exercise();
+    exercise.scene = world.scene();
+    test::TimedScript script(duration, exercise);
     const StepObserver watched = session.observer;
     session.observer = [&, watched](const World& present, const Progress& progress, bool last) {
       if (watched) watched(present, progress, last);
@@ -185,6 +187,45 @@ TEST(Live, TheLaparoscopeMovesAsAnInstrumentAndItsReplayGoesThroughTheSameStates
   test::TimedScript script(0.2);
   EXPECT_EQ(run_session(again, script, replay, {}).state_hashes, result.state_hashes);
   EXPECT_EQ(again.report().laparoscope.pose, input.pose);
+}
+
+/// The small scene with scissors that wait for the grasper's port.
+SceneDefinition shared_port() {
+  SceneDefinition scene = test::small_scene();
+  scene.instruments.push_back(default_instrument(InstrumentType::scissors));
+  scene.instruments.back().name = "blades";
+  scene.instruments.back().port = scene.instruments[0].port;
+  return scene;
+}
+
+TEST(Live, WhatIsAskedToComeInComesOnceTheOtherOneIsDrawnBackAndGoesOnFromThere) {
+  Rig rig;
+  rig.world = World::create(shared_port()).value();
+  const auto blades = [&](InstrumentAction action, double insertion_by) {
+    LiveInput wanted = rig.input(insertion_by);
+    wanted.instrument = 1;
+    wanted.action = action;
+    return wanted;
+  };
+  rig.send_at(0.3, rig.input(15e-3));                       // 15 mm further in
+  rig.send_at(0.5, blades(InstrumentAction::none, 20e-3));  // it waits: nothing moves
+  rig.send_at(0.7, blades(InstrumentAction::exchange, 0));  // the other one goes back at 150 mm/s: 0.1 s
+  rig.send_at(0.73, rig.input(30e-3));                      // meanwhile it is the assistant's
+  rig.send_at(1.2, blades(InstrumentAction::none, 4e-3));
+  const SessionResult result = rig.play(1.6);
+  ASSERT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
+  EXPECT_THAT(
+      rig.said,
+      ElementsAre("blades waits outside, and left is in its port: the action exchange has it come in.",
+                  "blades came in for left."));
+  const std::vector<InstrumentState>& now = rig.world.report().instruments;
+  EXPECT_TRUE(now[0].waits);
+  EXPECT_NEAR(now[0].pose.insertion, rig.rest.insertion, 1e-12);
+  EXPECT_NEAR(now[1].pose.insertion, rig.rest.insertion + 4e-3, 1e-12);
+  // 15 mm in and back, and 4 mm of the other one: no way between two instruments is anyone's. Of a motion that ends as
+  // it leaves, what comes after the last point of the 30 Hz grid is not seen: 5 mm at 150 mm/s.
+  EXPECT_NEAR(result.metrics.at("left.path_length_mm"), 27.5, 2.6);
+  EXPECT_NEAR(result.metrics.at("blades.path_length_mm"), 4, 0.2);
 }
 
 TEST(Live, WhilePausedNoStepIsTakenAndNoTimeIsLost) {

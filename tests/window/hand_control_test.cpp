@@ -32,7 +32,9 @@ class Hands : public testing::Test {
     camera.direction = Vec3(-0.5, 0.8, -0.4).normalized();
   }
   std::vector<LiveInstrument> instruments = two_instruments();
-  HandControl hands{instruments, {{0.3, 0.2, 0.15, 0, 0.4}, {0.1, -0.2, 0.12, 0, 0}, {0.9, 0, 0.1, 0, 0}}};
+  std::vector<InstrumentPose> poses = {
+      {0.3, 0.2, 0.15, 0, 0.4}, {0.1, -0.2, 0.12, 0, 0}, {0.9, 0, 0.1, 0, 0}};
+  HandControl hands{instruments, poses};
   SceneCamera camera;
 };
 
@@ -60,6 +62,28 @@ TEST_F(Hands, TheOtherHandIsHeldWhereItWasLeft) {
   motion.next_hand = true;
   hands.move(motion, camera);
   EXPECT_EQ(hands.selected(), 0);
+}
+
+TEST_F(Hands, WhatIsExchangedIsInTheSameHandAndHandsPassOverThoseThatWait) {
+  instruments[1].definition.port = instruments[0].definition.port;
+  HandControl shared(instruments, poses);
+  EXPECT_FALSE(shared.exchange()) << "none waits";
+  shared.see(poses, {0, 1, 0});
+  HandMotion motion;
+  motion.next_hand = true;
+  shared.move(motion, camera);
+  EXPECT_EQ(shared.selected(), 0) << "the only one that is in";
+  const std::optional<LiveInput> wanted = shared.exchange();
+  ASSERT_TRUE(wanted);
+  EXPECT_EQ(wanted->instrument, 1);
+  EXPECT_EQ(wanted->action, InstrumentAction::exchange);
+  poses[0].insertion -= 5e-3;
+  shared.see(poses, {0, 1, 0});
+  EXPECT_EQ(shared.selected(), 0) << "not yet";
+  poses[1] = poses[0];
+  shared.see(poses, {1, 0, 0});
+  EXPECT_EQ(shared.selected(), 1);
+  EXPECT_EQ(shared.held(1).pose, poses[0]) << "it goes on from there";
 }
 
 TEST_F(Hands, OutOfReachTheTipStaysAndThatIsSaid) {

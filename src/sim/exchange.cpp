@@ -1,0 +1,93 @@
+#include "sim/exchange.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/grip.h"
+#include "sim/tool_loads.h"
+
+namespace calot {
+namespace {
+
+constexpr double slack = 1e-6;  // m and rad: what a path's arithmetic may be off
+
+bool alike(const InstrumentPose& a, const InstrumentPose& b) {
+  return std::max({std::abs(a.pitch - b.pitch), std::abs(a.yaw - b.yaw), std::abs(a.insertion - b.insertion),
+                   std::abs(a.roll - b.roll), std::abs(a.jaw - b.jaw)}) <= slack;
+}
+
+/// Why a tool cannot come in; empty: it can, and is in.
+std::string bring_in(Field& field, int coming) {
+  Tool& tool = field.tools[coming];
+  if (!tool.waits) return "it is in its port";
+  const int index = tool_in_port(field.tools, coming);
+  Tool& leaving = field.tools[index];
+  const std::string& name = leaving.definition.name;
+  if (const std::string held = held_organ(field, index); !held.empty())
+    return fmt::format("{} holds {}", name, held);
+  if (leaving.pose.insertion > port_depth + slack)
+    return fmt::format("{} is {:.0f} mm in: no more than {:.0f} mm are out of the field", name,
+                       leaving.pose.insertion / 1e-3, port_depth / 1e-3);
+  const InstrumentPose waited = tool.pose;
+  tool.pose = leaving.pose;
+  tool.pose.jaw = 0;
+  if (!touches_nothing(field, coming)) {
+    tool.pose = waited;
+    return "it would touch an organ";
+  }
+  tool.waits = false;
+  leaving.waits = true;
+  return {};
+}
+
+}  // namespace
+
+void let_wait(std::vector<Tool>& tools) {
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    tools[i].waits =
+        std::any_of(tools.begin(), tools.begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const Tool& t) { return t.definition.port == tools[i].definition.port; });
+}
+
+int tool_in_port(const std::vector<Tool>& tools, int waiting) {
+  const auto there = std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) {
+    return !tool.waits && tool.definition.port == tools[static_cast<std::size_t>(waiting)].definition.port;
+  });
+  return static_cast<int>(there - tools.begin());
+}
+
+std::optional<Failure> check_waiting(const std::vector<Tool>& tools,
+                                     const std::vector<InstrumentPose>& poses) {
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    if (!tools[i].waits || alike(tools[i].pose, poses[i])) continue;
+    const Tool& there = tools[static_cast<std::size_t>(tool_in_port(tools, static_cast<int>(i)))];
+    return fail(FailureKind::scenario,
+                fmt::format("instrument '{}' cannot move: it waits outside, and '{}' is in the port \"{}\"",
+                            tools[i].definition.name, there.definition.name, tools[i].definition.port),
+                fmt::format("draw '{}' back into the port and give '{}' the action exchange first",
+                            there.definition.name, tools[i].definition.name));
+  }
+  return std::nullopt;
+}
+
+void exchange_tools(Field& field, const std::vector<InstrumentAction>& actions,
+                    std::vector<WorldEvent>& events) {
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    if (actions[i] != InstrumentAction::exchange || field.tools[i].action == InstrumentAction::exchange)
+      continue;
+    const int coming = static_cast<int>(i);
+    const std::string& name = field.tools[i].definition.name;
+    const std::string there =
+        field.tools[i].waits
+            ? field.tools[static_cast<std::size_t>(tool_in_port(field.tools, coming))].definition.name
+            : std::string();
+    const std::string why = bring_in(field, coming);
+    WorldEvent event{why.empty() ? EventKind::exchange : EventKind::blocked_exchange, 0, name, {}, 0};
+    event.text = why.empty() ? there : why;
+    events.push_back(std::move(event));
+  }
+}
+
+}  // namespace calot

@@ -1,0 +1,31 @@
+#pragma once
+// Instruments that share a port.
+//
+// One of them is in it, at the start the scene's first; the others wait outside. Who has drawn the one that is there back
+// into the port may have another one come in: it comes closed, along the same way, as deep as the other one was. That
+// takes the assistant some seconds, which are the operator's to wait; here it happens between two steps.
+
+#include "sim/field.h"
+
+namespace calot {
+
+/// m that an instrument is in at the start, and at most when it is exchanged: in its trocar, out of the field.
+inline constexpr double port_depth = 30e-3;
+
+/// Of each tool but the first of its port.
+void let_wait(std::vector<Tool>& tools);
+
+/// Place of the tool that is in the port of one that waits.
+int tool_in_port(const std::vector<Tool>& tools, int waiting);
+
+/// Fails (scenario) where a pose differs from that of a tool that waits by more than rounding: it cannot move.
+std::optional<Failure> check_waiting(const std::vector<Tool>& tools,
+                                     const std::vector<InstrumentPose>& poses);
+
+/// Brings in each tool whose action `exchange` begins (`actions`: one a tool, or none). Adds the events exchange and
+/// blocked_exchange: where the one that is there is further in than port_depth or holds something, where no other one is
+/// there, or where what comes in would touch an organ.
+void exchange_tools(Field& field, const std::vector<InstrumentAction>& actions,
+                    std::vector<WorldEvent>& events);
+
+}  // namespace calot
