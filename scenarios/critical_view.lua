@@ -1,6 +1,7 @@
 -- From the covered triangle to the divided duct and artery: the fundus is pushed over the liver's edge, the pouch drawn
 -- aside, Calot's triangle dissected to the critical view of safety, and then cystic duct and artery are clipped and
--- divided, each between two clips on the patient's side and one on the specimen's. Fat at the hilum and most of that
+-- divided, each between two clips on the patient's side and one on the specimen's. Four ports, as in the operation:
+-- through the epigastric one go hook, applier and scissors, one after the other. Fat at the hilum and most of that
 -- beside the common duct is gone already. The mistakes are a parameter, demo = "clumsy": current on the gallbladder
 -- until its wall is open, a clip on the common duct, one dropped, and a cut without view, time-out or clips.
 
@@ -12,8 +13,6 @@ local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.
 local ports = {
   scope = { -40 * mm, 20 * mm, 10 * mm },
   epigastric = { -10 * mm, 120 * mm, -5 * mm },
-  applier = { -10 * mm, 110 * mm, -5 * mm },
-  blades = { 0, 0, 0 },
 }
 -- Where the fundus goes: towards the patient's right shoulder, over the liver.
 local up = { -0.33, 0.6, 0.73 }
@@ -44,7 +43,7 @@ local function judge_clips(run, tube)
 end
 
 local function expert(t)
-  local clips, cuts = technique.hand(t, "applier", ports.applier), technique.hand(t, "blades", ports.blades)
+  local clips, cuts = technique.hand(t, "applier", ports.epigastric), technique.hand(t, "blades", ports.epigastric)
   technique.take(t, t.hook, "artery_fat", {
     port = ports.epigastric, tries = 6, hardest = 0.4 * N, keep_off = t:place("cystic_duct.end"),
   })
@@ -58,8 +57,10 @@ local function expert(t)
     { tube = "cystic_duct", clips = { 0.60, 0.80, 0.88 }, cut = 0.70, open = 36 * deg, past = 4.5 * mm, bite = 4 * mm },
     { tube = "cystic_artery", clips = { 0.64, 0.36, 0.25 }, cut = 0.50, open = 20 * deg, past = 4 * mm, bite = 6 * mm },
   } do
+    clips.enter()
     clips.set_clips(plan.tube, plan.clips, plan.open, plan.past)
     t:time_out("two structures and no more enter the gallbladder")
+    cuts.enter()
     t.blades:open(36 * deg)
     cuts.about(plan.tube, plan.cut, -25 * mm, 150 * mm / s)
     cuts.about(plan.tube, plan.cut, plan.bite, 50 * mm / s)
@@ -70,12 +71,14 @@ local function expert(t)
 end
 
 local function clumsy(t)
-  local clips, cuts = technique.hand(t, "applier", ports.applier), technique.hand(t, "blades", ports.blades)
-  t.hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -14 * mm, 0, 6 * mm } })
+  local clips, cuts = technique.hand(t, "applier", ports.epigastric), technique.hand(t, "blades", ports.epigastric)
+  t.hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
   t.hook:activate(1 * s)
   t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
+  clips.enter()
   clips.set_clips("common_duct", { 0.3 }, 36 * deg, 4.5 * mm)
   t.applier:fire()
+  cuts.enter()
   t.blades:open(36 * deg)
   cuts.about("cystic_duct", 0.70, -25 * mm, 150 * mm / s)
   cuts.about("cystic_duct", 0.70, 4 * mm, 50 * mm / s)
@@ -116,8 +119,8 @@ return calot.exercise {
         fundus = { port = "right_lateral", force_limit = 5 * N },
         left = { port = "right_subcostal", force_limit = 5 * N },
         hook = { type = "l_hook", port = "epigastric", force_limit = 3 * N, power = 40 },
-        applier = { type = "clip_applier", port = "applier" },
-        blades = { type = "scissors", port = "blades" },
+        applier = { type = "clip_applier", port = "epigastric", waits = true },
+        blades = { type = "scissors", port = "epigastric", waits = true },
       },
       laparoscope = { port = "scope", angle = 30 * deg, look_at = "cystic_duct.start", distance = 78 * mm },
       solver = { motion = "dynamic" },
@@ -203,6 +206,6 @@ return calot.exercise {
   },
 
   golden = {
-    at = { 0, 8.5 * s, 10.4 * s, 13.8 * s, 17.6 * s, 19.6 * s, 32 * s, 35 * s, 38.4 * s, 42.4 * s, 46.4 * s },
+    at = { 0, 8.5 * s, 10.4 * s, 13.8 * s, 17.6 * s, 19.6 * s, 36.9 * s, 39.4 * s, 45.7 * s, 54.4 * s, 61.6 * s },
   },
 }

@@ -98,6 +98,12 @@ end
 --- An instrument as a demo moves it about tubes: it knows how it is turned, and where its port is.
 function technique.hand(t, name, port)
   local self = { tool = t[name], rolled = 0 }
+  --- It comes in where it waits for its port.
+  function self.enter()
+    if not self.tool:waits() then return end
+    self.tool:exchange()
+    self.rolled = 0
+  end
   --- Open jaws come about a tube, their tips that far past its middle.
   function self.about(tube, share, past, speed)
     local at, along = t:along(tube, share)

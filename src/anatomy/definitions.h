@@ -272,8 +272,8 @@ enum class ClipSize { m, ml };
 struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
   InstrumentType type = InstrumentType::atraumatic_grasper;
-  std::string
-      port;  ///< of several with one port the first is in it, and the others wait outside for an exchange
+  std::string port;
+  bool waits = false;        ///< outside at the start, while another one is in its port: for an exchange
   double force_limit = 8.0;  ///< N at the tip; above it `overforce` is raised (d)
   double pinch_force = 6.8;  ///< N, each jaw on the fold it holds: what surgeons apply (c)
   double pad_friction =

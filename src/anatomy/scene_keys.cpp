@@ -134,6 +134,9 @@ std::vector<KeyTable> field_tables() {
           {choice("type", &Instrument::type, instrument_type_names(),
                   "which instrument: " + instruments_doc()),
            required(text("port", &Instrument::port, "the port it goes through")),
+           flag("waits", &Instrument::waits,
+                "true: it waits outside while another instrument is in its port, until it is exchanged for "
+                "that"),
            number("force_limit", &Instrument::force_limit, quantity::force, 0.05, 100,
                   "a limit of force on tissue", "force on it above which the event overforce is raised"),
            jaws_only(

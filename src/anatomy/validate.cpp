@@ -344,31 +344,39 @@ std::vector<std::string> check_ports(FieldCheck& check, const std::vector<PortDe
   return names;
 }
 
-/// Instruments may share a port, one after the other; the laparoscope stays in its own.
+/// One shaft a port: who is in which. Others may wait for it.
 class PortsInUse {
  public:
-  PortsInUse(FieldCheck& check, std::vector<std::string> known, std::string laparoscope)
-      : check_(check), known_(std::move(known)), laparoscope_(std::move(laparoscope)) {
-    check_.known("scene.laparoscope.port", laparoscope_, known_, "port");
-  }
-  void take(const std::string& path, const std::string& port) {
+  PortsInUse(FieldCheck& check, std::vector<std::string> known) : check_(check), known_(std::move(known)) {}
+  void take(const std::string& path, const std::string& port, const std::string& user) {
     if (!check_.known(path, port, known_, "port")) return;
-    used_.insert(port);
-    if (port == laparoscope_)
-      check_.problem(path, fmt::format("port \"{}\" is already used by the laparoscope", port), free_ports());
+    const auto [held, fresh] = users_.emplace(port, user);
+    if (!fresh)
+      check_.problem(path, fmt::format("port \"{}\" is already used by {}", port, held->second),
+                     free_ports());
   }
+  void wait_for(const std::string& path, const std::string& port) {
+    if (!check_.known(path + ".port", port, known_, "port")) return;
+    const auto used = users_.find(port);
+    if (used == users_.end())
+      check_.problem(path + ".waits",
+                     fmt::format("it waits for the port \"{}\", in which no instrument is", port),
+                     "let one of that port's instruments not wait");
+    else if (used->second == laparoscope)
+      check_.problem(path + ".port", "the laparoscope stays in its port", free_ports());
+  }
+  static constexpr const char* laparoscope = "the laparoscope";
 
  private:
   std::string free_ports() const {
     std::vector<std::string> names;
     for (const std::string& name : known_)
-      if (name != laparoscope_ && !used_.contains(name)) names.push_back(name);
+      if (!users_.contains(name)) names.push_back(name);
     return names.empty() ? "declare another port" : fmt::format("free: {}", fmt::join(names, ", "));
   }
   FieldCheck& check_;
   std::vector<std::string> known_;
-  std::string laparoscope_;
-  std::set<std::string> used_;
+  std::map<std::string, std::string> users_;
 };
 
 void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition>& instruments,
@@ -383,9 +391,12 @@ void check_instruments(FieldCheck& check, const std::vector<InstrumentDefinition
     if (names.add(at + ".name", instrument.name)) at = "scene.instruments." + instrument.name;
     if (instrument.name == laparoscope_name)
       check.problem(at, "the laparoscope is called that already", "give the instrument another name");
-    ports.take(at + ".port", instrument.port);
+    if (!instrument.waits)
+      ports.take(at + ".port", instrument.port, fmt::format("instrument \"{}\"", instrument.name));
     check_limits(check, at, "instrument", instrument);
   }
+  for (const InstrumentDefinition& instrument : instruments)
+    if (instrument.waits) ports.wait_for("scene.instruments." + instrument.name, instrument.port);
 }
 
 void check_look_at(FieldCheck& check, const std::string& look_at,
@@ -406,7 +417,8 @@ std::vector<Problem> validate(const SceneDefinition& scene) {
   FieldCheck check;
   check_limits(check, "scene", "scene", scene);
   check_anatomy(check, scene.anatomy);
-  PortsInUse ports(check, check_ports(check, scene.ports), scene.laparoscope.port);
+  PortsInUse ports(check, check_ports(check, scene.ports));
+  ports.take("scene.laparoscope.port", scene.laparoscope.port, PortsInUse::laparoscope);
   check_instruments(check, scene.instruments, ports);
   check_look_at(check, scene.laparoscope.look_at, scene.anatomy.organs);
   check_solver(check, scene.solver);

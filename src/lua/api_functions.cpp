@@ -350,9 +350,8 @@ std::vector<ApiFunction> instrument_functions() {
        "exchange",
        "Has it come in, where it waits outside while another one is in its port: that one is drawn back "
        "along its "
-       "shaft, closed and taken out, and this one comes in closed, 30 mm deep, on the same way. Instruments "
-       "with one "
-       "port are exchanged so; the first of the scene is in it at the start.",
+       "shaft, closed and taken out, and this one comes in closed and not turned, 30 mm deep, on the same "
+       "way.",
        {table("options", "exchange_options", "how fast")},
        ""},
       {"DemoInstrument", "move_to", "Moves the tip straight to a place.", {target, options}, ""},

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <limits>
-#include <set>
 
 #include "base/units.h"
 #include "script/lua_headers.h"
@@ -17,22 +16,14 @@ constexpr double jaw_duration = 0.5;         // s to open or close
 constexpr double least_insertion = 25e-3;    // m: the jaws and a little more, out of the port
 constexpr double dry_motion_duration = 0.1;  // s: what a motion counts for in a dry run
 
-/// Of several with one port all but the first.
-std::vector<char> wait_at_start(const std::vector<InstrumentDefinition>& instruments) {
-  std::set<std::string> taken;
-  std::vector<char> out;
-  for (const InstrumentDefinition& instrument : instruments)
-    out.push_back(taken.insert(instrument.port).second ? 0 : 1);
-  return out;
-}
-
 }  // namespace
 
 DemoScript::DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int function,
                        const Parameters& parameters, std::vector<Problem>* problems)
-    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", parameters, problems),
-      function_(function),
-      waits_(wait_at_start(exercise.scene.instruments)) {}
+    : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", parameters, problems), function_(function) {
+  for (const InstrumentDefinition& instrument : exercise.scene.instruments)
+    waits_.push_back(instrument.waits ? 1 : 0);
+}
 
 double DemoScript::time() const {
   if (checking()) return dry_time();
@@ -453,7 +444,7 @@ int DemoScript::exchange(lua_State* L, int instrument, const Exchange& how) {
   if (leaving->jaw() > 0) leaving->set_jaw(leaving->busy_until(), 0, jaw_duration);
   const double out = leaving->busy_until();
   InstrumentPose pose = leaving->pose(out);
-  pose.jaw = 0;
+  pose.roll = pose.jaw = 0;
   paths_[i] = InstrumentPath(leaving->trocar(), pose, geometry(instrument));
   comings_[i] = Coming{out, sandbox().place_of(L)};
   std::swap(waits_[i], waits_[there]);

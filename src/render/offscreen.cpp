@@ -94,9 +94,9 @@ std::optional<Failure> OffscreenRenderer::Impl::build() {
   gl.BindVertexArray(vertex_array);
   gl.BindBuffer(GL_ARRAY_BUFFER, vertices);
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
-  for (GLuint i = 0; i < 3; ++i) {
+  for (GLuint i = 0; i < 4; ++i) {  // three of three floats, and one of one
     gl.EnableVertexAttribArray(i);
-    gl.VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 9 * sizeof(float),
+    gl.VertexAttribPointer(i, i < 3 ? 3 : 1, GL_FLOAT, GL_FALSE, floats_each * sizeof(float),
                            reinterpret_cast<const void*>(i * 3 * sizeof(float)));
   }
   if (const std::string error = pending_error(gl); !error.empty())
@@ -250,7 +250,7 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
   const Eigen::Matrix4d to_shadow = shadow_projection(camera);
   const Vec3 light = camera_axes(camera).transpose() * camera.light_offset;
   GLuint current = 0;
-  for (const ScenePart& part : arrays.parts) {
+  const auto draw = [&](const ScenePart& part) {
     const GLuint program = scene_programs[static_cast<std::size_t>(part.material)];
     if (program != current) {
       gl.UseProgram(program);
@@ -263,7 +263,14 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
     }
     bind_vessels(program, part);
     draw_part(part);
-  }
+  };
+  for (const ScenePart& part : arrays.parts)
+    if (!is_liquid(part.material)) draw(part);
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_COLOR);
+  for (const ScenePart& part : arrays.parts)
+    if (is_liquid(part.material)) draw(part);
+  gl.Disable(GL_BLEND);
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.framebuffer);
   gl.BlitFramebuffer(0, 0, drawn.width, drawn.height, 0, 0, drawn.width, drawn.height,

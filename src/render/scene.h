@@ -27,6 +27,9 @@ enum class Material {
   blood,    ///< likewise, red and dark red
 };
 
+/// What lies behind it shines through: drawn after all that does not.
+inline bool is_liquid(Material material) { return material == Material::bile || material == Material::blood; }
+
 /// Blood vessels as a volume over rest positions: the share of each voxel that they fill.
 struct VesselMap {
   Vec3 lower = Vec3::Zero();  ///< m, corner of the first voxel
@@ -37,10 +40,11 @@ struct VesselMap {
 
 struct SceneMesh {
   Material material = Material::gallbladder;
-  std::vector<Vec3> positions;               ///< m, world
-  std::vector<Vec3> normals;                 ///< unit, one a position
-  std::vector<Vec3> rest_positions;          ///< m, one a position, in the frame its material states
-  std::vector<Triangle> triangles;           ///< counter-clockwise seen from outside
+  std::vector<Vec3> positions;       ///< m, world
+  std::vector<Vec3> normals;         ///< unit, one a position
+  std::vector<Vec3> rest_positions;  ///< m, one a position, in the frame its material states
+  std::vector<double> burnt;         ///< 0: as it is; 0.5: whitened; 1: charred; one a position, or none
+  std::vector<Triangle> triangles;   ///< counter-clockwise seen from outside
   std::shared_ptr<const VesselMap> vessels;  ///< of gallbladder and membrane; may be null
 };
 
@@ -56,7 +60,7 @@ struct SceneCamera {
 
 struct Scene {
   SceneCamera camera;
-  std::vector<SceneMesh> meshes;  ///< drawn in this order: near ones first is fastest
+  std::vector<SceneMesh> meshes;  ///< drawn in this order, but liquids last: near ones first is fastest
 };
 
 }  // namespace calot

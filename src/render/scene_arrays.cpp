@@ -14,6 +14,10 @@ std::string mesh_problem(const SceneMesh& mesh) {
   if (mesh.normals.size() != n || mesh.rest_positions.size() != n)
     return fmt::format("{} positions, {} normals and {} rest positions", n, mesh.normals.size(),
                        mesh.rest_positions.size());
+  if (!mesh.burnt.empty() && mesh.burnt.size() != n)
+    return fmt::format("{} positions and {} shares burnt", n, mesh.burnt.size());
+  for (const double share : mesh.burnt)
+    if (!(share >= 0 && share <= 1)) return fmt::format("a share burnt of {}", share);
   for (std::size_t i = 0; i < n; ++i)
     if (!mesh.positions[i].allFinite() || !mesh.normals[i].allFinite() || !mesh.rest_positions[i].allFinite())
       return fmt::format("point {} is not finite", i);
@@ -27,9 +31,11 @@ std::string mesh_problem(const SceneMesh& mesh) {
   return {};
 }
 
-void add_vertex(std::vector<float>& vertices, const Vec3& place, const Vec3& normal, const Vec3& rest) {
+void add_vertex(std::vector<float>& vertices, const Vec3& place, const Vec3& normal, const Vec3& rest,
+                double burnt = 0) {
   for (const Vec3& v : {place, normal, rest})
     for (int c = 0; c < 3; ++c) vertices.push_back(static_cast<float>(v[c]));
+  vertices.push_back(static_cast<float>(burnt));
 }
 
 void add_mask(SceneArrays& arrays, const Vec2& extent) {
@@ -64,10 +70,10 @@ SceneArrays scene_arrays(const Scene& scene, const Lens& lens, int width, int he
   SceneArrays arrays;
   add_mask(arrays, lens.inner_extent(width, height));
   for (const SceneMesh& mesh : scene.meshes) {
-    const auto base = static_cast<std::uint32_t>(arrays.vertices.size() / 9);
+    const auto base = static_cast<std::uint32_t>(arrays.vertices.size() / floats_each);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       add_vertex(arrays.vertices, mesh.positions[i] - scene.camera.position, mesh.normals[i],
-                 mesh.rest_positions[i]);
+                 mesh.rest_positions[i], mesh.burnt.empty() ? 0.0 : mesh.burnt[i]);
     arrays.parts.push_back({mesh.material, arrays.indices.size(), 3 * mesh.triangles.size(), mesh.vessels});
     for (const Triangle& t : mesh.triangles)
       for (const int corner : t) arrays.indices.push_back(base + static_cast<std::uint32_t>(corner));

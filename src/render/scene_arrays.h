@@ -18,8 +18,10 @@ struct ScenePart {
   std::shared_ptr<const VesselMap> vessels;
 };
 
+inline constexpr std::size_t floats_each = 10;  ///< of a point
+
 struct SceneArrays {
-  std::vector<float> vertices;         ///< place relative to the camera, normal, rest position: 9 a point
+  std::vector<float> vertices;         ///< place relative to the camera, normal, rest position, share burnt
   std::vector<std::uint32_t> indices;  ///< triangles
   ScenePart mask;                      ///< its points are in clip space already
   std::vector<ScenePart> parts;        ///< one a mesh

@@ -12,16 +12,19 @@ const char* const vertex_shader = R"(
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec3 outward;
 layout(location = 2) in vec3 at_rest;
+layout(location = 3) in float share_burnt;
 uniform mat4 clip_from_place;
 uniform sampler3D noise_volume;
 out vec3 place;
 out vec3 normal;
 out vec3 rest;
 out vec4 broad;
+out float burnt;
 void main() {
   place = at;
   normal = outward;
   rest = 1000.0 * at_rest;
+  burnt = share_burnt;
   broad = textureLod(noise_volume, rest * (1.0 / (CELLS * BROAD_CELL)), 0.0) * 2.0 - 1.0;
   gl_Position = clip_from_place * vec4(at, 1.0);
 }
@@ -32,13 +35,19 @@ in vec3 place;
 in vec3 normal;
 in vec3 rest;
 in vec4 broad;             // noise of the cell BROAD_CELL
+in float burnt;            // share: 0.5 is whitened, 1 charred
 uniform mat4 shadow_from_place;
 uniform vec3 light;        // place of the light
 uniform vec3 view_axis;    // where the laparoscope looks
 uniform float intensity;
 uniform sampler3D noise_volume;
 uniform sampler2DShadow shadow_map;
+#ifdef LIQUID
+layout(location = 0, index = 0) out vec4 colour;   // what it adds
+layout(location = 0, index = 1) out vec4 covered;  // share of what is below it that it hides, a colour channel
+#else
 out vec4 colour;
+#endif
 
 // Gradient a cell in rgb (scaled to about [-1, 1]), value in a; features are about `cell` mm large.
 vec4 noise(vec3 mm, float cell) {
@@ -147,11 +156,11 @@ Surface surface_at(vec3 p) {
 }
 )";
 
-// A liquid's own surface is a mirror without relief; the deeper it is the less of the tissue below shines through.
+// A liquid's own surface is a mirror without relief. Tissue shines through it by Beer and Lambert's law: ABSORBS is what
+// a colour channel loses in 1 mm.
 const char* const liquid_material = R"(
 Surface surface_at(vec3 p) {
-  float deep = 1.0 - exp(-p.z / DEPTH);
-  return Surface(mix(THIN, DEEP, deep), SCATTER, vec3(0.0), 0.0, 900.0, 1.6);
+  return Surface(ALBEDO, SCATTER, vec3(0.0), 0.0, 900.0, 1.6);
 }
 )";
 
@@ -178,8 +187,21 @@ vec3 raised(vec3 n, vec3 slope) {
   return normalize(abs(det) * n - sign(det) * (hx * rx + hy * ry));
 }
 
+// Heat makes tissue whitish and dry, then brown, then black, in blotches.
+Surface heated(Surface s) {
+  float blotch = textureLod(noise_volume, rest * (1.0 / (CELLS * 1.3)), 0.0).a * 2.0 - 1.0;
+  float b = clamp(burnt * (1.0 + 0.25 * blotch), 0.0, 1.0);
+  s.albedo = mix(s.albedo, vec3(0.60, 0.53, 0.43), smoothstep(0.04, 0.45, b));
+  s.albedo = mix(s.albedo, vec3(0.20, 0.085, 0.030), smoothstep(0.45, 0.75, b));
+  s.albedo = mix(s.albedo, vec3(0.024, 0.018, 0.015), smoothstep(0.75, 0.98, b));
+  s.film *= 1.0 - 0.85 * smoothstep(0.1, 0.8, b);
+  s.scatter *= 1.0 - 0.8 * smoothstep(0.4, 0.9, b);
+  return s;
+}
+
 void main() {
   Surface s = surface_at(rest);
+  if (burnt > 0.0) s = heated(s);
   vec3 n = normalize(normal);
   vec3 v = normalize(-place);
   vec3 film_n = raised(n, s.slope);
@@ -198,9 +220,18 @@ void main() {
   // Powers of a cosine near 1 as exponentials: cheaper in software.
   float spot = 0.028 * (s.gloss + 2.0) / 8.0 * exp2(1.4427 * s.gloss * (nh - 1.0));
   float sheen = 0.055 * exp2(32.0 * (dot(tissue_n, h) - 1.0));
-  lit += s.film * l.strength * l.seen * (spot + sheen) * vec3(1.0, 0.97, 0.93);
+  vec3 mirrored = s.film * l.strength * l.seen * (spot + sheen) * vec3(1.0, 0.97, 0.93);
+#ifdef LIQUID
+  mirrored += s.film * fresnel * 2.2 * l.around;
+  vec3 hides = 1.0 - exp(-ABSORBS * max(rest.z, 0.0));
+  vec4 inner = exposed(lit), outer = exposed(mirrored);
+  covered = vec4(hides, hides.g);
+  colour = vec4(inner.rgb * hides + outer.rgb * (1.0 - inner.rgb * hides), outer.a);
+#else
+  lit += mirrored;
   lit += s.film * fresnel * 2.2 * l.around;
   colour = exposed(lit);
+#endif
 }
 )";
 
@@ -313,7 +344,8 @@ std::string header(Material material) {
 std::string scene_vertex_shader(Material material) { return header(material) + vertex_shader; }
 
 std::string scene_fragment_shader(Material material) {
-  const std::string common = header(material) + prelude + light_functions;
+  const std::string common =
+      header(material) + (is_liquid(material) ? "#define LIQUID\n" : "") + prelude + light_functions;
   const char* const bile = "vec3(0.130, 0.172, 0.132)";
   switch (material) {
     case Material::gallbladder:
@@ -324,14 +356,12 @@ std::string scene_fragment_shader(Material material) {
       return common + wall_of("vec3(0.34, 0.315, 0.25)", 0.25, "-0.15 - 0.028 * p.z") + tissue_lighting;
     case Material::bile:
       return common +
-             "#define THIN vec3(0.58, 0.42, 0.06)\n#define DEEP vec3(0.200, 0.195, 0.014)\n#define DEPTH "
-             "0.9\n"
+             "#define ALBEDO vec3(0.190, 0.142, 0.010)\n#define ABSORBS vec3(0.35, 0.55, 2.6)\n"
              "#define SCATTER vec3(0.40, 0.30, 0.06)\n" +
              liquid_material + tissue_lighting;
     case Material::blood:
       return common +
-             "#define THIN vec3(0.25, 0.012, 0.009)\n#define DEEP vec3(0.085, 0.003, 0.004)\n#define DEPTH "
-             "0.5\n"
+             "#define ALBEDO vec3(0.150, 0.006, 0.005)\n#define ABSORBS vec3(0.9, 7.0, 7.0)\n"
              "#define SCATTER vec3(0.15, 0.01, 0.008)\n" +
              liquid_material + tissue_lighting;
     case Material::capsule:

@@ -12,6 +12,7 @@
 #include "numerics/response.h"
 #include "sim/blades.h"
 #include "sim/body_rubbing.h"
+#include "sim/exchange.h"
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
@@ -704,7 +705,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       take_hold(field, index);
       if (!fold_fills_jaws(field, index)) {
         if (tool.pose.jaw > 0.5 * grip_grid) continue;
-        if (!tool.has_cut)
+        if (!tool.has_cut && !is_in_trocar(tool))
           events.push_back({use == JawUse::cut ? EventKind::empty_cut : EventKind::empty_grasp,
                             0,
                             tool.definition.name,

@@ -97,6 +97,22 @@ struct Cut {
 };
 
 /// What of a rod's state is one half's.
+/// A tube's burns on a piece of it: where at rest it has a point as near as its drawn points are to each other.
+std::vector<Burn> burns_of_piece(const Organ& whole, const RodBody& piece) {
+  constexpr double near = 1e-3;  // m
+  std::vector<Burn> out;
+  const std::vector<Vec3>& rest = piece.drawn_rest();
+  for (const Burn& burn : whole.burns) {
+    const Vec3& at = whole.body->drawn_rest()[burn.point];
+    const auto nearer = [&](const Vec3& a, const Vec3& b) {
+      return (a - at).squaredNorm() < (b - at).squaredNorm();
+    };
+    const auto nearest = std::min_element(rest.begin(), rest.end(), nearer);
+    if ((*nearest - at).norm() < near) out.push_back({static_cast<int>(nearest - rest.begin()), burn.energy});
+  }
+  return out;
+}
+
 Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool first, RodBody body) {
   Organ piece{whole.definition, nullptr, {}, {}, {}, {}, {}, {}, {}, {}};
   auto& shape = std::get<TubeShape>(piece.definition.shape);
@@ -140,6 +156,7 @@ Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool firs
   piece.openings.insert(first ? piece.openings.end() : piece.openings.begin(), opened);
   if (whole.left_in)
     piece.left_in = *whole.left_in * std::abs(rod.share_of_length(last) - rod.share_of_length(first_point));
+  piece.burns = burns_of_piece(whole, body);
   piece.landmarks = tube_landmarks(shape, body);
   piece.body = std::make_shared<const RodBody>(std::move(body));
   return piece;

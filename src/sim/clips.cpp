@@ -5,6 +5,7 @@
 
 #include "sim/between_jaws.h"
 #include "sim/change_bodies.h"
+#include "sim/spill.h"
 
 namespace calot {
 namespace {
@@ -47,7 +48,11 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
       events.push_back({EventKind::injury, 0, tool.definition.name, name, 0, at, EventCause::clip, called});
     holds = true;
   }
-  if (!holds) events.push_back({EventKind::clip_dropped, 0, tool.definition.name, {}, 0});
+  if (holds) return;
+  const Vec3 middle =
+      hinge_frame(tool.trocar, tool.pose, tool.geometry).translation() + (tip - 0.5 * row.leg) * hinge.col(2);
+  drop_clip(field, row.size, middle, hinge.col(2));
+  events.push_back({EventKind::clip_dropped, 0, tool.definition.name, {}, 0});
 }
 
 }  // namespace

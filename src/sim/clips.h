@@ -4,7 +4,8 @@
 // Firing squeezes the clip's legs shut, whatever the angle of the jaws: the applier's mechanism does, in less than a step.
 // The legs lie on the jaws up to their tip; a duct or a vessel that passes between them is flat then, pi times its radius
 // wide, and the clip holds what of that width is between its legs. It stays where it is on the tube, and what is divided
-// takes its clips along. Where it does not reach the middle of any, or in the air, the clip falls, and is not seen again.
+// takes its clips along. Where it does not reach the middle of any, or in the air, the clip falls (spill.h), and lies
+// where it fell.
 
 #include "sim/field.h"
 

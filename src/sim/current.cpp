@@ -127,11 +127,31 @@ Organ* touched_wall(Field& field, const Tool& tool, const PartLoad& load) {
   return touched == field.organs.end() ? nullptr : &*touched;
 }
 
+int nearest_of(const std::vector<Vec3>& places, const Vec3& at) {
+  const auto nearer = [&](const Vec3& a, const Vec3& b) {
+    return (a - at).squaredNorm() < (b - at).squaredNorm();
+  };
+  return static_cast<int>(std::min_element(places.begin(), places.end(), nearer) - places.begin());
+}
+
+/// Leaves a mark, which grows as long as the current stays there.
+void mark(Organ& wall, const Vec3& at, double energy) {
+  if (energy == 0) return;
+  const int point = nearest_of(wall.body->drawn(wall.state.x).positions, at);
+  const auto known = std::find_if(wall.burns.begin(), wall.burns.end(),
+                                  [&](const Burn& burn) { return burn.point == point; });
+  if (known == wall.burns.end())
+    wall.burns.push_back({point, energy});
+  else
+    known->energy += energy;
+}
+
 /// Raised when it has taken what opens it: once, as long as the current stays there.
 void burn_wall(Organ* wall, Tool& tool, const Vec3& at, double energy, std::vector<WorldEvent>& events) {
   if (wall == nullptr || wall->record != tool.burnt_record) tool.burnt = 0;
   tool.burnt_record = wall == nullptr ? -1 : wall->record;
   if (wall == nullptr) return;
+  mark(*wall, at, energy);
   const OrganDefinition& organ = wall->definition;
   const double limit = organ.wall.burn_energy;
   if (tool.burnt >= limit) return;

@@ -1,7 +1,8 @@
 #pragma once
 // What an instrument's current does to the strands that it touches: they share its power evenly, and each is divided once
 // it has taken what its area takes. Where they touch none, a wall takes it all, and is opened once that is its
-// burn_energy; what it took is forgotten where the current stops or the instrument leaves it.
+// burn_energy; what it took is forgotten where the current stops or the instrument leaves it, and a
+// mark stays.
 
 #include "sim/field.h"
 

@@ -27,12 +27,12 @@ std::string bring_in(Field& field, int coming) {
   const std::string& name = leaving.definition.name;
   if (const std::string held = held_organ(field, index); !held.empty())
     return fmt::format("{} holds {}", name, held);
-  if (leaving.pose.insertion > port_depth + slack)
+  if (!is_in_trocar(leaving))
     return fmt::format("{} is {:.0f} mm in: no more than {:.0f} mm are out of the field", name,
                        leaving.pose.insertion / 1e-3, port_depth / 1e-3);
   const InstrumentPose waited = tool.pose;
   tool.pose = leaving.pose;
-  tool.pose.jaw = 0;
+  tool.pose.roll = tool.pose.jaw = 0;
   if (!touches_nothing(field, coming)) {
     tool.pose = waited;
     return "it would touch an organ";
@@ -44,12 +44,7 @@ std::string bring_in(Field& field, int coming) {
 
 }  // namespace
 
-void let_wait(std::vector<Tool>& tools) {
-  for (std::size_t i = 0; i < tools.size(); ++i)
-    tools[i].waits =
-        std::any_of(tools.begin(), tools.begin() + static_cast<std::ptrdiff_t>(i),
-                    [&](const Tool& t) { return t.definition.port == tools[i].definition.port; });
-}
+bool is_in_trocar(const Tool& tool) { return tool.pose.insertion <= port_depth + slack; }
 
 int tool_in_port(const std::vector<Tool>& tools, int waiting) {
   const auto there = std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) {

@@ -1,8 +1,8 @@
 #pragma once
 // Instruments that share a port.
 //
-// One of them is in it, at the start the scene's first; the others wait outside. Who has drawn the one that is there back
-// into the port may have another one come in: it comes closed, along the same way, as deep as the other one was. That
+// One of them is in it, the others wait outside. Who has drawn the one that is there back
+// into the port may have another one come in: it comes closed and not turned, along the same way, as deep as the other one was. That
 // takes the assistant some seconds, which are the operator's to wait; here it happens between two steps.
 
 #include "sim/field.h"
@@ -12,8 +12,8 @@ namespace calot {
 /// m that an instrument is in at the start, and at most when it is exchanged: in its trocar, out of the field.
 inline constexpr double port_depth = 30e-3;
 
-/// Of each tool but the first of its port.
-void let_wait(std::vector<Tool>& tools);
+/// Whether it is no further in than that: what its jaws do there is no act.
+bool is_in_trocar(const Tool& tool);
 
 /// Place of the tool that is in the port of one that waits.
 int tool_in_port(const std::vector<Tool>& tools, int waiting);

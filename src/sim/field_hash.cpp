@@ -69,6 +69,10 @@ void add_acts(Hash& hash, const Organ& organ) {
     hash.add(opening.leaks);
   }
   if (organ.left_in) hash.add(*organ.left_in);
+  for (const Burn& burn : organ.burns) {
+    hash.add(burn.point);
+    hash.add(burn.energy);
+  }
 }
 
 void add_spill(Hash& hash, const Spill& spill) {
@@ -89,6 +93,12 @@ void add_spill(Hash& hash, const Spill& spill) {
       hash.add(wet.point);
       for (double volume : wet.volume) hash.add(volume);
     }
+  }
+  for (const FallenClip& clip : spill.clips) {
+    hash.add(static_cast<int>(clip.size));
+    hash.add(clip.on);
+    hash.add(clip.point);
+    add_point(hash, clip.legs);
   }
 }
 

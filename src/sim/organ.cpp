@@ -8,7 +8,8 @@ const ShellBody* shell_of(const Organ& organ) { return dynamic_cast<const ShellB
 
 OrganSnapshot snapshot(const Organ& organ) {
   return {organ.body,     organ.state, organ.grips,  organ.extensions, organ.refused_details,
-          organ.friction, organ.clips, organ.unfelt, organ.openings,   organ.left_in};
+          organ.friction, organ.clips, organ.unfelt, organ.openings,   organ.left_in,
+          organ.burns};
 }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {
@@ -22,6 +23,7 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.unfelt = snapshot.unfelt;
   organ.openings = snapshot.openings;
   organ.left_in = snapshot.left_in;
+  organ.burns = snapshot.burns;
 }
 
 Failure at_organ(Failure failure, std::size_t index) {

@@ -68,6 +68,12 @@ struct Opening {
   bool leaks = false;
 };
 
+/// What current has done to a wall, for pictures.
+struct Burn {
+  int point = 0;      ///< of what is drawn of it
+  double energy = 0;  ///< J
+};
+
 struct Organ {
   OrganDefinition definition;
   BodyPointer body;  ///< never null
@@ -89,6 +95,7 @@ struct Organ {
   std::vector<Opening> openings = {};  ///< ordered as they were made, but a tube's by their points
   /// m^3, what is left in a tube that nothing feeds; none: it is full.
   std::optional<double> left_in = {};
+  std::vector<Burn> burns = {};  ///< in the order in which they began
 };
 
 /// The body as a shell, which alone is refined; null: it is none.
@@ -106,6 +113,7 @@ struct OrganSnapshot {
   std::vector<int> unfelt;
   std::vector<Opening> openings;
   std::optional<double> left_in;
+  std::vector<Burn> burns;
 };
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);

@@ -26,6 +26,8 @@ constexpr double sticks = 0.06e-3;     // m, thickness that stays (d)
 constexpr double wets = 0.2e-3;        // m, thickness that wets what is dry (d)
 constexpr double film_speed = 0.15;    // m/s, at most
 constexpr double hangs = 15e-9;        // m^3, of what hangs before it drops off (d)
+constexpr double clings = 0.8e-3;      // m, thickness that hangs on an underside without dripping (d)
+constexpr double least_drip = 1e-9;    // m^3
 constexpr double least_flow = 1e-12;   // m^3, in a part of a step: what would run slower lies still
 constexpr std::array<double, liquids> viscosity{1.5e-3, 4e-3};  // Pa s, of bile and of blood (c)
 
@@ -191,23 +193,37 @@ double width_of(const Organ& organ, const Opening& opening) {
   return std::numbers::pi * std::pow(std::max(rod->outer_radius(opening.point) - rod->setup().wall, 1e-4), 2);
 }
 
+/// A surface and its nearest point that are met on a way.
+struct Landing {
+  int on, point;
+};
+std::optional<Landing> lands(Field& field, const Skins& skins, const Vec3& from, const Vec3& to) {
+  if (const std::optional<Skins::Met> met = skins.meets(from, to)) {
+    const Organ& organ = field.organs[met->organ];
+    remember_skin(field, organ);
+    return Landing{organ.record, met->point};
+  }
+  for (std::size_t k = 0; k < field.ground.size(); ++k) {
+    if (signed_distance(field.ground[k].shape, to) > 0) continue;
+    remember_ground(field, static_cast<int>(k));
+    return Landing{-1 - static_cast<int>(k), nearest_point(*field.spill.ground[k], to)};
+  }
+  return std::nullopt;
+}
+
+const WetMesh& mesh_on(const Spill& spill, int on) {
+  return on < 0 ? *spill.ground[static_cast<std::size_t>(-1 - on)]
+                : *spill.skins[static_cast<std::size_t>(on)];
+}
+
 /// Whether it has met something, or is away.
 bool fall(Field& field, const Skins& skins, Drop& drop, double part) {
   const Vec3 from = drop.at, g = -units::standard_gravity * field.up;
   const Vec3 to = from + part * drop.velocity + 0.5 * part * part * g;
   drop.velocity += part * g;
   drop.at = to;
-  if (const std::optional<Skins::Met> met = skins.meets(from, to)) {
-    const Organ& organ = field.organs[met->organ];
-    remember_skin(field, organ);
-    spread_drop(drop, *field.spill.skins[organ.record], met->point, film_on(field.spill, organ.record));
-    return true;
-  }
-  for (std::size_t k = 0; k < field.ground.size(); ++k) {
-    if (signed_distance(field.ground[k].shape, to) > 0) continue;
-    remember_ground(field, static_cast<int>(k));
-    const WetMesh& mesh = *field.spill.ground[k];
-    spread_drop(drop, mesh, nearest_point(mesh, to), film_on(field.spill, -1 - static_cast<int>(k)));
+  if (const std::optional<Landing> landing = lands(field, skins, from, to)) {
+    spread_drop(drop, mesh_on(field.spill, landing->on), landing->point, film_on(field.spill, landing->on));
     return true;
   }
   if (to.norm() < reach) return false;
@@ -255,12 +271,17 @@ class FilmFlow {
       thickness_[wet.point] = volume_of(wet) / surface_.mesh->areas[wet.point];
     for (const WetPoint& wet : film.wet) flow_from(wet, part);
     move(film);
-    for (WetPoint& wet : film.wet) drop_off(film, wet, drops);
+    for (WetPoint& wet : film.wet) {
+      if (up_.dot(surface_.normals[wet.point]) > 0) continue;
+      drip(wet, drops);
+      drop_off(film, wet, drops);
+    }
   }
 
  private:
+  /// Of its surface, m; of an underside the skin's, so that what hangs draws no more to it.
   double height(int point) const {
-    return up_.dot(surface_.at[point]) + up_.dot(surface_.normals[point]) * thickness_[point];
+    return up_.dot(surface_.at[point]) + std::max(0.0, up_.dot(surface_.normals[point])) * thickness_[point];
   }
   double loose(const WetPoint& wet) const {
     return std::max(0.0, volume_of(wet) - sticks * surface_.mesh->areas[wet.point]);
@@ -321,9 +342,33 @@ class FilmFlow {
                        [](const WetPoint& a, const WetPoint& b) { return a.point < b.point; });
   }
 
+  /// A share of what is there leaves it, into what has left around it.
+  static void take(WetPoint& wet, double share, std::array<double, liquids>& taken) {
+    for (int l = 0; l < liquids; ++l) {
+      taken[l] += share * wet.volume[l];
+      wet.volume[l] -= share * wet.volume[l];
+    }
+  }
+  void make_drops(const WetPoint& below, const std::array<double, liquids>& taken,
+                  std::vector<Drop>& drops) const {
+    for (int l = 0; l < liquids; ++l)
+      if (taken[l] > 0)
+        drops.push_back({static_cast<Carries>(l),
+                         surface_.at[below.point] + 1.5e-3 * surface_.normals[below.point], Vec3::Zero(),
+                         taken[l]});
+  }
+
+  /// Of an underside, where a film is too thick to hang.
+  void drip(WetPoint& wet, std::vector<Drop>& drops) const {
+    const double all = volume_of(wet), excess = all - clings * surface_.mesh->areas[wet.point];
+    if (excess < least_drip) return;
+    std::array<double, liquids> taken{};
+    take(wet, excess / all, taken);
+    make_drops(wet, taken, drops);
+  }
+
   /// What hangs at a lowest place of an underside.
-  void drop_off(Film& film, WetPoint& wet, std::vector<Drop>& drops) {
-    if (up_.dot(surface_.normals[wet.point]) > -0.2) return;
+  void drop_off(Film& film, WetPoint& wet, std::vector<Drop>& drops) const {
     const WetMesh& mesh = *surface_.mesh;
     double hanging = loose(wet);
     if (!(hanging > 0)) return;
@@ -340,18 +385,8 @@ class FilmFlow {
     }
     if (hanging < hangs) return;
     std::array<double, liquids> taken{};
-    for (WetPoint* point : all) {
-      const double share = loose(*point) / volume_of(*point);
-      for (int l = 0; l < liquids; ++l) {
-        taken[l] += share * point->volume[l];
-        point->volume[l] -= share * point->volume[l];
-      }
-    }
-    for (int l = 0; l < liquids; ++l)
-      if (taken[l] > 0)
-        drops.push_back({static_cast<Carries>(l),
-                         surface_.at[wet.point] + 1.5e-3 * surface_.normals[wet.point], Vec3::Zero(),
-                         taken[l]});
+    for (WetPoint* point : all) take(*point, loose(*point) / volume_of(*point), taken);
+    make_drops(wet, taken, drops);
   }
 
   WetSurface surface_;
@@ -374,14 +409,25 @@ void forget_gone(Field& field) {
 
 }  // namespace
 
-WetSurface wet_surface(const Field& field, const Film& film) {
-  if (film.on < 0) {
-    const WetMeshPointer& mesh = field.spill.ground[static_cast<std::size_t>(-1 - film.on)];
+void drop_clip(Field& field, ClipSize size, const Vec3& from, const Vec3& legs) {
+  constexpr double part = 2e-3;  // m: ground is met within it
+  const Skins skins(field);
+  for (Vec3 at = from; at.norm() < reach; at -= part * field.up) {
+    const std::optional<Landing> landing = lands(field, skins, at, at - part * field.up);
+    if (!landing) continue;
+    field.spill.clips.push_back({size, landing->on, landing->point, legs});
+    return;
+  }
+}
+
+WetSurface wet_surface(const Field& field, int on) {
+  if (on < 0) {
+    const WetMeshPointer& mesh = field.spill.ground[static_cast<std::size_t>(-1 - on)];
     return {mesh, mesh->at, mesh->normals};
   }
-  const Organ* organ = organ_on(field, film.on);
+  const Organ* organ = organ_on(field, on);
   if (organ == nullptr) return {};
-  return {field.spill.skins[static_cast<std::size_t>(film.on)], organ->body->skin_positions(organ->state.x),
+  return {field.spill.skins[static_cast<std::size_t>(on)], organ->body->skin_positions(organ->state.x),
           organ->body->skin_normals(organ->state.x)};
 }
 
@@ -397,7 +443,8 @@ void spill(Field& field, double duration) {
     std::erase_if(all.drops, [&](Drop& drop) { return fall(field, *skins, drop, part); });
     for (Film& film : all.films) {
       auto at = flows.find(film.on);
-      if (at == flows.end()) at = flows.emplace(film.on, FilmFlow(wet_surface(field, film), field.up)).first;
+      if (at == flows.end())
+        at = flows.emplace(film.on, FilmFlow(wet_surface(field, film.on), field.up)).first;
       at->second.run(film, part, all.drops);
     }
   }

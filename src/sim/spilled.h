@@ -31,6 +31,14 @@ struct Film {
   std::vector<WetPoint> wet;  ///< by increasing points
 };
 
+/// A clip that fell, where it lies.
+struct FallenClip {
+  ClipSize size = ClipSize::ml;
+  int on = 0, point = 0;  ///< as a film's, and the point of that surface
+  Vec3 legs = Vec3::
+      UnitZ();  ///< unit: where its legs pointed when it fell, and lie along as far as the surface lets them
+};
+
 /// Where a film can be: points, and who is beside whom.
 struct WetMesh {
   std::vector<Triangle> triangles;
@@ -52,6 +60,7 @@ struct Spill {
       out_of_sight{};  ///< m^3: by the patient, out of tubes, fallen away
   std::vector<Drop> drops;
   std::vector<Film> films;  ///< in the order in which they began
+  std::vector<FallenClip> clips;
   /// Of what films are on: remembered, no part of any result. By place on the roll, and of the ground.
   std::vector<WetMeshPointer> skins = {}, ground = {};
 

@@ -193,6 +193,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   for (const InstrumentDefinition& definition : scene.instruments) {
     Tool tool;
     tool.definition = definition;
+    tool.waits = definition.waits;
     tool.geometry = instrument_geometry(definition.type);
     tool.trocar = world.port_position(definition.port);
     if (has_action(definition.type, InstrumentAction::fire)) tool.clips = definition.clips;
@@ -203,7 +204,6 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     tool.pose.insertion = port_depth;
     world.impl_->field.tools.push_back(tool);
   }
-  let_wait(world.impl_->field.tools);
   if (scene.laparoscope.distance < scene.solver.extension_view) {
     const auto [organ, skin_point] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
     if (skin_point >= 0) world.impl_->field.viewed = ViewedPlace{organ, skin_point};

@@ -34,6 +34,26 @@ SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene
   }
 }
 
+namespace {
+
+/// One a drawn point; none where nothing is burnt.
+std::vector<double> burnt_shares(const Organ& organ) {
+  constexpr double wide = 1.6e-3;  // m, of a burn: the electrode's foot and what it heats around (d)
+  if (organ.burns.empty()) return {};
+  const std::vector<Vec3>& rest = organ.body->drawn_rest();
+  std::vector<double> shares(rest.size(), 0.0);
+  for (const Burn& burn : organ.burns) {
+    const double most = std::min(1.0, burn.energy / organ.definition.wall.burn_energy);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const double squared = (rest[i] - rest[burn.point]).squaredNorm() / (wide * wide);
+      shares[i] = std::min(1.0, shares[i] + most * std::exp(-squared));
+    }
+  }
+  return shares;
+}
+
+}  // namespace
+
 SceneMesh SceneBuilder::organ_mesh(const World& world, int organ) {
   const OrganDefinition& definition = world.field().organs[organ].definition;
   const Pose to_organ = organ_frame(definition).inverse();
@@ -61,6 +81,7 @@ Scene SceneBuilder::build(const World& world) const {
   }
   for (const Organ& organ : world.field().organs)
     for (SceneMesh& mesh : clip_meshes(organ)) scene.meshes.push_back(std::move(mesh));
+  for (SceneMesh& mesh : fallen_clips(world.field())) scene.meshes.push_back(std::move(mesh));
   for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
     const auto record = static_cast<std::size_t>(world.field().organs[i].record);
     // One that came since is laid out anew for each picture: a duct or a stone takes no time.
@@ -68,6 +89,7 @@ Scene SceneBuilder::build(const World& world) const {
     DrawnSkin skin = moulds_.skin(world, static_cast<int>(i));
     mesh.positions = std::move(skin.positions);
     mesh.normals = std::move(skin.normals);
+    mesh.burnt = burnt_shares(world.field().organs[i]);
     scene.meshes.push_back(std::move(mesh));
   }
   if (SceneMesh tissue = tissue_mesh(world); !tissue.triangles.empty())

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "sim/between_jaws.h"
+#include "sim/spill.h"
 #include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
@@ -37,6 +38,25 @@ std::vector<SceneMesh> clip_meshes(const Organ& organ) {
     const Vec3 legs = frame * clip.legs, pressed = frame * clip.pressed;
     pose.linear() << pressed, legs.cross(pressed), legs;
     SceneMesh mesh = clip_mesh(apart, row.leg, clip.reach, row.wire);
+    move(mesh, pose);
+    out.push_back(std::move(mesh));
+  }
+  return out;
+}
+
+std::vector<SceneMesh> fallen_clips(const Field& field) {
+  std::vector<SceneMesh> out;
+  for (const FallenClip& clip : field.spill.clips) {
+    const WetSurface surface = wet_surface(field, clip.on);
+    if (!surface.mesh) continue;
+    const ClipRow& row = clip_row(clip.size);
+    const Vec3 &at = surface.at[clip.point], &out_of = surface.normals[clip.point];
+    Vec3 legs = clip.legs - out_of * out_of.dot(clip.legs);
+    legs = legs.norm() > 0.1 ? Vec3(legs.normalized()) : Vec3(out_of.unitOrthogonal());
+    Pose pose = Pose::Identity();
+    pose.translation() = at + 0.6 * row.wire * out_of;
+    pose.linear() << out_of.cross(legs), out_of, legs;
+    SceneMesh mesh = clip_mesh(0.6 * row.wire, row.leg, 0.5 * row.leg, row.wire);
     move(mesh, pose);
     out.push_back(std::move(mesh));
   }

@@ -114,7 +114,7 @@ std::vector<SceneMesh> spill_meshes(const World& world) {
     SceneMesh mesh;
     mesh.material = static_cast<Carries>(liquid) == Carries::blood ? Material::blood : Material::bile;
     for (const Film& film : field.spill.films) {
-      const WetSurface surface = wet_surface(field, film);
+      const WetSurface surface = wet_surface(field, film.on);
       if (!surface.mesh) continue;
       const std::map<int, double> depths = depths_of(film, *surface.mesh, liquid);
       if (!depths.empty()) add_film(surface, depths, mesh);

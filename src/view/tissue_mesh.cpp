@@ -10,6 +10,8 @@
 namespace calot {
 namespace {
 
+constexpr double spared = 0.6;     // share of its middle's heat that the ends of a strand do not get
+constexpr double shrinks = 0.35;   // by which share charred fat is thinner
 constexpr double torn_part = 0.3;  // of a strand's way that hangs on to either end after it is torn
 
 /// A number in [0, 1) that is the same in every picture.
@@ -30,8 +32,8 @@ const SceneMesh& ball() {
 }
 
 /// Stretched along the strand, as lobules are; the volume stays.
-void add_lobule(const StrandLine& line, double share, double radius, std::size_t strand, int lobule,
-                SceneMesh& out) {
+void add_lobule(const StrandLine& line, double share, double radius, double burnt, std::size_t strand,
+                int lobule, SceneMesh& out) {
   const Vec3 way = line.to - line.from;
   const Vec3 along = way.norm() > 0 ? way.normalized() : Vec3::UnitZ(), side = along.unitOrthogonal();
   const double longer = 1.1 + 0.5 * share_of(strand, lobule, 0), turned = 6 * share_of(strand, lobule, 1);
@@ -51,6 +53,7 @@ void add_lobule(const StrandLine& line, double share, double radius, std::size_t
     out.positions.emplace_back(line.at(share) + off_line + shape * form.positions[i]);
     out.normals.emplace_back((normal_shape * form.normals[i]).normalized());
     out.rest_positions.emplace_back(pattern + radius * form.positions[i]);
+    out.burnt.push_back(burnt);
   }
   for (const Triangle& t : form.triangles)
     out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
@@ -69,10 +72,13 @@ void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::siz
     const double now = std::max((line.to - line.from).norm(), law.taut);
     const double drawn_back = torn ? 2 * torn_part * law.taut / now : 1.0;
     const int lobules = std::max(1, static_cast<int>(std::lround(law.taut / (1.3 * radius))));
+    const double heat = std::min(1.0, tissue.now.heated[k] / (tissue.definition.divide_energy * strand.area));
     for (int i = 0; i < lobules; ++i) {
       const double share = (i + 0.5) / lobules;
-      add_lobule(line, share < 0.5 ? drawn_back * share : 1 - drawn_back * (1 - share), radius,
-                 first_strand + k, i, out);
+      // Where it is lifted it is heated most, and shrinks.
+      const double burnt = heat * (1 - spared * std::abs(2 * share - 1));
+      add_lobule(line, share < 0.5 ? drawn_back * share : 1 - drawn_back * (1 - share),
+                 (1 - shrinks * burnt) * radius, burnt, first_strand + k, i, out);
     }
   }
 }

@@ -219,6 +219,16 @@ const std::vector<Refusal>& refusals() {
          s.ports = {{"umbilical", Vec3::Zero()}, {"epigastric", {0, 0.1, 0}}};
        },
        "scene.instruments.left.port", "unknown port \"right_subcostal\"", "known: umbilical, epigastric"},
+      {"PortUsedByTwoInstruments", [](auto& s) { s.instruments[1].port = "right_subcostal"; },
+       "scene.instruments.right.port", "already used by instrument \"left\"", "free: epigastric"},
+      {"InstrumentThatWaitsForNobody", [](auto& s) { s.instruments[1].waits = true; },
+       "scene.instruments.right.waits", "in which no instrument is", "let one of that port's"},
+      {"InstrumentThatWaitsForTheScope",
+       [](auto& s) {
+         s.instruments[1].port = "umbilical";
+         s.instruments[1].waits = true;
+       },
+       "scene.instruments.right.port", "the laparoscope stays in its port", "free: epigastric"},
       {"PortUsedByTheScope", [](auto& s) { s.instruments[1].port = "umbilical"; },
        "scene.instruments.right.port", "already used by the laparoscope", "free:"},
       {"TubeOfOnePoint", [](auto& s) { s.anatomy.organs.push_back(duct({Vec3::Zero()})); },

@@ -74,8 +74,9 @@ TEST(Clipping, AStepSeesTheClipsOnThePiecesOfWhatWasDivided) {
 /// The same through one port.
 test::ScenarioText through_one_port(const std::string& demo) {
   test::ScenarioText text = clipped_duct(demo);
-  const std::string second = "port = 'two'";
-  text.scene.replace(text.scene.find("port = 'one'"), second.size(), second);
+  const std::string one = "port = 'one'", two = "port = 'two' }";
+  text.scene.replace(text.scene.find(one), one.size(), "port = 'two'");
+  text.scene.replace(text.scene.find(two), two.size(), "port = 'two', waits = true }");
   return text;
 }
 

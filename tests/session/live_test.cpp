@@ -195,6 +195,7 @@ SceneDefinition shared_port() {
   scene.instruments.push_back(default_instrument(InstrumentType::scissors));
   scene.instruments.back().name = "blades";
   scene.instruments.back().port = scene.instruments[0].port;
+  scene.instruments.back().waits = true;
   return scene;
 }
 

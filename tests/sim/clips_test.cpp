@@ -7,6 +7,7 @@
 #include "act_rig.h"
 #include "sim/between_jaws.h"
 #include "sim/field_state.h"
+#include "sim/spill.h"
 
 namespace calot {
 namespace {
@@ -59,6 +60,28 @@ TEST(Clips, LeaveOpenWhatIsNotBetweenTheirLegs) {
   // A smaller clip's crown is before the tube's near side when it is well past it.
   EXPECT_EQ(clipped_at(3e-3, ClipSize::m).first.clips[0].opening, 0);
   EXPECT_GT(clipped_at(5.5e-3, ClipSize::m).first.clips[0].opening, 0.2);
+}
+
+TEST(Clips, LieWhereTheyFellAndAreGoneOnceThatIsUndone) {
+  SceneDefinition scene = across(InstrumentType::clip_applier);
+  constexpr double floor = -150e-3;  // m
+  scene.anatomy.support = SupportDefinition{Vec3(0, 0, floor), Vec3::UnitZ(), 0};
+  Acting acting(scene);
+  InstrumentPose aside = about(applier_jaw, tube_depth - 30e-3);
+  aside.yaw = 0.4;
+  ASSERT_TRUE(acting.go(aside, 4));
+  const FieldState before = acting.world.state();
+  ASSERT_TRUE(acting.fire());
+  const std::vector<FallenClip>& fallen = acting.world.field().spill.clips;
+  ASSERT_EQ(fallen.size(), 1u);
+  const Vec3 lies = wet_surface(acting.world.field(), fallen[0].on).at.at(fallen[0].point);
+  const Vec3 tip = acting.world.report().instruments[0].tip;
+  // Straight below the jaws, to within the clip and the points of the ground.
+  EXPECT_LT((lies - tip).head<2>().norm(), 10e-3);
+  EXPECT_NEAR(lies.z(), floor, 1e-9);
+  EXPECT_NEAR(fallen[0].legs.norm(), 1, 1e-12);
+  ASSERT_TRUE(acting.world.restore(before));
+  EXPECT_TRUE(acting.world.field().spill.clips.empty());
 }
 
 TEST(Clips, FallBesideATubeAndAreCounted) {

@@ -41,7 +41,7 @@ const Film* film_on_ground(const Field& field) {
 
 /// Mean place of what lies on a film's surface, m.
 Vec3 middle_of(const Field& field, const Film& film) {
-  const WetSurface surface = wet_surface(field, film);
+  const WetSurface surface = wet_surface(field, film.on);
   Vec3 sum = Vec3::Zero();
   double volume = 0;
   for (const WetPoint& wet : film.wet) {
@@ -80,6 +80,14 @@ TEST(Spills, AFilmRunsDownASlopeAndOffAnUndersideAndNothingIsLost) {
     for (const Film& film : field.spill.films)
       for (const WetPoint& wet : film.wet)
         for (double volume : wet.volume) ASSERT_GE(volume, -1e-20);
+    for (const Film& film : field.spill.films) {
+      const WetSurface surface = wet_surface(field, film.on);
+      for (const WetPoint& wet : film.wet) {
+        if (field.up.dot(surface.normals[wet.point]) > 0) continue;
+        const double clings = 1e-3 * surface.mesh->areas[wet.point], one_drop = 10e-9;
+        EXPECT_LT(wet.volume[0] + wet.volume[1], clings + one_drop) << "more would not hang there";
+      }
+    }
     if (film_on_ground(field) != nullptr || field.spill.films.empty()) continue;
     const double height = middle_of(field, field.spill.films[0]).z();
     EXPECT_LT(height, lowest_yet) << k;
@@ -106,7 +114,7 @@ TEST(Spills, WhatLiesLevelComesToRestAndStaysAsItIs) {
   const Film& after = *film_on_ground(field);
   ASSERT_EQ(before.wet.size(), after.wet.size());
   double change = 0, deepest = 0;
-  const WetSurface surface = wet_surface(field, after);
+  const WetSurface surface = wet_surface(field, after.on);
   for (std::size_t k = 0; k < before.wet.size(); ++k) {
     change = std::max(change, std::abs(after.wet[k].volume[1] - before.wet[k].volume[1]));
     deepest = std::max(deepest, after.wet[k].volume[1] / surface.mesh->areas[after.wet[k].point]);
