@@ -102,6 +102,16 @@ SceneDefinition veiled_tubes() {
   return scene;
 }
 
+/// The largest share that a strand has taken of what divides it.
+double hottest(const World& world) {
+  const Tissue& fat = world.field().tissues[0];
+  double most = 0;
+  for (std::size_t i = 0; i < fat.now.heated.size(); ++i)
+    most =
+        std::max(most, fat.now.heated[i] / (fat.definition.divide_energy * fat.strands->strands()[i].area));
+  return most;
+}
+
 TEST(MissingParts, AGoldenNoticesAMissingClip) {
   test::Acting acting(tube_from_aside(InstrumentType::clip_applier));
   ASSERT_TRUE(acting.go(test::about(0.4, test::tube_depth - 20e-3), 2));
@@ -139,6 +149,28 @@ TEST(MissingParts, AGoldenNoticesAMissingFilmOfBile) {
     const auto [taken, of] =
         take_triangles(seen, Material::bile, [&](const Vec3& p) { return p.z() < table + 1e-3; });
     EXPECT_GT(taken, 0u);
+  });
+}
+
+TEST(MissingParts, AGoldenNoticesAMissingBurn) {
+  World world = World::create(veiled_tubes()).value();
+  test::Driver driver(world);
+  ASSERT_TRUE(driver.go({-95e-3, 90e-3, -106e-3}, 0, 12)) << driver.why();
+  for (int k = 0; k < 40 && !world.report().instruments[0].touching; ++k)
+    ASSERT_TRUE(driver.go({-95e-3 + 0.5e-3 * k, 90e-3, -106e-3}, 0, 1)) << driver.why();
+  ASSERT_TRUE(world.report().instruments[0].touching);
+  const StepInput act{{world.report().instruments[0].pose}, {InstrumentAction::activate}};
+  for (int k = 0; k < 200 && hottest(world) < 0.7; ++k) ASSERT_TRUE(world.step(act));
+  ASSERT_GE(hottest(world), 0.7);
+  ASSERT_EQ(world.report().tissues[0].torn, 0) << "it has not parted yet";
+  ASSERT_TRUE(driver.go({-105e-3, 90e-3, -106e-3}, 0, 10)) << driver.why();
+  expect_missed(world, "a missing burn", [](Scene& seen) {
+    double most = 0;
+    for (SceneMesh& mesh : seen.meshes) {
+      for (const double share : mesh.burnt) most = std::max(most, share);
+      mesh.burnt.clear();
+    }
+    EXPECT_GT(most, 0);
   });
 }
 
