@@ -38,6 +38,9 @@ enum class EventKind {
   bile_leak,
   bleeding,
   leak_stopped,
+  puncture,
+  aspirated,
+  empty_aspiration,
   step_done,
   step_timeout,
 };

@@ -18,6 +18,7 @@ struct ToolSnapshot {
   bool on_clip = false, beside_kept = false;
   double burnt = 0;
   int burnt_record = -1;
+  NeedleState needle = {};
 };
 
 struct FieldState {

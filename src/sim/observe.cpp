@@ -30,6 +30,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
     if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
   }
   state.clips = tool.clips;
+  state.aspirated = tool.needle.drawn_ever;
   state.touching = load.touches > 0;
   state.parts = load.parts;
   const bool closed = tool.pose.jaw <= 0.5 * grip_grid;
