@@ -12,7 +12,7 @@ local mm, s, N, deg, mmHg = calot.units.mm, calot.units.s, calot.units.N, calot.
 -- Where the fundus goes: towards the patient's right shoulder, over the liver.
 local up = { -0.33, 0.6, 0.73 }
 -- A gallbladder with less pressure than this is slack enough to be held.
-local slack = 8 * mmHg
+local slack = 5 * mmHg
 
 local function is_tense(p) return p.field == "hydrops" end
 
@@ -46,7 +46,7 @@ return calot.exercise {
       left = { port = "right_subcostal", force_limit = 5 * N },
     }
     if is_tense(p) then
-      ports.needle = { -105 * mm, 50 * mm, 0 }
+      ports.needle = { -100 * mm, 45 * mm, 0 }
       instruments.needle = { type = "aspiration_needle", port = "needle", force_limit = 3 * N }
     end
     return {

@@ -39,7 +39,7 @@ end
 --- Draws the gallbladder out through the wall of its fundus, until its pressure is below `slack`, and leaves it.
 function technique.draw_slack(t, needle, slack)
   local outside = needle:tip()
-  needle:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 3 * mm })
+  needle:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 3 * mm, offset = { 8 * mm, -8 * mm, 2 * mm } })
   for _ = 1, 60 do
     if t:pressure("gallbladder") < slack then break end
     needle:aspirate(0.2 * s)

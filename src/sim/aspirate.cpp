@@ -17,8 +17,6 @@ using std::numbers::pi;
 /// m, from the tip to a wall that it goes through (d): at a slant of more than 50 degrees the round end that touches
 /// keeps the tip further off.
 constexpr double pushed_on = 0.4e-3;
-/// m, from where it went in to the tip (d): so far the sharp end reaches beyond what touches.
-constexpr double depth = 10e-3;
 
 struct NearestSkin {
   int organ = -1, point = 0;
@@ -49,7 +47,7 @@ bool still_in(const Field& field, const Tool& tool, bool draws) {
   const int organ = punctured_organ(field, tool);
   if (organ < 0 || !draws) return false;
   const Organ& in = field.organs[organ];
-  return (in.body->skin_point(tool.needle.point, in.state.x) - tip_of(tool)).norm() <= depth;
+  return (in.body->skin_point(tool.needle.point, in.state.x) - tip_of(tool)).norm() <= needle_depth;
 }
 
 void go_in(Organ& organ, int point, Tool& tool) {

@@ -14,6 +14,8 @@
 
 namespace calot {
 
+/// m, from where it went in to the tip (d): so far its sharp end reaches beyond what touches.
+inline constexpr double needle_depth = 10e-3;
 inline constexpr double bile_viscosity = 1.5e-3;  ///< Pa s (c)
 
 /// Of a round bore, Pa s/m^3.

@@ -33,4 +33,13 @@ std::vector<SceneMesh> needle_meshes(const Vec3& trocar, const InstrumentPose& p
   return {steel, insulation};
 }
 
+SceneMesh needle_end_mesh(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry,
+                          double length) {
+  const double r = 0.99 * geometry.electrode_radius, tip = geometry.jaw_length + length;
+  const double back = geometry.jaw_length - geometry.electrode_radius;
+  SceneMesh steel = turned(Material::steel, {{0, back}, {r, back}, {r, tip - 3 * r}, {0, tip}}, 40);
+  move(steel, hinge_frame(trocar, pose, geometry));
+  return steel;
+}
+
 }  // namespace calot

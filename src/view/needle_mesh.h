@@ -11,4 +11,8 @@ namespace calot {
 std::vector<SceneMesh> needle_meshes(const Vec3& trocar, const InstrumentPose& pose,
                                      const InstrumentGeometry& geometry);
 
+/// Its sharp end, which it puts forth while it is in an organ: from the tip on, as long as that, m.
+SceneMesh needle_end_mesh(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry,
+                          double length);
+
 }  // namespace calot
