@@ -1,15 +1,20 @@
 -- Calot's triangle exposed, the first act of the operation: one grasper takes the fundus and pushes it up over the
 -- liver's edge; another draws the pouch to the side and downwards, so that the cystic duct stands off the common duct
 -- and the laparoscope sees what lies between them. The classic mistake is a parameter, traction = "cephalad": both ends
--- pulled towards the head line the ducts up.
+-- pulled towards the head line the ducts up. A hydrops is tense: a needle through the wall of its fundus draws it slack
+-- first, as surgeons do.
 
 local calot = require "calot"
 local anatomy = require "anatomy"
 local technique = require "technique"
-local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
+local mm, s, N, deg, mmHg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg, calot.units.mmHg
 
 -- Where the fundus goes: towards the patient's right shoulder, over the liver.
 local up = { -0.33, 0.6, 0.73 }
+-- A gallbladder with less pressure than this is slack enough to be held.
+local slack = 5 * mmHg
+
+local function is_tense(p) return p.field == "hydrops" end
 
 return calot.exercise {
   api = 1,
@@ -35,19 +40,33 @@ return calot.exercise {
 
   scene = function(p)
     local own = { assistant = false }
+    local ports = { scope = { -40 * mm, 20 * mm, 10 * mm } }
+    local instruments = {
+      fundus = { port = "right_lateral", force_limit = 5 * N },
+      left = { port = "right_subcostal", force_limit = 5 * N },
+    }
+    if is_tense(p) then
+      ports.needle = { -100 * mm, 45 * mm, 0 }
+      instruments.needle = { type = "aspiration_needle", port = "needle", force_limit = 3 * N }
+    end
     return {
       anatomy = p.field == "standard" and anatomy.standard(own) or anatomy.variant(p.field, own),
-      ports = { scope = { -40 * mm, 20 * mm, 10 * mm } },
-      instruments = {
-        fundus = { port = "right_lateral", force_limit = 5 * N },
-        left = { port = "right_subcostal", force_limit = 5 * N },
-      },
+      ports = ports,
+      instruments = instruments,
       laparoscope = { port = "scope", angle = 0, look_at = "gallbladder.infundibulum", distance = 120 * mm },
       solver = { motion = "dynamic" },
     }
   end,
 
-  steps = function(t)
+  steps = function(t, p)
+    if is_tense(p) then
+      t:step("decompress", "Draw the tense gallbladder slack through a needle", {
+        limit = 15 * s,
+        hint = "push the needle's tip on the fundus, straight at its wall, and let it draw until the wall gives way",
+      })
+      t:wait_until(function() return t:pressure("gallbladder") < slack end)
+    end
+
     t:step("lift", "Take the fundus and push it up over the liver's edge", {
       limit = 20 * s,
       hint = "the fundus is the round end away from the ducts: close the jaws on a fold of it and push it towards the "
@@ -75,6 +94,7 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
+    if is_tense(p) then technique.draw_slack(t, t.needle, slack) end
     t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
     t.fundus:close()
     t.fundus:move_by({ -9 * mm, 17 * mm, 20 * mm }, { speed = 20 * mm / s })

@@ -51,7 +51,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.
@@ -82,14 +82,14 @@
 ---Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came too early, a metric beyond a value. A metric that was never measured is beyond.
 ---@class calot.gate
 ---@field reason string one sentence for the trainee
----@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" this happened
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" this happened
 ---@field organ? string to this organ or tissue, or a piece of it
----@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" and this had not happened before
+---@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" and this had not happened before
 ---@field after_organ? string to this organ or tissue, or a piece of it
 ---@field metric? string this metric is beyond a value
 ---@field below? number below this
 ---@field above? number above this
----@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
+---@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
 ---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
 ---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
@@ -210,8 +210,9 @@
 
 ---An instrument through a port.
 ---@class calot.instrument
----@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps"|"maryland_dissector"|"l_hook"|"scissors"|"clip_applier" which instrument: atraumatic_grasper has long fenestrated jaws with teeth; bipolar_electrode (with channel) has no jaws and only pushes; semm_forceps has short broad flat jaws; maryland_dissector has slim curved jaws; l_hook is a wire that ends in a foot to one side, and has no jaws; scissors has blades; clip_applier has a shaft of 10 mm and sets clips; default "atraumatic_grasper"
+---@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps"|"maryland_dissector"|"l_hook"|"scissors"|"clip_applier"|"aspiration_needle" which instrument: atraumatic_grasper has long fenestrated jaws with teeth; bipolar_electrode (with channel) has no jaws and only pushes; semm_forceps has short broad flat jaws; maryland_dissector has slim curved jaws; l_hook is a wire that ends in a foot to one side, and has no jaws; scissors has blades; clip_applier has a shaft of 10 mm and sets clips; aspiration_needle is a needle of 14 gauge that draws out what a hollow organ holds, and has no jaws; default "atraumatic_grasper"
 ---@field port string the port it goes through
+---@field waits? boolean true: it waits outside while another instrument is in its port, until it is exchanged for that; default false
 ---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
@@ -219,6 +220,10 @@
 ---@field power? number W of its current, where it can be activated: what strands of tissue it touches then share it, and are divided by it; default 30; 1 to 120
 ---@field clip? "M"|"ML" the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML); clip_applier only; default "ML"
 ---@field clips? number how many it carries; clip_applier only; default 8; 0 to 50
+---@field bore? number its bore, across; 1.6 mm is 14 gauge; aspiration_needle only; default 1.6 * mm; 0.3 to 1.9 mm
+---@field bore_length? number from its mouth to where the suction's pressure is; uncalibrated; aspiration_needle only; default 330 * mm; 20 to 1000 mm
+---@field suction? number how far its pressure is below that outside of the organs; uncalibrated; aspiration_needle only; default 13 * kPa; 0 to 80 kPa
+---@field pinhole? number across what stays open of a wall that it was through, 0: nothing; uncalibrated; aspiration_needle only; default 0.3 * mm; 0 to 2 mm
 
 ---The camera and its light.
 ---@class calot.laparoscope
@@ -388,7 +393,7 @@
 
 ---An event of a session, as a rule sees it.
 ---@class calot.event
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" its kind
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" its kind
 ---@field time number when, s
 ---@field step string the step that ran
 ---@field instrument? string whose it is
@@ -480,7 +485,7 @@ function Session:divided(organ) end
 ---@return calot.clip[]
 function Session:clips(organ) end
 
----What has left the organs by openings until now, m^3: of one organ with its pieces, or of all.
+---What has left the organs by openings until now, m^3: of one organ with its pieces, or of all. Not what was drawn out.
 ---@param liquid "bile"|"blood" which
 ---@param organ? string an organ of the scene; without it, all
 ---@return number
@@ -563,7 +568,7 @@ function Steps:tie(joint) end
 function Steps:untie(organ, other) end
 
 ---How many events of a kind there have been, such as time_out; those of this step come before it.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number
 function Steps:count(event, organ) end
@@ -636,6 +641,10 @@ function Instrument:active() end
 ---@return number
 function Instrument:clips_left() end
 
+---What it has drawn out until now, m^3. An error for an instrument that draws nothing out.
+---@return number
+function Instrument:aspirated() end
+
 ---Where it touches, or the part named does, at the point that is pressed hardest; nil where it does not.
 ---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip
 ---@return calot.contact?
@@ -677,9 +686,13 @@ function DemoInstrument:activate(duration) end
 ---Sets a clip on what is between its jaws. An error for an instrument without clips.
 function DemoInstrument:fire() end
 
----Has it come in, where it waits outside while another one is in its port: that one is drawn back along its shaft, closed and taken out, and this one comes in closed, 30 mm deep, on the same way. Instruments with one port are exchanged so; the first of the scene is in it at the start.
+---Has it come in, where it waits outside while another one is in its port: that one is drawn back along its shaft, closed and taken out, and this one comes in closed and not turned, 30 mm deep, on the same way.
 ---@param options? calot.exchange_options how fast
 function DemoInstrument:exchange(options) end
+
+---Draws out what is behind the wall that its tip is pushed on, or is in, for a while, and waits for that. An error for an instrument that draws nothing out.
+---@param duration number how long; 0.001 to 3600 s
+function DemoInstrument:aspirate(duration) end
 
 ---Moves the tip straight to a place.
 ---@param target calot.point|string a point, m, or a landmark such as "gallbladder.fundus"
@@ -716,13 +729,13 @@ function DemoInstrument:wait(duration) end
 local Run = {}
 
 ---How many events of a kind there were.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return integer
 function Run:count(event, organ) end
 
 ---When there were events of a kind, s, ascending.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number[]
 function Run:times(event, organ) end

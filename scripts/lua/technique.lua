@@ -34,6 +34,19 @@ function technique.angle_of_ducts(t)
   return math.acos(dot(unit(minus(neck, union)), unit(minus(hilum, union))))
 end
 
+-- ---- the needle
+
+--- Draws the gallbladder out through the wall of its fundus, until its pressure is below `slack`, and leaves it.
+function technique.draw_slack(t, needle, slack)
+  local outside = needle:tip()
+  needle:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 3 * mm, offset = { 8 * mm, -8 * mm, 2 * mm } })
+  for _ = 1, 60 do
+    if t:pressure("gallbladder") < slack then break end
+    needle:aspirate(0.2 * s)
+  end
+  needle:move_to(outside, { speed = 80 * mm / s })
+end
+
 -- ---- the hook
 
 local function nearest_strand(t, hook, tissue, wanted)

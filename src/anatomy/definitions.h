@@ -264,6 +264,7 @@ enum class InstrumentType {
   l_hook,
   scissors,
   clip_applier,
+  aspiration_needle,
 };
 
 /// Of titanium clips, a row each in clip_rows() (anatomy/instruments.h).
@@ -284,6 +285,11 @@ struct InstrumentDefinition {
   double power = 30;  ///< W of its current, where it has any: 25 to 40 in use (c)
   ClipSize clip = ClipSize::ml;
   int clips = 8;  ///< that it carries at the start
+  // Of a needle that draws liquid out, sim/aspirate.h. A bore of 1.6 mm is 14 gauge (c); the others (d), uncalibrated.
+  double bore = 1.6e-3;         ///< m, across
+  double bore_length = 330e-3;  ///< m, from its mouth to where the suction's pressure is
+  double suction = 13e3;        ///< Pa below the pressure outside: some 100 mmHg
+  double pinhole = 0.3e-3;      ///< m, across what it leaves open of a wall that it was through; 0: sealed
 };
 
 inline constexpr int most_clips = 50;
@@ -294,7 +300,7 @@ enum class InstrumentAction {
   activate,  ///< current flows
   fire,      ///< what it carries is set: a clip
   irrigate,
-  aspirate,
+  aspirate,  ///< liquid is drawn out through a bore
   exchange,  ///< it comes in through its port for the one that is there
 };
 

@@ -69,6 +69,11 @@ const std::vector<InstrumentRow>& instrument_rows() {
        {activate}},
       {scissors, "scissors", "has blades", forceps(16e-3, 2.4e-3, 2.2e-3, 0.6e-3), {}, JawUse::cut},
       {clip_applier, "clip_applier", "has a shaft of 10 mm and sets clips", applier(), {fire}, JawUse::carry},
+      {aspiration_needle,
+       "aspiration_needle",
+       "is a needle of 14 gauge that draws out what a hollow organ holds, and has no jaws",
+       rod(24e-3, 1.5e-3, 1.05e-3, 16e-3, 0),
+       {aspirate}},
   };
   return rows;
 }

@@ -138,6 +138,11 @@ Key clips_only(Key key) {
   return key;
 }
 
+Key needle_only(Key key) {
+  key.needle_only = true;
+  return key;
+}
+
 std::string written(double value, const Quantity& quantity) {
   if (quantity.multipliers.empty()) return fmt::format("{:g}", value);
   const UnitName& unit = quantity.multipliers.front();

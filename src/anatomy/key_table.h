@@ -54,8 +54,9 @@ struct Key {
   std::vector<std::string> choices{};  ///< for choices
   std::string signature{};             ///< for functions, as the editor's type
   std::string what{};  ///< completes "70 m is not ...": "a gallbladder's length"; empty: "a sensible <name>"
-  bool jaws_only = false;   ///< means nothing to an instrument without jaws
-  bool clips_only = false;  ///< means nothing to one that sets no clips
+  bool jaws_only = false;    ///< means nothing to an instrument without jaws
+  bool clips_only = false;   ///< means nothing to one that sets no clips
+  bool needle_only = false;  ///< means nothing to one that draws nothing out
 
   std::function<KeyTarget(void* definition)> field{};
   /// Of tables that are members: the member; null for one that is absent, unless it is to be made.
@@ -109,6 +110,7 @@ Key function(std::string name, std::string signature, std::string doc);
 Key required(Key key);
 Key jaws_only(Key key);
 Key clips_only(Key key);
+Key needle_only(Key key);
 
 /// Binds a key to a member of T.
 template <class T, class M>

@@ -121,7 +121,8 @@ std::vector<ApiFunction> session_functions() {
        "calot.clip[]"},
       {"Session",
        "lost",
-       "What has left the organs by openings until now, m^3: of one organ with its pieces, or of all.",
+       "What has left the organs by openings until now, m^3: of one organ with its pieces, or of all. "
+       "Not what was drawn out.",
        {required(choice("liquid", {"bile", "blood"}, "", "which")),
         text("organ", "", "an organ of the scene; without it, all")},
        "number"},
@@ -307,6 +308,11 @@ std::vector<ApiFunction> instrument_functions() {
        {},
        "number"},
       {"Instrument",
+       "aspirated",
+       "What it has drawn out until now, m^3. An error for an instrument that draws nothing out.",
+       {},
+       "number"},
+      {"Instrument",
        "contact",
        "Where it touches, or the part named does, at the point that is pressed hardest; nil where it does "
        "not.",
@@ -353,6 +359,13 @@ std::vector<ApiFunction> instrument_functions() {
        "shaft, closed and taken out, and this one comes in closed and not turned, 30 mm deep, on the same "
        "way.",
        {table("options", "exchange_options", "how fast")},
+       ""},
+      {"DemoInstrument",
+       "aspirate",
+       "Draws out what is behind the wall that its tip is pushed on, or is in, for a while, and waits for "
+       "that. "
+       "An error for an instrument that draws nothing out.",
+       {seconds("duration", 1 * ms, "how long")},
        ""},
       {"DemoInstrument", "move_to", "Moves the tip straight to a place.", {target, options}, ""},
       {"DemoInstrument",

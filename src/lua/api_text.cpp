@@ -63,7 +63,10 @@ std::string type_text(const Key& key) {
 }
 
 std::string doc_text(const Key& key) {
-  std::string text = key.doc + (key.jaws_only ? "; jaws only" : key.clips_only ? "; clip_applier only" : "");
+  std::string text = key.doc;
+  if (key.jaws_only) text += "; jaws only";
+  if (key.clips_only) text += "; clip_applier only";
+  if (key.needle_only) text += "; aspiration_needle only";
   if (!key.fallback.empty()) text += fmt::format("; default {}", key.fallback);
   const std::string range = limits(key);
   if (!range.empty()) text += fmt::format("; {}", range);

@@ -409,9 +409,17 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
 }
 
 int DemoScript::activate(lua_State* L, int instrument, double duration) {
-  if (!can_act(L, instrument, InstrumentAction::activate, "activate")) return 0;
+  return act_for(L, instrument, InstrumentAction::activate, duration);
+}
+
+int DemoScript::aspirate(lua_State* L, int instrument, double duration) {
+  return act_for(L, instrument, InstrumentAction::aspirate, duration);
+}
+
+int DemoScript::act_for(lua_State* L, int instrument, InstrumentAction action, double duration) {
+  if (!can_act(L, instrument, action, to_text(action))) return 0;
   return play_motion(L, instrument, duration, [&](InstrumentPath&, double now) {
-    flows_[static_cast<std::size_t>(instrument)] = {now, now + duration};
+    flows_[static_cast<std::size_t>(instrument)] = {now, now + duration, action};
     return now + duration;
   });
 }
@@ -469,13 +477,13 @@ std::optional<Failure> DemoScript::check_exchanges(const World& world) {
   return std::nullopt;
 }
 
-/// What each instrument does in the step that ends then: current flows for a while, a trigger is pulled once.
+/// What each instrument does in the step that ends then: current or suction for a while, a trigger is pulled once.
 std::vector<InstrumentAction> DemoScript::actions(double end) {
   std::vector<InstrumentAction> out;
   for (std::size_t i = 0; i < flows_.size(); ++i) {
     const Flow& flow = flows_[i];
     const bool flows = flow.from < end - slack && end <= flow.to + slack;
-    out.push_back(flows ? InstrumentAction::activate : InstrumentAction::none);
+    out.push_back(flows ? flow.action : InstrumentAction::none);
     if (fires_[i] && *fires_[i] < end - slack) {
       out.back() = InstrumentAction::fire;
       fires_[i].reset();

@@ -59,6 +59,8 @@ class DemoScript final : public ScriptSession, public InputSource {
   int move_until(lua_State* L, int instrument, const MoveUntil& how);
   /// Lets current flow for a duration, s, and waits for that.
   int activate(lua_State* L, int instrument, double duration);
+  /// The same of suction.
+  int aspirate(lua_State* L, int instrument, double duration);
   /// Sets a clip, and waits until the trigger is let go.
   int fire(lua_State* L, int instrument);
   /// Has an instrument that waits come in: the one in its port is drawn back there, taken out, and this one brought in.
@@ -87,6 +89,7 @@ class DemoScript final : public ScriptSession, public InputSource {
     enum { ready, until, condition, children, finished } state = ready;
   };
 
+  int act_for(lua_State* L, int instrument, InstrumentAction action, double duration);
   int task_of(lua_State* L) const;
   /// The running task, if it may move or wait; complains otherwise.
   Task* current(lua_State* L);
@@ -121,9 +124,10 @@ class DemoScript final : public ScriptSession, public InputSource {
   int function_;
   std::vector<Task> tasks_;
   std::vector<InstrumentPath> paths_;
-  /// When current flows in each instrument, s: in the steps that end within it.
+  /// When each instrument acts, s: in the steps that end within it.
   struct Flow {
     double from = 0, to = 0;
+    InstrumentAction action = InstrumentAction::none;
   };
   std::vector<Flow> flows_;
   std::vector<SessionAct> acts_;              ///< since the last step

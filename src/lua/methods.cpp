@@ -312,6 +312,14 @@ int clips_left(lua_State* L) {
   return 1;
 }
 
+int aspirated(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "aspirated");
+  ScriptSession& session = *target.session;
+  session.can_act(L, target.instrument, InstrumentAction::aspirate, "aspirated");
+  lua_pushnumber(L, session.checking() ? session.guessed_loss() : instrument_state(L, "aspirated").aspirated);
+  return 1;
+}
+
 int force(lua_State* L) {
   lua_pushnumber(L, load_of(L, "force").force.norm());
   return 1;
@@ -600,6 +608,12 @@ int rotate(lua_State* L) {
   return call.demo.rotate(L, call.instrument, arguments.number("angle"), speed);
 }
 
+int aspirate(lua_State* L) {
+  const DemoCall call = demo_call(L, "aspirate");
+  const Arguments arguments(L, call.demo, "DemoInstrument", "aspirate");
+  return call.demo.aspirate(L, call.instrument, arguments.number("duration"));
+}
+
 int activate(lua_State* L) {
   const DemoCall call = demo_call(L, "activate");
   const Arguments arguments(L, call.demo, "DemoInstrument", "activate");
@@ -673,12 +687,14 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Instrument", "push", guarded<push>},
                           {"Instrument", "grip", guarded<grip>},
                           {"Instrument", "clips_left", guarded<clips_left>},
+                          {"Instrument", "aspirated", guarded<aspirated>},
                           {"Instrument", "contact", guarded<contact>},
                           {"DemoInstrument", "move_until", guarded<move_until>},
                           {"DemoInstrument", "approach", guarded<approach>},
                           {"DemoInstrument", "open", guarded<open>},
                           {"DemoInstrument", "close", guarded<close>},
                           {"DemoInstrument", "activate", guarded<activate>},
+                          {"DemoInstrument", "aspirate", guarded<aspirate>},
                           {"DemoInstrument", "fire", guarded<fire>},
                           {"DemoInstrument", "exchange", guarded<exchange>},
                           {"DemoInstrument", "move_to", guarded<move_to>},

@@ -199,6 +199,7 @@ class SceneReader {
       reader.read(instrument);
       check_jaws(reader, instrument);
       check_clips(reader, instrument);
+      check_needle(reader, instrument);
       check_free(path, name);
       instruments.push_back(instrument);
     }
@@ -220,6 +221,15 @@ class SceneReader {
       if (key.clips_only && reader.has(key.name))
         check_.problem(reader.path_of(key.name), fmt::format("a {} sets no clips", to_text(instrument.type)),
                        fmt::format("leave {} out, or make it a clip_applier", key.name));
+  }
+
+  void check_needle(const TableReader& reader, const InstrumentDefinition& instrument) {
+    if (has_action(instrument.type, InstrumentAction::aspirate)) return;
+    for (const Key& key : api_table("instrument").keys)
+      if (key.needle_only && reader.has(key.name))
+        check_.problem(reader.path_of(key.name),
+                       fmt::format("a {} draws nothing out", to_text(instrument.type)),
+                       fmt::format("leave {} out, or make it an aspiration_needle", key.name));
   }
 
   void check_free(const std::string& path, const std::string& name) {

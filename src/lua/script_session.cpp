@@ -108,6 +108,8 @@ double ScriptSession::seen_area(lua_State* L, const std::array<Vec3, 3>& corners
   return share_seen[next_level()] * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
 }
 
+double ScriptSession::guessed_loss() { return share_lost[next_level()] * usual_volume; }
+
 double ScriptSession::lost(lua_State* L, bool blood, const std::string& name) {
   std::vector<std::string> names;
   for (const OrganDefinition& organ : known_organs()) names.push_back(organ.name);
@@ -115,7 +117,7 @@ double ScriptSession::lost(lua_State* L, bool blood, const std::string& name) {
     complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
     return 0;
   }
-  if (checking()) return share_lost[next_level()] * usual_volume;
+  if (checking()) return guessed_loss();
   double sum = 0;
   for (const LostState& one : world(L).report().lost)
     if (name.empty() || one.name == name) sum += blood ? one.blood : one.bile;

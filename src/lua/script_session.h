@@ -61,6 +61,8 @@ class ScriptSession {
   int organ(lua_State* L, const std::string& name);
   /// What has left all organs, or one of the scene and its pieces, m^3; complains where there is none of that name.
   double lost(lua_State* L, bool blood, const std::string& organ);
+  /// m^3, of a dry run: nothing, some, or all.
+  double guessed_loss();
   /// Share of a tissue's strands that are torn; complains where there is none of that name.
   double torn(lua_State* L, const std::string& name);
   /// Of a triangle, m^2 (World::seen_area); in a dry run none, half or all of it.

@@ -165,14 +165,19 @@ void sum_lost(const SceneDefinition& scene, const std::vector<LostState>& lost, 
   for (const OrganDefinition& organ : scene.anatomy.organs)
     if (const std::optional<MetricOwner> owner = owner_by_filling(organ))
       metrics[organ.name + (owner == MetricOwner::holds_blood ? ".blood_lost_mL" : ".bile_lost_mL")] = 0;
-  double bile = 0, blood = 0;
+  for (const OrganDefinition& organ : scene.anatomy.organs)
+    if (is_hollow(organ.shape)) metrics[organ.name + ".aspirated_mL"] = 0;
+  double bile = 0, blood = 0, aspirated = 0;
   for (const LostState& of : lost) {
+    aspirated += of.aspirated;
+    if (of.aspirated > 0) metrics[of.name + ".aspirated_mL"] = of.aspirated / units::mL;
     bile += of.bile, blood += of.blood;
     if (of.bile > 0) metrics[of.name + ".bile_lost_mL"] = of.bile / units::mL;
     if (of.blood > 0) metrics[of.name + ".blood_lost_mL"] = of.blood / units::mL;
   }
   metrics["total.bile_lost_mL"] = bile / units::mL;
   metrics["total.blood_lost_mL"] = blood / units::mL;
+  metrics["total.aspirated_mL"] = aspirated / units::mL;
 }
 
 /// The owners' names of the exercise, "" for the total.
@@ -186,6 +191,11 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
     case MetricOwner::organ:
       for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
         for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
+      return names;
+    case MetricOwner::hollow:
+      for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+        for (const OrganDefinition& organ : *organs)
+          if (is_hollow(organ.shape)) names.push_back(organ.name);
       return names;
     case MetricOwner::holds_bile:
     case MetricOwner::holds_blood:
@@ -251,6 +261,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
       {"bile_lost_mL", holds_bile, "bile that left it by openings", EventKind::bile_leak},
       {"blood_lost_mL", holds_blood, "blood that left it by openings", EventKind::bleeding},
+      {"aspirated_mL", hollow, "what needles drew out of it", EventKind::aspirated},
       {"lowest_frequency_Hz", organ,
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
       {"torn_pct", tissue, "share of its strands that were torn", EventKind::tear},
@@ -263,6 +274,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"time_s", total, "how long the session lasted"},
       {"bile_lost_mL", total, "bile that left all organs", EventKind::bile_leak},
       {"blood_lost_mL", total, "blood that left all organs", EventKind::bleeding},
+      {"aspirated_mL", total, "what needles drew out of all organs", EventKind::aspirated},
   };
   return rows;
 }
@@ -273,6 +285,7 @@ std::string pattern(const MetricRow& row) {
     case MetricOwner::instrument:
       return of("<instrument>");
     case MetricOwner::organ:
+    case MetricOwner::hollow:
     case MetricOwner::holds_bile:
     case MetricOwner::holds_blood:
     case MetricOwner::compared_organ:

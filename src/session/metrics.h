@@ -18,6 +18,7 @@ namespace calot {
 enum class MetricOwner {
   instrument,
   organ,
+  hollow,  ///< organ
   holds_bile,
   holds_blood,
   tissue,

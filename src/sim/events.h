@@ -40,6 +40,9 @@ enum class EventKind {
   leak_stopped,
   exchange,
   blocked_exchange,
+  puncture,
+  aspirated,
+  empty_aspiration,
   step_done,
   step_timeout,
 };

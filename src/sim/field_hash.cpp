@@ -80,6 +80,7 @@ void add_spill(Hash& hash, const Spill& spill) {
     hash.add(lost.name);
     hash.add(lost.bile);
     hash.add(lost.blood);
+    if (lost.aspirated > 0) hash.add(lost.aspirated);
   }
   for (const Drop& drop : spill.drops) {
     hash.add(static_cast<int>(drop.liquid));
@@ -174,6 +175,13 @@ void add_tool(Hash& hash, const Tool& tool) {
   if (tool.burnt > 0) {
     hash.add(tool.burnt);
     hash.add(tool.burnt_record);
+  }
+  if (has_action(tool.definition.type, InstrumentAction::aspirate)) {
+    const NeedleState& needle = tool.needle;
+    hash.add(needle.record);
+    hash.add(needle.point);
+    for (double v : {needle.drawn, needle.drawn_ever}) hash.add(v);
+    hash.add(needle.empty);
   }
   add_pose(hash, tool.pose);
 }

@@ -12,7 +12,7 @@ FieldState field_state(const Field& field) {
   for (const Tool& tool : field.tools)
     state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
                            tool.slipping, tool.action, tool.dry, tool.has_cut, tool.clips, tool.on_clip,
-                           tool.beside_kept, tool.burnt, tool.burnt_record, tool.waits});
+                           tool.beside_kept, tool.burnt, tool.burnt_record, tool.waits, tool.needle});
   return state;
 }
 
@@ -39,6 +39,7 @@ void restore(Field& field, const FieldState& state) {
     tool.burnt = was.burnt;
     tool.burnt_record = was.burnt_record;
     tool.waits = was.waits;
+    tool.needle = was.needle;
   }
 }
 

@@ -19,6 +19,7 @@ struct ToolSnapshot {
   double burnt = 0;
   int burnt_record = -1;
   bool waits = false;
+  NeedleState needle = {};
 };
 
 struct FieldState {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/aspirate.h"
 #include "sim/between_jaws.h"
 
 namespace calot {
@@ -150,11 +151,28 @@ double compliance_of(const Field& field, int organ) {
   return std::max(0.0, work.border.complement(volume, volume));
 }
 
+/// A tool that draws out of an organ.
+struct Draught {
+  std::size_t tool = 0;
+  int organ = 0;
+  double pressure = 0;  ///< Pa, at its mouth, at the beginning
+};
+
+/// Whether a needle is in that opening.
+bool is_plugged(const Field& field, const Organ& organ, const Opening& opening) {
+  return std::any_of(field.tools.begin(), field.tools.end(), [&](const Tool& tool) {
+    return tool.needle.record >= 0 && tool.needle.record == organ.record &&
+           tool.needle.point == opening.point;
+  });
+}
+
 /// Several openings share it.
 struct Reservoir {
   int organ = 0;
   double compliance = 0;
   double taken = 0;  ///< m^3, in this step
+  /// Pa, by how much its pressure has.
+  double fallen() const { return compliance > 0 ? taken / compliance : 0; }
 };
 
 class Leaking {
@@ -165,6 +183,7 @@ class Leaking {
       const Organ& organ = field.organs[k];
       for (std::size_t i = 0; i < organ.openings.size(); ++i) {
         Outlet outlet{k, i, search.of(k, organ.openings[i])};
+        if (is_plugged(field, organ, organ.openings[i])) outlet.source.area = 0;
         if (outlet.source.kind == Source::Kind::organ) {
           const Organ& from = field.organs[outlet.source.organ];
           const Vec3 at = organ.body->skin_point(organ.openings[i].point, organ.state.x);
@@ -174,14 +193,24 @@ class Leaking {
         outlets_.push_back(outlet);
       }
     }
+    for (std::size_t i = 0; i < field.tools.size(); ++i) {
+      const int from = punctured_organ(field, field.tools[i]);
+      if (from < 0) continue;
+      const Organ& organ = field.organs[from];
+      const Vec3 mouth = organ.body->skin_point(field.tools[i].needle.point, organ.state.x);
+      draughts_.push_back({i, from, shell_of(organ)->bile()->pressure_at(mouth, organ.state.datum_pressure)});
+      reservoir(from);
+    }
   }
 
   std::vector<WorldEvent> run() {
     constexpr double longest_part = 1e-3;
     const int parts = std::max(1, static_cast<int>(std::ceil(duration_ / longest_part - 1e-9)));
     const double part = duration_ / parts;
-    for (int k = 0; k < parts; ++k)
+    for (int k = 0; k < parts; ++k) {
       for (Outlet& outlet : outlets_) let_out(outlet, field_.time - duration_ + (k + 0.5) * part, part);
+      for (const Draught& draught : draughts_) draw(draught, part);
+    }
     for (const Reservoir& from : reservoirs_) field_.organs[from.organ].state.volume -= from.taken;
     std::vector<WorldEvent> events;
     for (const Outlet& outlet : outlets_) note(outlet, events);
@@ -195,6 +224,20 @@ class Leaking {
     return reservoirs_.emplace_back(Reservoir{organ, compliance_of(field_, organ)});
   }
 
+  void draw(const Draught& draught, double part) {
+    NeedleState& needle = field_.tools[draught.tool].needle;
+    const InstrumentDefinition& definition = field_.tools[draught.tool].definition;
+    const Organ& organ = field_.organs[draught.organ];
+    Reservoir& from = reservoir(draught.organ);
+    const double out = std::min(
+        organ.state.volume - from.taken,
+        drawn_by(definition, draught.pressure - from.fallen(), from.compliance, density_of(organ), part));
+    from.taken += out;
+    needle.drawn += out;
+    needle.drawn_ever += out;
+    if (out > 0) field_.spill.count_aspirated(organ.definition.name, out);
+  }
+
   /// In a part of the step about `time`.
   void let_out(Outlet& outlet, double time, double part) {
     const Source& source = outlet.source;
@@ -203,10 +246,9 @@ class Leaking {
     switch (source.kind) {
       case Source::Kind::organ: {
         Reservoir& from = reservoir(source.organ);
-        const double fallen = from.compliance > 0 ? from.taken / from.compliance : 0;
         const double left = field_.organs[source.organ].state.volume - from.taken;
         const double out =
-            std::min(left, elastic_outflow(outlet.pressure - fallen, from.compliance, source.area,
+            std::min(left, elastic_outflow(outlet.pressure - from.fallen(), from.compliance, source.area,
                                            density_of(organ), part, source.feed.resistance));
         from.taken += out;
         outlet.left += out;
@@ -258,6 +300,7 @@ class Leaking {
   Field& field_;
   double duration_;
   std::vector<Outlet> outlets_;
+  std::vector<Draught> draughts_;
   std::vector<Reservoir> reservoirs_;
 };
 
@@ -319,7 +362,9 @@ double open_between(const Field& field, int index, double one, double other) {
 
 std::vector<WorldEvent> leak(Field& field, double duration) {
   const bool any = std::any_of(field.organs.begin(), field.organs.end(),
-                               [](const Organ& organ) { return !organ.openings.empty(); });
+                               [](const Organ& organ) { return !organ.openings.empty(); }) ||
+                   std::any_of(field.tools.begin(), field.tools.end(),
+                               [](const Tool& tool) { return tool.needle.record >= 0; });
   if (!any) return {};
   return Leaking(field, duration).run();
 }

@@ -39,7 +39,7 @@ double elastic_outflow(double pressure, double compliance, double area, double d
 double open_between(const Field& field, int organ, double one, double other);
 
 /// Lets out what leaves in `duration` s up to field.time: liquids' kept volumes fall, field.spill.lost grows, and drops
-/// begin to hang on openings. Returns the events bile_leak, bleeding and leak_stopped.
+/// begin to hang on openings; what needles are in is drawn out beside (aspirate.h). Returns the events bile_leak, bleeding and leak_stopped.
 std::vector<WorldEvent> leak(Field& field, double duration);
 
 /// Makes the holes that a tool's jaws, which hold them, cut or crush into hollow organs.

@@ -32,6 +32,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   }
   state.clips = tool.clips;
   state.waits = tool.waits;
+  state.aspirated = tool.needle.drawn_ever;
   state.touching = load.touches > 0;
   state.parts = load.parts;
   const bool closed = tool.pose.jaw <= 0.5 * grip_grid;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/units.h"
+#include "sim/aspirate.h"
 #include "sim/between_jaws.h"
 #include "sim/leak.h"
 #include "sim/spill_surface.h"
@@ -29,7 +30,7 @@ constexpr double hangs = 15e-9;        // m^3, of what hangs before it drops off
 constexpr double clings = 0.8e-3;      // m, thickness that hangs on an underside without dripping (d)
 constexpr double least_drip = 1e-9;    // m^3
 constexpr double least_flow = 1e-12;   // m^3, in a part of a step: what would run slower lies still
-constexpr std::array<double, liquids> viscosity{1.5e-3, 4e-3};  // Pa s, of bile and of blood (c)
+constexpr std::array<double, liquids> viscosity{bile_viscosity, 4e-3};  // Pa s, of bile and of blood (c)
 
 double volume_of(const WetPoint& wet) { return std::accumulate(wet.volume.begin(), wet.volume.end(), 0.0); }
 

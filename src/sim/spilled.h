@@ -66,6 +66,8 @@ struct Spill {
 
   /// What has left the body of that name, m^3.
   void count(const std::string& body, Carries liquid, double volume);
+  /// What was drawn out of the body of that name, m^3.
+  void count_aspirated(const std::string& body, double volume);
   /// m^3 in drops and films.
   double lying(Carries liquid) const;
 };

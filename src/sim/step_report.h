@@ -42,8 +42,9 @@ struct InstrumentState {
   int grip_points = 0;
   GripState grip = GripState::open;
   InstrumentAction action = InstrumentAction::none;
-  int clips = 0;       ///< that it still carries
-  bool waits = false;  ///< outside: another one is in its port
+  int clips = 0;         ///< that it still carries
+  double aspirated = 0;  ///< m^3, that it has drawn out
+  bool waits = false;    ///< outside: another one is in its port
 };
 
 struct ClipState {
@@ -78,7 +79,8 @@ struct TissueState {
 /// What has left an organ of the scene and its pieces.
 struct LostState {
   std::string name;
-  double bile = 0, blood = 0;  ///< m^3
+  double bile = 0, blood = 0;  ///< m^3, by openings
+  double aspirated = 0;        ///< m^3, drawn out
 };
 
 struct SolveStatistics {

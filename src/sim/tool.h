@@ -10,6 +10,15 @@
 
 namespace calot {
 
+/// Of what draws liquid out (aspirate.h).
+struct NeedleState {
+  int record = -1;        ///< on the world's roll: the organ that it is in; none: -1
+  int point = 0;          ///< that organ's skin point where it went in
+  double drawn = 0;       ///< m^3, since it did
+  double drawn_ever = 0;  ///< m^3, of all organs
+  bool empty = false;     ///< it drew at the last step and was in nothing, for events
+};
+
 struct Tool {
   InstrumentDefinition definition;
   InstrumentGeometry geometry;
@@ -29,6 +38,7 @@ struct Tool {
   double burnt = 0;                           ///< J that a wall has taken at one go, up to what opens it
   int burnt_record = -1;                      ///< on the world's roll: that wall's organ; none: -1
   bool waits = false;                         ///< outside: another one is in its port (sim/exchange.h)
+  NeedleState needle = {};
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

@@ -10,6 +10,7 @@
 #include "base/suggest.h"
 #include "fem/assembly.h"
 #include "sim/advance.h"
+#include "sim/aspirate.h"
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
 #include "sim/clips.h"
@@ -272,6 +273,7 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   fire_clips(self.field, input.actions, events.value());
+  puncture(self.field, input.actions, events.value());
   events->insert(events->begin(), leaked.begin(), leaked.end());
   spill(self.field, duration);
   exchange_tools(self.field, input.actions, events.value());

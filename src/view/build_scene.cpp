@@ -1,9 +1,11 @@
 #include "view/build_scene.h"
 
 #include "anatomy/organ_frame.h"
+#include "sim/aspirate.h"
 #include "view/clip_mesh.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
+#include "view/needle_mesh.h"
 #include "view/spill_mesh.h"
 #include "view/structure_mesh.h"
 #include "view/tissue_mesh.h"
@@ -77,7 +79,10 @@ Scene SceneBuilder::build(const World& world) const {
     for (SceneMesh& mesh :
          instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))
       scene.meshes.push_back(std::move(mesh));
-    for (SceneMesh& mesh : loaded_clip(world.field().tools[i])) scene.meshes.push_back(std::move(mesh));
+    const Tool& tool = world.field().tools[i];
+    for (SceneMesh& mesh : loaded_clip(tool)) scene.meshes.push_back(std::move(mesh));
+    if (tool.needle.record >= 0)
+      scene.meshes.push_back(needle_end_mesh(trocar, tool.pose, tool.geometry, needle_depth));
   }
   for (const Organ& organ : world.field().organs)
     for (SceneMesh& mesh : clip_meshes(organ)) scene.meshes.push_back(std::move(mesh));

@@ -4,6 +4,7 @@
 #include "view/grasper_mesh.h"
 #include "view/hook_mesh.h"
 #include "view/jaw_meshes.h"
+#include "view/needle_mesh.h"
 #include "view/semm_mesh.h"
 
 namespace calot {
@@ -26,6 +27,8 @@ std::vector<SceneMesh> instrument_meshes(InstrumentType type, const Vec3& trocar
       return scissors_meshes(trocar, pose, geometry);
     case InstrumentType::clip_applier:
       return applier_meshes(trocar, pose, geometry);
+    case InstrumentType::aspiration_needle:
+      return needle_meshes(trocar, pose, geometry);
   }
   return {};
 }

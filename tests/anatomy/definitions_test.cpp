@@ -106,6 +106,7 @@ TEST(Instruments, AreNamedBothWaysAndGiveWhatTheirTypeDoes) {
   EXPECT_FALSE(has_jaws(InstrumentType::bipolar_electrode));
   EXPECT_TRUE(has_action(InstrumentType::l_hook, InstrumentAction::activate));
   EXPECT_TRUE(has_action(InstrumentType::clip_applier, InstrumentAction::fire));
+  EXPECT_TRUE(has_action(InstrumentType::aspiration_needle, InstrumentAction::aspirate));
   EXPECT_FALSE(has_action(InstrumentType::scissors, InstrumentAction::activate));
   EXPECT_LT(default_instrument(InstrumentType::semm_forceps).pad_friction,
             default_instrument(InstrumentType::atraumatic_grasper).pad_friction);

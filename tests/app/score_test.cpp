@@ -61,6 +61,32 @@ TEST_F(Exposure, EveryAnatomyIsExposedByTheSameHand) {
   }
 }
 
+TEST_F(Exposure, AHydropsIsDrawnSlackBeforeItIsHeld) {
+  if (!long_run()) GTEST_SKIP() << "plays the first act on a hydrops: half a minute";
+  const Outcome outcome = calot(
+      {"run", source_dir() + "/scenarios/exposure.lua", "--param", "field=hydrops", "--no-render", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json report = Json::parse(outcome.out);
+  EXPECT_TRUE(report["score"]["passed"].get<bool>()) << report["score"].dump(2);
+  double aspirated = -1, drawn_mL = 0, held = -1, last = 0;
+  for (const Json& event : report["events"]) {
+    last = event["time_s"];
+    if (event["event"] == "aspirated") {
+      aspirated = last;
+      drawn_mL = event["volume_mL"];
+      EXPECT_EQ(event["instrument"], "needle");
+      EXPECT_EQ(event["organ"], "gallbladder");
+    }
+    if (event["event"] == "grasp" && held < 0) held = last;
+  }
+  ASSERT_GT(aspirated, 0);
+  EXPECT_LT(aspirated, held);
+  EXPECT_LE(last, 30) << "s simulated";
+  EXPECT_GT(drawn_mL, 1);
+  EXPECT_DOUBLE_EQ(report["metrics"]["gallbladder.aspirated_mL"].get<double>(), drawn_mL);
+  EXPECT_DOUBLE_EQ(report["metrics"]["total.aspirated_mL"].get<double>(), drawn_mL);
+}
+
 TEST_F(MainScenario, TellsThoseApartWhoNeverGraspPullTooHardOrLetGoEarly) {
   const std::string grasp = "t.left:approach('gallbladder.fundus')\n t.left:close()\n";
   const Json idle = score("t.left:wait(1 * s)");

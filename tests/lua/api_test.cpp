@@ -163,6 +163,7 @@ std::optional<Value> scene_with(const std::string& table, const std::string& key
   if (table == "instrument") {
     holder.fields.push_back({"port", text("right_flank")});
     if (key == "clips") holder.fields.push_back({"type", text("clip_applier")});
+    if (api_table(table).find(key)->needle_only) holder.fields.push_back({"type", text("aspiration_needle")});
     return in_scene("instruments", entry("left", holder));
   }
   if (table == "shape_pear" || table == "shape_sphere") {
@@ -211,7 +212,7 @@ TEST(Api, DefaultsAreThoseOfTheDefinitions) {
   const auto written = [](const std::string& table) {
     std::string text;
     for (const Key& key : api_table(table).keys)
-      if (!key.fallback.empty() && key.name != "type" && !key.clips_only)
+      if (!key.fallback.empty() && key.name != "type" && !key.clips_only && !key.needle_only)
         text += key.name + " = " + key.fallback + ", ";
     return text;
   };
