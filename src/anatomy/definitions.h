@@ -274,7 +274,6 @@ struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
   InstrumentType type = InstrumentType::atraumatic_grasper;
   std::string port;
-  bool waits = false;        ///< outside at the start, while another one is in its port: for an exchange
   double force_limit = 8.0;  ///< N at the tip; above it `overforce` is raised (d)
   double pinch_force = 6.8;  ///< N, each jaw on the fold it holds: what surgeons apply (c)
   double pad_friction =
@@ -290,6 +289,7 @@ struct InstrumentDefinition {
   double bore_length = 330e-3;  ///< m, from its mouth to where the suction's pressure is
   double suction = 13e3;        ///< Pa below the pressure outside: some 100 mmHg
   double pinhole = 0.3e-3;      ///< m, across what it leaves open of a wall that it was through; 0: sealed
+  bool waits = false;  ///< outside at the start, while another one is in its port: for an exchange
 };
 
 inline constexpr int most_clips = 50;
