@@ -289,7 +289,7 @@ struct InstrumentDefinition {
   double bore_length = 330e-3;  ///< m, from its mouth to where the suction's pressure is
   double suction = 13e3;        ///< Pa below the pressure outside: some 100 mmHg
   double pinhole = 0.3e-3;      ///< m, across what it leaves open of a wall that it was through; 0: sealed
-  bool waits = false;  ///< outside at the start, while another one is in its port: for an exchange
+  bool waits = false;           ///< outside at the start, while another one is in its port: for an exchange
 };
 
 inline constexpr int most_clips = 50;

@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "collision/simplex_distance.h"
-#include "sim/leak.h"
+#include "sim/outflow.h"
 
 namespace calot {
 namespace {

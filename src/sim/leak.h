@@ -12,34 +12,22 @@
 // Steps are cut into milliseconds: a pulse is known to 1e-5 so, and two openings of one organ share its pressure.
 
 #include "sim/field.h"
+#include "sim/outflow.h"
 
 namespace calot {
 
-/// What feeds a tube: the patient, where it is whole.
-struct TubeFeed {
-  double pressure = 0;    ///< Pa, gauge
-  double resistance = 0;  ///< Pa s/m^3
-};
-/// As its definition has it; else what it carries, and of an artery its width, say.
-TubeFeed feed_of(const OrganDefinition& tube);
-
-/// Of Torricelli's flow through a sharp edge.
-inline constexpr double discharge = 0.6;
 inline constexpr double blood_density = 1060;  ///< kg/m^3
 
-/// m^3/s, through an opening of `area` (m^2) that the patient feeds at that pressure.
-double fed_flow(const TubeFeed& feed, double pressure, double area, double density);
-/// m^3 that leave an elastic organ in `time` s: `pressure` (Pa) at the beginning, `compliance` in m^3/Pa; 0: the pressure
-/// stays. Exact without a resistance (Pa s/m^3) on the way; with one of the second order in the time.
-double elastic_outflow(double pressure, double compliance, double area, double density, double time,
-                       double resistance = 0);
+/// As its definition has it; else what it carries, and of an artery its width, say.
+TubeFeed feed_of(const OrganDefinition& tube);
 
 /// Share of a tube's lumen that is open at its tightest between two of its places (skin points from its start), where
 /// clips and jaws are on it.
 double open_between(const Field& field, int organ, double one, double other);
 
 /// Lets out what leaves in `duration` s up to field.time: liquids' kept volumes fall, field.spill.lost grows, and drops
-/// begin to hang on openings; what needles are in is drawn out beside (aspirate.h). Returns the events bile_leak, bleeding and leak_stopped.
+/// begin to hang on openings; what needles are in is drawn out beside (aspirate.h). Returns the events bile_leak, bleeding
+/// and leak_stopped.
 std::vector<WorldEvent> leak(Field& field, double duration);
 
 /// Makes the holes that a tool's jaws, which hold them, cut or crush into hollow organs.

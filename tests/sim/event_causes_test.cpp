@@ -6,6 +6,7 @@
 #include "base/units.h"
 #include "rig.h"
 #include "sim/between_jaws.h"
+#include "sim/field_state.h"
 
 namespace calot {
 namespace {
@@ -118,6 +119,23 @@ TEST(EventCauses, CurrentThatStaysOnAWallGoesThroughItOnceAndBrieflyDoesNot) {
   EXPECT_NEAR(event.time, only(burns.scene, EventKind::activation).time + 5 * 0.02, 1e-9);
   ASSERT_TRUE(spares.heat(tube_depth - 1.8e-3 + 0.5e-3, 5));
   EXPECT_EQ(spares.scene.count(EventKind::injury), 0);
+  // What flowed in leaves a mark where it did, with all its energy.
+  double marked = 0;
+  const Organ& tube = burns.scene.world.field().organs[0];
+  const std::vector<Vec3> drawn = tube.body->drawn(tube.state.x).positions;
+  for (const Burn& burn : tube.burns) {
+    EXPECT_LT((drawn.at(burn.point) - burns.scene.world.report().instruments[0].tip).norm(), 4e-3);
+    marked += burn.energy;
+  }
+  EXPECT_NEAR(marked, 20, 1e-9) << "1 J in each of 20 steps";
+  const FieldState marks = burns.scene.world.state();
+  FieldState without = marks;
+  without.group.organs[0].burns.clear();
+  const std::uint64_t hash = burns.scene.world.state_hash();
+  ASSERT_TRUE(burns.scene.world.restore(without));
+  EXPECT_NE(burns.scene.world.state_hash(), hash);
+  ASSERT_TRUE(burns.scene.world.restore(marks));
+  EXPECT_EQ(burns.scene.world.state_hash(), hash);
 }
 
 TEST(EventCauses, CurrentOnAClipIsSaid) {
