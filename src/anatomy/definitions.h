@@ -243,7 +243,9 @@ struct AnatomyDefinition {
   std::vector<TissueDefinition> tissue;
   std::vector<GroundDefinition> ground;
   std::optional<SupportDefinition> support;
-  double friction = 0;     ///< Coulomb's, of the organs on each other (d); the rest state is found without
+  double friction = 0;  ///< Coulomb's, of the organs on each other (d); the rest state is found without
+  double rest_within =
+      10e-3;               ///< m: organs that come to rest further from where they are drawn are named (d)
   double heart_rate = 70;  ///< a minute, with which what bleeds pulses; 60 to 80 at rest (c)
   double table_head_up = 0.2617993877991494;     ///< rad; reverse Trendelenburg 15 deg (c)
   double table_left_down = 0.17453292519943295;  ///< rad; left side down 10 deg (d)

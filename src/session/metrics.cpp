@@ -264,6 +264,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"aspirated_mL", hollow, "what needles drew out of it", EventKind::aspirated},
       {"lowest_frequency_Hz", organ,
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
+      {"rest_shift_mm", organ, "how far its furthest point came to rest from where it is drawn"},
       {"torn_pct", tissue, "share of its strands that were torn", EventKind::tear},
       {"mean_difference_pct", compared_organ,
        "mean departure from the motion of the organ it is compared with, when the session ends"},

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "base/units.h"
 #include "session/metrics.h"
 #include "session/skin_difference.h"
 
@@ -33,6 +34,7 @@ class Session {
     const Clock::time_point start = Clock::now();
     note_report();
     note_frequencies();
+    note_rest();
     for (const WorldEvent& event : world_.report().events) result_.progress.add_event(event);
     while (!ended_) {
       observe(false);
@@ -166,6 +168,12 @@ class Session {
       else
         result_.notes.push_back(name + " is left out: " + to_text(found.failure()));
     }
+  }
+
+  void note_rest() {
+    const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
+    for (std::size_t i = 0; i < organs.size(); ++i)
+      result_.progress.set_metric(organs[i].name + ".rest_shift_mm", world_.rest_shifts()[i] / units::mm);
   }
 
   void note_refusals() {

@@ -63,6 +63,7 @@ struct World::Impl {
   bool failed = false;
   Failure failure;
   std::uint64_t field_hash = 0;
+  std::vector<double> rest_shifts;  ///< m, one an organ of the scene
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
 
@@ -154,6 +155,22 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
+namespace {
+
+std::vector<double> shifts_from_drawn(const std::vector<Organ>& organs) {
+  std::vector<double> out;
+  for (const Organ& organ : organs) {
+    const std::vector<Vec3>& drawn = organ.body->skin_rest();
+    const std::vector<Vec3> now = organ.body->skin_positions(organ.state.x);
+    double furthest = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) furthest = std::max(furthest, (now[i] - drawn[i]).norm());
+    out.push_back(furthest);
+  }
+  return out;
+}
+
+}  // namespace
+
 Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads) {
   std::vector<Problem> problems = validate(scene);
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
@@ -186,6 +203,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (Result<bool> made = add_tissues(scene.anatomy, impl->up, impl->field); !made) return made.failure();
   if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
     return rested.failure();
+  impl->rest_shifts = shifts_from_drawn(impl->field.organs);
   impl->field.up = impl->up;
   impl->field.heart_rate = scene.anatomy.heart_rate;
   if (!impl->field.organs.empty())
@@ -311,6 +329,7 @@ Result<bool> World::restore(const FieldState& state) {
   self.failed = false;
   return true;
 }
+const std::vector<double>& World::rest_shifts() const { return impl_->rest_shifts; }
 Vec3 World::up() const { return impl_->up; }
 const Field& World::field() const { return impl_->field; }
 

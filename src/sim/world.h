@@ -80,6 +80,9 @@ class World {
   double seen_area(const std::array<Vec3, 3>& corners) const;
   /// The critical view of safety from where the laparoscope is now (sim/critical_view.h). Throws as landmark() does.
   CriticalView critical_view(const CriticalViewQuestion& question) const;
+  /// How far the furthest point of an organ's skin was from where it is drawn, m, when all had come to rest at the start;
+  /// one an organ of the scene.
+  const std::vector<double>& rest_shifts() const;
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
 

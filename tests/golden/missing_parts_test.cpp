@@ -6,6 +6,7 @@
 #include "golden/stored_goldens.h"
 #include "sim/act_rig.h"
 #include "sim/field.h"
+#include "sim/rail_rig.h"
 #include "sim/rig.h"
 #include "view/build_scene.h"
 #include "view/clip_mesh.h"
@@ -63,20 +64,8 @@ SceneDefinition tube_from_aside(InstrumentType type) {
 
 /// Two stiff tubes along x, 16 mm apart, with fat between them.
 SceneDefinition veiled_tubes() {
-  constexpr double level = -100e-3;
   SceneDefinition scene = test::ball_scene();
-  const auto tube = [&](const char* name, double y) {
-    OrganDefinition organ;
-    organ.name = name;
-    organ.shape = TubeShape{.points = {Vec3(-110e-3, y, level), Vec3(-50e-3, y, level)}, .radius = 2e-3};
-    organ.wall.thickness = 2e-3;
-    organ.wall.shear_modulus = 10e6;
-    organ.wall.density = 1050;
-    organ.nodes = 8;
-    organ.held = {{"start", "start", 5e-3, 1e7}, {"end", "end", 5e-3, 1e7}};
-    return organ;
-  };
-  scene.anatomy.organs = {tube("near", 82e-3), tube("far", 98e-3)};
+  scene.anatomy.organs = {test::rail("near", 82e-3), test::rail("far", 98e-3)};
   TissueDefinition fat;
   fat.name = "fat";
   fat.from = "near";

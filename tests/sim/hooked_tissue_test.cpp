@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rail_rig.h"
 #include "rig.h"
 #include "sim/field_state.h"
 #include "sim/tissue.h"
@@ -10,26 +11,14 @@
 namespace calot {
 namespace {
 
-constexpr double rail_height = -100e-3;
+using test::rail_height;
 
 /// Two stiff rails along x, 16 mm apart, with a few strands across between them, about x = -80 mm; the instrument's port
 /// is above.
 /// `reach`: m, break energy by strength.
 SceneDefinition railed(SolverMotion motion, double strength, double reach = 60e-3) {
   SceneDefinition scene = test::ball_scene();
-  const auto rail = [](const char* name, double y) {
-    OrganDefinition organ;
-    organ.name = name;
-    organ.shape =
-        TubeShape{.points = {Vec3(-110e-3, y, rail_height), Vec3(-50e-3, y, rail_height)}, .radius = 2e-3};
-    organ.wall.thickness = 2e-3;
-    organ.wall.shear_modulus = 10e6;
-    organ.wall.density = 1050;
-    organ.nodes = 8;
-    organ.held = {{"start", "start", 5e-3, 1e7}, {"end", "end", 5e-3, 1e7}};
-    return organ;
-  };
-  scene.anatomy.organs = {rail("near", 82e-3), rail("far", 98e-3)};
+  scene.anatomy.organs = {test::rail("near", 82e-3), test::rail("far", 98e-3)};
   TissueDefinition tissue;
   tissue.name = "veil";
   tissue.from = "near";

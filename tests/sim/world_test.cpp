@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "act_rig.h"
 #include "field_rig.h"
 #include "milestone.h"
 #include "rig.h"
@@ -11,6 +12,17 @@
 
 namespace calot {
 namespace {
+
+TEST(World, SaysHowFarAnOrganCameToRestFromWhereItIsDrawn) {
+  // A tube that is held at both ends sags most in its middle.
+  const Result<World> world = World::create(test::across(InstrumentType::atraumatic_grasper));
+  ASSERT_TRUE(world) << to_text(world.failure());
+  ASSERT_EQ(world->rest_shifts().size(), 1u);
+  const Vec3 drawn(0, 0, 1.8e-3 - test::tube_depth);  // of the middle, on top
+  const double sag = (world->landmark("duct.middle") - drawn).norm();
+  EXPECT_GT(sag, 1e-4);
+  EXPECT_NEAR(world->rest_shifts()[0], sag, 0.02 * sag);
+}
 
 std::vector<std::uint64_t> hashes_of_a_grasp(double depth) {
   test::FundusPath path(test::ball_scene());

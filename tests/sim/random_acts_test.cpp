@@ -1,0 +1,81 @@
+// Whatever instruments do to a field of all kinds of organs: nothing is lost, and what cannot be followed says so.
+
+#include "random_acts.h"
+
+#include "support/long_run.h"
+#include "triangle_rig.h"
+
+namespace calot {
+namespace {
+
+/// The triangle with an instrument of each type about it. Its liver is a thick bar, or a lobe, of which a step takes longer.
+SceneDefinition field_of_all_kinds(bool lobe, double rate = 50) {
+  SceneDefinition scene = test::triangle_scene();
+  scene.anatomy.organs[0].held = {{"bed", "bed", 14e-3, 3e5, true}, {"base", "neck", 6e-3, 3e5}};
+  scene.anatomy.organs[0].liver_side = Vec3::UnitY();
+  if (lobe) {
+    OrganDefinition& liver = scene.anatomy.organs[1];
+    liver = {};
+    liver.name = "liver";
+    liver.shape = LobeShape{.bed_width = 0, .bed_depth = 0};
+    liver.neck = test::beside_neck(0, 26, 0);
+    liver.fundus = test::beside_neck(0, 26, 40);
+    liver.liver_side = Vec3::UnitY();
+  }
+  for (OrganDefinition& organ : scene.anatomy.organs) {
+    organ.wall.density = 1050;
+    auto* tube = std::get_if<TubeShape>(&organ.shape);
+    if (organ.name == "cystic_artery" && tube) tube->carries = Carries::blood;
+  }
+  scene.solver.motion = SolverMotion::dynamics;
+  scene.solver.rate = rate;
+  scene.ports = default_ports();
+  scene.instruments.clear();
+  int k = 0;
+  for (const std::string& type : instrument_type_names()) {
+    InstrumentDefinition tool = default_instrument(*instrument_type_called(type));
+    tool.name = type;
+    tool.port = "port" + std::to_string(k);
+    scene.ports.push_back({tool.port, test::beside_neck(-60 + 25 * k, -60 - 10 * (k % 3), 130)});
+    scene.instruments.push_back(tool);
+    ++k;
+  }
+  return scene;
+}
+
+/// `most` of them may not be followed: a tenth in steps of 40 ms and longer, in which tools go further.
+void perform(const SceneDefinition& scene, std::uint64_t seed, int acts, double most = 0.05) {
+  Result<World> world = World::create(scene);
+  ASSERT_TRUE(world) << to_text(world.failure());
+  test::RandomActs hands(std::move(world).value(), seed);
+  for (int k = 0; k < acts && !testing::Test::HasFailure(); ++k) {
+    if (k % 25 == 0 && k > 0) hands.again();
+    hands.act();
+  }
+  fmt::print("{} acts in {} steps and {} Newton iterations:", hands.acts, hands.steps, hands.iterations);
+  for (const auto& [kind, count] : hands.events) fmt::print(" {} {},", count, kind);
+  int failed = 0;
+  for (const auto& [why, count] : hands.failures) {
+    fmt::print("\n  {} x {}", count, why);
+    failed += count;
+  }
+  fmt::print("\n");
+  EXPECT_LE(failed, most * acts) << "acts that could not be followed";
+}
+
+/// In each of three fields: two seconds an act were measured, and a suite has an hour.
+constexpr int of_a_long_run = 300;
+
+TEST(RandomActs, LoseNothingAndEndOrSayWhy) {
+  CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
+  perform(field_of_all_kinds(false), 1, test::cases(10, of_a_long_run));
+}
+
+TEST(RandomActs, LoseNothingBesideALobeAndInLongSteps) {
+  if (!test::long_run() || test::sanitized) GTEST_SKIP() << "left to scripts/test --long";
+  perform(field_of_all_kinds(true), 2, of_a_long_run);
+  perform(field_of_all_kinds(false, 20), 3, of_a_long_run, 0.1);
+}
+
+}  // namespace
+}  // namespace calot
