@@ -192,7 +192,8 @@ TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   progress.begin_step(0, "grasp", "", 0);
   progress.begin_step(0.5, "hold", "", 0);
   progress.set_metric("hold.band.time_in_s", 0.3);      // by the script
-  progress.set_metric("ball.lowest_frequency_Hz", 12);  // by the runner
+  progress.set_metric("ball.lowest_frequency_Hz", 12);  // by the runner, as the next
+  progress.set_metric("ball.rest_shift_mm", 0.2);
   progress.end_step(1, "done");
   const auto metrics = measure(test::small_scene(), traces, progress);
   ExerciseDefinition exercise = test::small_exercise();
