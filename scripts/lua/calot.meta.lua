@@ -51,7 +51,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.
@@ -82,14 +82,14 @@
 ---Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came too early, a metric beyond a value. A metric that was never measured is beyond.
 ---@class calot.gate
 ---@field reason string one sentence for the trainee
----@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" this happened
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" this happened
 ---@field organ? string to this organ or tissue, or a piece of it
----@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" and this had not happened before
+---@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" and this had not happened before
 ---@field after_organ? string to this organ or tissue, or a piece of it
 ---@field metric? string this metric is beyond a value
 ---@field below? number below this
 ---@field above? number above this
----@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
+---@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
 ---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
 ---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
@@ -215,6 +215,7 @@
 ---@field port string the port it goes through
 ---@field waits? boolean true: it waits outside while another instrument is in its port, until it is exchanged for that; default false
 ---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
+---@field hand_force? number force at the tip up to which its hand holds it where it is commanded to be; beyond, it gives way; default 20 * N; 0.05 to 100 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
@@ -394,7 +395,7 @@
 
 ---An event of a session, as a rule sees it.
 ---@class calot.event
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" its kind
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" its kind
 ---@field time number when, s
 ---@field step string the step that ran
 ---@field instrument? string whose it is
@@ -569,7 +570,7 @@ function Steps:tie(joint) end
 function Steps:untie(organ, other) end
 
 ---How many events of a kind there have been, such as time_out; those of this step come before it.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number
 function Steps:count(event, organ) end
@@ -730,13 +731,13 @@ function DemoInstrument:wait(duration) end
 local Run = {}
 
 ---How many events of a kind there were.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return integer
 function Run:count(event, organ) end
 
 ---When there were events of a kind, s, ascending.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number[]
 function Run:times(event, organ) end

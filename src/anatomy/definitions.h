@@ -292,6 +292,8 @@ struct InstrumentDefinition {
   double suction = 13e3;        ///< Pa below the pressure outside: some 100 mmHg
   double pinhole = 0.3e-3;      ///< m, across what it leaves open of a wall that it was through; 0: sealed
   bool waits = false;           ///< outside at the start, while another one is in its port: for an exchange
+  double hand_force =
+      20;  ///< N at the tip: what its hand holds against; beyond, it gives way (d), uncalibrated
 };
 
 inline constexpr int most_clips = 50;

@@ -141,6 +141,10 @@ std::vector<KeyTable> field_tables() {
                 "that"),
            number("force_limit", &Instrument::force_limit, quantity::force, 0.05, 100,
                   "a limit of force on tissue", "force on it above which the event overforce is raised"),
+           number("hand_force", &Instrument::hand_force, quantity::force, 0.05, 100,
+                  "a force that a hand holds against",
+                  "force at the tip up to which its hand holds it where it is commanded to be; beyond, it "
+                  "gives way"),
            jaws_only(
                number("pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
                       "a force that a hand gives a jaw",

@@ -117,13 +117,14 @@ void measure_activation(const std::vector<double>& time, const std::vector<Instr
 
 void measure_forces(const std::vector<InstrumentSample>& samples, const std::string& prefix,
                     Metrics& metrics) {
-  double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, sum = 0;
+  double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, peak_lag = 0, sum = 0;
   int loaded = 0;
   for (const InstrumentSample& sample : samples) {
     peak = std::max(peak, sample.tip_force);
     peak_handle = std::max(peak_handle, sample.handle_force);
     peak_jaws = std::max(peak_jaws, sample.jaws_force);
     peak_shaft = std::max(peak_shaft, sample.shaft_force);
+    peak_lag = std::max(peak_lag, sample.lag);
     if (sample.tip_force > smallest_force) {
       sum += sample.tip_force;
       ++loaded;
@@ -133,6 +134,7 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
   metrics[prefix + "peak_handle_force_N"] = peak_handle;
   metrics[prefix + "peak_jaws_force_N"] = peak_jaws;
   metrics[prefix + "peak_shaft_force_N"] = peak_shaft;
+  metrics[prefix + "peak_lag_mm"] = peak_lag / units::mm;
   metrics[prefix + "mean_force_N"] = loaded > 0 ? sum / loaded : 0.0;
 }
 
@@ -240,6 +242,9 @@ const std::vector<MetricRow>& metric_rows() {
       {"peak_handle_force_N", instrument, "largest force felt at its handle, raw", EventKind::overforce},
       {"peak_jaws_force_N", instrument, "largest force on its jaws, or on what its shaft ends in, raw"},
       {"peak_shaft_force_N", instrument, "largest force on its shaft, raw"},
+      {"peak_lag_mm", instrument,
+       "furthest that its tip was from where it was commanded to be, as its hand gave way, raw"},
+      {"clashes", instrument, "how often it began to press on another instrument", EventKind::clash, true},
       {"grasps", instrument, "how often it took hold", EventKind::grasp, true},
       {"empty_grasps", instrument, "how often it closed on nothing", EventKind::empty_grasp, true},
       {"releases", instrument, "how often it let go", EventKind::release, true},

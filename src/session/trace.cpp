@@ -56,6 +56,7 @@ void append_sample(const World& world, Traces& traces) {
     sample.shaft_force = state.parts[static_cast<std::size_t>(ToolPart::shaft)].force.norm();
     sample.active = state.action == InstrumentAction::activate;
     sample.waits = state.waits;
+    sample.lag = state.lag;
     traces.instruments[i].push_back(sample);
   }
   for (const OrganState& organ : report.organs) {

@@ -22,6 +22,7 @@ struct InstrumentSample {
   double jaws_force = 0, shaft_force = 0;  ///< N, magnitudes; what the jaws hold pulls on them
   bool active = false;                     ///< current flowed in the step that ended here
   bool waits = false;                      ///< outside, while another one was in its port
+  double lag = 0;                          ///< m, of the tip behind its command: its hand gave way
 };
 
 struct OrganSample {

@@ -43,6 +43,7 @@ enum class EventKind {
   puncture,
   aspirated,
   empty_aspiration,
+  clash,
   step_done,
   step_timeout,
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/grip.h"
+#include "sim/hands.h"
 #include "sim/tool_loads.h"
 
 namespace calot {
@@ -39,6 +40,13 @@ std::string bring_in(Field& field, int coming) {
   }
   tool.waits = false;
   leaving.waits = true;
+  if (const std::string met = tool_met(field, coming); !met.empty()) {
+    tool.pose = waited;
+    tool.waits = true;
+    leaving.waits = false;
+    return fmt::format("{} is in the way", met);
+  }
+  tool.command = tool.pose;
   return {};
 }
 

@@ -184,6 +184,11 @@ void add_tool(Hash& hash, const Tool& tool) {
     hash.add(needle.empty);
   }
   add_pose(hash, tool.pose);
+  if (tool.tissue_stiffness > 0) hash.add(tool.tissue_stiffness);
+  if (!tool.meeting.with.empty()) {
+    hash.add(tool.meeting.with);
+    add_vector(hash, tool.meeting.force);
+  }
 }
 
 void add_place(Hash& hash, const CarriedPlace& place) {

@@ -10,9 +10,27 @@ FieldState field_state(const Field& field) {
   state.group = snapshot(field);
   state.spill = field.spill;
   for (const Tool& tool : field.tools)
-    state.tools.push_back({tool.pose, tool.touched, tool.over_limit, tool.jaw_stopped, tool.lost, tool.beside,
-                           tool.slipping, tool.action, tool.dry, tool.has_cut, tool.clips, tool.on_clip,
-                           tool.beside_kept, tool.burnt, tool.burnt_record, tool.waits, tool.needle});
+    state.tools.push_back({tool.pose,
+                           tool.touched,
+                           tool.over_limit,
+                           tool.jaw_stopped,
+                           tool.lost,
+                           tool.beside,
+                           tool.slipping,
+                           tool.action,
+                           tool.dry,
+                           tool.has_cut,
+                           tool.clips,
+                           tool.on_clip,
+                           tool.beside_kept,
+                           tool.burnt,
+                           tool.burnt_record,
+                           tool.waits,
+                           tool.needle,
+                           tool.command,
+                           tool.tissue_stiffness,
+                           tool.meeting,
+                           tool.met});
   return state;
 }
 
@@ -40,6 +58,10 @@ void restore(Field& field, const FieldState& state) {
     tool.burnt_record = was.burnt_record;
     tool.waits = was.waits;
     tool.needle = was.needle;
+    tool.command = was.command;
+    tool.tissue_stiffness = was.tissue_stiffness;
+    tool.meeting = was.meeting;
+    tool.met = was.met;
   }
 }
 

@@ -20,6 +20,10 @@ struct ToolSnapshot {
   int burnt_record = -1;
   bool waits = false;
   NeedleState needle = {};
+  InstrumentPose command = {};
+  double tissue_stiffness = 0;
+  MeetingState meeting = {};
+  bool met = false;
 };
 
 struct FieldState {

@@ -8,6 +8,7 @@
 #include "sim/current.h"
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
+#include "sim/hands.h"
 #include "sim/tool_loads.h"
 
 namespace calot {
@@ -19,12 +20,11 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   state.pose = tool.pose;
   state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
   state.tip_force = load.force;
-  // The force at the tip that has the same moment about the trocar: what touches the shaft has a shorter
-  // lever.
-  const Vec3 arm = state.tip - tool.trocar, axis = arm.normalized();
-  Vec3 at_tip = load.force;  // of a tip in its trocar, which has no lever
-  if (arm.norm() > 0) at_tip = axis * axis.dot(load.force) + load.moment.cross(axis) / arm.norm();
-  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, at_tip);
+  state.at_tip = force_at_tip(tool, load.force, load.moment);
+  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force);
+  state.lag = (tip_position(tool.trocar, tool.command, tool.geometry) - state.tip).norm();
+  state.meets = tool.meeting.with;
+  state.meeting_force = tool.meeting.force.norm();
   for (const Organ& organ : field.organs) {
     const int held = grip_count(organ, static_cast<int>(index));
     state.grip_points += held;
@@ -127,6 +127,7 @@ void observe(Field& field, const std::vector<InstrumentAction>& actions, double 
              std::vector<WorldEvent> events, StepReport& report) {
   const std::vector<ToolLoad> loads = tool_loads(field);
   const std::vector<OrganState> before = report.organs;
+  const std::vector<InstrumentState> tools_before = report.instruments;
   report_states(field, loads, report);
 
   // Events are raised when a condition begins, not while it lasts.
@@ -146,6 +147,13 @@ void observe(Field& field, const std::vector<InstrumentAction>& actions, double 
       events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
     tool.touched = state.touching;
     tool.over_limit = over;
+    if (i < tools_before.size()) feel_stiffness(tool, tools_before[i], state);
+    if (!state.meets.empty() && !tool.met) {
+      WorldEvent event{EventKind::clash, 0, tool.definition.name, {}, state.meeting_force};
+      event.text = state.meets;
+      events.push_back(std::move(event));
+    }
+    tool.met = !state.meets.empty();
   }
   for (const WorldEvent& event : apply_current(field, report.instruments, duration)) events.push_back(event);
   report.tissues = tissue_states(field);

@@ -45,6 +45,11 @@ struct InstrumentState {
   int clips = 0;         ///< that it still carries
   double aspirated = 0;  ///< m^3, that it has drawn out
   bool waits = false;    ///< outside: another one is in its port
+  /// N, the tissue's force at the tip that has the same moment about the trocar.
+  Vec3 at_tip = Vec3::Zero();
+  double lag = 0;            ///< m, of the tip behind where it is commanded to be: its hand gives way
+  std::string meets;         ///< another instrument that it presses on; empty: none
+  double meeting_force = 0;  ///< N at the tip, of all that it presses on
 };
 
 struct ClipState {

@@ -19,6 +19,12 @@ struct NeedleState {
   bool empty = false;     ///< it drew at the last step and was in nothing, for events
 };
 
+/// What other tools press it with (hands.h).
+struct MeetingState {
+  Vec3 force = Vec3::Zero();  ///< N at the tip, of the same moment about the trocar
+  std::string with;           ///< the first of those tools; empty: none
+};
+
 struct Tool {
   InstrumentDefinition definition;
   InstrumentGeometry geometry;
@@ -39,6 +45,10 @@ struct Tool {
   int burnt_record = -1;                      ///< on the world's roll: that wall's organ; none: -1
   bool waits = false;                         ///< outside: another one is in its port (sim/exchange.h)
   NeedleState needle = {};
+  InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
+  double tissue_stiffness = 0;  ///< N/m, how the force on the tip grew with its way; 0: none that counts
+  MeetingState meeting = {};
+  bool met = false;  ///< it pressed on another tool at the last step, for events
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

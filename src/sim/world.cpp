@@ -18,6 +18,7 @@
 #include "sim/field_hash.h"
 #include "sim/field_state.h"
 #include "sim/field_tissues.h"
+#include "sim/hands.h"
 #include "sim/join_bodies.h"
 #include "sim/laparoscope.h"
 #include "sim/leak.h"
@@ -67,6 +68,8 @@ struct World::Impl {
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
 
+  /// What happens on the way; on failure the field is to be given back.
+  Result<std::vector<WorldEvent>> move_tools(const std::vector<InstrumentPose>& commands);
   void place_laparoscope(const InstrumentPose& pose);
   void keep_hash();
   bool same_factors(const FieldState& state) const;
@@ -94,6 +97,12 @@ std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
   if (scope != laparoscope.start())
     for (double v : {scope.pitch, scope.yaw, scope.insertion, scope.roll, scope.jaw}) hash.add(v);
   return hash.value();
+}
+
+Result<std::vector<WorldEvent>> World::Impl::move_tools(const std::vector<InstrumentPose>& commands) {
+  const Result<std::vector<InstrumentPose>> brought = bring_tools(field, commands, report.instruments);
+  if (!brought) return brought.failure();
+  return advance(field, brought.value(), report.statistics);
 }
 
 void World::Impl::keep_hash() {
@@ -221,6 +230,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
                                                        : Vec3(world.skin_positions(0).front());
     tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
     tool.pose.insertion = port_depth;
+    tool.command = tool.pose;
     world.impl_->field.tools.push_back(tool);
   }
   if (scene.laparoscope.distance < scene.solver.extension_view) {
@@ -234,6 +244,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
       Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), world.impl_->looked_at);
   world.impl_->place_laparoscope(world.impl_->laparoscope.start());
   if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
+  if (Result<bool> apart = check_apart(world.impl_->field); !apart) return apart.failure();
   world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
   world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
   keep_members(world.impl_->field);
@@ -277,10 +288,7 @@ Result<StepReport> World::step(const StepInput& input) {
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
   const double duration = 1 / self.scene.solver.rate;
   const std::vector<WorldEvent> leaked = leak(self.field, duration);
-  std::vector<InstrumentPose> targets = input.instruments;
-  for (std::size_t i = 0; i < targets.size(); ++i)
-    if (self.field.tools[i].waits) targets[i] = self.field.tools[i].pose;
-  Result<std::vector<WorldEvent>> events = advance(self.field, targets, self.report.statistics);
+  Result<std::vector<WorldEvent>> events = self.move_tools(input.instruments);
   if (!events) {
     self.failed = true;
     self.failure = events.failure();

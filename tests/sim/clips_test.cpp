@@ -141,7 +141,7 @@ TEST(Clips, ATubeIsFlatUnderThemAndRoundAside) {
   EXPECT_NEAR(*radius.second, 1.8e-3, 1e-9);
 }
 
-/// An applier and scissors whose ports are at one place; the one that is not used waits above.
+/// An applier and scissors through one port, the applier first.
 struct ClipAndCut {
   World world;
   std::vector<WorldEvent> events = {};
@@ -149,41 +149,46 @@ struct ClipAndCut {
     SceneDefinition scene = across(InstrumentType::clip_applier);
     InstrumentDefinition blades = default_instrument(InstrumentType::scissors);
     blades.name = "blades";
-    blades.port = "beside";
-    scene.ports.push_back({blades.port, Vec3::Zero()});
+    blades.port = scene.instruments[0].port;
+    blades.waits = true;
     scene.instruments.push_back(blades);
     std::get<TubeShape>(scene.anatomy.organs[0].shape).points = {
         {0, -20e-3, -tube_depth}, {0, 0, -tube_depth}, {0, 20e-3, -tube_depth}};
     return scene;
   }
   ClipAndCut() : world(World::create(scene()).value()) {}
-  bool step(const InstrumentPose& applier, const InstrumentPose& blades, InstrumentAction action) {
-    const Result<StepReport> done = world.step({{applier, blades}, {action, InstrumentAction::none}});
+  /// The one that is in the port goes to a pose; the action is the applier's or the blades'.
+  bool step(const InstrumentPose& pose, std::vector<InstrumentAction> actions = {}) {
+    StepInput input;
+    for (const InstrumentState& state : world.report().instruments)
+      input.instruments.push_back(state.waits ? state.pose : pose);
+    input.actions = std::move(actions);
+    const Result<StepReport> done = world.step(input);
     EXPECT_TRUE(done) << to_text(done.failure());
     if (!done) return false;
     events.insert(events.end(), done->events.begin(), done->events.end());
     return true;
   }
-  static InstrumentPose away() { return {0, 0, 40e-3, 0, 0}; }
+  static InstrumentPose away() { return {0, 0, 30e-3, 0, 0}; }
   /// The applier about the tube at a place along it, which it comes to from above.
   bool clip_at(double y) {
     const double pitch = std::atan2(y, tube_depth);
     const double far = std::hypot(y, tube_depth) + 5e-3 + 18e-3 * (1 - std::cos(0.5 * applier_jaw));
     for (int k = 0; k <= 6; ++k)
-      if (!step({pitch, 0, far - 25e-3 * (1 - k / 6.0), 0, applier_jaw}, away(), InstrumentAction::none))
-        return false;
-    if (!step({pitch, 0, far, 0, applier_jaw}, away(), InstrumentAction::fire)) return false;
+      if (!step({pitch, 0, far - 25e-3 * (1 - k / 6.0), 0, applier_jaw})) return false;
+    if (!step({pitch, 0, far, 0, applier_jaw}, {InstrumentAction::fire, InstrumentAction::none}))
+      return false;
     for (int k = 0; k <= 6; ++k)
-      if (!step({pitch, 0, far - 25e-3 * k / 6.0, 0, applier_jaw}, away(), InstrumentAction::none))
-        return false;
-    return step(away(), away(), InstrumentAction::none);
+      if (!step({pitch, 0, far - 25e-3 * k / 6.0, 0, applier_jaw})) return false;
+    return step(away());
   }
+  /// The blades come in and divide the tube in its middle.
   bool cut() {
+    if (!step(away(), {InstrumentAction::none, InstrumentAction::exchange})) return false;
     for (int k = 0; k <= 6; ++k)
-      if (!step(away(), about(0.7, tube_depth + 6e-3 - 25e-3 * (1 - k / 6.0)), InstrumentAction::none))
-        return false;
+      if (!step(about(0.7, tube_depth + 6e-3 - 25e-3 * (1 - k / 6.0)))) return false;
     for (int k = 0; k <= 12; ++k)
-      if (!step(away(), about(0.7 * (1 - k / 12.0)), InstrumentAction::none)) return false;
+      if (!step(about(0.7 * (1 - k / 12.0)))) return false;
     return true;
   }
   int count(EventKind kind) const {
