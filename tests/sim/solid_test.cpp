@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <numbers>
 
 #include "anatomy/organ_frame.h"
@@ -12,6 +10,8 @@
 #include "geometry/solid_moments.h"
 #include "geometry/turn.h"
 #include "numerics/cholesky.h"
+#include "numerics/dense_cholesky.h"
+#include "numerics/modes.h"
 #include "rig.h"
 #include "sim/body_kinds.h"
 #include "sim/solid_body.h"
@@ -168,19 +168,24 @@ TEST(Solid, ItsEdgeTurnedByHalfARightAngleIsWhereThatOfTheUncondensedSolidIs) {
 /// The smallest values of K v = value M v, both positive definite, by inverse iteration on a few vectors.
 VecX smallest_values(const Eigen::MatrixXd& k, const Eigen::MatrixXd& m) {
   constexpr int vectors = 10, rounds = 15;  // the fifth is then right to 1e-6
-  const Eigen::LLT<Eigen::MatrixXd> factor(k);
+  Eigen::MatrixXd factor = k;
+  EXPECT_TRUE(cholesky_in_place(factor));
   Rng rng(1);
   Eigen::MatrixXd shapes(k.rows(), vectors);
   for (Eigen::Index i = 0; i < shapes.size(); ++i) shapes.data()[i] = rng.uniform(-1, 1);
+  const auto of = [&](const Eigen::MatrixXd& matrix) {
+    const Eigen::MatrixXd taken = matrix * shapes;
+    return Eigen::MatrixXd(shapes.transpose() * taken);
+  };
   VecX values;
   for (int round = 0; round < rounds; ++round) {
-    shapes = factor.solve(m * shapes);
-    const Eigen::MatrixXd inertia = shapes.transpose() * m * shapes;
-    const Eigen::MatrixXd half = inertia.llt().matrixL().solve(Eigen::MatrixXd::Identity(vectors, vectors));
-    const Eigen::MatrixXd stiffness = half * shapes.transpose() * k * shapes * half.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(0.5 * (stiffness + stiffness.transpose()));
-    shapes = shapes * half.transpose() * ritz.eigenvectors();
-    values = ritz.eigenvalues();
+    shapes = cholesky_solve(factor, Eigen::MatrixXd(m * shapes));
+    const Modes inertia = modes(of(m)).value();
+    shapes =
+        shapes * Eigen::MatrixXd(inertia.vectors * inertia.values.cwiseSqrt().cwiseInverse().asDiagonal());
+    const Modes ritz = modes(of(k)).value();
+    shapes = shapes * ritz.vectors;
+    values = ritz.values;
   }
   return values;
 }
@@ -199,14 +204,15 @@ TEST(Solid, ItsFirstFiveFrequenciesAreThoseOfTheUncondensedSolid) {
   for (int p = 0; p < grid.points(); ++p)
     for (int e = mesh.rows.begin[p]; mesh.averaged[p] && e < mesh.rows.begin[p + 1]; ++e)
       blends(p, mesh.rows.node[e]) = mesh.rows.value[e];
-  const Eigen::MatrixXd average =
-      Eigen::MatrixXd(blends.transpose() * blends).llt().solve(blends.transpose());
+  Eigen::MatrixXd squares = blends.transpose() * blends;
+  ASSERT_TRUE(cholesky_in_place(squares));
+  const Eigen::MatrixXd average = cholesky_solve(squares, Eigen::MatrixXd(blends.transpose()));
   const Eigen::MatrixXd springs = test::dense(body->pattern()).topLeftCorner(3 * mesh.nodes, 3 * mesh.nodes);
   Eigen::MatrixXd inertia = Eigen::MatrixXd::Zero(whole.rows(), whole.cols());
   const auto every = [](Eigen::Index c, Eigen::Index count) { return Eigen::seqN(c, count, 3); };
   for (Eigen::Index c = 0; c < 3; ++c) {
     const Eigen::MatrixXd one_way = springs(every(c, average.rows()), every(c, average.rows()));
-    const Eigen::MatrixXd felt = average.transpose() * one_way * average;
+    const Eigen::MatrixXd taken = one_way * average, felt = average.transpose() * taken;
     whole(every(c, average.cols()), every(c, average.cols())) += felt;
   }
   for (const QuadraticTet& tet : mesh.tets) {
