@@ -43,7 +43,7 @@ int procedure(lua_State* L) { return marked(L, "calot.score.procedure", "procedu
 int score_time(lua_State* L) { return marked(L, "calot.score.time", "time"); }
 
 /// Its table may be left out: everything in it has a default.
-int critical_view(lua_State* L) {
+int score_critical_view(lua_State* L) {
   if (lua_gettop(L) == 0) lua_newtable(L);
   return marked(L, "calot.score.critical_view", "critical_view");
 }
@@ -108,11 +108,12 @@ struct Function {
   lua_CFunction function;
 };
 
-const Function functions[] = {{"calot", "exercise", exercise}, {"calot", "anatomy", anatomy},
-                              {"score", "weighted", weighted}, {"score", "benchmark", benchmark},
-                              {"score", "penalty", penalty},   {"score", "procedure", procedure},
-                              {"score", "time", score_time},   {"score", "critical_view", critical_view},
-                              {"score", "rule", rule}};
+const Function functions[] = {
+    {"calot", "exercise", exercise}, {"calot", "anatomy", anatomy},
+    {"score", "weighted", weighted}, {"score", "benchmark", benchmark},
+    {"score", "penalty", penalty},   {"score", "procedure", procedure},
+    {"score", "time", score_time},   {"score", "critical_view", score_critical_view},
+    {"score", "rule", rule}};
 
 void push_functions(lua_State* L, const std::string& owner) {
   lua_newtable(L);

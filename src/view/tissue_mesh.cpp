@@ -22,7 +22,7 @@ double share_of(std::size_t strand, int lobule, int which) {
 }
 
 /// A ball with dents, about the origin, as thick as 1.
-const SceneMesh& ball() {
+const SceneMesh& dented_ball() {
   static const SceneMesh mesh = sheet(Material::fat, 10, 7, [](double u, double v) {
     const double a = 2 * std::numbers::pi * u, b = std::numbers::pi * v;
     const Vec3 out(std::sin(b) * std::cos(a), -std::sin(b) * std::sin(a), std::cos(b));
@@ -48,7 +48,7 @@ void add_lobule(const StrandLine& line, double share, double radius, double burn
   const Vec3 pattern =
       11e-3 * Vec3(static_cast<double>(strand % 17), lobule, static_cast<double>(strand % 5));
   const int first = static_cast<int>(out.positions.size());
-  const SceneMesh& form = ball();
+  const SceneMesh& form = dented_ball();
   for (std::size_t i = 0; i < form.positions.size(); ++i) {
     out.positions.emplace_back(line.at(share) + off_line + shape * form.positions[i]);
     out.normals.emplace_back((normal_shape * form.normals[i]).normalized());

@@ -8,14 +8,14 @@
 namespace calot {
 namespace {
 
-struct Body {
+struct PointBody {
   StencilTable table;
   VecX rest;
   PointMass mass;
   BlockMatrix matrix;
 };
 
-Body body() {
+PointBody point_body() {
   const TriMesh mesh = test::pear(20);
   const LoopSurface surface = LoopSurface::create(mesh).value();
   StencilTable table = surface.evaluate(test::at_all_faces(surface.faces(), {{0.2, 0.3}, {0.5, 0.1}}), 0);
@@ -29,7 +29,7 @@ Body body() {
 }
 
 TEST(PointMass, AStepsEnergyHasTheseDerivatives) {
-  Body b = body();
+  PointBody b = point_body();
   Rng rng(1);
   const int n = static_cast<int>(b.rest.size());
   const VecX x = b.rest + test::random_coordinates(rng, n, 2e-3),
@@ -57,7 +57,7 @@ TEST(PointMass, AStepsEnergyHasTheseDerivatives) {
 }
 
 TEST(PointMass, ARigidBodysMomentaAreItsMassTimesItsCentresVelocityAndItsSpin) {
-  const Body b = body();
+  const PointBody b = point_body();
   double total = 0;
   Vec3 centre = Vec3::Zero();
   Mat3 about_origin = Mat3::Zero();
@@ -83,7 +83,7 @@ TEST(PointMass, ARigidBodysMomentaAreItsMassTimesItsCentresVelocityAndItsSpin) {
 }
 
 TEST(PointMass, ItsWeightPullsAtItsCentre) {
-  const Body b = body();
+  const PointBody b = point_body();
   const Vec3 gravity(1, -2, -9);
   VecX load = VecX::Zero(b.rest.size());
   b.mass.add_weight(b.table, gravity, load);

@@ -144,13 +144,13 @@ class Group : public ConstrainedEnergy {
   }
 };
 
-struct Solved {
+struct SolvedGroup {
   NewtonResult result;
   VecX x, multipliers;
 };
 
-Solved solved(const Group& group, const NewtonSettings& settings = {}) {
-  Solved out{{}, group.rest(), VecX::Zero(group.constraints())};
+SolvedGroup solved(const Group& group, const NewtonSettings& settings = {}) {
+  SolvedGroup out{{}, group.rest(), VecX::Zero(group.constraints())};
   NewtonWorkspace work = group.workspace();
   out.result = solve_equilibrium(group, settings, work, out.x, out.multipliers);
   return out;
@@ -204,7 +204,7 @@ TEST(GroupNewton, TwoBodiesSolvedTogetherAreWhatEachIsAlone) {
   group.add(true).net.volume *= 1.2;
   group.add(false).net.load *= -8;
   group.add(true).net.volume *= 0.8;
-  const Solved together = solved(group, settings_of(1e-10));
+  const SolvedGroup together = solved(group, settings_of(1e-10));
   ASSERT_TRUE(together.result.converged()) << to_text(together.result.status);
   int liquid = 0;
   for (std::size_t p = 0; p < group.members.size(); ++p) {
@@ -229,7 +229,7 @@ TEST(GroupNewton, EachLiquidKeepsItsOwnVolume) {
   group.add(true).net.volume *= 0.6;
   group.weld(0);
   group.weld(1);
-  const Solved out = solved(group);
+  const SolvedGroup out = solved(group);
   ASSERT_TRUE(out.result.converged()) << to_text(out.result.status);
   const VecX left = group.constraint_values(out.x);
   for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(left[k]), 1e-10 * group.constraint_scales()[k]);
@@ -244,7 +244,7 @@ TEST(GroupNewton, TheAnswerToALoadKeepsEveryVolumeToFirstOrder) {
   group.add(true).net.volume *= 1.2;
   group.add(true).net.volume *= 0.9;
   group.weld(0);
-  const Solved at = solved(group, settings_of(1e-10));
+  const SolvedGroup at = solved(group, settings_of(1e-10));
   ASSERT_TRUE(at.result.converged());
   NewtonWorkspace work = group.workspace();
   Rng rng(4);
@@ -293,7 +293,7 @@ TEST(GroupNewton, ALargeBodyDoesNotHideASmallOnesIncrements) {
   group.add(false).net.load *= 0.01;
   NewtonSettings one;
   one.max_iterations = 1;
-  const Solved out = solved(group, one);
+  const SolvedGroup out = solved(group, one);
   const VecX moved = out.x - group.rest();
   const double large = Group::own(moved, 0).lpNorm<Eigen::Infinity>(),
                small = Group::own(moved, 1).lpNorm<Eigen::Infinity>();
@@ -399,7 +399,7 @@ TEST(GroupNewton, DependentConstraintsAreRefused) {
   group.add(true);
   group.add(true).net.volume *= 1.1;
   group.keeps_last_twice = true;
-  const Solved out = solved(group);
+  const SolvedGroup out = solved(group);
   EXPECT_EQ(out.result.status, NewtonStatus::dependent_constraints);
   EXPECT_EQ(out.result.part, 1);
   EXPECT_EQ(out.x, group.rest());
