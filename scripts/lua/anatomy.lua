@@ -242,7 +242,9 @@ function anatomy.standard(overrides)
     { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
     { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
   }, { nodes = 13, patient_end = "start" })
-  common.injury = { cut = "Strasberg E", closed = "Strasberg E", partly = "Strasberg D" }
+  -- E2: less than 20 mm from where the hepatic ducts join, which is where it begins here.
+  common.injury = { cut = "Strasberg E1", closed = "Strasberg E1", partly = "Strasberg D", near_start = 20 * mm,
+    near = "Strasberg E2" }
   common.keep_clear = 3 * mm -- of current; uncalibrated
   local union = anatomy.along(common.shape.points, p.union)
 

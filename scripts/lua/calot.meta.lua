@@ -216,6 +216,7 @@
 ---@field waits? boolean true: it waits outside while another instrument is in its port, until it is exchanged for that; default false
 ---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field hand_force? number force at the tip up to which its hand holds it where it is commanded to be; beyond, it gives way; default 20 * N; 0.05 to 100 N
+---@field port_friction? number friction of the seal of its port on the shaft that slides through, which its hand feels; 0.25 to 3 N; default 0.5 * N; 0 to 10 N
 ---@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
@@ -275,6 +276,8 @@
 ---@field closed? string a clip shuts it
 ---@field partly? string a clip holds a part of its width, or current goes through its wall
 ---@field unclipped? string it is divided without a shut clip on the patient's side
+---@field near_start? number along a tube at rest, from its start: nearer, near stands for cut and closed (Strasberg's E2 instead of E1: less than 20 mm from where the hepatic ducts join); default 0 * mm; 0 to 200 mm
+---@field near? string what cut and closed are called there
 
 ---The organ's wall.
 ---@class calot.wall

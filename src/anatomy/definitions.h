@@ -154,6 +154,13 @@ struct InjuryDefinition {
   std::string closed;     ///< a clip shuts it
   std::string partly;     ///< a clip holds a part of its width, or current goes through its wall
   std::string unclipped;  ///< it is divided without a shut clip on the patient's side
+  double near_start =
+      0;  ///< m along a tube at rest, from its start: nearer, `near` stands for `cut` and `closed`
+  std::string near = {};
+  /// What `usual`, one of these two, is called that far (m) from the tube's start.
+  const std::string& at(const std::string& usual, double from_start) const {
+    return usual.empty() || from_start >= near_start ? usual : near;
+  }
 };
 
 /// How a hollow organ is drawn: full of bile, or pale, as one that mucus has filled (hydrops).
@@ -294,6 +301,7 @@ struct InstrumentDefinition {
   bool waits = false;           ///< outside at the start, while another one is in its port: for an exchange
   double hand_force =
       20;  ///< N at the tip: what its hand holds against; beyond, it gives way (d), uncalibrated
+  double port_friction = 0.5;  ///< N along the shaft that slides through its port, at its hand: 0.25 to 3 (c)
 };
 
 inline constexpr int most_clips = 50;

@@ -145,6 +145,10 @@ std::vector<KeyTable> field_tables() {
                   "a force that a hand holds against",
                   "force at the tip up to which its hand holds it where it is commanded to be; beyond, it "
                   "gives way"),
+           number("port_friction", &Instrument::port_friction, quantity::force, 0, 10,
+                  "a friction of a port's seal",
+                  "friction of the seal of its port on the shaft that slides through, which its hand feels; "
+                  "0.25 to 3 N"),
            jaws_only(
                number("pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
                       "a force that a hand gives a jaw",
@@ -263,7 +267,12 @@ std::vector<KeyTable> organ_tables() {
            text("partly", &InjuryDefinition::partly,
                 "a clip holds a part of its width, or current goes through its wall"),
            text("unclipped", &InjuryDefinition::unclipped,
-                "it is divided without a shut clip on the patient's side")}),
+                "it is divided without a shut clip on the patient's side"),
+           number("near_start", &InjuryDefinition::near_start, quantity::length, 0, 200 * mm,
+                  "a way along a duct",
+                  "along a tube at rest, from its start: nearer, near stands for cut and closed (Strasberg's "
+                  "E2 instead of E1: less than 20 mm from where the hepatic ducts join)"),
+           text("near", &InjuryDefinition::near, "what cut and closed are called there")}),
       keys_of<Wall>(
           "wall", "The organ's wall.",
           {number("thickness", &Wall::thickness, quantity::length, 0.1 * mm, 10 * mm, "a wall's thickness",

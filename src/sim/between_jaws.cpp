@@ -26,6 +26,14 @@ bool before_both(const Tool& tool, double jaw, const Vec3& at) {
 
 const RodBody* rod_of(const Organ& organ) { return dynamic_cast<const RodBody*>(organ.body.get()); }
 
+double way_from_start(const RodBody& rod, double at) {
+  const std::vector<Vec3>& rest = rod.skin_rest();
+  double way = 0;
+  for (std::size_t p = 0; p + 1 < rest.size() && static_cast<double>(p) < at; ++p)
+    way += std::min(1.0, at - static_cast<double>(p)) * (rest[p + 1] - rest[p]).norm();
+  return way;
+}
+
 std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
   const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();

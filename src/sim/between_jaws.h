@@ -26,4 +26,7 @@ bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle)
 /// The organ as a tube; null: it is none.
 const RodBody* rod_of(const Organ& organ);
 
+/// Along a tube at rest from its start to a place (skin points from there), m.
+double way_from_start(const RodBody& rod, double at);
+
 }  // namespace calot

@@ -25,6 +25,7 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
   const InjuryDefinition injury = field.organs[tube.organ].definition.injury;
   const Vec3 at = rod_of(field.organs[tube.organ])->place_at(tube.at, field.organs[tube.organ].state.x);
   const double share = rod_of(field.organs[tube.organ])->share_at(tube.at);
+  const std::string cut = injury.at(injury.cut, way_from_start(*rod_of(field.organs[tube.organ]), tube.at));
   if (!can_be_divided(field.organs[tube.organ], share)) {
     slide_out(field.organs[tube.organ], instrument);
     return false;
@@ -42,8 +43,7 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
   const bool unclipped = !left.of_specimen && !is_clipped(left);
   if (unclipped)
     events.push_back({EventKind::cut_unclipped, 0, tool, name, done->share, at, EventCause::blades});
-  if (!injury.cut.empty())
-    events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, injury.cut});
+  if (!cut.empty()) events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, cut});
   if (unclipped && !injury.unclipped.empty())
     events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, injury.unclipped});
   return true;

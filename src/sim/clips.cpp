@@ -41,7 +41,8 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
     const Vec3 at = rod.place_at(tube.at, organ.state.x);
     const std::string name = organ.definition.name;
     const InjuryDefinition& injury = organ.definition.injury;
-    const std::string called = clip.shut() ? injury.closed : injury.partly;
+    const std::string called =
+        clip.shut() ? injury.at(injury.closed, way_from_start(rod, tube.at)) : injury.partly;
     set_clip(field, tube.organ, clip);
     events.push_back({EventKind::clip, 0, tool.definition.name, name, open, at});
     if (!called.empty())

@@ -1,6 +1,7 @@
 #include "sim/grip.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -22,26 +23,37 @@ bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
   return std::abs(local.y()) < 0.5 * g.jaw_width && local.z() > g.jaw_rounding && local.z() < g.jaw_length;
 }
 
-void take_hold(Field& field, int instrument) {
-  const Tool& tool = field.tools[instrument];
-  for (Organ& organ : field.organs) {
-    if (std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
-    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-    std::vector<char> held(skin.size(), 0);
-    for (const GripPoint& grip : organ.grips) held[grip.skin_point] = 1;
-    const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
-                              jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
-    for (std::size_t p = 0; p < skin.size(); ++p) {
-      if (held[p]) continue;
-      const Vec3 local[2] = {to_local[0] * skin[p], to_local[1] * skin[p]};
-      const int jaw = local[0].x() >= local[1].x() ? 0 : 1;  // the nearer pad
-      if (faces_pad(local[jaw], tool.geometry, pad_reach))
+namespace {
+
+void hold(const Tool& tool, int instrument, Organ& organ) {
+  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+  const std::vector<double>& radii = organ.body->skin_radii();
+  std::array<std::vector<char>, 2> held{std::vector<char>(skin.size(), 0), std::vector<char>(skin.size(), 0)};
+  for (const GripPoint& grip : organ.grips) held[grip.jaw][grip.skin_point] = 1;
+  const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
+                            jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  for (std::size_t p = 0; p < skin.size(); ++p) {
+    const Vec3 local[2] = {to_local[0] * skin[p], to_local[1] * skin[p]};
+    // A wall is held by the nearer pad, a tube by both, each on its side.
+    const bool wall = radii.empty();
+    if (wall && (held[0][p] || held[1][p])) continue;
+    for (int jaw : {0, 1}) {
+      if (held[jaw][p] || (wall && (local[0].x() >= local[1].x()) != (jaw == 0))) continue;
+      if (faces_pad(local[jaw], tool.geometry, pad_reach + (wall ? 0.0 : radii[p])))
         organ.grips.push_back({instrument, jaw, static_cast<int>(p), local[jaw], grip_stiffness});
     }
-    std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
-      return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
-    });
   }
+  std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
+    return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
+  });
+}
+
+}  // namespace
+
+void take_hold(Field& field, int instrument) {
+  for (Organ& organ : field.organs)
+    if (!std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument))
+      hold(field.tools[instrument], instrument, organ);
 }
 
 void make_room(Field& field, int instrument, double jaw) {
@@ -72,6 +84,19 @@ bool both_pads_hold(const Field& field, int instrument) {
   return false;
 }
 
+namespace {
+
+/// Half the height of a tube pressed flat, m: of the thickest place that a tool holds.
+double flat_radius(const Organ& organ, int instrument) {
+  double thickest = 0;
+  for (const GripPoint& grip : organ.grips)
+    if (grip.instrument == instrument)
+      thickest = std::max(thickest, organ.body->core_radii()[static_cast<std::size_t>(grip.skin_point)]);
+  return thickest;
+}
+
+}  // namespace
+
 bool fold_fills_jaws(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
   for (const Organ& organ : field.organs) {
@@ -83,8 +108,15 @@ bool fold_fills_jaws(const Field& field, int instrument) {
       depth += grip.local.z();
     }
     if (count[0] == 0 || count[1] == 0) continue;
-    const double gap = 2.0 * depth / (count[0] + count[1]) * std::sin(0.5 * tool.pose.jaw);
-    if (gap <= fold_squeeze * 2.0 * organ.definition.wall.thickness) return true;
+    const double reach = 2.0 * depth / (count[0] + count[1]);
+    if (!organ.body->skin_radii().empty()) {
+      // A tube is pressed flat where the next angle leaves it no room. Skins are felt that far inside the pads.
+      const double next = reach * std::sin(0.5 * std::max(0.0, tool.pose.jaw - grip_grid));
+      if (next + 2 * contact_inset <= 2 * flat_radius(organ, instrument)) return true;
+      continue;
+    }
+    if (reach * std::sin(0.5 * tool.pose.jaw) <= fold_squeeze * 2.0 * organ.definition.wall.thickness)
+      return true;
   }
   return false;
 }

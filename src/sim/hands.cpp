@@ -152,6 +152,14 @@ Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment) {
   return axis * axis.dot(force) + moment.cross(axis) / arm.norm();
 }
 
+Vec3 port_drag(const Tool& tool, double way, double duration) {
+  constexpr double full_speed = 5e-3;  // m/s
+  const double share = std::clamp(way / duration / full_speed, -1.0, 1.0);
+  // The hinge frame's z points along the shaft, inwards.
+  return -share * tool.definition.port_friction *
+         hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
+}
+
 Result<Poses> bring_tools(Field& field, const Poses& commands, const std::vector<InstrumentState>& last) {
   Poses to;
   for (std::size_t i = 0; i < field.tools.size(); ++i) {

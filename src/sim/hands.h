@@ -17,6 +17,10 @@ namespace calot {
 /// shaft.
 Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment);
 
+/// N at the hand, of the port's seal on a shaft that was pushed in by `way` (m; negative: drawn out) in `duration` s: against
+/// the way, the whole friction from 5 mm/s on, and in proportion below.
+Vec3 port_drag(const Tool& tool, double way, double duration);
+
 /// Where tools come by the end of a step, one a tool, from their last states. Waiting tools stay. Keeps each tool's
 /// command and what other tools press it with. Fails (simulation) where tools that meet find no balance.
 Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,

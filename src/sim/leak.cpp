@@ -6,6 +6,7 @@
 
 #include "sim/aspirate.h"
 #include "sim/between_jaws.h"
+#include "sim/grip.h"
 
 namespace calot {
 namespace {
@@ -330,6 +331,8 @@ double open_between(const Field& field, int index, double one, double other) {
     if (!has_jaws(field.tools[i].definition.type)) continue;
     for (const TubeBetween& tube : tubes_between(field, static_cast<int>(i))) {
       if (tube.organ != index || tube.at < low || tube.at > high) continue;
+      // Jaws that hold it have pressed it flat, to the angle that they stop at.
+      if (field.tools[i].jaw_stopped && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
       const double lumen = 2 * lumen_radius(rod, tube.at);
       const double left = (tube.gap - 2 * rod.setup().wall) / lumen;
       open = std::min(open, left < shut ? 0.0 : left);

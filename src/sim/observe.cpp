@@ -147,7 +147,12 @@ void observe(Field& field, const std::vector<InstrumentAction>& actions, double 
       events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
     tool.touched = state.touching;
     tool.over_limit = over;
-    if (i < tools_before.size()) feel_stiffness(tool, tools_before[i], state);
+    if (i < tools_before.size()) {
+      feel_stiffness(tool, tools_before[i], state);
+      if (!state.waits && !tools_before[i].waits)
+        report.instruments[i].handle_force +=
+            port_drag(tool, state.pose.insertion - tools_before[i].pose.insertion, duration);
+    }
     if (!state.meets.empty() && !tool.met) {
       WorldEvent event{EventKind::clash, 0, tool.definition.name, {}, state.meeting_force};
       event.text = state.meets;

@@ -85,7 +85,8 @@ TEST(Anatomy, SaysWhatItIsCalledWhenWhatShouldBeKeptIsHurt) {
   for (const OrganDefinition& organ : scene_of("anatomy.standard()").anatomy.organs)
     organs[organ.name] = organ;
   const OrganDefinition& common = organs.at("common_duct");
-  EXPECT_EQ(common.injury.cut + ", " + common.injury.partly, "Strasberg E, Strasberg D");
+  EXPECT_EQ(common.injury.cut + ", " + common.injury.near + ", " + common.injury.partly,
+            "Strasberg E1, Strasberg E2, Strasberg D");
   EXPECT_EQ(common.keep_clear, 3 * mm);
   EXPECT_EQ(organs.at("cystic_duct").injury.unclipped, "Strasberg A");
   EXPECT_EQ(organs.at("cystic_duct").injury.cut, "") << "it is what is to be divided";

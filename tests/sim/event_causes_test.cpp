@@ -65,6 +65,27 @@ TEST(EventCauses, AClipOnWhatShouldBeKeptIsAnInjuryWhetherItShutsItOrNot) {
   }
 }
 
+TEST(EventCauses, WhatIsCutOrClosedNearATubesStartHasAClassOfItsOwn) {
+  // The tube is 30 mm long, and cut and clipped in its middle.
+  for (const auto& [near, called] : {std::pair{16e-3, "class E2"}, {14e-3, "class E"}}) {
+    SceneDefinition scene = kept(InstrumentType::scissors);
+    InjuryDefinition& injury = scene.anatomy.organs[0].injury;
+    injury.unclipped.clear();
+    injury.near_start = near;
+    injury.near = "class E2";
+    Acting cutting(scene);
+    ASSERT_TRUE(cutting.reach() && cutting.go(about(0), 12));
+    EXPECT_EQ(only(cutting, EventKind::injury).text, called);
+    injury.closed = "class E";
+    scene.instruments[0] = kept(InstrumentType::clip_applier).instruments[0];
+    Acting clipping(scene);
+    ASSERT_TRUE(clipping.go(about(0.5, tube_depth - 20e-3), 2) &&
+                clipping.go(about(0.5, tube_depth + 5e-3 + 18e-3 * (1 - std::cos(0.25))), 8) &&
+                clipping.fire());
+    EXPECT_EQ(only(clipping, EventKind::injury).text, called);
+  }
+}
+
 TEST(EventCauses, WhatMayBeCutIsNoInjury) {
   Acting scene(across(InstrumentType::scissors));
   ASSERT_TRUE(scene.reach() && scene.go(about(0), 12));

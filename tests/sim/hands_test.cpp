@@ -40,6 +40,27 @@ TEST(Hands, ATipIsPressedWithNoMoreThanItsHandHoldsAndComesBackToItsCommand) {
   EXPECT_EQ(world.report().instruments[0].lag, 0) << "it is exactly where it is commanded to be";
 }
 
+TEST(Hands, APortsSealResistsAShaftThatSlidesThroughItWhicheverWay) {
+  SceneDefinition scene = test::ball_scene();
+  scene.instruments[0].port_friction = 0.7;
+  World world = World::create(scene).value();
+  const Vec3 trocar = world.port_position(scene.instruments[0].port);
+  const InstrumentPose start = world.report().instruments[0].pose;
+  StepInput input;
+  const auto felt_at = [&](double insertion) {
+    InstrumentPose pose = start;
+    pose.insertion = insertion;
+    input.instruments = {pose};
+    const StepReport report = world.step(input).value();
+    return report.instruments[0].handle_force.dot((report.instruments[0].tip - trocar).normalized());
+  };
+  // At 50 Hz 0.2 mm a step are 10 mm/s, beyond which the seal's force grows no more; 0.05 mm are half of the full one.
+  EXPECT_NEAR(felt_at(start.insertion + 0.2e-3), -0.7, 1e-9);
+  EXPECT_NEAR(felt_at(start.insertion + 0.25e-3), -0.35, 1e-9);
+  EXPECT_EQ(felt_at(start.insertion + 0.25e-3), 0);
+  EXPECT_NEAR(felt_at(start.insertion - 1e-3), 0.7, 1e-9);
+}
+
 /// Two graspers whose shafts cross where one of them is led through the other.
 struct Crossed {
   World world;
