@@ -28,6 +28,8 @@ namespace {
 void hold(const Tool& tool, int instrument, Organ& organ) {
   const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
   const std::vector<double>& radii = organ.body->skin_radii();
+  // Blades divide a tube, and a clip applier lets it be: neither has teeth.
+  if (!radii.empty() && instrument_row(tool.definition.type).jaws != JawUse::hold) return;
   std::array<std::vector<char>, 2> held{std::vector<char>(skin.size(), 0), std::vector<char>(skin.size(), 0)};
   for (const GripPoint& grip : organ.grips) held[grip.jaw][grip.skin_point] = 1;
   const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),

@@ -78,5 +78,20 @@ TEST(TubeGrasp, AStumpIsGraspedAndDrawnAlongItself) {
   EXPECT_LT(acting.world.report().instruments[0].tip_force.z(), -1e-3);
 }
 
+TEST(TubeGrasp, BladesAndAppliersHoldNothingOfIt) {
+  for (const InstrumentType type : {InstrumentType::scissors, InstrumentType::clip_applier})
+    for (const double past : {4e-3, 7e-3, 10e-3}) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(type) << " reaches " << past * 1e3 << " mm past");
+      Acting acting(across(type));
+      ASSERT_TRUE(acting.go(about(0.45, tube_depth - 20e-3), 2));
+      ASSERT_TRUE(acting.go(about(0.45, tube_depth + past), 12));
+      ASSERT_TRUE(acting.go(about(0, tube_depth + past), 40));
+      EXPECT_EQ(acting.count(EventKind::grasp), 0);
+      EXPECT_EQ(acting.count(EventKind::perforation), 0);
+      EXPECT_EQ(acting.world.report().instruments[0].grip_points, 0);
+      EXPECT_EQ(acting.count(EventKind::cut), type == InstrumentType::scissors ? 1 : 0);
+    }
+}
+
 }  // namespace
 }  // namespace calot
