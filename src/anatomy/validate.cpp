@@ -199,6 +199,9 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
   if (std::holds_alternative<RigidShape>(organ.shape) && !organ.held.empty())
     check.problem(path + ".held", "a rigid thing is not held",
                   "let something support it, or tie it by a joint");
+  if (organ.injury.near_start > 0 && organ.injury.near.empty())
+    check.problem(path + ".injury.near", "what lies near the start has no name",
+                  "say what an instructor calls it, or leave near_start out");
   check_wall(check, path + ".wall", organ.wall, radius_of(organ.shape));
   check_bile(check, path + ".bile", organ.bile);
   UniqueNames names(check, "held region");

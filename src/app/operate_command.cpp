@@ -67,7 +67,7 @@ Result<Played> attempts(Operation& operation) {
   for (int attempt = 0;; ++attempt) {
     LiveSource source(operation.instruments, operation.mailbox, live_options(operation.command));
     StepTeller teller(source.figures().mode);
-    ViewMaker view(operation.latest, operation.exercise.time_limit, source.figures().mode, attempt);
+    ViewMaker view(operation.latest, operation.exercise.time_limit, source, attempt);
     request.live = &source;
     request.on_state = [&](const World& world, const Progress& progress) {
       teller.look(world, progress);

@@ -27,7 +27,7 @@ void ViewMaker::look(const World& world, const Progress& progress) {
   view->scene = builder_->build(world);
   view->time = report.time;
   view->time_limit = time_limit_;
-  show_step(progress, report.time, mode_, *view);
+  show_step(progress, report.time, source_.figures().mode, *view);
   if (!progress.events().empty()) {
     const SessionEvent& event = progress.events().back();
     view->last_event = fmt::format("{} {} at {:.1f} s", to_text(event.kind), event.instrument, event.time);
@@ -36,7 +36,8 @@ void ViewMaker::look(const World& world, const Progress& progress) {
   for (std::size_t i = 0; i < definitions.size(); ++i) {
     const InstrumentState& state = report.instruments[i];
     view->hands.push_back({definitions[i].name, state.holds, state.tip_force.norm(),
-                           definitions[i].force_limit, state.pose, state.waits});
+                           definitions[i].force_limit, state.pose, state.waits,
+                           source_.is_drawn_back(static_cast<int>(i))});
   }
   view->hands.push_back({laparoscope_name, "", 0, 0, report.laparoscope.pose});
   latest_.put(std::move(view));

@@ -244,6 +244,11 @@ void LiveSource::apply(const LiveMailbox::Sent& sent) {
   if (const auto* remark = std::get_if<LiveRemark>(&sent.event)) say(remark->text);
 }
 
+bool LiveSource::is_drawn_back(int instrument) const {
+  return std::any_of(exchanges_.begin(), exchanges_.end(),
+                     [&](const Exchange& exchange) { return exchange.leaving == instrument; });
+}
+
 /// Whether the input is one of an instrument that waits, which asks for it to come in or changes nothing, or of one
 /// that is being drawn back.
 bool LiveSource::is_exchange(const LiveInput& input) {
@@ -277,8 +282,10 @@ bool LiveSource::is_exchange(const LiveInput& input) {
 void LiveSource::note_exchanges(const World& world) {
   const StepReport& report = world.report();
   for (std::size_t i = 0; i < states_now_.size(); ++i)
-    if (report.instruments[i].waits != states_now_[i].waits)
+    if (report.instruments[i].waits != states_now_[i].waits) {
       asked_.instruments[i] = given_.instruments[i] = report.instruments[i].pose;
+      told_to_wait_[i] = 0;
+    }
   states_now_ = report.instruments;
   for (const Exchange& exchange : exchanges_) {
     if (!exchange.asked) continue;

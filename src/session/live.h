@@ -146,6 +146,8 @@ class LiveSource : public InputSource {
   Result<std::optional<StepInput>> next(const World& world, double dt) override;
   std::vector<std::string> notes() const override;
   LiveFigures figures() const;
+  /// Whether an instrument goes back into its port for another one: what is asked of it does not count.
+  bool is_drawn_back(int instrument) const;
   bool wants_restart() const { return ended_by_ == "restart"; }
 
  private:

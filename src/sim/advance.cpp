@@ -12,6 +12,7 @@
 #include "numerics/response.h"
 #include "sim/blades.h"
 #include "sim/body_rubbing.h"
+#include "sim/clips.h"
 #include "sim/exchange.h"
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
@@ -501,6 +502,7 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     if (pull.value() > 0 && !tool.slipping && !slipped_before[i])
       events.push_back({EventKind::slip, 0, tool.definition.name, organ, pull.value()});
     tool.slipping |= pull.value() > 0;
+    if (pull.value() > 0) let_clips_fall(field, index, events);
     if (both_pads_hold(field, index)) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     tool.jaw_stopped = false;
@@ -705,7 +707,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       take_hold(field, index);
       if (!fold_fills_jaws(field, index)) {
         if (tool.pose.jaw > 0.5 * grip_grid) continue;
-        if (!tool.has_cut && !is_in_trocar(tool))
+        if (use != JawUse::carry && !tool.has_cut && !is_in_trocar(tool))
           events.push_back({use == JawUse::cut ? EventKind::empty_cut : EventKind::empty_grasp,
                             0,
                             tool.definition.name,

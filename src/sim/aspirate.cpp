@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/units.h"
-#include "collision/simplex_distance.h"
 #include "sim/outflow.h"
+#include "sim/skin_place.h"
 
 namespace calot {
 namespace {
@@ -18,25 +18,23 @@ using std::numbers::pi;
 /// keeps the tip further off.
 constexpr double pushed_on = 0.4e-3;
 
-struct NearestSkin {
+struct PushedOn {
   int organ = -1, point = 0;
   double distance = std::numeric_limits<double>::infinity();  ///< m
 };
 
 /// The organ whose surface is nearest to a place, within `reach`, and its nearest skin point.
-NearestSkin nearest_skin(const Field& field, const Vec3& place, double reach) {
-  NearestSkin best;
+PushedOn pushed_on_by(const Field& field, const Vec3& place, double reach) {
+  PushedOn best;
   for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) {
-    const Organ& organ = field.organs[k];
-    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-    for (const Triangle& triangle : organ.body->skin().triangles) {
-      const std::array<Vec3, 3> corners{skin[triangle[0]], skin[triangle[1]], skin[triangle[2]]};
-      const NearestPoint near = nearest_point(place, corners);
-      const auto heaviest = std::max_element(near.weight.begin(), near.weight.end()) - near.weight.begin();
-      const int point = triangle[static_cast<std::size_t>(heaviest)];
-      const double distance = near.distance - organ.body->radius_at(point);
-      if (distance <= reach && distance < best.distance) best = {k, point, distance};
-    }
+    const Body& body = *field.organs[k].body;
+    const SkinFinder finder(body, body.skin_positions(field.organs[k].state.x));
+    const NearestSkin near = finder.nearest(place, reach + body.thickest());
+    const double distance = near.distance - near.radius;
+    if (near.place.points.empty() || distance > reach || distance >= best.distance) continue;
+    const std::vector<double>& weights = near.place.weights;
+    const auto heaviest = std::max_element(weights.begin(), weights.end()) - weights.begin();
+    best = {k, near.place.points[static_cast<std::size_t>(heaviest)], distance};
   }
   return best;
 }
@@ -83,10 +81,7 @@ double drawn_by(const InstrumentDefinition& needle, double pressure, double comp
 }
 
 int punctured_organ(const Field& field, const Tool& tool) {
-  if (tool.needle.record < 0) return -1;
-  for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (field.organs[k].record == tool.needle.record) return static_cast<int>(k);
-  return -1;
+  return tool.needle.record < 0 ? -1 : organ_of_record(field, tool.needle.record);
 }
 
 void puncture(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events) {
@@ -104,7 +99,7 @@ void puncture(Field& field, const std::vector<InstrumentAction>& actions, std::v
     }
     const bool was_empty = std::exchange(needle.empty, false);
     if (!draws || needle.record >= 0) continue;
-    const NearestSkin wall = nearest_skin(field, tip_of(tool), pushed_on);
+    const PushedOn wall = pushed_on_by(field, tip_of(tool), pushed_on);
     Organ* organ = wall.organ < 0 ? nullptr : &field.organs[wall.organ];
     if (organ != nullptr && shell_of(*organ) != nullptr && organ->body->liquid() != nullptr) {
       go_in(*organ, wall.point, tool);

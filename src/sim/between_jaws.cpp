@@ -57,6 +57,11 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   return out;
 }
 
+bool is_between_pads(const Tool& tool, const Vec3& at) {
+  const Vec3 local = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse() * at;
+  return std::abs(local.y()) < 0.5 * tool.geometry.jaw_width && before_both(tool, tool.pose.jaw, local);
+}
+
 bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle) {
   const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   const Vec3 a = to_hinge * from, b = to_hinge * to;

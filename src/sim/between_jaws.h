@@ -19,6 +19,9 @@ struct TubeBetween {
 /// Of all tubes that feel the jaws, in the order of organs and places.
 std::vector<TubeBetween> tubes_between(const Field& field, int instrument);
 
+/// Whether a place (m) is between the pads of a tool, anywhere over their width.
+bool is_between_pads(const Tool& tool, const Vec3& at);
+
 /// Whether a line from one place to another (m) passes between the pads of a tool now, and no longer when its jaws have
 /// closed by an angle (rad) more: an edge passes it.
 bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle);

@@ -36,7 +36,7 @@ std::span<const int> Body::contact_points(bool broad) const {
   return all;
 }
 
-double Body::radius_at(int point) const {
+double Body::radius_at_contact(int point) const {
   if (skin_radii().empty()) return 0;
   double sum = 0;
   for (int c = 0; c < 3; ++c)

@@ -128,7 +128,7 @@ class Body {
   /// The largest of them, 0 without any.
   double thickest() const;
   /// Of the surface around a contact point, m.
-  double radius_at(int point) const;
+  double radius_at_contact(int point) const;
   /// As skin_radii(), of what no trial of a solver may reach (contact_search.h, contact_guard below the shapes).
   virtual const std::vector<double>& core_radii() const;
   /// How deep a shape may be in the surface before a trial reaches what it may not, at least, m.

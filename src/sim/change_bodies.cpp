@@ -96,25 +96,23 @@ struct Cut {
   int in_piece(bool first, int row) const { return first ? row : row - point; }
 };
 
-/// What of a rod's state is one half's.
-/// A tube's burns on a piece of it: where at rest it has a point as near as its drawn points are to each other.
+/// A tube's burns on a piece of it: those that at rest are as near to one of its drawn points as these are to each other.
 std::vector<Burn> burns_of_piece(const Organ& whole, const RodBody& piece) {
   constexpr double near = 1e-3;  // m
   std::vector<Burn> out;
   const std::vector<Vec3>& rest = piece.drawn_rest();
   for (const Burn& burn : whole.burns) {
     const Vec3& at = whole.body->drawn_rest()[burn.point];
-    const auto nearer = [&](const Vec3& a, const Vec3& b) {
-      return (a - at).squaredNorm() < (b - at).squaredNorm();
-    };
-    const auto nearest = std::min_element(rest.begin(), rest.end(), nearer);
-    if ((*nearest - at).norm() < near) out.push_back({static_cast<int>(nearest - rest.begin()), burn.energy});
+    const int nearest = nearest_of(rest, at);
+    if ((rest[nearest] - at).norm() < near) out.push_back({nearest, burn.energy});
   }
   return out;
 }
 
+/// What of a rod's state is one half's.
 Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool first, RodBody body) {
   Organ piece{whole.definition, nullptr, {}, {}, {}, {}, {}, {}, {}, {}};
+  if (!first) piece.definition.injury.near_start -= way_from_start(rod, cut.point);
   auto& shape = std::get<TubeShape>(piece.definition.shape);
   shape.points = body.skin_rest();
   shape.nodes = body.nodes();
@@ -407,12 +405,18 @@ bool can_be_divided(const Organ& organ, double share) {
 }
 
 void set_clip(Field& field, int index, const Clip& clip) {
+  std::vector<Clip>& clips = field.organs[index].clips;
+  const auto behind =
+      std::find_if(clips.begin(), clips.end(), [&](const Clip& other) { return other.at > clip.at; });
+  clips.insert(behind, clip);
+  keep_to_clips(field, index);
+}
+
+void keep_to_clips(Field& field, int index) {
   Organ& organ = field.organs[index];
-  organ.body = std::make_shared<const RodBody>(
-      dynamic_cast<const RodBody&>(*organ.body).pinched({clip.at, clip.opening, clip.pressed}));
-  const auto behind = std::find_if(organ.clips.begin(), organ.clips.end(),
-                                   [&](const Clip& other) { return other.at > clip.at; });
-  organ.clips.insert(behind, clip);
+  std::vector<RodBody::Pinch> pinches;
+  for (const Clip& clip : organ.clips) pinches.push_back({clip.at, clip.opening, clip.pressed});
+  organ.body = std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*organ.body).pinched(pinches));
   finish_change(field);
 }
 
@@ -454,7 +458,7 @@ std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
       return Failure{FailureKind::scenario, {std::move(*problem)}};
   }
   for (const Tool& tool : field.tools)
-    for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry))
+    for (const Shape& shape : shapes_in_field(tool, tool.pose))
       for (std::size_t p = 0; p < fresh.body->skin_rest().size(); ++p) {
         const double radius = fresh.body->skin_radii().empty() ? 0.0 : fresh.body->skin_radii()[p];
         if (signed_distance(shape, fresh.body->skin_point(static_cast<int>(p), fresh.state.x)) > radius)

@@ -28,6 +28,8 @@ bool can_be_divided(const Organ& organ, double share);
 
 /// Sets a clip on a tube, which is held flat there from now on.
 void set_clip(Field& field, int organ, const Clip& clip);
+/// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
+void keep_to_clips(Field& field, int organ);
 
 /// The joints of a body go with it, and tools let it go.
 Result<bool> remove_body(Field& field, int organ, const std::string& why, double time);

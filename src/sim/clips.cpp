@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/between_jaws.h"
 #include "sim/change_bodies.h"
+#include "sim/grip.h"
 #include "sim/spill.h"
 
 namespace calot {
@@ -56,7 +58,87 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
   events.push_back({EventKind::clip_dropped, 0, tool.definition.name, {}, 0});
 }
 
+/// Whether a tube ends openly at a skin point: where it does not, it goes on or is tied.
+bool is_open_at(const Organ& organ, double end) {
+  return std::any_of(organ.openings.begin(), organ.openings.end(),
+                     [&](const Opening& opening) { return opening.point == static_cast<int>(end); });
+}
+
+double last_point(const RodBody& rod) { return static_cast<double>(rod.skin_rest().size() - 1); }
+
+bool is_on(const RodBody& rod, const Clip& clip) { return clip.at >= 0 && clip.at <= last_point(rod); }
+
 }  // namespace
+
+std::vector<ClipBetween> clips_between(const Field& field, int instrument) {
+  const Tool& tool = field.tools[instrument];
+  std::vector<ClipBetween> out;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const Organ& organ = field.organs[k];
+    const RodBody* rod = rod_of(organ);
+    if (rod == nullptr || std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
+    for (std::size_t c = 0; c < organ.clips.size(); ++c) {
+      const Clip& clip = organ.clips[c];
+      if (!is_on(*rod, clip)) continue;
+      const Vec3 place = rod->place_at(clip.at, organ.state.x);
+      if (!is_between_pads(tool, place)) continue;
+      const FlatRing ring = rod->ring_at(clip.at);
+      const double half = ring.half_height((1 - clip.opening) * ring.lumen) + clip_row(clip.size).wire;
+      const int before = std::min(static_cast<int>(clip.at), static_cast<int>(last_point(*rod)) - 1);
+      out.push_back({static_cast<int>(k), static_cast<int>(c), place, half, {before, before + 1}});
+    }
+  }
+  return out;
+}
+
+double hold_of_clips(const Field& field, int instrument) {
+  int clips = 0;
+  for (const ClipBetween& clip : clips_between(field, instrument))
+    clips += grip_count(field.organs[clip.organ], instrument) > 0;
+  return clips > 0 ? clips * clip_hold : std::numeric_limits<double>::infinity();
+}
+
+void draw_clips(Field& field, int instrument, const Vec3& way) {
+  for (const ClipBetween& between : clips_between(field, instrument)) {
+    Organ& organ = field.organs[between.organ];
+    if (grip_count(organ, instrument) == 0) continue;
+    const RodBody& rod = *rod_of(organ);
+    Clip& clip = organ.clips[between.clip];
+    const Vec3 along =
+        rod.skin_point(between.points[1], organ.state.x) - rod.skin_point(between.points[0], organ.state.x);
+    clip.at -= way.dot(along) / along.squaredNorm();
+    // What a tube goes on as behind an end that is not open, or is tied to, stops a clip there.
+    constexpr double stop = 0.5;
+    const double last = last_point(rod);
+    if (!is_open_at(organ, 0)) clip.at = std::max(clip.at, stop);
+    if (!is_open_at(organ, last)) clip.at = std::min(clip.at, last - stop);
+  }
+}
+
+void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& events) {
+  const std::string& name = field.tools[instrument].definition.name;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    const RodBody* rod = rod_of(organ);
+    if (rod == nullptr) continue;
+    const auto stays = [](const Clip& clip, const RodBody::Pinch& pinch) { return clip.at == pinch.at; };
+    if (std::equal(organ.clips.begin(), organ.clips.end(), rod->pinches().begin(), rod->pinches().end(),
+                   stays))
+      continue;
+    for (const Clip& clip : organ.clips) {
+      if (is_on(*rod, clip)) continue;
+      const double end = clip.at < 0 ? 0 : last_point(*rod);
+      const Vec3 from = rod->place_at(end, organ.state.x);
+      drop_clip(field, clip.size, from, rod->frame_at(end, organ.state.x) * clip.legs);
+      events.push_back(
+          {EventKind::clip_dropped, 0, name, organ.definition.name, 0, from, EventCause::slipping});
+    }
+    std::erase_if(organ.clips, [&](const Clip& clip) { return !is_on(*rod, clip); });
+    std::sort(organ.clips.begin(), organ.clips.end(),
+              [](const Clip& a, const Clip& b) { return a.at < b.at; });
+    keep_to_clips(field, static_cast<int>(k));
+  }
+}
 
 void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events) {
   for (std::size_t i = 0; i < actions.size(); ++i)

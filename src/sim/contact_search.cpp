@@ -135,12 +135,12 @@ const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const
   state.shapes = loads.shapes;
   state.barrier = loads.barrier;
   state.touches.clear();
-  for_touching(body, x, loads, pairs, approach,
-               [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
-                 state.touches.push_back({point, shape, at, slope,
-                                          body.contact_sample(point, slope.distance, loads.barrier),
-                                          touched_area(body, loads, shape, point), body.radius_at(point)});
-               });
+  for_touching(
+      body, x, loads, pairs, approach, [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
+        state.touches.push_back({point, shape, at, slope,
+                                 body.contact_sample(point, slope.distance, loads.barrier),
+                                 touched_area(body, loads, shape, point), body.radius_at_contact(point)});
+      });
   return state.touches;
 }
 

@@ -33,17 +33,10 @@ struct Standing {
   bool of_plate = false;
 };
 
-/// Place of an organ; -1: it is not there.
-int index_called(const Field& field, const std::string& name) {
-  for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (field.organs[k].definition.name == name) return static_cast<int>(k);
-  return -1;
-}
-
 /// Calls use(strand, torn) for all strands of all tissues.
 template <class Use>
 void for_strands(const Field& field, const CriticalViewQuestion& question, const Use& use) {
-  const int gallbladder = index_called(field, question.gallbladder);
+  const int gallbladder = organ_called(field, question.gallbladder);
   for (const Tissue& tissue : field.tissues) {
     const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -173,7 +166,7 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
   out.plate = lower == 0 ? 1.0 : static_cast<double>(lower_torn) / lower;
   out.plate_points = points_for(out.plate, question);
 
-  const int gallbladder = index_called(field, question.gallbladder);
+  const int gallbladder = organ_called(field, question.gallbladder);
   if (gallbladder < 0) return out;
   const Organ& bladder = field.organs[static_cast<std::size_t>(gallbladder)];
   const SkinFinder skin(*bladder.body, bladder.body->skin_positions(bladder.state.x));

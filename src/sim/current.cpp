@@ -106,7 +106,7 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
       const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
       const Vec3 at =
           skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
-      const double distance = distance_to(tool, shapes, at) - radii[p];
+      const double distance = distance_to(tool, shapes, at) - (radii.empty() ? 0.0 : radii[p]);
       if (distance >= organ.definition.keep_clear || distance >= nearest) continue;
       kept = &organ;
       nearest = distance;
@@ -122,16 +122,8 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
 /// The organ whose skin what current flows through touches; null: none.
 Organ* touched_wall(Field& field, const Tool& tool, const PartLoad& load) {
   if (!is_active(tool) || load.touches == 0) return nullptr;
-  const auto touched = std::find_if(field.organs.begin(), field.organs.end(),
-                                    [&](const Organ& organ) { return organ.definition.name == load.organ; });
-  return touched == field.organs.end() ? nullptr : &*touched;
-}
-
-int nearest_of(const std::vector<Vec3>& places, const Vec3& at) {
-  const auto nearer = [&](const Vec3& a, const Vec3& b) {
-    return (a - at).squaredNorm() < (b - at).squaredNorm();
-  };
-  return static_cast<int>(std::min_element(places.begin(), places.end(), nearer) - places.begin());
+  const int touched = organ_called(field, load.organ);
+  return touched < 0 ? nullptr : &field.organs[touched];
 }
 
 /// Leaves a mark, which grows as long as the current stays there.

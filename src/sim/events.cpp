@@ -29,8 +29,10 @@ const std::vector<EventRow>& event_rows() {
        false, true},
       {clip, "clip", "a clip is set on a duct or a vessel; with the share of its width that it leaves open",
        "opening", true, true},
-      {clip_dropped, "clip_dropped", "a clip is fired with no duct or vessel between its legs, and falls", "",
-       true, false, true},
+      {clip_dropped, "clip_dropped",
+       "a clip falls: fired with no duct or vessel between its legs, or, with the cause slipped, drawn off a "
+       "tube's end",
+       "", true, false, true},
       {cut, "cut",
        "blades divide a duct or a vessel, at a share of its length, or a share of a tissue's strands",
        "share", true, true},

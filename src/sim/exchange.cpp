@@ -34,17 +34,16 @@ std::string bring_in(Field& field, int coming) {
   const InstrumentPose waited = tool.pose;
   tool.pose = leaving.pose;
   tool.pose.roll = tool.pose.jaw = 0;
-  if (!touches_nothing(field, coming)) {
-    tool.pose = waited;
-    return "it would touch an organ";
-  }
   tool.waits = false;
   leaving.waits = true;
-  if (const std::string met = tool_met(field, coming); !met.empty()) {
+  std::string why = tool_met(field, coming);
+  if (!why.empty()) why += " is in the way";
+  if (!touches_nothing(field, coming)) why = "it would touch what is before its port";
+  if (!why.empty()) {
     tool.pose = waited;
     tool.waits = true;
     leaving.waits = false;
-    return fmt::format("{} is in the way", met);
+    return why;
   }
   tool.command = tool.pose;
   return {};
@@ -61,14 +60,16 @@ int tool_in_port(const std::vector<Tool>& tools, int waiting) {
   return static_cast<int>(there - tools.begin());
 }
 
-std::optional<Failure> check_waiting(const std::vector<Tool>& tools,
-                                     const std::vector<InstrumentPose>& poses) {
+std::optional<Failure> check_waiting(const std::vector<Tool>& tools, const StepInput& input) {
   for (std::size_t i = 0; i < tools.size(); ++i) {
-    if (!tools[i].waits || alike(tools[i].pose, poses[i])) continue;
+    const bool acts = !input.actions.empty() && input.actions[i] != InstrumentAction::none &&
+                      input.actions[i] != InstrumentAction::exchange;
+    if (!tools[i].waits || (alike(tools[i].pose, input.instruments[i]) && !acts)) continue;
     const Tool& there = tools[static_cast<std::size_t>(tool_in_port(tools, static_cast<int>(i)))];
     return fail(FailureKind::scenario,
-                fmt::format("instrument '{}' cannot move: it waits outside, and '{}' is in the port \"{}\"",
-                            tools[i].definition.name, there.definition.name, tools[i].definition.port),
+                fmt::format("instrument '{}' cannot {}: it waits outside, and '{}' is in the port \"{}\"",
+                            tools[i].definition.name, acts ? "act" : "move", there.definition.name,
+                            tools[i].definition.port),
                 fmt::format("draw '{}' back into the port and give '{}' the action exchange first",
                             there.definition.name, tools[i].definition.name));
   }

@@ -15,16 +15,15 @@ inline constexpr double port_depth = 30e-3;
 /// Whether it is no further in than that: what its jaws do there is no act.
 bool is_in_trocar(const Tool& tool);
 
-/// Place of the tool that is in the port of one that waits.
+/// Place of the tool that is in the port of one that waits: there always is one.
 int tool_in_port(const std::vector<Tool>& tools, int waiting);
 
-/// Fails (scenario) where a pose differs from that of a tool that waits by more than rounding: it cannot move.
-std::optional<Failure> check_waiting(const std::vector<Tool>& tools,
-                                     const std::vector<InstrumentPose>& poses);
+/// Fails (scenario) where a tool that waits is to act otherwise than to come in, or to be elsewhere by more than rounding.
+std::optional<Failure> check_waiting(const std::vector<Tool>& tools, const StepInput& input);
 
 /// Brings in each tool whose action `exchange` begins (`actions`: one a tool, or none). Adds the events exchange and
 /// blocked_exchange: where the one that is there is further in than port_depth or holds something, where no other one is
-/// there, or where what comes in would touch an organ.
+/// there, or where what comes in would touch an organ, tissue or another instrument.
 void exchange_tools(Field& field, const std::vector<InstrumentAction>& actions,
                     std::vector<WorldEvent>& events);
 

@@ -2,6 +2,18 @@
 
 namespace calot {
 
+int organ_of_record(const Field& field, int record) {
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
+    if (field.organs[k].record == record) return static_cast<int>(k);
+  return -1;
+}
+
+int organ_called(const Field& field, const std::string& name) {
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
+    if (field.organs[k].definition.name == name) return static_cast<int>(k);
+  return -1;
+}
+
 std::vector<InstrumentPose> present_poses(const Field& field) {
   std::vector<InstrumentPose> poses;
   for (const Tool& tool : field.tools) poses.push_back(tool.pose);

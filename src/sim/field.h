@@ -75,6 +75,10 @@ struct Field {
   void enrol(Organ& organ);
 };
 
+/// Place of the organ that has this place on the roll, or of the one of this name; -1: it is not in the field.
+int organ_of_record(const Field& field, int record);
+int organ_called(const Field& field, const std::string& name);
+
 std::vector<InstrumentPose> present_poses(const Field& field);
 /// Where the nodes of each organ are, m.
 std::vector<VecX> present_places(const Field& field);

@@ -185,6 +185,7 @@ void add_tool(Hash& hash, const Tool& tool) {
   }
   add_pose(hash, tool.pose);
   if (tool.tissue_stiffness > 0) hash.add(tool.tissue_stiffness);
+  if (tool.stiffness_across > 0) hash.add(tool.stiffness_across);
   if (!tool.meeting.with.empty()) {
     hash.add(tool.meeting.with);
     add_vector(hash, tool.meeting.force);

@@ -29,6 +29,7 @@ FieldState field_state(const Field& field) {
                            tool.needle,
                            tool.command,
                            tool.tissue_stiffness,
+                           tool.stiffness_across,
                            tool.meeting,
                            tool.met});
   return state;
@@ -60,6 +61,7 @@ void restore(Field& field, const FieldState& state) {
     tool.needle = was.needle;
     tool.command = was.command;
     tool.tissue_stiffness = was.tissue_stiffness;
+    tool.stiffness_across = was.stiffness_across;
     tool.meeting = was.meeting;
     tool.met = was.met;
   }

@@ -21,7 +21,7 @@ struct ToolSnapshot {
   bool waits = false;
   NeedleState needle = {};
   InstrumentPose command = {};
-  double tissue_stiffness = 0;
+  double tissue_stiffness = 0, stiffness_across = 0;
   MeetingState meeting = {};
   bool met = false;
 };

@@ -26,7 +26,7 @@ namespace {
 StrandTouch touch_of(const Field& field, const std::vector<InstrumentPose>& poses) {
   std::vector<Shape> shapes;
   for (std::size_t i = 0; i < field.tools.size(); ++i)
-    for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
+    for (const Shape& shape : shapes_in_field(field.tools[i], poses[i]))
       shapes.push_back(contact_shape(shape));
   return {std::move(shapes), field.barrier};
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "sim/clips.h"
+
 namespace calot {
 namespace {
 
@@ -24,6 +26,33 @@ bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
 }
 
 namespace {
+
+void sort_grips(Organ& organ) {
+  std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
+    return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
+  });
+}
+
+/// Both pads take hold of a tube's point where it is.
+void hold_point(const Tool& tool, int instrument, Organ& organ, int point) {
+  for (int jaw : {0, 1}) {
+    const auto held = [&](const GripPoint& grip) {
+      return grip.instrument == instrument && grip.jaw == jaw && grip.skin_point == point;
+    };
+    if (std::any_of(organ.grips.begin(), organ.grips.end(), held)) continue;
+    const Pose to_local = jaw_frame(tool.trocar, tool.pose, tool.geometry, jaw).inverse();
+    organ.grips.push_back(
+        {instrument, jaw, point, to_local * organ.body->skin_point(point, organ.state.x), grip_stiffness});
+  }
+}
+
+bool both_face(const Tool& tool, const Vec3& place, double range) {
+  for (int jaw : {0, 1})
+    if (!faces_pad(jaw_frame(tool.trocar, tool.pose, tool.geometry, jaw).inverse() * place, tool.geometry,
+                   range))
+      return false;
+  return true;
+}
 
 void hold(const Tool& tool, int instrument, Organ& organ) {
   const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
@@ -45,17 +74,50 @@ void hold(const Tool& tool, int instrument, Organ& organ) {
         organ.grips.push_back({instrument, jaw, static_cast<int>(p), local[jaw], grip_stiffness});
     }
   }
-  std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
-    return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
-  });
+  sort_grips(organ);
 }
 
 }  // namespace
 
 void take_hold(Field& field, int instrument) {
-  for (Organ& organ : field.organs)
-    if (!std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument))
-      hold(field.tools[instrument], instrument, organ);
+  const Tool& tool = field.tools[instrument];
+  const std::vector<ClipBetween> clips = clips_between(field, instrument);
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    const auto on_it = [&](const ClipBetween& clip) { return clip.organ == static_cast<int>(k); };
+    if (std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument) ||
+        std::any_of(clips.begin(), clips.end(), on_it))
+      continue;
+    hold(tool, instrument, organ);
+  }
+  if (instrument_row(tool.definition.type).jaws != JawUse::hold) return;
+  for (const ClipBetween& clip : clips) {
+    if (!both_face(tool, clip.place, pad_reach + clip.half_height)) continue;
+    for (int point : clip.points) hold_point(tool, instrument, field.organs[clip.organ], point);
+    sort_grips(field.organs[clip.organ]);
+  }
+}
+
+bool hold_by_clips(Field& field, int instrument) {
+  const std::vector<ClipBetween> clips = clips_between(field, instrument);
+  bool any = false;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    if (grip_count(organ, instrument) == 0) continue;
+    std::vector<int> points;
+    for (const ClipBetween& clip : clips)
+      if (clip.organ == static_cast<int>(k))
+        points.insert(points.end(), clip.points.begin(), clip.points.end());
+    if (points.empty()) continue;
+    any = true;
+    std::erase_if(organ.grips, [&](const GripPoint& grip) {
+      return grip.instrument == instrument &&
+             std::find(points.begin(), points.end(), grip.skin_point) == points.end();
+    });
+    for (int point : points) hold_point(field.tools[instrument], instrument, organ, point);
+    sort_grips(organ);
+  }
+  return any;
 }
 
 void make_room(Field& field, int instrument, double jaw) {
@@ -101,6 +163,7 @@ double flat_radius(const Organ& organ, int instrument) {
 
 bool fold_fills_jaws(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
+  const std::vector<ClipBetween> clips = clips_between(field, instrument);
   for (const Organ& organ : field.organs) {
     int count[2] = {0, 0};
     double depth = 0;  // along the jaws
@@ -114,7 +177,10 @@ bool fold_fills_jaws(const Field& field, int instrument) {
     if (!organ.body->skin_radii().empty()) {
       // A tube is pressed flat where the next angle leaves it no room. Skins are felt that far inside the pads.
       const double next = reach * std::sin(0.5 * std::max(0.0, tool.pose.jaw - grip_grid));
-      if (next + 2 * contact_inset <= 2 * flat_radius(organ, instrument)) return true;
+      double half = flat_radius(organ, instrument);
+      for (const ClipBetween& clip : clips)
+        if (&field.organs[clip.organ] == &organ) half = std::max(half, clip.half_height + contact_inset);
+      if (next + 2 * contact_inset <= 2 * half) return true;
       continue;
     }
     if (reach * std::sin(0.5 * tool.pose.jaw) <= fold_squeeze * 2.0 * organ.definition.wall.thickness)

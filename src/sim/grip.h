@@ -16,6 +16,10 @@ inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);
 
+/// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to: others
+/// are let go, new ones held where they are. Returns whether it holds any.
+bool hold_by_clips(Field& field, int instrument);
+
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
 bool fold_fills_jaws(const Field& field, int instrument);
 

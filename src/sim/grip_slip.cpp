@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "sim/clips.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
 #include "sim/settle_field.h"
@@ -42,10 +43,16 @@ Result<bool> fade(Field& field, int instrument, const std::function<bool(const G
   return settle_field(field, when, statistics);
 }
 
+auto held_by(int instrument) {
+  return [instrument](const GripPoint& grip) { return grip.instrument == instrument; };
+}
+
 /// Moves what a tool holds along its pads by `way` (m, patient's frame) and lets go what leaves them.
 Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& budget,
                    SolveStatistics& statistics) {
   const Tool& tool = field.tools[instrument];
+  const bool draws = hold_of_clips(field, instrument) < holding_limit(tool);
+  if (draws) draw_clips(field, instrument, way);
   const auto off_the_pads = [&](const GripPoint& grip) {
     return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
   };
@@ -60,6 +67,10 @@ Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& 
       leave |= off_the_pads(grip);
     }
   }
+  if (draws && hold_by_clips(field, instrument))
+    return settle_field(field, "as a clip was drawn along", statistics);
+  // A clip that has come off was what the pads held.
+  if (draws) return fade(field, instrument, held_by(instrument), 0.04, budget, statistics);
   // The rest of the fold holds on: longer steps than a release's do.
   if (leave) return fade(field, instrument, off_the_pads, 0.04, budget, statistics);
   return settle_field(field, "as it slipped from the jaws", statistics);
@@ -70,8 +81,7 @@ Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& 
 Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const FieldState before = field_state(field);
-  const auto held = [&](const GripPoint& grip) { return grip.instrument == instrument; };
-  const Result<bool> faded = fade(field, instrument, held, 0.2, budget, statistics);
+  const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics);
   if (!faded) restore(field, before);
   return faded;
 }
@@ -99,13 +109,17 @@ double holding_limit(const Tool& tool) {
   return 2.0 * tool.definition.pad_friction * tool.definition.pinch_force;
 }
 
+double holding_limit(const Field& field, int instrument) {
+  return std::min(holding_limit(field.tools[instrument]), hold_of_clips(field, instrument));
+}
+
 Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
   constexpr double above = 1.001, below = 0.95;  // of the limit
   // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
-  const double limit = holding_limit(field.tools[instrument]);
+  double limit = holding_limit(field, instrument);
   Vec3 pull = pad_pull(field, instrument);
   const double at_start = pull.norm();
   if (at_start <= above * limit) return 0.0;
@@ -119,6 +133,7 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
       return slid.failure();
     }
     const Vec3 now = pad_pull(field, instrument);
+    limit = holding_limit(field, instrument);  // a clip that has come off holds no more
     const bool lost = !both_pads_hold(field, instrument);
     if (!lost && now.norm() < below * limit && way > shortest_way) {  // too far
       restore(field, before);

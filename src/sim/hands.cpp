@@ -23,18 +23,33 @@ constexpr double shortest_way = 1e-6;
 /// rad: turns of the jaws and about the shaft that are no more than a solver's rounding; 1 um at the pads' ends.
 constexpr double turn_slack = 1e-4;
 
+/// Share of a tip's way across the force on it. Tissue that holds the tip pulls it back aside, too; as the force turns by
+/// that, a hand that is far from its command would swing about more with every step. By a force that grows alike in all
+/// directions the way is that to the place nearest to the command which the strength reaches.
+double share_across(const Tool& tool, const Vec3& force, const Vec3& way) {
+  const double strength = tool.definition.hand_force, stiffness = tool.stiffness_across;
+  const double wanted = (stiffness * way - force).norm();
+  return wanted <= strength ? 1.0 : strength / wanted;
+}
+
 /// Where a hand takes its tool against what the tissue does.
 InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, const InstrumentPose& command) {
   const double strength = tool.definition.hand_force, force = last.at_tip.norm();
-  if (!(tool.tissue_stiffness > 0) && force <= strength) return command;
+  if (force == 0 || (!(tool.tissue_stiffness > 0) && force <= strength)) return command;
+  // Jaws that rest on a fold close no further, and the tip of open jaws is nearer to the hinge.
+  InstrumentPose reached = command;
+  if (tool.jaw_stopped) reached.jaw = std::max(command.jaw, tool.pose.jaw);
   const Vec3 away = last.at_tip / force;
-  const Vec3 way = tip_position(tool.trocar, command, tool.geometry) - last.tip;
+  const Vec3 way = tip_position(tool.trocar, reached, tool.geometry) - last.tip;
   const double into = -way.dot(away);
   const double stiffness = tool.tissue_stiffness > 0 ? tool.tissue_stiffness : unknown_stiffness;
   const double allowed = (strength - force) / stiffness;
   if (into <= allowed) return command;
-  return pose_reaching(tool.trocar, last.tip + way + (into - allowed) * away, command.roll, command.jaw,
-                       tool.geometry);
+  const Vec3 across = share_across(tool, last.at_tip, way) * (way + into * away);
+  InstrumentPose out = pose_reaching(tool.trocar, last.tip + across - allowed * away, command.roll,
+                                     reached.jaw, tool.geometry);
+  out.jaw = command.jaw;
+  return out;
 }
 
 /// A pair of tools that may meet on their ways.
@@ -185,13 +200,16 @@ void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentS
   const double force = now.at_tip.norm();
   // No single step makes twice as much of a force that the hand has to give way to.
   if (force < 0.5 * tool.definition.hand_force) {
-    tool.tissue_stiffness = 0;
+    tool.tissue_stiffness = tool.stiffness_across = 0;
     return;
   }
   const Vec3 away = now.at_tip / force;
-  const double into = (before.tip - now.tip).dot(away);
+  const Vec3 back = before.tip - now.tip, more = now.at_tip - before.at_tip;
+  const double into = back.dot(away);
+  if (const Vec3 across = back - into * away; across.norm() >= shortest_way)
+    tool.stiffness_across = std::max(0.0, more.dot(across) / across.squaredNorm());
   if (std::abs(into) < shortest_way) return;
-  tool.tissue_stiffness = std::max(least_stiffness, (force - before.at_tip.dot(away)) / into);
+  tool.tissue_stiffness = std::max(least_stiffness, more.dot(away) / into);
 }
 
 std::string tool_met(const Field& field, int instrument) {

@@ -29,10 +29,7 @@ double density_of(const Organ& organ) {
   return liquid_of(organ) == Carries::blood ? blood_density : organ.definition.bile.density;
 }
 
-double lumen_radius(const RodBody& rod, double at) {
-  return std::max(0.0, rod.outer_radius(at) - rod.setup().wall);
-}
-double lumen_area(const RodBody& rod, double at) { return pi * std::pow(lumen_radius(rod, at), 2); }
+double lumen_area(const RodBody& rod, double at) { return pi * std::pow(rod.lumen_radius(at), 2); }
 double last_point(const RodBody& rod) { return static_cast<double>(rod.skin_rest().size() - 1); }
 
 /// m^3 in a tube at rest.
@@ -333,7 +330,7 @@ double open_between(const Field& field, int index, double one, double other) {
       if (tube.organ != index || tube.at < low || tube.at > high) continue;
       // Jaws that hold it have pressed it flat, to the angle that they stop at.
       if (field.tools[i].jaw_stopped && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
-      const double lumen = 2 * lumen_radius(rod, tube.at);
+      const double lumen = 2 * rod.lumen_radius(tube.at);
       const double left = (tube.gap - 2 * rod.setup().wall) / lumen;
       open = std::min(open, left < shut ? 0.0 : left);
     }
@@ -379,10 +376,8 @@ void perforate(Field& field, int instrument) {
 void perforate(Organ& organ, const Vec3& at, const std::string& instrument) {
   constexpr double burnt = 3e-6;  // m^2, 2 mm across (d)
   if (shell_of(organ) == nullptr || organ.body->liquid() == nullptr) return;
-  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-  const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - at).norm() < (b - at).norm(); };
   Opening hole;
-  hole.point = static_cast<int>(std::min_element(skin.begin(), skin.end(), nearer) - skin.begin());
+  hole.point = nearest_of(organ.body->skin_positions(organ.state.x), at);
   hole.area = burnt;
   hole.cause = instrument;
   organ.openings.push_back(hole);

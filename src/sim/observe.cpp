@@ -22,7 +22,10 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   state.tip_force = load.force;
   state.at_tip = force_at_tip(tool, load.force, load.moment);
   state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force);
-  state.lag = (tip_position(tool.trocar, tool.command, tool.geometry) - state.tip).norm();
+  // Jaws that rest on a fold are no lag of the hand.
+  InstrumentPose asked = tool.command;
+  if (tool.jaw_stopped) asked.jaw = tool.pose.jaw;
+  state.lag = (tip_position(tool.trocar, asked, tool.geometry) - state.tip).norm();
   state.meets = tool.meeting.with;
   state.meeting_force = tool.meeting.force.norm();
   for (const Organ& organ : field.organs) {

@@ -64,9 +64,11 @@ Result<RodBody> RodBody::part(int first, int last) const {
   return body;
 }
 
-RodBody RodBody::pinched(const Pinch& pinch) const {
+RodBody RodBody::pinched(const std::vector<Pinch>& pinches) const {
   RodBody out = *this;
-  out.hold_flat(pinch);
+  out.pinches_.clear();
+  out.lay_sections();
+  for (const Pinch& pinch : pinches) out.hold_flat(pinch);
   return out;
 }
 
@@ -211,22 +213,14 @@ void RodBody::lay_skin() {
   skin_.stencils = line_.stencils(skin_parameters_);
   skin_rest_ = blend_all(skin_.stencils, skin_.stencils.value, rest_);
   skin_areas_.assign(skin_rest_.size(), 0.0);
-  for (int k = 0; k <= segments; ++k) {
-    const double radius = radius_along(skin_shares_[k]);
-    radii_.push_back(radius);
-    const bool solid = setup_.wall >= radius;
-    // A trial may flatten a tube but for a hundredth of its lumen, where the section's law ends.
-    const double folded = solid ? radius - contact_guard : setup_.wall + 0.01 * (radius - setup_.wall);
-    core_radii_.push_back(folded + contact_guard);
-    skin_.at.push_back({std::min(k, segments - 1), 0, 0});
-  }
+  lay_sections();
+  for (int k = 0; k <= segments; ++k) skin_.at.push_back({std::min(k, segments - 1), 0, 0});
   for (int k = 0; k < segments; ++k) {
     const double radius = 0.5 * (radii_[k] + radii_[k + 1]);
     skin_.triangles.push_back({k, k + 1, k + 1});
     skin_.triangles.push_back({k + 1, k, k});
     segment_areas_.push_back(radius * (skin_rest_[k + 1] - skin_rest_[k]).norm());
     for (int end : {k, k + 1}) skin_areas_[end] += 0.5 * segment_areas_.back();
-    rings_.push_back(ring_of(radius));
     std::vector<int>& nodes = face_nodes_.emplace_back();
     for (int row : {k, k + 1})
       nodes.insert(nodes.end(), skin_.stencils.node.begin() + skin_.stencils.begin[row],
@@ -234,6 +228,23 @@ void RodBody::lay_skin() {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   }
+}
+
+/// As nothing pinches it.
+void RodBody::lay_sections() {
+  radii_.clear();
+  core_radii_.clear();
+  rings_.clear();
+  for (double share : skin_shares_) {
+    const double radius = radius_along(share);
+    radii_.push_back(radius);
+    const bool solid = setup_.wall >= radius;
+    // A trial may flatten a tube but for a hundredth of its lumen, where the section's law ends.
+    const double folded = solid ? radius - contact_guard : setup_.wall + 0.01 * (radius - setup_.wall);
+    core_radii_.push_back(folded + contact_guard);
+  }
+  for (std::size_t k = 0; k + 1 < radii_.size(); ++k)
+    rings_.push_back(ring_of(0.5 * (radii_[k] + radii_[k + 1])));
 }
 
 void RodBody::lay_bed() {

@@ -49,13 +49,17 @@ class RodBody : public Body {
     out.setup_.name = name;
     return out;
   }
-  /// The same held flat at one more place: there it does not give way to what presses, and is drawn flat.
-  RodBody pinched(const Pinch& pinch) const;
+  /// The same held flat at these places and at no others: there it does not give way to what presses, and is drawn flat.
+  RodBody pinched(const std::vector<Pinch>& pinches) const;
+  const std::vector<Pinch>& pinches() const { return pinches_; }
   /// Columns: along the line, the skin's normal there, and across both. `at`: skin points from its start.
   Mat3 frame_at(double at, const VecX& x) const;
   Vec3 place_at(double at, const VecX& x) const;  ///< m, on the line
   /// Of the tube as it is at rest where nothing pinches it.
   double outer_radius(double at) const;
+  double lumen_radius(double at) const {  ///< m, 0 where it is solid
+    return std::max(0.0, outer_radius(at) - setup_.wall);
+  }
   FlatRing ring_at(double at) const;    ///< of lumen 0 where it is solid
   double share_at(double at) const;     ///< of its length at rest
   double at_share(double share) const;  ///< the other way round
@@ -114,6 +118,7 @@ class RodBody : public Body {
   Result<bool> lay_rod();
   void choose_skin_points();
   void lay_skin();
+  void lay_sections();
   void lay_bed();
   void weigh();
   FlatRing ring_of(double radius) const;

@@ -8,18 +8,11 @@
 
 namespace calot {
 
-namespace {
-
-/// What is not felt, m.
-const Capsule nowhere{Vec3(1e3, 1e3, 1e3), Vec3(1e3, 1e3, 1e3), 1e-3};
-
-}  // namespace
-
 ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
   ContactLoads out;
   out.barrier = field.barrier;
   for (std::size_t i = 0; i < field.tools.size(); ++i)
-    for (const Shape& shape : instrument_shapes(field.tools[i].trocar, poses[i], field.tools[i].geometry))
+    for (const Shape& shape : shapes_in_field(field.tools[i], poses[i]))
       out.shapes.push_back(contact_shape(shape));
   for (int tool : organ.unfelt)
     for (int part : {1, 2}) out.shapes[static_cast<std::size_t>(tool) * shapes_per_tool + part] = nowhere;

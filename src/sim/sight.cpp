@@ -16,8 +16,7 @@ Sight::Sight(const Field& field, const Vec3& eye, const std::string& through) : 
       triangles_.push_back({places[t[0]], places[t[1]], places[t[2]]});
   }
   for (const Tool& tool : field.tools)
-    for (const Shape& shape : instrument_shapes(tool.trocar, tool.pose, tool.geometry))
-      tools_.push_back(shape);
+    for (const Shape& shape : shapes_in_field(tool, tool.pose)) tools_.push_back(shape);
 }
 
 Sight Sight::within(const std::array<Vec3, 3>& corners) const {

@@ -35,9 +35,8 @@ constexpr std::array<double, liquids> viscosity{bile_viscosity, 4e-3};  // Pa s,
 double volume_of(const WetPoint& wet) { return std::accumulate(wet.volume.begin(), wet.volume.end(), 0.0); }
 
 const Organ* organ_on(const Field& field, int record) {
-  for (const Organ& organ : field.organs)
-    if (organ.record == record) return &organ;
-  return nullptr;
+  const int organ = organ_of_record(field, record);
+  return organ < 0 ? nullptr : &field.organs[organ];
 }
 
 /// Meshes that films are on are made when they are first met.
@@ -97,7 +96,7 @@ void spread_drop(const Drop& drop, const WetMesh& mesh, int point, Film& film) {
 }
 
 /// By the way to whichever neighbour is nearer, from the first point: the ground is convex.
-int nearest_point(const WetMesh& mesh, const Vec3& place) {
+int walk_to_nearest(const WetMesh& mesh, const Vec3& place) {
   int nearest = 0;
   double least = (mesh.at[0] - place).squaredNorm();
   for (bool more = true; std::exchange(more, false);)
@@ -191,7 +190,7 @@ std::pair<Vec3, Vec3> mouth_of(const Organ& organ, const Opening& opening) {
 double width_of(const Organ& organ, const Opening& opening) {
   const RodBody* rod = rod_of(organ);
   if (rod == nullptr) return opening.area;
-  return std::numbers::pi * std::pow(std::max(rod->outer_radius(opening.point) - rod->setup().wall, 1e-4), 2);
+  return std::numbers::pi * std::pow(std::max(rod->lumen_radius(opening.point), 1e-4), 2);
 }
 
 /// A surface and its nearest point that are met on a way.
@@ -207,7 +206,7 @@ std::optional<Landing> lands(Field& field, const Skins& skins, const Vec3& from,
   for (std::size_t k = 0; k < field.ground.size(); ++k) {
     if (signed_distance(field.ground[k].shape, to) > 0) continue;
     remember_ground(field, static_cast<int>(k));
-    return Landing{-1 - static_cast<int>(k), nearest_point(*field.spill.ground[k], to)};
+    return Landing{-1 - static_cast<int>(k), walk_to_nearest(*field.spill.ground[k], to)};
   }
   return std::nullopt;
 }

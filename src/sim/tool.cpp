@@ -7,6 +7,11 @@
 
 namespace calot {
 
+std::vector<Shape> shapes_in_field(const Tool& tool, const InstrumentPose& pose) {
+  if (tool.waits) return std::vector<Shape>(shapes_per_tool, nowhere);
+  return instrument_shapes(tool.trocar, pose, tool.geometry);
+}
+
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share) {
   if (share >= 1.0) return b;
   const auto mix = [share](double from, double to) { return from + share * (to - from); };

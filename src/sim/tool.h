@@ -46,12 +46,18 @@ struct Tool {
   bool waits = false;                         ///< outside: another one is in its port (sim/exchange.h)
   NeedleState needle = {};
   InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
-  double tissue_stiffness = 0;  ///< N/m, how the force on the tip grew with its way; 0: none that counts
+  /// N/m, how the force on the tip grew with its way: along the force and across it; 0: none that counts.
+  double tissue_stiffness = 0, stiffness_across = 0;
   MeetingState meeting = {};
   bool met = false;  ///< it pressed on another tool at the last step, for events
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
+
+/// Far from all: a shape that is not felt, m.
+inline const Capsule nowhere{Vec3(1e3, 1e3, 1e3), Vec3(1e3, 1e3, 1e3), 1e-3};
+/// instrument_shapes() of a tool at a pose; of one that waits outside all are nowhere.
+std::vector<Shape> shapes_in_field(const Tool& tool, const InstrumentPose& pose);
 
 /// Frame (to world) that shape `part` (0 shaft, 1 and 2 the jaws) is fixed in.
 Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part);

@@ -270,7 +270,7 @@ Result<StepReport> World::step(const StepInput& input) {
     if (input.actions.empty()) continue;
     if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;
   }
-  if (std::optional<Failure> failure = check_waiting(self.field.tools, input.instruments)) return *failure;
+  if (std::optional<Failure> failure = check_waiting(self.field.tools, input)) return *failure;
   if (input.laparoscope)
     if (std::optional<Failure> failure =
             check_pose(laparoscope_name, laparoscope_geometry(), *input.laparoscope))
@@ -427,6 +427,8 @@ auto World::Impl::change(const std::string& what, const Change& change) -> declt
     calot::restore(field, before);
     return settled.failure();
   }
+  // What hands felt was of what has changed.
+  for (Tool& tool : field.tools) tool.tissue_stiffness = tool.stiffness_across = 0;
   report_states(field, report);
   keep_hash();
   still.reset();

@@ -27,12 +27,14 @@ HandMotion& HandMotion::operator+=(const HandMotion& other) {
 }
 
 HandControl::HandControl(std::vector<LiveInstrument> instruments, const std::vector<InstrumentPose>& poses)
-    : instruments_(std::move(instruments)), poses_(poses), waits_(poses.size(), 0) {}
+    : instruments_(std::move(instruments)), poses_(poses), waits_(poses.size(), 0), drawn_(waits_) {}
 
-void HandControl::see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits) {
+void HandControl::see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits,
+                      const std::vector<char>& drawn) {
   for (std::size_t i = 0; i < waits.size(); ++i)
-    if (waits[i] != waits_[i]) poses_[i] = poses[i];
+    if (waits[i] != waits_[i] || drawn[i] || drawn_[i]) poses_[i] = poses[i];
   waits_ = waits;
+  drawn_ = drawn;
   for (std::size_t k = 0; k < waits.size() && this->waits(hand_); ++k) hand_ = next_of_port();
 }
 

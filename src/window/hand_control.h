@@ -35,8 +35,9 @@ class HandControl {
   void move_laparoscope(const HandMotion& motion, const SceneCamera& camera);
   bool out_of_reach() const { return out_of_reach_; }
   /// Where instruments are now, one each, and which wait outside. Hands pass over those; whose instrument was exchanged
-  /// holds the one that came in, from where it is.
-  void see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits);
+  /// holds the one that came in, from where it is, and so does one whose instrument was drawn back for another (`drawn`).
+  void see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits,
+           const std::vector<char>& drawn);
   /// For the mailbox: asks for the next instrument that waits for the selected hand's port; none: there is none.
   std::optional<LiveInput> exchange() const;
   /// Of the closed jaws, m.
@@ -57,7 +58,7 @@ class HandControl {
 
   std::vector<LiveInstrument> instruments_;  ///< the laparoscope is the last
   std::vector<InstrumentPose> poses_;
-  std::vector<char> waits_;  ///< one an instrument
+  std::vector<char> waits_, drawn_;  ///< one an instrument
   int hand_ = 0;
   bool on_laparoscope_ = false, out_of_reach_ = false;
   InstrumentAction action_ = InstrumentAction::none;  ///< that is asked of the hand selected

@@ -16,6 +16,7 @@ struct HandView {
   double force = 0, limit = 8;  ///< N, at the tip; limit 0: it is not measured
   InstrumentPose pose;
   bool waits = false;  ///< outside, while another one is in its port
+  bool drawn = false;  ///< back into its port, as another one is to come in
 };
 
 struct LiveView {

@@ -252,13 +252,14 @@ void OperateWindow::Impl::take(std::shared_ptr<const LiveView> newest) {
   const bool begins = !view || view->attempt != newest->attempt;
   view = std::move(newest);
   std::vector<InstrumentPose> poses;
-  std::vector<char> waits;
+  std::vector<char> waits, drawn;
   for (const HandView& hand : view->hands) {
     poses.push_back(hand.pose);
     waits.push_back(hand.waits ? 1 : 0);
+    drawn.push_back(hand.drawn ? 1 : 0);
   }
   if (begins) hands.emplace(options.instruments, poses);
-  hands->see(poses, waits);
+  hands->see(poses, waits, drawn);
   if (!begins) return;
   state.started = false;
   state.menu = true;

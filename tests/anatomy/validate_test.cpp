@@ -75,6 +75,8 @@ const std::vector<Refusal>& refusals() {
        "give 1 to"},
       {"PearRefineRadius", [](auto& s) { pear(s).refine_radius = 20; }, organ_path + ".shape.refine_radius",
        "20 m", "20 * mm"},
+      {"InjuryNear", [](auto& s) { organ(s).injury.near_start = 20 * mm; }, organ_path + ".injury.near",
+       "what lies near the start has no name", "leave near_start out"},
       {"SphereRadius", [](auto& s) { organ(s).shape = SphereShape{20}; }, organ_path + ".shape.radius",
        "20 m", "20 * mm"},
       {"MeshPath", [](auto& s) { organ(s).shape = MeshFile{}; }, organ_path + ".shape.path", "no mesh file",

@@ -7,6 +7,7 @@
 #include "act_rig.h"
 #include "sim/between_jaws.h"
 #include "sim/field_state.h"
+#include "sim/grip_slip.h"
 #include "sim/spill.h"
 
 namespace calot {
@@ -145,18 +146,19 @@ TEST(Clips, ATubeIsFlatUnderThemAndRoundAside) {
 struct ClipAndCut {
   World world;
   std::vector<WorldEvent> events = {};
-  static SceneDefinition scene() {
+  static SceneDefinition scene(InstrumentType second) {
     SceneDefinition scene = across(InstrumentType::clip_applier);
-    InstrumentDefinition blades = default_instrument(InstrumentType::scissors);
-    blades.name = "blades";
-    blades.port = scene.instruments[0].port;
-    blades.waits = true;
-    scene.instruments.push_back(blades);
+    InstrumentDefinition other = default_instrument(second);
+    other.name = "second";
+    other.port = scene.instruments[0].port;
+    other.waits = true;
+    scene.instruments.push_back(other);
     std::get<TubeShape>(scene.anatomy.organs[0].shape).points = {
         {0, -20e-3, -tube_depth}, {0, 0, -tube_depth}, {0, 20e-3, -tube_depth}};
     return scene;
   }
-  ClipAndCut() : world(World::create(scene()).value()) {}
+  explicit ClipAndCut(const SceneDefinition& scene = ClipAndCut::scene(InstrumentType::scissors))
+      : world(World::create(scene).value()) {}
   /// The one that is in the port goes to a pose; the action is the applier's or the blades'.
   bool step(const InstrumentPose& pose, std::vector<InstrumentAction> actions = {}) {
     StepInput input;
@@ -225,6 +227,72 @@ TEST(Clips, GoWithThePieceOfADividedTubeThatTheyAreOn) {
         *std::min_element(rod_of(organ)->skin_radii().begin(), rod_of(organ)->skin_radii().end());
     EXPECT_NEAR(least, 0.8e-3, 1e-9) << "it is flat there still";
   }
+}
+
+/// A clip near the end of a stump, and jaws of which `pads` N hold it across that are closed on it and draw it off.
+struct DrawnClip : ClipAndCut {
+  static constexpr double clip = 6e-3, cut_at = 7.5e-3;  // m, along the tube
+  static SceneDefinition stiff(double pads) {
+    SceneDefinition scene = ClipAndCut::scene(InstrumentType::atraumatic_grasper);
+    // A tube that gives way less than a point's distance to what a clip holds.
+    scene.anatomy.organs[0].wall.shear_modulus = 10e6;
+    scene.anatomy.organs[0].held[0].stiffness = 1e8;
+    scene.instruments[1].pad_friction = 0.5 * pads / scene.instruments[1].pinch_force;
+    return scene;
+  }
+  explicit DrawnClip(double pads) : ClipAndCut(stiff(pads)) {}
+  static InstrumentPose at(double y, double jaw) {
+    const double reach = 14e-3;  // m, past the tube: well between the pads
+    return {std::atan2(y, tube_depth), 0, std::hypot(y, tube_depth) + reach, 0, jaw};
+  }
+  bool grasp() {
+    if (!clip_at(clip) || !world.divide("duct", 0.5 + cut_at / 40e-3)) return false;
+    if (!step(away(), {InstrumentAction::none, InstrumentAction::exchange})) return false;
+    for (int k = 0; k <= 6; ++k) {
+      InstrumentPose near = at(clip, 0.5);
+      near.insertion -= 30e-3 * (1 - k / 6.0);
+      if (!step(near)) return false;
+    }
+    for (int k = 1; k <= 30; ++k)
+      if (!step(at(clip, 0.5 * (1 - k / 30.0)))) return false;
+    return true;
+  }
+  /// Largest pull on the pads as they go that far along the tube, or until the clip is off, N.
+  double draw(double way) {
+    double largest = 0;
+    for (double y = 0; y < way && !stump().clips.empty(); y += 0.2e-3) {
+      EXPECT_TRUE(step(at(clip + y, 0)));
+      largest = std::max(largest, pad_pull(world.field(), 1).norm());
+    }
+    return largest;
+  }
+  const Organ& stump() const { return world.field().organs[0]; }
+};
+
+TEST(Clips, DrawnAlongTheirTubeHarderThanTheyHoldTheySlipOffItsEnd) {
+  DrawnClip hands(3 * clip_hold);
+  ASSERT_TRUE(hands.grasp());
+  ASSERT_EQ(hands.stump().clips.size(), 1u);
+  ASSERT_EQ(hands.count(EventKind::grasp), 1);
+  EXPECT_NEAR(hands.draw(4e-3), clip_hold, 0.02 * clip_hold);
+  EXPECT_EQ(hands.count(EventKind::slip), 1);
+  ASSERT_EQ(hands.count(EventKind::clip_dropped), 1);
+  const auto fell = std::find_if(hands.events.begin(), hands.events.end(), [](const WorldEvent& event) {
+    return event.kind == EventKind::clip_dropped;
+  });
+  EXPECT_EQ(fell->cause, EventCause::slipping);
+  EXPECT_TRUE(hands.stump().clips.empty());
+  EXPECT_TRUE(rod_of(hands.stump())->pinches().empty());
+}
+
+TEST(Clips, StayWhereJawsSlideOverThem) {
+  DrawnClip hands(0.5 * clip_hold);
+  ASSERT_TRUE(hands.grasp());
+  const double before = hands.stump().clips.at(0).at;
+  EXPECT_NEAR(hands.draw(4e-3), 0.5 * clip_hold, 0.01 * clip_hold);
+  EXPECT_EQ(hands.count(EventKind::clip_dropped), 0);
+  ASSERT_EQ(hands.stump().clips.size(), 1u);
+  EXPECT_EQ(hands.stump().clips[0].at, before);
 }
 
 TEST(Clips, OnTheSpecimensSideAloneDoNotMakeACutSafe) {

@@ -86,6 +86,24 @@ TEST(EventCauses, WhatIsCutOrClosedNearATubesStartHasAClassOfItsOwn) {
   }
 }
 
+TEST(EventCauses, NearATubesStartStaysThereWhenTheTubeHasBeenDivided) {
+  SceneDefinition scene = kept(InstrumentType::clip_applier);
+  InjuryDefinition& injury = scene.anatomy.organs[0].injury;
+  injury.closed = "class E";
+  injury.near = "class E2";
+  injury.near_start = 16e-3;
+  Acting clipping(scene);
+  ASSERT_TRUE(clipping.world.divide("duct", 0.5));
+  // 4 mm from the cut, 19 mm from the start.
+  const double y = 4e-3, far = std::hypot(y, tube_depth) + 5e-3 + 18e-3 * (1 - std::cos(0.25));
+  InstrumentPose there = about(0.5, far - 25e-3);
+  there.pitch = std::atan2(y, tube_depth);
+  ASSERT_TRUE(clipping.go(there, 4));
+  there.insertion = far;
+  ASSERT_TRUE(clipping.go(there, 8) && clipping.fire());
+  EXPECT_EQ(only(clipping, EventKind::injury).text, "class E");
+}
+
 TEST(EventCauses, WhatMayBeCutIsNoInjury) {
   Acting scene(across(InstrumentType::scissors));
   ASSERT_TRUE(scene.reach() && scene.go(about(0), 12));
@@ -125,6 +143,22 @@ TEST(EventCauses, CurrentNearerThanItShouldBeIsSaidOnceWithTheDistance) {
   ASSERT_TRUE(far.heat(skin - 6e-3, 5));
   EXPECT_EQ(far.scene.count(EventKind::activation_beside), 0);
   EXPECT_EQ(far.scene.count(EventKind::activation), 1);
+}
+
+TEST(EventCauses, CurrentBesideAWallIsSaidAsBesideADuct) {
+  SceneDefinition definition = across(InstrumentType::bipolar_electrode, SolverMotion::statics);
+  OrganDefinition ball = test::bedded_ball();
+  ball.keep_clear = 5e-3;
+  const double below = tube_depth + 10e-3;  // m, its top
+  ball.fundus = Vec3(0, 0, -below);
+  ball.neck = ball.fundus - Vec3(0, 0, 40e-3);
+  definition.anatomy.organs = {ball};
+  definition.laparoscope.look_at = "ball.fundus";
+  Heating near(definition);
+  ASSERT_TRUE(near.heat(below - 3e-3, 5));
+  const WorldEvent event = only(near.scene, EventKind::activation_beside);
+  EXPECT_EQ(event.organ, "ball");
+  EXPECT_NEAR(event.value, 3, 0.5) << "mm, but for what the ball sags and its skin lies inside its sphere";
 }
 
 TEST(EventCauses, CurrentThatStaysOnAWallGoesThroughItOnceAndBrieflyDoesNot) {

@@ -87,6 +87,27 @@ TEST(Exchange, OneInstrumentIsInAPortAndTheOthersCannotMove) {
       << to_text(moved.failure());
 }
 
+TEST(Exchange, WhatWaitsDoesNotAct) {
+  Exchanging rig;
+  const testing::AssertionResult fired = rig.act(1, InstrumentAction::fire);
+  EXPECT_FALSE(fired);
+  EXPECT_NE(std::string(fired.message()).find("'applier' cannot act: it waits outside"), std::string::npos)
+      << fired.message();
+}
+
+TEST(Exchange, WhatWaitsIsNotInTheField) {
+  Exchanging rig;
+  ASSERT_TRUE(rig.go({0, 0.6, port_depth, 0, 0}, 10));  // clear of the others' straight way in
+  OrganDefinition tube = test::tube_across("band");
+  for (Vec3& point : std::get<TubeShape>(tube.shape).points) point.z() = -0.8 * port_depth;
+  const Result<int> band = rig.world.add(tube);
+  ASSERT_TRUE(band) << to_text(band.failure());
+  ASSERT_TRUE(rig.go({0, 0.6, port_depth, 0, 0}, 5));
+  EXPECT_EQ(rig.last_text(EventKind::contact), "none");
+  ASSERT_TRUE(rig.go({0, 0, port_depth, 0, 0}, 10));
+  EXPECT_NE(rig.last_text(EventKind::contact), "none") << "else nothing was there";
+}
+
 TEST(Exchange, WhatComesInGoesOnWhereTheOtherOneWasDrawnBackTo) {
   Exchanging rig;
   ASSERT_TRUE(rig.go({0.1, 0.05, port_depth, 0.4, 0.3}, 10));

@@ -40,6 +40,34 @@ TEST(Hands, ATipIsPressedWithNoMoreThanItsHandHoldsAndComesBackToItsCommand) {
   EXPECT_EQ(world.report().instruments[0].lag, 0) << "it is exactly where it is commanded to be";
 }
 
+TEST(Hands, WhatIsHeldIsPulledWithNoMoreThanItsHandHolds) {
+  constexpr double strength = 2;  // N
+  SceneDefinition scene = test::ball_scene();
+  scene.instruments[0].hand_force = strength;
+  OrganDefinition other = test::bedded_ball();
+  other.name = "other";
+  for (Vec3* pole : {&other.neck, &other.fundus}) pole->x() += 60e-3;
+  scene.anatomy.organs.push_back(other);
+  World world = World::create(scene).value();
+  const Vec3 top = world.landmark("ball.fundus"), out = world.landmark_normal("ball.fundus");
+  test::Driver driver(world);
+  ASSERT_TRUE(driver.go(top + 3e-3 * out, test::open_jaw, 4) &&
+              driver.go(top - 4e-3 * out, test::open_jaw, 8) && driver.go(top - 4e-3 * out, 0, 10))
+      << driver.why();
+  const InstrumentState& tool = world.report().instruments[0];
+  ASSERT_EQ(tool.holds, "ball");
+  EXPECT_EQ(tool.lag, 0) << "jaws that rest on a fold are no lag";
+  ASSERT_TRUE(driver.go(top + 15e-3 * out, 0, 40) && driver.stay(20)) << driver.why();
+  ASSERT_EQ(tool.holds, "ball");
+  EXPECT_GT(tool.lag, 2e-3) << "else the hand had nothing to give way to";
+  EXPECT_NEAR(tool.at_tip.norm(), strength, 1e-3);
+  // What pulled at the hand is gone from one step to the next.
+  ASSERT_TRUE(world.remove("ball", "taken out"));
+  ASSERT_TRUE(driver.stay(1)) << driver.why();
+  EXPECT_EQ(tool.lag, 0);
+  EXPECT_TRUE(tool.tip.allFinite());
+}
+
 TEST(Hands, APortsSealResistsAShaftThatSlidesThroughItWhicheverWay) {
   SceneDefinition scene = test::ball_scene();
   scene.instruments[0].port_friction = 0.7;

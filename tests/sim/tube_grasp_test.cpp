@@ -64,7 +64,7 @@ TEST(TubeGrasp, PulledHarderThanThePadsHoldItSlides) {
     largest = std::max(largest, pad_pull(acting.world.field(), 0).norm());
   }
   EXPECT_EQ(acting.count(EventKind::slip), 1);
-  EXPECT_GT(largest, 0.5 * limit);
+  EXPECT_GT(largest, 0.9 * limit);
   EXPECT_LT(largest, 1.01 * limit);
 }
 
@@ -86,7 +86,9 @@ TEST(TubeGrasp, BladesAndAppliersHoldNothingOfIt) {
       ASSERT_TRUE(acting.go(about(0.45, tube_depth - 20e-3), 2));
       ASSERT_TRUE(acting.go(about(0.45, tube_depth + past), 12));
       ASSERT_TRUE(acting.go(about(0, tube_depth + past), 40));
+      EXPECT_GE(acting.count(EventKind::contact), 1) << "else it met nothing";
       EXPECT_EQ(acting.count(EventKind::grasp), 0);
+      EXPECT_EQ(acting.count(EventKind::empty_grasp), 0);
       EXPECT_EQ(acting.count(EventKind::perforation), 0);
       EXPECT_EQ(acting.world.report().instruments[0].grip_points, 0);
       EXPECT_EQ(acting.count(EventKind::cut), type == InstrumentType::scissors ? 1 : 0);

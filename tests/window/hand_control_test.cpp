@@ -68,7 +68,7 @@ TEST_F(Hands, WhatIsExchangedIsInTheSameHandAndHandsPassOverThoseThatWait) {
   instruments[1].definition.port = instruments[0].definition.port;
   HandControl shared(instruments, poses);
   EXPECT_FALSE(shared.exchange()) << "none waits";
-  shared.see(poses, {0, 1, 0});
+  shared.see(poses, {0, 1, 0}, {0, 0, 0});
   HandMotion motion;
   motion.next_hand = true;
   shared.move(motion, camera);
@@ -78,12 +78,24 @@ TEST_F(Hands, WhatIsExchangedIsInTheSameHandAndHandsPassOverThoseThatWait) {
   EXPECT_EQ(wanted->instrument, 1);
   EXPECT_EQ(wanted->action, InstrumentAction::exchange);
   poses[0].insertion -= 5e-3;
-  shared.see(poses, {0, 1, 0});
+  shared.see(poses, {0, 1, 0}, {0, 0, 0});
   EXPECT_EQ(shared.selected(), 0) << "not yet";
   poses[1] = poses[0];
-  shared.see(poses, {1, 0, 0});
+  shared.see(poses, {1, 0, 0}, {0, 0, 0});
   EXPECT_EQ(shared.selected(), 1);
   EXPECT_EQ(shared.held(1).pose, poses[0]) << "it goes on from there";
+}
+
+TEST_F(Hands, WhatIsDrawnBackForAnotherGoesOnFromWhereItWasDrawnTo) {
+  const InstrumentPose deep = hands.held(0).pose;
+  for (const bool drawn : {true, true, false}) {  // the last view is of where it stopped
+    poses[0].insertion -= 20e-3;
+    hands.see(poses, {0, 0, 0}, {drawn, 0, 0});
+    EXPECT_EQ(hands.held(0).pose, poses[0]);
+  }
+  poses[0] = deep;
+  hands.see(poses, {0, 0, 0}, {0, 0, 0});
+  EXPECT_NE(hands.held(0).pose, deep) << "else a hand's own motion is undone";
 }
 
 TEST_F(Hands, OutOfReachTheTipStaysAndThatIsSaid) {
