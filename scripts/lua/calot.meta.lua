@@ -161,7 +161,7 @@
 ---@field ground? calot.ground[] shapes that stay and are touched
 ---@field support? calot.support a plane that carries the organs
 ---@field friction? number coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated; default 0; 0 to 1
----@field rest_within? number an organ that comes to rest further than this from where it is drawn is named in reports; default 10 * mm; 0 to 1000 mm
+---@field rest_within? number an organ that comes to rest further than this from where it is drawn is named in reports, and by calot check --build; default 10 * mm; 0 to 1000 mm
 ---@field heart_rate? number beats a minute, with which what bleeds pulses; default 70; 20 to 240
 ---@field table_head_up? number reverse Trendelenburg tilt; default 15 * deg; -60 to 60 deg
 ---@field table_left_down? number tilt to the patient's left; default 10 * deg; -60 to 60 deg

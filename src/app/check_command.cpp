@@ -9,6 +9,7 @@
 #include "app/terminal.h"
 #include "session/json.h"
 #include "session/metrics.h"
+#include "session/rest_remarks.h"
 
 namespace calot {
 namespace {
@@ -25,6 +26,7 @@ struct Checked {
   std::optional<ExerciseDefinition> exercise;
   bool module = false;
   Failure failure;
+  std::vector<std::string> rest = {};  ///< what lies elsewhere at rest than it is drawn
 
   bool ok() const { return module || exercise.has_value(); }
 };
@@ -43,9 +45,10 @@ std::vector<Named> files_of(const std::vector<std::string>& names) {
 }
 
 /// Brings the world to rest and lets the demo try it: what cannot be filled or reached is found here.
-std::optional<Failure> build(ExerciseScript& script) {
+std::optional<Failure> build(ExerciseScript& script, std::vector<std::string>& rest) {
   const Result<World> world = World::create(script.definition().scene, &interrupt_flag());
   if (!world) return script.located(world.failure());
+  rest = rest_remarks(world.value());
   std::vector<Problem> problems = script.rehearse(world.value());
   if (problems.empty()) return std::nullopt;
   return Failure{FailureKind::scenario, std::move(problems)};
@@ -64,7 +67,7 @@ Checked check(const Named& named, bool with_world) {
     return checked;
   }
   ExerciseDefinition exercise = script.value()->definition();
-  const std::optional<Failure> failure = with_world ? build(*script.value()) : std::nullopt;
+  const std::optional<Failure> failure = with_world ? build(*script.value(), checked.rest) : std::nullopt;
   if (failure)
     checked.failure = *failure;
   else
@@ -81,6 +84,7 @@ OrderedJson checked_json(const Checked& checked) {
     json["title"] = exercise.title;
     json["steps"] = exercise.step_names;
     json["metrics"] = metric_names(exercise);
+    json["rest"] = checked.rest;
   }
   json["problems"] = problems_json(checked.failure);
   return json;
@@ -118,6 +122,8 @@ ExitCode check_command(const CheckCommand& command) {
       const std::string what =
           checked.module ? "a module, for scenarios to require" : checked.exercise->title;
       if (!command.json) print(fmt::format("{}  {}: {}", green("ok"), file.file, what));
+      for (const std::string& line : checked.rest)
+        if (!command.json) print("    " + line);
       std::fflush(stdout);
       continue;
     }

@@ -66,18 +66,6 @@ std::string notes_text(const Progress& progress) {
   return table(rows, "lrll");
 }
 
-/// Organs that came to rest far from where they are drawn.
-std::string rest_text(const AnatomyDefinition& anatomy, const std::map<std::string, double>& metrics) {
-  std::string text;
-  for (const OrganDefinition& organ : anatomy.organs) {
-    const auto shift = metrics.find(organ.name + ".rest_shift_mm");
-    if (shift == metrics.end() || shift->second <= anatomy.rest_within / units::mm) continue;
-    text += fmt::format("  {} came to rest {:.1f} mm from where it is drawn (rest_within: {:.0f} mm)\n",
-                        organ.name, shift->second, anatomy.rest_within / units::mm);
-  }
-  return text;
-}
-
 std::string score_text(const Score& score) {
   Rows rows;
   for (const ScoredPart& part : score.parts) {
@@ -106,8 +94,8 @@ std::string summary(const Played& played) {
   if (!session.progress.notes().empty())
     text += fmt::format("\n{}\n{}", bold("Noted"), notes_text(session.progress));
   text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(session.metrics));
-  if (const std::string rest = rest_text(played.exercise.scene.anatomy, session.metrics); !rest.empty())
-    text += fmt::format("\n{}\n{}", bold("At rest"), rest);
+  if (!session.rest.empty())
+    text += fmt::format("\n{}\n  {}\n", bold("At rest"), fmt::join(session.rest, "\n  "));
   text += played.report.aborted
               ? fmt::format("\n{} none: the session did not come to its end\n", bold("Score"))
               : fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,

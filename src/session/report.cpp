@@ -162,6 +162,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   json["metrics"] = session.metrics;
   json["noted"] = notes_json(session.progress);
   json["notes"] = session.notes;
+  json["rest"] = session.rest;
   json["motion_processing"] = {{"version", MotionProcessing::version},
                                {"rate_Hz", MotionProcessing::rate},
                                {"cut_off_Hz", MotionProcessing::cut_off}};

@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "session/metrics.h"
+#include "session/rest_remarks.h"
 #include "session/skin_difference.h"
 
 namespace calot {
@@ -171,9 +172,10 @@ class Session {
   }
 
   void note_rest() {
+    result_.rest = rest_remarks(world_);
     const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
     for (std::size_t i = 0; i < organs.size(); ++i)
-      result_.progress.set_metric(organs[i].name + ".rest_shift_mm", world_.rest_shifts()[i] / units::mm);
+      result_.progress.set_metric(organs[i].name + ".rest_shift_mm", world_.rest_shifts()[i].distance / units::mm);
   }
 
   void note_refusals() {

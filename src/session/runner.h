@@ -53,6 +53,7 @@ struct SessionResult {
   std::vector<std::uint64_t> state_hashes;
   SessionTiming timing;
   std::vector<std::string> notes;  ///< what could not be measured or is less accurate, and why
+  std::vector<std::string> rest;   ///< which organs lie elsewhere at the start than they are drawn
 };
 
 SessionResult run_session(World& world, ExerciseScript& script, InputSource& source,

@@ -64,7 +64,7 @@ struct World::Impl {
   bool failed = false;
   Failure failure;
   std::uint64_t field_hash = 0;
-  std::vector<double> rest_shifts;  ///< m, one an organ of the scene
+  std::vector<RestShift> rest_shifts;  ///< one an organ of the scene
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
 
@@ -166,14 +166,20 @@ World::~World() = default;
 
 namespace {
 
-std::vector<double> shifts_from_drawn(const std::vector<Organ>& organs) {
-  std::vector<double> out;
+std::vector<RestShift> shifts_from_drawn(const std::vector<Organ>& organs) {
+  std::vector<RestShift> out;
   for (const Organ& organ : organs) {
     const std::vector<Vec3>& drawn = organ.body->skin_rest();
     const std::vector<Vec3> now = organ.body->skin_positions(organ.state.x);
-    double furthest = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) furthest = std::max(furthest, (now[i] - drawn[i]).norm());
-    out.push_back(furthest);
+    const auto shift = [&](std::size_t i) { return (now[i] - drawn[i]).norm(); };
+    std::size_t furthest = 0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (shift(i) > shift(furthest)) furthest = i;
+    const auto nearer = [&](const auto& a, const auto& b) {
+      return (drawn[a.second] - drawn[furthest]).norm() < (drawn[b.second] - drawn[furthest]).norm();
+    };
+    const auto near = std::min_element(organ.landmarks.begin(), organ.landmarks.end(), nearer);
+    out.push_back({shift(furthest), near == organ.landmarks.end() ? std::string() : near->first});
   }
   return out;
 }
@@ -337,7 +343,7 @@ Result<bool> World::restore(const FieldState& state) {
   self.failed = false;
   return true;
 }
-const std::vector<double>& World::rest_shifts() const { return impl_->rest_shifts; }
+const std::vector<RestShift>& World::rest_shifts() const { return impl_->rest_shifts; }
 Vec3 World::up() const { return impl_->up; }
 const Field& World::field() const { return impl_->field; }
 

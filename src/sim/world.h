@@ -20,6 +20,12 @@ struct DrawnSurface;
 struct Field;
 struct FieldState;
 
+/// The point of an organ's skin that came to rest furthest from where it is drawn.
+struct RestShift {
+  double distance = 0;   ///< m
+  std::string landmark;  ///< of the organ, the nearest where it is drawn
+};
+
 class World {
  public:
   /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
@@ -80,9 +86,8 @@ class World {
   double seen_area(const std::array<Vec3, 3>& corners) const;
   /// The critical view of safety from where the laparoscope is now (sim/critical_view.h). Throws as landmark() does.
   CriticalView critical_view(const CriticalViewQuestion& question) const;
-  /// How far the furthest point of an organ's skin was from where it is drawn, m, when all had come to rest at the start;
-  /// one an organ of the scene.
-  const std::vector<double>& rest_shifts() const;
+  /// How organs had come to rest at the start, one an organ of the scene.
+  const std::vector<RestShift>& rest_shifts() const;
   /// Outward unit normal of the skin there.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
 

@@ -38,6 +38,22 @@ TEST_F(Check, SaysWhatIsWrongWithThePathNotWithLines) {
   EXPECT_EQ(calot({"run", "unreadable.lua"}).code, 4);
 }
 
+TEST_F(Check, WithBuildSaysWhatComesToRestFarFromWhereItIsDrawn) {
+  std::string text = small_scenario();
+  const std::string anatomy = "anatomy = { ";
+  text.replace(text.find(anatomy), anatomy.size(), anatomy + "rest_within = 0.001 * mm, ");
+  spill(folder_ / "tight.lua", text);
+  const std::string said = "ball came to rest ", furthest = " mm from where it is drawn, furthest near ball.";
+  EXPECT_EQ(calot({"check", "tight.lua"}).out.find(said), std::string::npos) << "it is not built";
+  const Outcome built = calot({"check", "--build", "tight.lua"});
+  EXPECT_EQ(built.code, 0) << built.err;
+  EXPECT_NE(built.out.find(said), std::string::npos) << built.out;
+  EXPECT_NE(built.out.find(furthest), std::string::npos) << built.out;
+  EXPECT_EQ(calot({"check", "--build", "small.lua"}).out.find(said), std::string::npos);
+  const Outcome ran = calot({"run", "--no-render", "tight.lua"});
+  EXPECT_NE(ran.out.find(furthest), std::string::npos) << ran.out;
+}
+
 TEST_F(Check, WithBuildFindsWhatRunWouldMeetAndRunSaysSo) {
   spill(folder_ / "far.lua",
         small_scenario("t:step('a', 'A') t:wait(0.1 * s)", "\nt.left:move_to({ 400 * mm, 0, -300 * mm })"));

@@ -315,6 +315,7 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   SessionResult result = played(script, script.demo());
   EXPECT_TRUE(result.notes.empty()) << "everything could be measured";
   result.notes = {"a note"};
+  result.rest = {"ball lies elsewhere"};
   SessionReport report;
   report.score = score(script.definition(), result.metrics, result.progress).value();
   const auto json = nlohmann::json::parse(report_json(script.definition(), result, report));
@@ -325,6 +326,7 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   EXPECT_EQ(json["schema"], "calot.report/1");
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["notes"], nlohmann::json::array({"a note"}));
+  EXPECT_EQ(json["rest"], nlohmann::json::array({"ball lies elsewhere"}));
   EXPECT_GT(json["timing"]["real_time_factor"].get<double>(), 0);
   double sum = 0;
   for (const auto& part : json["score"]["parts"]) {

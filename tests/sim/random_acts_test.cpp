@@ -35,7 +35,7 @@ SceneDefinition field_of_all_kinds(bool lobe, double rate = 50) {
   for (const std::string& type : instrument_type_names()) {
     InstrumentDefinition tool = default_instrument(*instrument_type_called(type));
     tool.name = type;
-    tool.hand_force = 0.5 * RandomActs::hardest;  // else hands stop before they have to give way
+    tool.hand_force = 0.5 * test::RandomActs::hardest;  // else hands stop before they have to give way
     tool.port = "port" + std::to_string(k);
     scene.ports.push_back({tool.port, test::beside_neck(-60 + 25 * k, -60 - 10 * (k % 3), 130)});
     scene.instruments.push_back(tool);

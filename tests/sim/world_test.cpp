@@ -21,7 +21,8 @@ TEST(World, SaysHowFarAnOrganCameToRestFromWhereItIsDrawn) {
   const Vec3 drawn(0, 0, 1.8e-3 - test::tube_depth);  // of the middle, on top
   const double sag = (world->landmark("duct.middle") - drawn).norm();
   EXPECT_GT(sag, 1e-4);
-  EXPECT_NEAR(world->rest_shifts()[0], sag, 0.02 * sag);
+  EXPECT_NEAR(world->rest_shifts()[0].distance, sag, 0.02 * sag);
+  EXPECT_EQ(world->rest_shifts()[0].landmark, "middle");
 }
 
 std::vector<std::uint64_t> hashes_of_a_grasp(double depth) {
