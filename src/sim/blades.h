@@ -4,7 +4,7 @@
 // A duct or a vessel is divided where it passes between the blades as soon as both touch it: it is cut rather than
 // squeezed. Its pieces do not feel the blades until they have come clear of them, as what is cut lies on their flat
 // sides. Strands are divided where an edge passes them. Walls are not divided: blades that close
-// on one stand on it, and say so (advance.cpp).
+// on one stand on it, and say so (jaw_acts.h).
 
 #include "sim/field.h"
 

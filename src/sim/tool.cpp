@@ -19,6 +19,13 @@ InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, dou
           mix(a.jaw, b.jaw)};
 }
 
+std::vector<InstrumentPose> interpolate(const std::vector<InstrumentPose>& a,
+                                        const std::vector<InstrumentPose>& b, double share) {
+  std::vector<InstrumentPose> out;
+  for (std::size_t i = 0; i < a.size(); ++i) out.push_back(interpolate(a[i], b[i], share));
+  return out;
+}
+
 Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part) {
   return part == 0 ? hinge_frame(tool.trocar, pose, tool.geometry)
                    : jaw_frame(tool.trocar, pose, tool.geometry, part - 1);

@@ -53,6 +53,9 @@ struct Tool {
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
+/// Of each tool; as many of a as of b.
+std::vector<InstrumentPose> interpolate(const std::vector<InstrumentPose>& a,
+                                        const std::vector<InstrumentPose>& b, double share);
 
 /// Far from all: a shape that is not felt, m.
 inline const Capsule nowhere{Vec3(1e3, 1e3, 1e3), Vec3(1e3, 1e3, 1e3), 1e-3};

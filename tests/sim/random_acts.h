@@ -20,6 +20,7 @@ namespace calot::test {
 /// One after the other acts from where the last one left the field; `again()` begins anew.
 class RandomActs {
  public:
+  static constexpr double hardest = 4;  ///< N, with which it presses on
   RandomActs(World world, std::uint64_t seed) : world_(std::move(world)), rng_(seed), start_(world_.state()) {
     again();
   }
@@ -61,7 +62,6 @@ class RandomActs {
 
  private:
   static constexpr double quick = 2;    ///< m/s, through the air
-  static constexpr double hardest = 4;  ///< N
 
   std::size_t below(std::size_t count) { return rng_.next() % count; }
   const InstrumentDefinition& definition() const { return world_.scene().instruments[tool_]; }
