@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/blades.h"
+#include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/jaw_acts.h"
 #include "sim/moving_bodies.h"

@@ -15,21 +15,21 @@
 namespace calot {
 namespace {
 
-constexpr double longest_part = 5e-3;  // s
-constexpr double drop_volume = 10e-9;  // m^3; of a pipette 20 to 50 (d)
-constexpr double jet_volume = 3e-9;    // m^3, of a jet's drop
-constexpr double jet = 0.06;           // m/s: slower it drips
-constexpr double slowed = 0.4;         // share of its speed that a ragged end leaves a jet (d)
-constexpr double fastest = 2.5;        // m/s
-constexpr double reach = 600e-3;       // m: what is farther has fallen away
-constexpr double landed = 0.35e-3;     // m, thickness that a drop spreads to
-constexpr double sticks = 0.06e-3;     // m, thickness that stays (d)
-constexpr double wets = 0.2e-3;        // m, thickness that wets what is dry (d)
-constexpr double film_speed = 0.15;    // m/s, at most
-constexpr double hangs = 15e-9;        // m^3, of what hangs before it drops off (d)
-constexpr double clings = 0.8e-3;      // m, thickness that hangs on an underside without dripping (d)
-constexpr double least_drip = 1e-9;    // m^3
-constexpr double least_flow = 1e-12;   // m^3, in a part of a step: what would run slower lies still
+constexpr double longest_part = 5e-3;     // s
+constexpr double drop_volume = 10e-9;     // m^3; of a pipette 20 to 50 (d)
+constexpr double jet_volume = 3e-9;       // m^3, of a jet's drop
+constexpr double jet = 0.06;              // m/s: slower it drips
+constexpr double slowed = 0.4;            // share of its speed that a ragged end leaves a jet (d)
+constexpr double fastest = 2.5;           // m/s
+constexpr double farthest_fall = 600e-3;  // m: what is farther has fallen away
+constexpr double landed = 0.35e-3;        // m, thickness that a drop spreads to
+constexpr double sticks = 0.06e-3;        // m, thickness that stays (d)
+constexpr double wets = 0.2e-3;           // m, thickness that wets what is dry (d)
+constexpr double film_speed = 0.15;       // m/s, at most
+constexpr double hangs = 15e-9;           // m^3, of what hangs before it drops off (d)
+constexpr double clings = 0.8e-3;         // m, thickness that hangs on an underside without dripping (d)
+constexpr double least_drip = 1e-9;       // m^3
+constexpr double least_flow = 1e-12;      // m^3, in a part of a step: what would run slower lies still
 constexpr std::array<double, liquids> viscosity{bile_viscosity, 4e-3};  // Pa s, of bile and of blood (c)
 
 double volume_of(const WetPoint& wet) { return std::accumulate(wet.volume.begin(), wet.volume.end(), 0.0); }
@@ -226,7 +226,7 @@ bool fall(Field& field, const Skins& skins, Drop& drop, double part) {
     spread_drop(drop, mesh_on(field.spill, landing->on), landing->point, film_on(field.spill, landing->on));
     return true;
   }
-  if (to.norm() < reach) return false;
+  if (to.norm() < farthest_fall) return false;
   field.spill.out_of_sight[static_cast<std::size_t>(drop.liquid)] += drop.volume;
   return true;
 }
@@ -412,7 +412,7 @@ void forget_gone(Field& field) {
 void drop_clip(Field& field, ClipSize size, const Vec3& from, const Vec3& legs) {
   constexpr double part = 2e-3;  // m: ground is met within it
   const Skins skins(field);
-  for (Vec3 at = from; at.norm() < reach; at -= part * field.up) {
+  for (Vec3 at = from; at.norm() < farthest_fall; at -= part * field.up) {
     const std::optional<Landing> landing = lands(field, skins, at, at - part * field.up);
     if (!landing) continue;
     field.spill.clips.push_back({size, landing->on, landing->point, legs});

@@ -61,7 +61,7 @@ class RandomActs {
   std::map<std::string, int> events = {}, failures = {};  ///< how often, by kind and by reason
 
  private:
-  static constexpr double quick = 2;    ///< m/s, through the air
+  static constexpr double quick = 2;  ///< m/s, through the air
 
   std::size_t below(std::size_t count) { return rng_.next() % count; }
   const InstrumentDefinition& definition() const { return world_.scene().instruments[tool_]; }
