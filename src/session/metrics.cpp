@@ -117,7 +117,7 @@ void measure_activation(const std::vector<double>& time, const std::vector<Instr
 
 void measure_forces(const std::vector<InstrumentSample>& samples, const std::string& prefix,
                     Metrics& metrics) {
-  double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, peak_lag = 0, sum = 0;
+  double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, peak_lag = 0, peak_pads = 0, sum = 0;
   int loaded = 0;
   for (const InstrumentSample& sample : samples) {
     peak = std::max(peak, sample.tip_force);
@@ -125,6 +125,7 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
     peak_jaws = std::max(peak_jaws, sample.jaws_force);
     peak_shaft = std::max(peak_shaft, sample.shaft_force);
     peak_lag = std::max(peak_lag, sample.lag);
+    peak_pads = std::max(peak_pads, sample.pad_pressure);
     if (sample.tip_force > smallest_force) {
       sum += sample.tip_force;
       ++loaded;
@@ -135,6 +136,7 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
   metrics[prefix + "peak_jaws_force_N"] = peak_jaws;
   metrics[prefix + "peak_shaft_force_N"] = peak_shaft;
   metrics[prefix + "peak_lag_mm"] = peak_lag / units::mm;
+  metrics[prefix + "peak_pad_pressure_kPa"] = peak_pads / 1e3;
   metrics[prefix + "mean_force_N"] = loaded > 0 ? sum / loaded : 0.0;
 }
 
@@ -244,6 +246,10 @@ const std::vector<MetricRow>& metric_rows() {
       {"peak_shaft_force_N", instrument, "largest force on its shaft, raw"},
       {"peak_lag_mm", instrument,
        "furthest that its tip was from where it was commanded to be, as its hand gave way, raw"},
+      {"peak_pad_pressure_kPa", instrument,
+       "largest mean pressure of its pads on the wall they held: their pinch on its area; from 500 on for "
+       "some seconds it "
+       "crushes, raw"},
       {"clashes", instrument, "how often it began to press on another instrument", EventKind::clash, true},
       {"grasps", instrument, "how often it took hold", EventKind::grasp, true},
       {"empty_grasps", instrument, "how often it closed on nothing", EventKind::empty_grasp, true},

@@ -57,6 +57,7 @@ void append_sample(const World& world, Traces& traces) {
     sample.active = state.action == InstrumentAction::activate;
     sample.waits = state.waits;
     sample.lag = state.lag;
+    sample.pad_pressure = state.pad_pressure;
     traces.instruments[i].push_back(sample);
   }
   for (const OrganState& organ : report.organs) {

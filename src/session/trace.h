@@ -23,6 +23,7 @@ struct InstrumentSample {
   bool active = false;                     ///< current flowed in the step that ended here
   bool waits = false;                      ///< outside, while another one was in its port
   double lag = 0;                          ///< m, of the tip behind its command: its hand gave way
+  double pad_pressure = 0;                 ///< Pa, of its pads on the wall they hold
 };
 
 struct OrganSample {

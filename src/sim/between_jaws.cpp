@@ -62,6 +62,27 @@ bool is_between_pads(const Tool& tool, const Vec3& at) {
   return std::abs(local.y()) < 0.5 * tool.geometry.jaw_width && before_both(tool, tool.pose.jaw, local);
 }
 
+std::vector<ClipBetween> clips_between(const Field& field, int instrument) {
+  const Tool& tool = field.tools[instrument];
+  std::vector<ClipBetween> out;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const Organ& organ = field.organs[k];
+    const RodBody* rod = rod_of(organ);
+    if (rod == nullptr || std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
+    for (std::size_t c = 0; c < organ.clips.size(); ++c) {
+      const Clip& clip = organ.clips[c];
+      if (!rod->has(clip.at)) continue;
+      const Vec3 place = rod->place_at(clip.at, organ.state.x);
+      if (!is_between_pads(tool, place)) continue;
+      const FlatRing ring = rod->ring_at(clip.at);
+      const double half = ring.half_height((1 - clip.opening) * ring.lumen) + clip_row(clip.size).wire;
+      const int before = std::min(static_cast<int>(clip.at), static_cast<int>(rod->last_point()) - 1);
+      out.push_back({static_cast<int>(k), static_cast<int>(c), place, half, {before, before + 1}});
+    }
+  }
+  return out;
+}
+
 bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle) {
   const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   const Vec3 a = to_hinge * from, b = to_hinge * to;

@@ -26,6 +26,16 @@ bool is_between_pads(const Tool& tool, const Vec3& at);
 /// closed by an angle (rad) more: an edge passes it.
 bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle);
 
+/// A clip between the pads of a tool that its tube feels.
+struct ClipBetween {
+  int organ = 0, clip = 0;         ///< place among the organ's
+  Vec3 place = Vec3::Zero();       ///< m, the tube's middle there
+  double half_height = 0;          ///< m, of the clip across its legs
+  std::array<int, 2> points = {};  ///< skin points of the tube before and behind it
+};
+/// In the order of organs and places.
+std::vector<ClipBetween> clips_between(const Field& field, int instrument);
+
 /// The organ as a tube; null: it is none.
 const RodBody* rod_of(const Organ& organ);
 

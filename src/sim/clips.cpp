@@ -17,9 +17,8 @@ constexpr double shut = 0.02;
 
 /// Share of a flat tube's width that is not between the legs.
 double left_open(const Tool& tool, const TubeBetween& tube, const RodBody& rod, double leg) {
-  const FlatRing ring = rod.ring_at(tube.at);
   const double slant = std::max(0.2, std::abs(tube.along.y()) / std::hypot(tube.along.y(), tube.along.z()));
-  const double half = (ring.lumen > 0 ? ring.half_width(ring.lumen) : ring.outer) / slant;
+  const double half = 0.5 * rod.flat_width(tube.at) / slant;
   const double tip = tool.geometry.jaw_length * std::cos(0.5 * tool.pose.jaw), crown = tip - leg;
   const double held = std::min(tube.place.z() + half, tip) - std::max(tube.place.z() - half, crown);
   const double open = 1 - std::clamp(held / (2 * half), 0.0, 1.0);
@@ -64,32 +63,7 @@ bool is_open_at(const Organ& organ, double end) {
                      [&](const Opening& opening) { return opening.point == static_cast<int>(end); });
 }
 
-double last_point(const RodBody& rod) { return static_cast<double>(rod.skin_rest().size() - 1); }
-
-bool is_on(const RodBody& rod, const Clip& clip) { return clip.at >= 0 && clip.at <= last_point(rod); }
-
 }  // namespace
-
-std::vector<ClipBetween> clips_between(const Field& field, int instrument) {
-  const Tool& tool = field.tools[instrument];
-  std::vector<ClipBetween> out;
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    const Organ& organ = field.organs[k];
-    const RodBody* rod = rod_of(organ);
-    if (rod == nullptr || std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
-    for (std::size_t c = 0; c < organ.clips.size(); ++c) {
-      const Clip& clip = organ.clips[c];
-      if (!is_on(*rod, clip)) continue;
-      const Vec3 place = rod->place_at(clip.at, organ.state.x);
-      if (!is_between_pads(tool, place)) continue;
-      const FlatRing ring = rod->ring_at(clip.at);
-      const double half = ring.half_height((1 - clip.opening) * ring.lumen) + clip_row(clip.size).wire;
-      const int before = std::min(static_cast<int>(clip.at), static_cast<int>(last_point(*rod)) - 1);
-      out.push_back({static_cast<int>(k), static_cast<int>(c), place, half, {before, before + 1}});
-    }
-  }
-  return out;
-}
 
 double hold_of_clips(const Field& field, int instrument) {
   int clips = 0;
@@ -109,7 +83,7 @@ void draw_clips(Field& field, int instrument, const Vec3& way) {
     clip.at -= way.dot(along) / along.squaredNorm();
     // What a tube goes on as behind an end that is not open, or is tied to, stops a clip there.
     constexpr double stop = 0.5;
-    const double last = last_point(rod);
+    const double last = rod.last_point();
     if (!is_open_at(organ, 0)) clip.at = std::max(clip.at, stop);
     if (!is_open_at(organ, last)) clip.at = std::min(clip.at, last - stop);
   }
@@ -126,14 +100,14 @@ void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& event
                    stays))
       continue;
     for (const Clip& clip : organ.clips) {
-      if (is_on(*rod, clip)) continue;
-      const double end = clip.at < 0 ? 0 : last_point(*rod);
+      if (rod->has(clip.at)) continue;
+      const double end = clip.at < 0 ? 0 : rod->last_point();
       const Vec3 from = rod->place_at(end, organ.state.x);
       drop_clip(field, clip.size, from, rod->frame_at(end, organ.state.x) * clip.legs);
       events.push_back(
           {EventKind::clip_dropped, 0, name, organ.definition.name, 0, from, EventCause::slipping});
     }
-    std::erase_if(organ.clips, [&](const Clip& clip) { return !is_on(*rod, clip); });
+    std::erase_if(organ.clips, [&](const Clip& clip) { return !rod->has(clip.at); });
     std::sort(organ.clips.begin(), organ.clips.end(),
               [](const Clip& a, const Clip& b) { return a.at < b.at; });
     keep_to_clips(field, static_cast<int>(k));

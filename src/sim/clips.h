@@ -23,16 +23,6 @@ inline constexpr double clip_hold = 4.4;
 /// clip and clip_dropped.
 void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events);
 
-/// A clip between the pads of a tool that its tube feels.
-struct ClipBetween {
-  int organ = 0, clip = 0;         ///< place among the organ's
-  Vec3 place = Vec3::Zero();       ///< m, the tube's middle there
-  double half_height = 0;          ///< m, of the clip across its legs
-  std::array<int, 2> points = {};  ///< skin points of the tube before and behind it
-};
-/// In the order of organs and places.
-std::vector<ClipBetween> clips_between(const Field& field, int instrument);
-
 /// Pull that the clips hold which a tool has between its pads, on what it holds, N: clip_hold each; infinite without any.
 double hold_of_clips(const Field& field, int instrument);
 

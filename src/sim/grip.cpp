@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "sim/clips.h"
+#include "sim/between_jaws.h"
 
 namespace calot {
 namespace {
@@ -130,6 +130,25 @@ void make_room(Field& field, int instrument, double jaw) {
 int grip_count(const Organ& organ, int instrument) {
   return static_cast<int>(std::count_if(organ.grips.begin(), organ.grips.end(),
                                         [&](const GripPoint& g) { return g.instrument == instrument; }));
+}
+
+double held_area(const Field& field, int instrument) {
+  const std::vector<ClipBetween> clips = clips_between(field, instrument);
+  std::array<double, 2> area{};
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const Organ& organ = field.organs[k];
+    const auto on_it = [&](const ClipBetween& clip) { return clip.organ == static_cast<int>(k); };
+    if (std::any_of(clips.begin(), clips.end(), on_it)) continue;
+    const RodBody* rod = rod_of(organ);
+    for (const GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      double own = organ.body->skin_areas()[grip.skin_point];
+      // A rod's areas are its lengths times its radius.
+      if (rod != nullptr) own *= rod->flat_width(grip.skin_point) / rod->outer_radius(grip.skin_point);
+      area[grip.jaw] += own;
+    }
+  }
+  return std::min(area[0], area[1]);
 }
 
 std::string held_organ(const Field& field, int instrument) {

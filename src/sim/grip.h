@@ -28,6 +28,10 @@ bool fold_fills_jaws(const Field& field, int instrument);
 void make_room(Field& field, int instrument, double jaw);
 
 /// Skin points of the organ that tool `instrument` grips.
+/// Area of the walls (m^2, at rest) that a tool's jaws hold between them: of the pad that holds less. A tube counts as wide
+/// as it is flat; what a clip keeps the pads off does not count.
+double held_area(const Field& field, int instrument);
+
 int grip_count(const Organ& organ, int instrument);
 
 /// Name of the first organ of which a tool holds something; empty: none.

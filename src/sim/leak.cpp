@@ -30,11 +30,10 @@ double density_of(const Organ& organ) {
 }
 
 double lumen_area(const RodBody& rod, double at) { return pi * std::pow(rod.lumen_radius(at), 2); }
-double last_point(const RodBody& rod) { return static_cast<double>(rod.skin_rest().size() - 1); }
 
 /// m^3 in a tube at rest.
 double held_by(const RodBody& rod) {
-  const double first = lumen_area(rod, 0), last = lumen_area(rod, last_point(rod));
+  const double first = lumen_area(rod, 0), last = lumen_area(rod, rod.last_point());
   return rod.length() * (first + std::sqrt(first * last) + last) / 3;
 }
 
@@ -65,7 +64,7 @@ class SourceSearch {
   Source of(int organ, const Opening& opening) {
     const RodBody* rod = rod_of(field_.organs[organ]);
     if (rod == nullptr) return {Source::Kind::organ, organ, {}, opening.area};
-    const double from = opening.point, to = last_point(*rod) - from;
+    const double from = opening.point, to = rod->last_point() - from;
     const double whole = lumen_area(*rod, from);
     visited_.assign(field_.organs.size(), 0);
     if (std::optional<Source> found = along(organ, from, to, whole)) {
@@ -103,7 +102,7 @@ class SourceSearch {
 
   /// Whether a joint is at that end of a tube: its own end is tied, or nearly that of another's side.
   static bool is_at(const RodBody& rod, const JointLinks& links, int side, double end) {
-    const double away = std::abs(place_on(links, side) - end), last = last_point(rod);
+    const double away = std::abs(place_on(links, side) - end), last = rod.last_point();
     return side == 0 ? away < 0.5 * last : away < std::min(3.0, 0.3 * last);
   }
 
@@ -115,7 +114,7 @@ class SourceSearch {
     const RodBody* rod = rod_of(other);
     if (rod == nullptr || liquid_of(other) != liquid || visited_[organ]) return std::nullopt;
     std::optional<Source> best;
-    for (double end : {0.0, last_point(*rod)})
+    for (double end : {0.0, rod->last_point()})
       if (std::optional<Source> found = along(organ, place_on(links, side), end, area))
         if (!best || found->area > best->area) best = found;
     return best;

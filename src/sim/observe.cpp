@@ -33,6 +33,8 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
     state.grip_points += held;
     if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
   }
+  if (const double area = tool.jaw_stopped ? held_area(field, static_cast<int>(index)) : 0; area > 0)
+    state.pad_pressure = tool.definition.pinch_force / area;
   state.clips = tool.clips;
   state.waits = tool.waits;
   state.aspirated = tool.needle.drawn_ever;

@@ -60,6 +60,11 @@ class RodBody : public Body {
   double lumen_radius(double at) const {  ///< m, 0 where it is solid
     return std::max(0.0, outer_radius(at) - setup_.wall);
   }
+  /// m, of its section where it is pressed flat.
+  double flat_width(double at) const {
+    const FlatRing ring = ring_at(at);
+    return 2 * (ring.lumen > 0 ? ring.half_width(ring.lumen) : ring.outer);
+  }
   FlatRing ring_at(double at) const;    ///< of lumen 0 where it is solid
   double share_at(double at) const;     ///< of its length at rest
   double at_share(double share) const;  ///< the other way round
@@ -70,6 +75,9 @@ class RodBody : public Body {
   int point_to_divide_at(double share) const;
   /// Where a skin point lies, as a share of the length at rest.
   double share_of_length(int point) const;
+  /// Its end, skin points from its start; whether a place is on it.
+  double last_point() const { return static_cast<double>(skin_rest_.size() - 1); }
+  bool has(double at) const { return at >= 0 && at <= last_point(); }
   /// Whether anything of it lies bedded.
   bool bedded() const { return !bed_.row.empty(); }
 

@@ -48,6 +48,7 @@ struct InstrumentState {
   /// N, the tissue's force at the tip that has the same moment about the trocar.
   Vec3 at_tip = Vec3::Zero();
   double lag = 0;            ///< m, of the tip behind where it is commanded to be: its hand gives way
+  double pad_pressure = 0;   ///< Pa, mean, of pads that hold a wall: their pinch on its area
   std::string meets;         ///< another instrument that it presses on; empty: none
   double meeting_force = 0;  ///< N at the tip, of all that it presses on
 };

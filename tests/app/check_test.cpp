@@ -49,7 +49,9 @@ TEST_F(Check, WithBuildSaysWhatComesToRestFarFromWhereItIsDrawn) {
   EXPECT_EQ(built.code, 0) << built.err;
   EXPECT_NE(built.out.find(said), std::string::npos) << built.out;
   EXPECT_NE(built.out.find(furthest), std::string::npos) << built.out;
-  EXPECT_EQ(calot({"check", "--build", "small.lua"}).out.find(said), std::string::npos);
+  text.replace(text.find("0.001 * mm"), 10, "900 * mm");
+  spill(folder_ / "wide.lua", text);
+  EXPECT_EQ(calot({"check", "--build", "wide.lua"}).out.find(said), std::string::npos);
   const Outcome ran = calot({"run", "--no-render", "tight.lua"});
   EXPECT_NE(ran.out.find(furthest), std::string::npos) << ran.out;
 }

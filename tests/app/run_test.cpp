@@ -172,7 +172,7 @@ TEST_F(Run, AKilledRunsRecordingReplaysUpToItsLastStep) {
 }
 
 TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToChange) {
-  // A ball fixed to a table, and a tool that is sent through both.
+  // A ball fixed to a table, and a tool that is sent through both by a hand that does not give way in time.
   std::string text = small_scenario("t:step('push', 'Push'); t:wait(10 * s)",
                                     "t.left:move_to('ball.fundus', { speed = 100 * mm / s }); "
                                     "t.left:move_by({ 0, 0, -60 * mm }, { speed = 100 * mm / s })");
@@ -185,6 +185,7 @@ TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToCh
           "name = \"ball\", neck = { -60 * mm, 100 * mm, -120 * mm }, fundus = { -60 * mm, 100 * mm, -80 * "
           "mm },");
   replace("nodes = 61", "nodes = 20");
+  replace("port = \"right_subcostal\"", "port = \"right_subcostal\", hand_force = 100");
   replace("{ landmark = \"bed\" }", "{ landmark = \"neck\", radius = 30 * mm, stiffness = 1e7 }");
   spill(folder_ / "through.lua", text);
   const Outcome outcome = calot({"run", "through.lua", "--no-render", "-o", "here"});

@@ -6,6 +6,7 @@
 
 #include "field_rig.h"
 #include "rig.h"
+#include "sim/grip.h"
 #include "support/long_run.h"
 
 namespace calot {
@@ -139,6 +140,23 @@ TEST(Events, AreRaisedOnceWhenTheirConditionBegins) {
     EXPECT_EQ(path.driver.count(kind), 1) << to_text(kind);
   EXPECT_EQ(path.driver.count(EventKind::empty_grasp), 0);
   EXPECT_EQ(path.driver.count(EventKind::overforce), 2);
+}
+
+TEST(Grasp, PadsPressTheirPinchOnTheAreaThatTheyHold) {
+  for (const double deep : {2e-3, 4e-3, 7e-3}) {
+    SCOPED_TRACE(deep);
+    test::FundusPath path(test::ball_scene());
+    const Vec3 there = path.fundus - deep * path.out;
+    ASSERT_TRUE(path.driver.go(path.fundus + 4e-3 * path.out, test::open_jaw, 4) &&
+                path.driver.go(there, test::open_jaw, 8) && path.driver.go(there, 0, 10))
+        << path.driver.why();
+    const InstrumentState& tool = path.world.report().instruments[0];
+    ASSERT_EQ(tool.holds, "ball");
+    const double pinch = path.world.scene().instruments[0].pinch_force;
+    EXPECT_NEAR(tool.pad_pressure * held_area(path.world.field(), 0), pinch, 1e-9);
+    ASSERT_TRUE(path.release());
+    EXPECT_EQ(tool.pad_pressure, 0);
+  }
 }
 
 }  // namespace
