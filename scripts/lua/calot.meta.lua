@@ -554,6 +554,12 @@ function Steps:note(name, value, unit) end
 ---@return string, string, number
 function Steps:divide(organ, share) end
 
+---Sets a clip that shuts a tube, a duct or a vessel, at about a share of its length: in a field that is prepared for a later step, as nobody sets it.
+---@param organ string a tube's name
+---@param share number from its start, 0, to its end, 1; 0 to 1
+---@param size? "M"|"ML" the clip's; default ML
+function Steps:clip(organ, share, size) end
+
 ---Takes an organ out of the field, with its joints. What asks for it later is told when and why it went.
 ---@param organ string an organ's name
 ---@param why? string such as "taken out"

@@ -200,6 +200,16 @@ std::vector<ApiFunction> session_functions() {
                         "from its start, 0, to its end, 1"))},
        "string, string, number"},
       {"Steps",
+       "clip",
+       "Sets a clip that shuts a tube, a duct or a vessel, at about a share of its length: in a field that "
+       "is prepared "
+       "for a later step, as nobody sets it.",
+       {required(text("organ", "", "a tube's name")),
+        required(number("share", quantity::number, 0, 1, "a share of a length",
+                        "from its start, 0, to its end, 1")),
+        choice("size", clip_names(), "ML", "the clip's")},
+       ""},
+      {"Steps",
        "remove",
        "Takes an organ out of the field, with its joints. What asks for it later is told when and why it "
        "went.",

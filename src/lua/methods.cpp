@@ -433,6 +433,14 @@ int divide(lua_State* L) {
   return arguments.good() ? steps.divide(L, arguments.text("organ"), arguments.number("share")) : 0;
 }
 
+int clip(lua_State* L) {
+  StepsScript& steps = steps_of(L, "clip");
+  const Arguments arguments(L, steps, "Steps", "clip");
+  if (arguments.good())
+    steps.clip(L, arguments.text("organ"), arguments.number("share"), arguments.text("size"));
+  return 0;
+}
+
 int remove(lua_State* L) {
   StepsScript& steps = steps_of(L, "remove");
   const Arguments arguments(L, steps, "Steps", "remove");
@@ -483,6 +491,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Steps", "hold", guarded<hold>},
                           {"Steps", "note", guarded<note>},
                           {"Steps", "divide", guarded<divide>},
+                          {"Steps", "clip", guarded<clip>},
                           {"Steps", "remove", guarded<remove>},
                           {"Steps", "add", guarded<add>},
                           {"Steps", "tie", guarded<tie>},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -284,6 +285,23 @@ int StepsScript::divide(lua_State* L, const std::string& name, double share) {
   lua_pushstring(L, pieces[1].c_str());
   lua_pushnumber(L, share);
   return 3;
+}
+
+void StepsScript::clip(lua_State* L, const std::string& name, double share, const std::string& size) {
+  if (!may_change(L, "clip")) return;
+  const int organ = this->organ(L, name);
+  if (checking()) {
+    if (organ < 0) return;
+    const OrganShape& shape = known_organs()[static_cast<std::size_t>(organ)].shape;
+    if (!std::holds_alternative<TubeShape>(shape))
+      complain(L, fmt::format("'{}' cannot be clipped: it is a {}", name, shape_name(shape)),
+               "clip a tube: a duct or a vessel");
+    return;
+  }
+  const std::vector<std::string> names = clip_names();
+  const auto row = static_cast<std::size_t>(std::find(names.begin(), names.end(), size) - names.begin());
+  const ClipSize wanted = row < names.size() ? clip_rows()[row].size : ClipSize::ml;
+  if (const Result<bool> done = changing_->clip(name, share, wanted); !done) complain(L, done.failure());
 }
 
 void StepsScript::remove(lua_State* L, const std::string& name, const std::string& why) {

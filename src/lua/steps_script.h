@@ -35,6 +35,7 @@ class StepsScript final : public ScriptSession {
   int count(lua_State* L, const std::string& event, const std::string& organ);
   // What changes who is in the world, at once. In a dry run names are known from when they may come and are not forgotten.
   int divide(lua_State* L, const std::string& organ, double share);
+  void clip(lua_State* L, const std::string& organ, double share, const std::string& size);
   void remove(lua_State* L, const std::string& organ, const std::string& why);
   void add(lua_State* L, const OrganDefinition& organ);
   void tie(lua_State* L, const JointDefinition& joint);

@@ -412,6 +412,22 @@ void set_clip(Field& field, int index, const Clip& clip) {
   keep_to_clips(field, index);
 }
 
+Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
+  const Organ& organ = field.organs[index];
+  const RodBody* rod = rod_of(organ);
+  if (rod == nullptr)
+    return fail(
+        FailureKind::scenario,
+        fmt::format("{} cannot be clipped: it is a {}", quoted(organ), shape_name(organ.definition.shape)),
+        "clip a tube: a duct or a vessel");
+  const double at = rod->at_share(std::clamp(share, 0.0, 1.0));
+  // As far past the tube as legs reach that a careful hand sets.
+  constexpr double past = 1e-3;
+  const double reach = std::min(0.5 * rod->flat_width(at) + past, clip_row(size).leg);
+  set_clip(field, index, {size, at, 0, Vec3::UnitZ(), Vec3::UnitY(), reach});
+  return true;
+}
+
 void keep_to_clips(Field& field, int index) {
   Organ& organ = field.organs[index];
   std::vector<RodBody::Pinch> pinches;

@@ -28,6 +28,8 @@ bool can_be_divided(const Organ& organ, double share);
 
 /// Sets a clip on a tube, which is held flat there from now on.
 void set_clip(Field& field, int organ, const Clip& clip);
+/// Sets one that shuts it at about a share of its length, with its legs across. Fails (scenario) where it is no tube.
+Result<bool> clip_body(Field& field, int organ, double share, ClipSize size);
 /// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
 void keep_to_clips(Field& field, int organ);
 

@@ -452,6 +452,13 @@ Result<Division> World::divide(const std::string& name, double share) {
                        [&] { return divide_body(impl_->field, organ.value(), share, impl_->time()); });
 }
 
+Result<bool> World::clip(const std::string& name, double share, ClipSize size) {
+  const Result<int> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was clipped", name),
+                       [&] { return clip_body(impl_->field, organ.value(), share, size); });
+}
+
 Result<bool> World::remove(const std::string& name, const std::string& why) {
   const Result<int> organ = this->organ(name);
   if (!organ) return organ.failure();

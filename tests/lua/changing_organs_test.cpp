@@ -64,6 +64,22 @@ TEST(ChangingOrgansInSteps, AreDividedRemovedTiedAndAdded) {
   EXPECT_EQ(played.organs, (std::vector<std::string>{"duct.patient", "duct.specimen", "other"}));
 }
 
+TEST(ChangingOrgansInSteps, AreClippedAndCutInAFieldThatIsPrepared) {
+  const Outcome played = outcome(ducts(
+      "t:step('prepared', 'Prepared')\n"
+      "for _, share in ipairs { 0.2, 0.3 } do t:clip('duct', share, 'M') end\n"
+      "t:clip('duct', 0.6)\n t:divide('duct', 0.45)\n"
+      "local first, second = t:clips('duct.specimen'), t:clips('duct.patient')\n"
+      "assert(#first == 2 and first[1].size == 'M' and first[1].opening == 0)\n"
+      "assert(math.abs(first[1].place - 0.2 / 0.45) < 0.05 and math.abs(first[2].place - 0.3 / 0.45) < "
+      "0.05)\n"
+      "assert(#second == 1 and second[1].size == 'ML' and math.abs(second[1].place - 0.15 / 0.55) < 0.05)\n"
+      "assert(t:count('clip') == 0 and t:count('cut') == 0)\n"
+      "t:wait(0.2 * s)"));
+  EXPECT_EQ(played.why, "");
+  EXPECT_EQ(played.result.end, SessionEnd::steps_done);
+}
+
 TEST(ChangingOrgansInSteps, PlayedTwiceHaveTheSameBits) {
   const test::ScenarioText text =
       ducts("t:step('cut', 'Cut') t:wait(0.04 * s) t:divide('duct', 0.5) t:wait(0.06 * s)");
@@ -95,7 +111,9 @@ TEST(ChangingOrgansInSteps, MistakesAreFoundWithoutPlaying) {
   for (const Case& mistake :
        {Case{"t:divide('dukt', 0.5)", "unknown organ \"dukt\" (did you mean \"duct\"?)"},
         Case{"t:divide('stone', 0.5)", "'stone' cannot be divided: it is a rigid"},
-        Case{"t:divide('duct', 5)", "t:divide: share"},
+        Case{"t:divide('duct', 5)", "t:divide: share"}, Case{"t:clip('dukt', 0.5)", "unknown organ \"dukt\""},
+        Case{"t:clip('stone', 0.5)", "'stone' cannot be clipped: it is a rigid"},
+        Case{"t:clip('duct', 0.5, 'XL')", "XL"},
         Case{"t:divide('duct', 0.5) t:place('duct.patiant.end')", "\"duct.patient.end\""},
         Case{"t:wait_until(function() t:remove('stone') return true end)", "inside a predicate"},
         Case{"t:add { name = 'other', shape = { type = 'rigid', density = -1 } }", "organ.shape.density"},
