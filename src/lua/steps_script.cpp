@@ -292,7 +292,7 @@ void StepsScript::clip(lua_State* L, const std::string& name, double share, cons
   const int organ = this->organ(L, name);
   if (checking()) {
     if (organ < 0) return;
-    const OrganShape& shape = known_organs()[static_cast<std::size_t>(organ)].shape;
+    const OrganShape shape = known_organs()[static_cast<std::size_t>(organ)].shape;  // the list is a copy
     if (!std::holds_alternative<TubeShape>(shape))
       complain(L, fmt::format("'{}' cannot be clipped: it is a {}", name, shape_name(shape)),
                "clip a tube: a duct or a vessel");

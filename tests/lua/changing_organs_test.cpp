@@ -75,7 +75,7 @@ TEST(ChangingOrgansInSteps, AreClippedAndCutInAFieldThatIsPrepared) {
       "0.05)\n"
       "assert(#second == 1 and second[1].size == 'ML' and math.abs(second[1].place - 0.15 / 0.55) < 0.05)\n"
       "assert(t:count('clip') == 0 and t:count('cut') == 0)\n"
-      "t:wait(0.2 * s)"));
+      "t:wait(0.04 * s)"));
   EXPECT_EQ(played.why, "");
   EXPECT_EQ(played.result.end, SessionEnd::steps_done);
 }
