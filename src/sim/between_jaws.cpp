@@ -22,6 +22,12 @@ bool before_both(const Tool& tool, double jaw, const Vec3& at) {
   return std::abs(at.x()) * c <= at.z() * s && at.z() > 0 && reach < tool.geometry.jaw_length;
 }
 
+/// Anywhere over the pads' width.
+bool is_between_pads(const Tool& tool, const Vec3& at) {
+  const Vec3 local = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse() * at;
+  return std::abs(local.y()) < 0.5 * tool.geometry.jaw_width && before_both(tool, tool.pose.jaw, local);
+}
+
 }  // namespace
 
 const RodBody* rod_of(const Organ& organ) { return dynamic_cast<const RodBody*>(organ.body.get()); }
@@ -34,6 +40,10 @@ double way_from_start(const RodBody& rod, double at) {
   return way;
 }
 
+bool feels(const Organ& organ, int instrument) {
+  return !std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument);
+}
+
 std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
   const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
@@ -41,7 +51,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     const RodBody* rod = rod_of(organ);
-    if (rod == nullptr || std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
+    if (rod == nullptr || !feels(organ, instrument)) continue;
     std::vector<Vec3> line = rod->skin_positions(organ.state.x);
     for (Vec3& p : line) p = to_hinge * p;
     for (std::size_t p = 0; p + 1 < line.size(); ++p) {
@@ -57,28 +67,18 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   return out;
 }
 
-bool is_between_pads(const Tool& tool, const Vec3& at) {
-  const Vec3 local = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse() * at;
-  return std::abs(local.y()) < 0.5 * tool.geometry.jaw_width && before_both(tool, tool.pose.jaw, local);
-}
-
-std::vector<ClipBetween> clips_between(const Field& field, int instrument) {
-  const Tool& tool = field.tools[instrument];
+std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ) {
   std::vector<ClipBetween> out;
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    const Organ& organ = field.organs[k];
-    const RodBody* rod = rod_of(organ);
-    if (rod == nullptr || std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument)) continue;
-    for (std::size_t c = 0; c < organ.clips.size(); ++c) {
-      const Clip& clip = organ.clips[c];
-      if (!rod->has(clip.at)) continue;
-      const Vec3 place = rod->place_at(clip.at, organ.state.x);
-      if (!is_between_pads(tool, place)) continue;
-      const FlatRing ring = rod->ring_at(clip.at);
-      const double half = ring.half_height((1 - clip.opening) * ring.lumen) + clip_row(clip.size).wire;
-      const int before = std::min(static_cast<int>(clip.at), static_cast<int>(rod->last_point()) - 1);
-      out.push_back({static_cast<int>(k), static_cast<int>(c), place, half, {before, before + 1}});
-    }
+  if (!feels(organ, instrument)) return out;
+  const RodBody* rod = rod_of(organ);
+  for (std::size_t c = 0; c < organ.clips.size(); ++c) {
+    const Clip& clip = organ.clips[c];
+    if (!rod->has(clip.at)) continue;
+    const Vec3 place = rod->place_at(clip.at, organ.state.x);
+    if (!is_between_pads(field.tools[instrument], place)) continue;
+    const double half = rod->flat_half_height(clip.at, clip.opening) + clip_row(clip.size).wire;
+    const int before = std::min(static_cast<int>(clip.at), static_cast<int>(rod->last_point()) - 1);
+    out.push_back({static_cast<int>(c), place, half, {before, before + 1}});
   }
   return out;
 }

@@ -16,25 +16,25 @@ struct TubeBetween {
   double radius = 0;          ///< m, outer
 };
 
+/// Whether an organ feels the jaws of a tool: not while it lies between blades that have cut it.
+bool feels(const Organ& organ, int instrument);
+
 /// Of all tubes that feel the jaws, in the order of organs and places.
 std::vector<TubeBetween> tubes_between(const Field& field, int instrument);
-
-/// Whether a place (m) is between the pads of a tool, anywhere over their width.
-bool is_between_pads(const Tool& tool, const Vec3& at);
 
 /// Whether a line from one place to another (m) passes between the pads of a tool now, and no longer when its jaws have
 /// closed by an angle (rad) more: an edge passes it.
 bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle);
 
-/// A clip between the pads of a tool that its tube feels.
+/// A clip on a tube that is between the pads of a tool, anywhere over their width.
 struct ClipBetween {
-  int organ = 0, clip = 0;         ///< place among the organ's
+  int clip = 0;                    ///< place among the organ's
   Vec3 place = Vec3::Zero();       ///< m, the tube's middle there
   double half_height = 0;          ///< m, of the clip across its legs
   std::array<int, 2> points = {};  ///< skin points of the tube before and behind it
 };
-/// In the order of organs and places.
-std::vector<ClipBetween> clips_between(const Field& field, int instrument);
+/// Of an organ, in the order of their places; of one that does not feel the jaws there are none.
+std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ);
 
 /// The organ as a tube; null: it is none.
 const RodBody* rod_of(const Organ& organ);

@@ -63,30 +63,34 @@ bool is_open_at(const Organ& organ, double end) {
                      [&](const Opening& opening) { return opening.point == static_cast<int>(end); });
 }
 
+/// Keeps a clip where it is, as its tube slides along by `way`, m.
+void draw_clip(Organ& organ, const ClipBetween& between, const Vec3& way) {
+  const RodBody& rod = *rod_of(organ);
+  Clip& clip = organ.clips[between.clip];
+  const Vec3 along =
+      rod.skin_point(between.points[1], organ.state.x) - rod.skin_point(between.points[0], organ.state.x);
+  clip.at -= way.dot(along) / along.squaredNorm();
+  // What a tube goes on as behind an end that is not open, or is tied to, stops a clip there.
+  constexpr double stop = 0.5;
+  const double last = rod.last_point();
+  if (!is_open_at(organ, 0)) clip.at = std::max(clip.at, stop);
+  if (!is_open_at(organ, last)) clip.at = std::min(clip.at, last - stop);
+}
+
 }  // namespace
 
 double hold_of_clips(const Field& field, int instrument) {
   int clips = 0;
-  for (const ClipBetween& clip : clips_between(field, instrument))
-    clips += grip_count(field.organs[clip.organ], instrument) > 0;
+  for (const Organ& organ : field.organs)
+    if (grip_count(organ, instrument) > 0)
+      clips += static_cast<int>(clips_between(field, instrument, organ).size());
   return clips > 0 ? clips * clip_hold : std::numeric_limits<double>::infinity();
 }
 
 void draw_clips(Field& field, int instrument, const Vec3& way) {
-  for (const ClipBetween& between : clips_between(field, instrument)) {
-    Organ& organ = field.organs[between.organ];
-    if (grip_count(organ, instrument) == 0) continue;
-    const RodBody& rod = *rod_of(organ);
-    Clip& clip = organ.clips[between.clip];
-    const Vec3 along =
-        rod.skin_point(between.points[1], organ.state.x) - rod.skin_point(between.points[0], organ.state.x);
-    clip.at -= way.dot(along) / along.squaredNorm();
-    // What a tube goes on as behind an end that is not open, or is tied to, stops a clip there.
-    constexpr double stop = 0.5;
-    const double last = rod.last_point();
-    if (!is_open_at(organ, 0)) clip.at = std::max(clip.at, stop);
-    if (!is_open_at(organ, last)) clip.at = std::min(clip.at, last - stop);
-  }
+  for (Organ& organ : field.organs)
+    if (grip_count(organ, instrument) > 0)
+      for (const ClipBetween& clip : clips_between(field, instrument, organ)) draw_clip(organ, clip, way);
 }
 
 void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& events) {

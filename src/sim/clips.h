@@ -1,15 +1,15 @@
 #pragma once
 // How clips are set, and how they slip off.
 //
-// Firing squeezes the clip's legs shut, whatever the angle of the jaws: the applier's mechanism does, in less than a step.
-// The legs lie on the jaws up to their tip; a duct or a vessel that passes between them is flat then, pi times its radius
-// wide, and the clip holds what of that width is between its legs. It stays where it is on the tube, and what is divided
-// takes its clips along. Where it does not reach the middle of any, or in the air, the clip falls (spill.h), and lies
-// where it fell.
+// Firing squeezes the clip's legs shut, whatever the angle of the jaws: the applier's mechanism does, in less than a
+// step. The legs lie on the jaws up to their tip; a duct or a vessel that passes between them is flat then, pi times
+// its radius wide, and the clip holds what of that width is between its legs. It stays where it is on the tube, and
+// what is divided takes its clips along. Where it does not reach the middle of any, or in the air, the clip falls
+// (spill.h), and lies where it fell.
 //
-// Jaws that close on a clip hold it and not the wall beside it, which it keeps them off. Pulled along the tube harder than
-// it holds there, it slides along, past other clips, and falls where it comes to an open end. Jaws that would slip first
-// slide over it.
+// Jaws that close on a clip hold it and not the wall beside it, which it keeps them off. Pulled along the tube harder
+// than it holds there, it slides along, past other clips, and falls where it comes to an open end. Jaws that would slip
+// first slide over it.
 
 #include "sim/field.h"
 
@@ -19,11 +19,12 @@ namespace calot {
 /// titanium clip came off (Arch Surg 127:718, 1992).
 inline constexpr double clip_hold = 4.4;
 
-/// Of each tool in which the action begins (`actions`: one a tool, or none) one clip, while it has some. Adds the events
-/// clip and clip_dropped.
+/// Of each tool in which the action begins (`actions`: one a tool, or none) one clip, while it has some. Adds the
+/// events clip and clip_dropped.
 void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events);
 
-/// Pull that the clips hold which a tool has between its pads, on what it holds, N: clip_hold each; infinite without any.
+/// Pull that the clips hold which a tool has between its pads, on what it holds, N: clip_hold each; infinite without
+/// any.
 double hold_of_clips(const Field& field, int instrument);
 
 /// Keeps the clips between a tool's pads there, as the tubes slide along the pads by `way` (m, patient's frame). The

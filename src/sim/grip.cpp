@@ -57,8 +57,6 @@ bool both_face(const Tool& tool, const Vec3& place, double range) {
 void hold(const Tool& tool, int instrument, Organ& organ) {
   const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
   const std::vector<double>& radii = organ.body->skin_radii();
-  // Blades divide a tube, and a clip applier lets it be: neither has teeth.
-  if (!radii.empty() && instrument_row(tool.definition.type).jaws != JawUse::hold) return;
   std::array<std::vector<char>, 2> held{std::vector<char>(skin.size(), 0), std::vector<char>(skin.size(), 0)};
   for (const GripPoint& grip : organ.grips) held[grip.jaw][grip.skin_point] = 1;
   const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
@@ -74,40 +72,41 @@ void hold(const Tool& tool, int instrument, Organ& organ) {
         organ.grips.push_back({instrument, jaw, static_cast<int>(p), local[jaw], grip_stiffness});
     }
   }
-  sort_grips(organ);
+}
+
+/// Clips keep the pads off the wall beside them.
+void hold_clips(const Tool& tool, int instrument, Organ& organ, const std::vector<ClipBetween>& clips) {
+  for (const ClipBetween& clip : clips) {
+    if (!both_face(tool, clip.place, pad_reach + clip.half_height)) continue;
+    for (int point : clip.points) hold_point(tool, instrument, organ, point);
+  }
 }
 
 }  // namespace
 
 void take_hold(Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
-  const std::vector<ClipBetween> clips = clips_between(field, instrument);
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    Organ& organ = field.organs[k];
-    const auto on_it = [&](const ClipBetween& clip) { return clip.organ == static_cast<int>(k); };
-    if (std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument) ||
-        std::any_of(clips.begin(), clips.end(), on_it))
-      continue;
-    hold(tool, instrument, organ);
-  }
-  if (instrument_row(tool.definition.type).jaws != JawUse::hold) return;
-  for (const ClipBetween& clip : clips) {
-    if (!both_face(tool, clip.place, pad_reach + clip.half_height)) continue;
-    for (int point : clip.points) hold_point(tool, instrument, field.organs[clip.organ], point);
-    sort_grips(field.organs[clip.organ]);
+  // Blades divide a tube, and a clip applier lets it be: neither has teeth.
+  const bool teeth = instrument_row(tool.definition.type).jaws == JawUse::hold;
+  for (Organ& organ : field.organs) {
+    if (!feels(organ, instrument) || (!teeth && !organ.body->skin_radii().empty())) continue;
+    const std::vector<ClipBetween> clips = clips_between(field, instrument, organ);
+    if (clips.empty()) {
+      hold(tool, instrument, organ);
+    } else {
+      hold_clips(tool, instrument, organ, clips);
+    }
+    sort_grips(organ);
   }
 }
 
 bool hold_by_clips(Field& field, int instrument) {
-  const std::vector<ClipBetween> clips = clips_between(field, instrument);
   bool any = false;
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    Organ& organ = field.organs[k];
+  for (Organ& organ : field.organs) {
     if (grip_count(organ, instrument) == 0) continue;
     std::vector<int> points;
-    for (const ClipBetween& clip : clips)
-      if (clip.organ == static_cast<int>(k))
-        points.insert(points.end(), clip.points.begin(), clip.points.end());
+    for (const ClipBetween& clip : clips_between(field, instrument, organ))
+      points.insert(points.end(), clip.points.begin(), clip.points.end());
     if (points.empty()) continue;
     any = true;
     std::erase_if(organ.grips, [&](const GripPoint& grip) {
@@ -133,12 +132,9 @@ int grip_count(const Organ& organ, int instrument) {
 }
 
 double held_area(const Field& field, int instrument) {
-  const std::vector<ClipBetween> clips = clips_between(field, instrument);
   std::array<double, 2> area{};
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    const Organ& organ = field.organs[k];
-    const auto on_it = [&](const ClipBetween& clip) { return clip.organ == static_cast<int>(k); };
-    if (std::any_of(clips.begin(), clips.end(), on_it)) continue;
+  for (const Organ& organ : field.organs) {
+    if (!clips_between(field, instrument, organ).empty()) continue;
     const RodBody* rod = rod_of(organ);
     for (const GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
@@ -169,12 +165,15 @@ bool both_pads_hold(const Field& field, int instrument) {
 
 namespace {
 
-/// Half the height of a tube pressed flat, m: of the thickest place that a tool holds.
-double flat_radius(const Organ& organ, int instrument) {
+/// Half the height of a tube pressed flat, m: of the thickest place that a tool holds, or of a clip on it.
+double flat_radius(const Field& field, int instrument, const Organ& organ) {
   double thickest = 0;
   for (const GripPoint& grip : organ.grips)
     if (grip.instrument == instrument)
       thickest = std::max(thickest, organ.body->core_radii()[static_cast<std::size_t>(grip.skin_point)]);
+  // Skins are felt that far inside the pads, clips are not.
+  for (const ClipBetween& clip : clips_between(field, instrument, organ))
+    thickest = std::max(thickest, clip.half_height + contact_inset);
   return thickest;
 }
 
@@ -182,7 +181,6 @@ double flat_radius(const Organ& organ, int instrument) {
 
 bool fold_fills_jaws(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
-  const std::vector<ClipBetween> clips = clips_between(field, instrument);
   for (const Organ& organ : field.organs) {
     int count[2] = {0, 0};
     double depth = 0;  // along the jaws
@@ -194,12 +192,9 @@ bool fold_fills_jaws(const Field& field, int instrument) {
     if (count[0] == 0 || count[1] == 0) continue;
     const double reach = 2.0 * depth / (count[0] + count[1]);
     if (!organ.body->skin_radii().empty()) {
-      // A tube is pressed flat where the next angle leaves it no room. Skins are felt that far inside the pads.
+      // A tube is pressed flat where the next angle leaves it no room.
       const double next = reach * std::sin(0.5 * std::max(0.0, tool.pose.jaw - grip_grid));
-      double half = flat_radius(organ, instrument);
-      for (const ClipBetween& clip : clips)
-        if (&field.organs[clip.organ] == &organ) half = std::max(half, clip.half_height + contact_inset);
-      if (next + 2 * contact_inset <= 2 * half) return true;
+      if (next + 2 * contact_inset <= 2 * flat_radius(field, instrument, organ)) return true;
       continue;
     }
     if (reach * std::sin(0.5 * tool.pose.jaw) <= fold_squeeze * 2.0 * organ.definition.wall.thickness)

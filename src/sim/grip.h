@@ -16,8 +16,8 @@ inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 /// Skin points that touch a pad of a closing tool are held by it from here on.
 void take_hold(Field& field, int instrument);
 
-/// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to: others
-/// are let go, new ones held where they are. Returns whether it holds any.
+/// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to:
+/// others are let go, new ones held where they are. Returns whether it holds any.
 bool hold_by_clips(Field& field, int instrument);
 
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
@@ -27,11 +27,11 @@ bool fold_fills_jaws(const Field& field, int instrument);
 /// gap, out of the other's way.
 void make_room(Field& field, int instrument, double jaw);
 
-/// Skin points of the organ that tool `instrument` grips.
-/// Area of the walls (m^2, at rest) that a tool's jaws hold between them: of the pad that holds less. A tube counts as wide
-/// as it is flat; what a clip keeps the pads off does not count.
+/// Area of the walls (m^2, at rest) that a tool's jaws hold between them: of the pad that holds less. A tube counts as
+/// wide as it is flat; what a clip keeps the pads off does not count.
 double held_area(const Field& field, int instrument);
 
+/// Skin points of the organ that tool `instrument` grips.
 int grip_count(const Organ& organ, int instrument);
 
 /// Name of the first organ of which a tool holds something; empty: none.

@@ -75,8 +75,7 @@ RodBody RodBody::pinched(const std::vector<Pinch>& pinches) const {
 void RodBody::hold_flat(const Pinch& pinch) {
   pinches_.push_back(pinch);
   const int last = static_cast<int>(radii_.size()) - 1, before = static_cast<int>(pinch.at);
-  const FlatRing ring = ring_at(pinch.at);
-  const double height = ring.half_height((1 - pinch.opening) * ring.lumen);
+  const double height = flat_half_height(pinch.at, pinch.opening);
   for (int row : {before, std::min(before + 1, last)})
     radii_[row] = core_radii_[row] = std::min(radii_[row], height);
   for (int k = std::max(before - 1, 0); k <= std::min(before + 1, last - 1); ++k)

@@ -49,7 +49,8 @@ class RodBody : public Body {
     out.setup_.name = name;
     return out;
   }
-  /// The same held flat at these places and at no others: there it does not give way to what presses, and is drawn flat.
+  /// The same held flat at these places and at no others: there it does not give way to what presses, and is drawn
+  /// flat.
   RodBody pinched(const std::vector<Pinch>& pinches) const;
   const std::vector<Pinch>& pinches() const { return pinches_; }
   /// Columns: along the line, the skin's normal there, and across both. `at`: skin points from its start.
@@ -65,7 +66,11 @@ class RodBody : public Body {
     const FlatRing ring = ring_at(at);
     return 2 * (ring.lumen > 0 ? ring.half_width(ring.lumen) : ring.outer);
   }
-  FlatRing ring_at(double at) const;    ///< of lumen 0 where it is solid
+  /// m, half of what its section is high, outside, where so much of its lumen's height is left open.
+  double flat_half_height(double at, double opening) const {
+    const FlatRing ring = ring_at(at);
+    return ring.half_height((1 - opening) * ring.lumen);
+  }
   double share_at(double at) const;     ///< of its length at rest
   double at_share(double share) const;  ///< the other way round
   /// Places or velocities of a part's nodes for which it moves as this body with its nodes at x does there.
@@ -129,7 +134,8 @@ class RodBody : public Body {
   void lay_sections();
   void lay_bed();
   void weigh();
-  FlatRing ring_of(double radius) const;
+  FlatRing ring_of(double radius) const;  ///< of lumen 0 where it is solid
+  FlatRing ring_at(double at) const;
   void hold_flat(const Pinch& pinch);
   /// At a share of the whole line, by its parameter.
   double radius_along(double share) const;

@@ -30,8 +30,7 @@ std::vector<SceneMesh> clip_meshes(const Organ& organ) {
   const RodBody* rod = rod_of(organ);
   for (const Clip& clip : organ.clips) {
     const ClipRow& row = clip_row(clip.size);
-    const FlatRing ring = rod->ring_at(clip.at);
-    const double apart = ring.half_height((1 - clip.opening) * ring.lumen) + 0.5 * row.wire;
+    const double apart = rod->flat_half_height(clip.at, clip.opening) + 0.5 * row.wire;
     const Mat3 frame = rod->frame_at(clip.at, organ.state.x);
     Pose pose = Pose::Identity();
     pose.translation() = rod->place_at(clip.at, organ.state.x);
