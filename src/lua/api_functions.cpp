@@ -27,6 +27,15 @@ Key organ(bool needed) {
   return key;
 }
 
+Key tube() { return required(text("organ", "", "a tube's name")); }
+
+/// A place on a tube, and what is asked for beside it.
+std::vector<Key> place_on_tube(std::vector<Key> more = {}) {
+  more.insert(more.begin(), {tube(), required(number("share", quantity::number, 0, 1, "a share of a length",
+                                                     "from its start, 0, to its end, 1"))});
+  return more;
+}
+
 Key landmark() { return required(text("landmark", "", "a landmark such as \"gallbladder.fundus\"")); }
 
 std::vector<ApiFunction> module_functions() {
@@ -111,13 +120,13 @@ std::vector<ApiFunction> session_functions() {
        "divided",
        "Whether a tube, a duct or a vessel, has been divided. Its pieces then are organs of their own, "
        "\"cystic_duct.patient\" and \"cystic_duct.specimen\".",
-       {required(text("organ", "", "a tube's name"))},
+       {tube()},
        "boolean"},
       {"Session",
        "clips",
        "The clips on a tube, or on a piece of one, from its start to its end: each { place = a share of its "
        "length, opening = the share of its width that is not held, 0 where it is shut, size = \"ML\" }.",
-       {required(text("organ", "", "a tube's name"))},
+       {tube()},
        "calot.clip[]"},
       {"Session",
        "lost",
@@ -131,15 +140,11 @@ std::vector<ApiFunction> session_functions() {
        "Where a landmark is now on the skin, {x, y, z} in m.",
        {landmark()},
        "calot.point"},
-      {"Session",
-       "along",
+      {"Session", "along",
        "A place on the middle of a tube, a duct or a vessel, now, and the direction from its start to its "
        "end "
        "there, of length 1: {x, y, z} each, the place in m.",
-       {required(text("organ", "", "a tube's name")),
-        required(number("share", quantity::number, 0, 1, "a share of a length",
-                        "from its start, 0, to its end, 1"))},
-       "calot.point, number[]"},
+       place_on_tube(), "calot.point, number[]"},
       {"Session",
        "seen_area",
        "How much of a triangle the laparoscope sees past organs and instruments, m^2, across its line of "
@@ -186,8 +191,7 @@ std::vector<ApiFunction> session_functions() {
        {required(text("name", "", "its name: letters, digits and _")), required(noted),
         text("unit", "", "its unit, for people")},
        ""},
-      {"Steps",
-       "divide",
+      {"Steps", "divide",
        "Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most). Its "
        "pieces are "
        "organs of their own, \"cystic_duct.patient\" and \"cystic_duct.specimen\", each with the landmarks "
@@ -195,20 +199,12 @@ std::vector<ApiFunction> session_functions() {
        "middle and end; the tube's patient_end says which is which. Returns their names, the patient's "
        "first, and "
        "the share where it was divided.",
-       {required(text("organ", "", "a tube's name")),
-        required(number("share", quantity::number, 0, 1, "a share of a length",
-                        "from its start, 0, to its end, 1"))},
-       "string, string, number"},
-      {"Steps",
-       "clip",
+       place_on_tube(), "string, string, number"},
+      {"Steps", "clip",
        "Sets a clip that shuts a tube, a duct or a vessel, at about a share of its length: in a field that "
        "is prepared "
        "for a later step, as nobody sets it.",
-       {required(text("organ", "", "a tube's name")),
-        required(number("share", quantity::number, 0, 1, "a share of a length",
-                        "from its start, 0, to its end, 1")),
-        choice("size", clip_names(), "ML", "the clip's")},
-       ""},
+       place_on_tube({choice("size", clip_names(), "ML", "the clip's")}), ""},
       {"Steps",
        "remove",
        "Takes an organ out of the field, with its joints. What asks for it later is told when and why it "

@@ -436,8 +436,12 @@ int divide(lua_State* L) {
 int clip(lua_State* L) {
   StepsScript& steps = steps_of(L, "clip");
   const Arguments arguments(L, steps, "Steps", "clip");
-  if (arguments.good())
-    steps.clip(L, arguments.text("organ"), arguments.number("share"), arguments.text("size"));
+  if (!arguments.good()) return 0;
+  const std::string size = arguments.text("size");
+  // No other name is fit; where it is left out it is ML.
+  const ClipSize wanted =
+      size.empty() ? ClipSize::ml : enumerator_called<ClipSize>(size, clip_names()).value();
+  steps.clip(L, arguments.text("organ"), arguments.number("share"), wanted);
   return 0;
 }
 

@@ -239,7 +239,7 @@ std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name
   if (index < 0) return {Vec3::Zero(), Vec3::UnitX()};
   if (checking() && !has_world()) {
     stand_in();
-    const OrganShape shape = known_organs()[static_cast<std::size_t>(index)].shape;
+    const OrganShape shape = known_organ(index).shape;
     if (const auto* tube = std::get_if<TubeShape>(&shape))
       return {tube->points.front(), (tube->points.back() - tube->points.front()).normalized()};
   } else if (const Result<int> there = world(L).organ(name)) {
@@ -353,7 +353,7 @@ InstrumentState ScriptSession::stand_in_instrument(int instrument) {
 
 OrganState ScriptSession::stand_in_organ(int organ) {
   const double share = share_of_filling[next_level()];
-  const BileDefinition bile = known_organs()[static_cast<std::size_t>(organ)].bile;
+  const BileDefinition bile = known_organ(organ).bile;
   OrganState state;
   state.pressure = share * bile.fill_pressure.value_or(usual_pressure);
   state.volume = share * bile.fill_volume.value_or(usual_volume);

@@ -115,6 +115,8 @@ class ScriptSession {
 
   /// The scene's organs and those that may come later.
   std::vector<OrganDefinition> known_organs() const;
+  /// A copy, as steps that are being checked bring more of them.
+  OrganDefinition known_organ(int index) const { return known_organs()[static_cast<std::size_t>(index)]; }
 
  protected:
   void set_world(const World* world) { world_ = world; }

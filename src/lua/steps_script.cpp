@@ -262,15 +262,18 @@ void StepsScript::bring_later(const OrganDefinition& organ) {
   declared_.later.push_back(organ);
 }
 
+void StepsScript::expect_tube(lua_State* L, const OrganDefinition& organ, const std::string& act,
+                              const std::string& done) {
+  if (!std::holds_alternative<TubeShape>(organ.shape)) complain(L, no_tube(organ, act, done));
+}
+
 int StepsScript::divide(lua_State* L, const std::string& name, double share) {
   if (!may_change(L, "divide")) return 0;
   const int organ = this->organ(L, name);
   const std::array<std::string, 2> pieces = piece_names(name);
   if (checking() && organ >= 0) {
-    OrganDefinition piece = known_organs()[static_cast<std::size_t>(organ)];
-    if (!std::holds_alternative<TubeShape>(piece.shape))
-      complain(L, fmt::format("'{}' cannot be divided: it is a {}", name, shape_name(piece.shape)),
-               "divide a tube: a duct or a vessel");
+    OrganDefinition piece = known_organ(organ);
+    expect_tube(L, piece, "divide", "divided");
     for (const std::string& of : pieces) {
       piece.name = of;
       bring_later(piece);
@@ -287,21 +290,12 @@ int StepsScript::divide(lua_State* L, const std::string& name, double share) {
   return 3;
 }
 
-void StepsScript::clip(lua_State* L, const std::string& name, double share, const std::string& size) {
+void StepsScript::clip(lua_State* L, const std::string& name, double share, ClipSize size) {
   if (!may_change(L, "clip")) return;
   const int organ = this->organ(L, name);
-  if (checking()) {
-    if (organ < 0) return;
-    const OrganShape shape = known_organs()[static_cast<std::size_t>(organ)].shape;  // the list is a copy
-    if (!std::holds_alternative<TubeShape>(shape))
-      complain(L, fmt::format("'{}' cannot be clipped: it is a {}", name, shape_name(shape)),
-               "clip a tube: a duct or a vessel");
-    return;
-  }
-  const std::vector<std::string> names = clip_names();
-  const auto row = static_cast<std::size_t>(std::find(names.begin(), names.end(), size) - names.begin());
-  const ClipSize wanted = row < names.size() ? clip_rows()[row].size : ClipSize::ml;
-  if (const Result<bool> done = changing_->clip(name, share, wanted); !done) complain(L, done.failure());
+  if (organ < 0) return;
+  if (checking()) return expect_tube(L, known_organ(organ), "clip", "clipped");
+  if (const Result<bool> done = changing_->clip(name, share, size); !done) complain(L, done.failure());
 }
 
 void StepsScript::remove(lua_State* L, const std::string& name, const std::string& why) {

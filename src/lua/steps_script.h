@@ -35,7 +35,7 @@ class StepsScript final : public ScriptSession {
   int count(lua_State* L, const std::string& event, const std::string& organ);
   // What changes who is in the world, at once. In a dry run names are known from when they may come and are not forgotten.
   int divide(lua_State* L, const std::string& organ, double share);
-  void clip(lua_State* L, const std::string& organ, double share, const std::string& size);
+  void clip(lua_State* L, const std::string& organ, double share, ClipSize size);
   void remove(lua_State* L, const std::string& organ, const std::string& why);
   void add(lua_State* L, const OrganDefinition& organ);
   void tie(lua_State* L, const JointDefinition& joint);
@@ -65,6 +65,9 @@ class StepsScript final : public ScriptSession {
   /// Whether who is in the world may change: not while a predicate is asked, and not without one.
   bool may_change(lua_State* L, const char* method);
   void bring_later(const OrganDefinition& organ);
+  /// Of a dry run: complains about what is no tube, see no_tube().
+  void expect_tube(lua_State* L, const OrganDefinition& organ, const std::string& act,
+                   const std::string& done);
   std::optional<Failure> start();
   Result<bool> ask(int predicate);
   /// Whether the wait is over. A hold's metric is brought up to date.

@@ -96,7 +96,8 @@ struct Cut {
   int in_piece(bool first, int row) const { return first ? row : row - point; }
 };
 
-/// A tube's burns on a piece of it: those that at rest are as near to one of its drawn points as these are to each other.
+/// A tube's burns on a piece of it: those that at rest are as near to one of its drawn points as these are to each
+/// other.
 std::vector<Burn> burns_of_piece(const Organ& whole, const RodBody& piece) {
   constexpr double near = 1e-3;  // m
   std::vector<Burn> out;
@@ -356,6 +357,12 @@ std::optional<Failure> check_room(const Field& field, int more_nodes) {
 
 }  // namespace
 
+Failure no_tube(const OrganDefinition& organ, const std::string& act, const std::string& done) {
+  return fail(FailureKind::scenario,
+              fmt::format("'{}' cannot be {}: it is a {}", organ.name, done, shape_name(organ.shape)),
+              fmt::format("{} a tube: a duct or a vessel", act));
+}
+
 std::array<std::string, 2> piece_names(const std::string& body) {
   return {body + ".patient", body + ".specimen"};
 }
@@ -363,11 +370,7 @@ std::array<std::string, 2> piece_names(const std::string& body) {
 Result<Division> divide_body(Field& field, int index, double share, double time) {
   const Organ whole = field.organs[index];
   const auto* rod = dynamic_cast<const RodBody*>(whole.body.get());
-  if (rod == nullptr)
-    return fail(
-        FailureKind::scenario,
-        fmt::format("{} cannot be divided: it is a {}", quoted(whole), shape_name(whole.definition.shape)),
-        "divide a tube: a duct or a vessel");
+  if (rod == nullptr) return no_tube(whole.definition, "divide", "divided");
   const Cut cut{rod->point_to_divide_at(share), static_cast<int>(rod->skin_rest().size()), rod->skin_rest()};
   if (cut.point < 0)
     return fail(FailureKind::scenario, fmt::format("{} is too short to be divided", quoted(whole)));
@@ -415,12 +418,12 @@ void set_clip(Field& field, int index, const Clip& clip) {
 Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
   const Organ& organ = field.organs[index];
   const RodBody* rod = rod_of(organ);
-  if (rod == nullptr)
-    return fail(
-        FailureKind::scenario,
-        fmt::format("{} cannot be clipped: it is a {}", quoted(organ), shape_name(organ.definition.shape)),
-        "clip a tube: a duct or a vessel");
-  const double at = rod->at_share(std::clamp(share, 0.0, 1.0));
+  if (rod == nullptr) return no_tube(organ.definition, "clip", "clipped");
+  if (!(share >= 0 && share <= 1))
+    return fail(FailureKind::scenario,
+                fmt::format("{} cannot be clipped at {:g} of its length", quoted(organ), share),
+                "give a share of it from its start, 0, to its end, 1");
+  const double at = rod->at_share(share);
   // As far past the tube as legs reach that a careful hand sets.
   constexpr double past = 1e-3;
   const double reach = std::min(0.5 * rod->flat_width(at) + past, clip_row(size).leg);

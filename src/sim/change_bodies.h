@@ -14,13 +14,16 @@
 
 namespace calot {
 
+/// That what is done to tubes alone (such as "divide": it is "divided") cannot be done to an organ.
+Failure no_tube(const OrganDefinition& organ, const std::string& act, const std::string& done);
+
 /// What the pieces of a body are called: "cystic_duct.patient" and "cystic_duct.specimen".
 std::array<std::string, 2> piece_names(const std::string& body);
 
-/// Divides a tube at about a share of its length at rest (rods have a skin point every mm). The patient's piece is the one
-/// that the tube's definition names (TubeShape::patient_end), or else that which is held, itself or by what it is tied
-/// to; where both are, or neither, its end. The pieces stand where the body stood, the patient's first. `time`, s: when.
-/// Also fails where it is no tube or a piece would be shorter than it is thick.
+/// Divides a tube at about a share of its length at rest (rods have a skin point every mm). The patient's piece is the
+/// one that the tube's definition names (TubeShape::patient_end), or else that which is held, itself or by what it is
+/// tied to; where both are, or neither, its end. The pieces stand where the body stood, the patient's first. `time`, s:
+/// when. Also fails where it is no tube or a piece would be shorter than it is thick.
 Result<Division> divide_body(Field& field, int organ, double share, double time);
 
 /// Whether a body is a tube that is long enough for that.
@@ -28,7 +31,8 @@ bool can_be_divided(const Organ& organ, double share);
 
 /// Sets a clip on a tube, which is held flat there from now on.
 void set_clip(Field& field, int organ, const Clip& clip);
-/// Sets one that shuts it at about a share of its length, with its legs across. Fails (scenario) where it is no tube.
+/// Sets one that shuts it at a share of its length, 0 to 1, with its legs across. Fails (scenario) where it is no tube,
+/// or the share is none.
 Result<bool> clip_body(Field& field, int organ, double share, ClipSize size);
 /// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
 void keep_to_clips(Field& field, int organ);
@@ -36,8 +40,8 @@ void keep_to_clips(Field& field, int organ);
 /// The joints of a body go with it, and tools let it go.
 Result<bool> remove_body(Field& field, int organ, const std::string& why, double time);
 
-/// Adds an organ, where its definition has it, at rest; as make_organ() where that fails, and where it would be in another
-/// body or a tool. Returns its place, behind all others.
+/// Adds an organ, where its definition has it, at rest; as make_organ() where that fails, and where it would be in
+/// another body or a tool. Returns its place, behind all others.
 Result<int> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting);
 
 /// Ties "organ.landmark" to another where they are now: without a load. The names are the field's.

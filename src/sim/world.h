@@ -64,7 +64,7 @@ class World {
   BodyHandle handle(int organ) const;
   /// At about this share of a tube's length, from its start.
   Result<Division> divide(const std::string& organ, double share);
-  /// Sets a clip that shuts a tube, at about this share of its length.
+  /// Sets a clip that shuts a tube, at this share of its length, 0 to 1.
   Result<bool> clip(const std::string& organ, double share, ClipSize size);
   Result<bool> remove(const std::string& organ, const std::string& why);
   /// Its place, the last; problems have paths as of validate(organ).

@@ -295,6 +295,21 @@ TEST(Clips, StayWhereJawsSlideOverThem) {
   EXPECT_EQ(hands.stump().clips[0].at, before);
 }
 
+TEST(Clips, AreSetAtSharesOfATubeAlone) {
+  Acting acting(across(InstrumentType::clip_applier));
+  for (const double share : {-0.1, 1.2, std::numeric_limits<double>::quiet_NaN()}) {
+    const Result<bool> set = acting.world.clip("duct", share, ClipSize::m);
+    ASSERT_FALSE(set) << share;
+    EXPECT_EQ(set.failure().kind, FailureKind::scenario);
+    EXPECT_TRUE(acting.world.field().organs[0].clips.empty());
+  }
+  for (const double share : {0.0, 1.0}) {
+    ASSERT_TRUE(acting.world.clip("duct", share, ClipSize::m));
+    const Organ& organ = acting.world.field().organs[0];
+    EXPECT_TRUE(rod_of(organ)->has(organ.clips.back().at)) << share;
+  }
+}
+
 TEST(Clips, OnTheSpecimensSideAloneDoNotMakeACutSafe) {
   ClipAndCut hands;
   ASSERT_TRUE(hands.clip_at(6e-3) && hands.cut());
