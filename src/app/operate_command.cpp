@@ -66,8 +66,9 @@ Result<Played> attempts(Operation& operation) {
   PlayRequest& request = operation.request;
   for (int attempt = 0;; ++attempt) {
     LiveSource source(operation.instruments, operation.mailbox, live_options(operation.command));
-    StepTeller teller(source.figures().mode);
-    ViewMaker view(operation.latest, operation.exercise.time_limit, source, attempt);
+    const LiveMode mode = source.figures().mode;
+    StepTeller teller(mode);
+    ViewMaker view(operation.latest, operation.exercise.time_limit, mode, source, attempt);
     request.live = &source;
     request.on_state = [&](const World& world, const Progress& progress) {
       teller.look(world, progress);

@@ -27,7 +27,7 @@ void ViewMaker::look(const World& world, const Progress& progress) {
   view->scene = builder_->build(world);
   view->time = report.time;
   view->time_limit = time_limit_;
-  show_step(progress, report.time, source_.figures().mode, *view);
+  show_step(progress, report.time, mode_, *view);
   if (!progress.events().empty()) {
     const SessionEvent& event = progress.events().back();
     view->last_event = fmt::format("{} {} at {:.1f} s", to_text(event.kind), event.instrument, event.time);

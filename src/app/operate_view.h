@@ -12,14 +12,15 @@ namespace calot {
 class ViewMaker {
  public:
   /// The source must outlive it.
-  ViewMaker(LatestView& latest, double time_limit, const LiveSource& source, int attempt)
-      : latest_(latest), time_limit_(time_limit), source_(source), attempt_(attempt) {}
+  ViewMaker(LatestView& latest, double time_limit, LiveMode mode, const LiveSource& source, int attempt)
+      : latest_(latest), time_limit_(time_limit), mode_(mode), source_(source), attempt_(attempt) {}
   /// To be told of every state; makes a view of it where the last one has been taken.
   void look(const World& world, const Progress& progress);
 
  private:
   LatestView& latest_;
   double time_limit_;
+  LiveMode mode_;
   const LiveSource& source_;
   int attempt_;
   std::optional<SceneBuilder> builder_;

@@ -19,11 +19,9 @@ bool alike(const InstrumentPose& a, const InstrumentPose& b) {
                    std::abs(a.roll - b.roll), std::abs(a.jaw - b.jaw)}) <= slack;
 }
 
-/// Why a tool cannot come in; empty: it can, and is in.
-std::string bring_in(Field& field, int coming) {
+/// Why a tool that waits cannot come in for the one (`index`) that is in its port; empty: it can, and is in.
+std::string bring_in(Field& field, int coming, int index) {
   Tool& tool = field.tools[coming];
-  if (!tool.waits) return "it is in its port";
-  const int index = tool_in_port(field.tools, coming);
   Tool& leaving = field.tools[index];
   const std::string& name = leaving.definition.name;
   if (const std::string held = held_organ(field, index); !held.empty())
@@ -81,15 +79,16 @@ void exchange_tools(Field& field, const std::vector<InstrumentAction>& actions,
   for (std::size_t i = 0; i < actions.size(); ++i) {
     if (actions[i] != InstrumentAction::exchange || field.tools[i].action == InstrumentAction::exchange)
       continue;
-    const int coming = static_cast<int>(i);
-    const std::string& name = field.tools[i].definition.name;
-    const std::string there =
-        field.tools[i].waits
-            ? field.tools[static_cast<std::size_t>(tool_in_port(field.tools, coming))].definition.name
-            : std::string();
-    const std::string why = bring_in(field, coming);
-    WorldEvent event{why.empty() ? EventKind::exchange : EventKind::blocked_exchange, 0, name, {}, 0};
-    event.text = why.empty() ? there : why;
+    WorldEvent event{EventKind::blocked_exchange, 0, field.tools[i].definition.name, {}, 0};
+    event.text = "it is in its port";
+    if (field.tools[i].waits) {
+      const int coming = static_cast<int>(i), there = tool_in_port(field.tools, coming);
+      event.text = bring_in(field, coming, there);
+      if (event.text.empty()) {
+        event.kind = EventKind::exchange;
+        event.text = field.tools[there].definition.name;
+      }
+    }
     events.push_back(std::move(event));
   }
 }

@@ -1,9 +1,9 @@
 #pragma once
 // Instruments that share a port.
 //
-// One of them is in it, the others wait outside. Who has drawn the one that is there back
-// into the port may have another one come in: it comes closed and not turned, along the same way, as deep as the other one was. That
-// takes the assistant some seconds, which are the operator's to wait; here it happens between two steps.
+// One of them is in it, the others wait outside. Who has drawn the one that is there back into the port may have
+// another one come in: it comes closed and not turned, along the same way, as deep as the other one was. That takes the
+// assistant some seconds, which are the operator's to wait; here it happens between two steps.
 
 #include "sim/field.h"
 
@@ -18,7 +18,8 @@ bool is_in_trocar(const Tool& tool);
 /// Place of the tool that is in the port of one that waits: there always is one.
 int tool_in_port(const std::vector<Tool>& tools, int waiting);
 
-/// Fails (scenario) where a tool that waits is to act otherwise than to come in, or to be elsewhere by more than rounding.
+/// Fails (scenario) where a tool that waits is to act otherwise than to come in, or to be elsewhere by more than
+/// rounding.
 std::optional<Failure> check_waiting(const std::vector<Tool>& tools, const StepInput& input);
 
 /// Brings in each tool whose action `exchange` begins (`actions`: one a tool, or none). Adds the events exchange and

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/triangle_crossing.h"
 #include "sim/field.h"
 
 namespace calot {
@@ -43,7 +44,7 @@ bool Sight::sees(const Vec3& place, double margin) const {
   const Vec3 along = way.normalized();
   return std::none_of(triangles_.begin(), triangles_.end(),
                       [&](const Corners& t) {
-                        const std::optional<double> at = met_at(t, along);
+                        const std::optional<double> at = met_at(t, eye_, along);
                         return at && *at > 0 && *at < length;
                       }) &&
          std::none_of(tools_.begin(), tools_.end(),
@@ -53,19 +54,9 @@ bool Sight::sees(const Vec3& place, double margin) const {
 double Sight::first_organ(const Vec3& along, double from) const {
   double first = std::numeric_limits<double>::infinity();
   for (const Corners& t : triangles_)
-    if (const std::optional<double> at = met_at(t, along); at && *at >= from) first = std::min(first, *at);
+    if (const std::optional<double> at = met_at(t, eye_, along); at && *at >= from)
+      first = std::min(first, *at);
   return first;
-}
-
-/// How far away, m, by Moeller and Trumbore 1997.
-std::optional<double> Sight::met_at(const Corners& t, const Vec3& along) const {
-  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = along.cross(ac);
-  const double volume = ab.dot(p);
-  if (volume == 0) return std::nullopt;  // seen from its edge
-  const Vec3 from = eye_ - t[0], q = from.cross(ab);
-  const double b = from.dot(p) / volume, c = along.dot(q) / volume;
-  if (!(b >= 0 && c >= 0 && b + c <= 1)) return std::nullopt;
-  return ac.dot(q) / volume;
 }
 
 /// On steps that are safe, as nothing is nearer than the distance.

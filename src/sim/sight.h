@@ -2,7 +2,6 @@
 // What is seen of the field from a place: by a laparoscope, or by who asks what lies behind.
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +29,6 @@ class Sight {
 
  private:
   using Corners = std::array<Vec3, 3>;
-  std::optional<double> met_at(const Corners& t, const Vec3& along) const;
   bool is_met(const Shape& shape, const Vec3& along, double length) const;
 
   Vec3 eye_;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/units.h"
+#include "geometry/triangle_crossing.h"
 #include "sim/aspirate.h"
 #include "sim/between_jaws.h"
 #include "sim/leak.h"
@@ -165,15 +166,10 @@ class Skins {
   };
   /// Share of the way at which it goes through a triangle from its outside.
   static std::optional<double> crosses(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& to) {
-    const Vec3 way = to - from, normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double along = normal.dot(way);
-    if (!(along < 0)) return std::nullopt;
-    const double share = normal.dot(t[0] - from) / along;
-    if (!(share >= 0 && share <= 1)) return std::nullopt;
-    const Vec3 at = from + share * way;
-    for (int k = 0; k < 3; ++k)
-      if (normal.dot((t[(k + 1) % 3] - t[k]).cross(at - t[k])) < 0) return std::nullopt;
-    return share;
+    const Vec3 way = to - from;
+    if (!((t[1] - t[0]).cross(t[2] - t[0]).dot(way) < 0)) return std::nullopt;
+    const std::optional<double> share = met_at(t, from, way);
+    return share && *share >= 0 && *share <= 1 ? share : std::nullopt;
   }
   std::vector<Skin> skins_;
 };
