@@ -52,7 +52,9 @@ std::vector<KeyTable> field_tables() {
                "a coefficient of friction of organs on each other",
                "coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated"),
            number("rest_within", &Anatomy::rest_within, quantity::length, 0, 1, "a distance",
-                  "an organ that comes to rest further than this from where it is drawn is named in reports, and by calot check --build"),
+                  "an organ that comes to rest further than this from where it is drawn is named in reports, "
+                  "and by "
+                  "calot check --build"),
            number("heart_rate", &Anatomy::heart_rate, quantity::number, 20, 240, "a heart's rate",
                   "beats a minute, with which what bleeds pulses"),
            number("table_head_up", &Anatomy::table_head_up, quantity::angle, -60 * deg, 60 * deg,

@@ -31,7 +31,8 @@ FieldState field_state(const Field& field) {
                            tool.tissue_stiffness,
                            tool.stiffness_across,
                            tool.meeting,
-                           tool.met});
+                           tool.met,
+                           tool.drag});
   return state;
 }
 
@@ -64,6 +65,7 @@ void restore(Field& field, const FieldState& state) {
     tool.stiffness_across = was.stiffness_across;
     tool.meeting = was.meeting;
     tool.met = was.met;
+    tool.drag = was.drag;
   }
 }
 

@@ -24,6 +24,7 @@ struct ToolSnapshot {
   double tissue_stiffness = 0, stiffness_across = 0;
   MeetingState meeting = {};
   bool met = false;
+  Vec3 drag = Vec3::Zero();
 };
 
 struct FieldState {

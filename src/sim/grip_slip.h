@@ -24,10 +24,10 @@ double holding_limit(const Tool& tool);
 double holding_limit(const Field& field, int instrument);
 
 /// Lets the held fold slide along the pads, in the direction of the pull, until they can hold it; skin that
-/// slides off the pads is let go step by step, as in a release; clips that give way first are drawn along (clips.h). Does
-/// nothing below holding_limit. The pull that started it is returned, N, 0 when nothing slipped; afterwards the pull is at
-/// most 100.1% of the limit, and near it unless part of the fold has left the pads. On failure (simulation) the grip holds
-/// as before.
+/// slides off the pads is let go step by step, as in a release; clips that give way first are drawn along (clips.h).
+/// Does nothing below holding_limit. The pull that started it is returned, N, 0 when nothing slipped; afterwards the
+/// pull is at most 100.1% of the limit, and near it unless part of the fold has left the pads. On failure (simulation)
+/// the grip holds as before.
 Result<double> slip(Field& field, int instrument, SolveStatistics& statistics);
 
 }  // namespace calot

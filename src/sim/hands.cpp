@@ -23,9 +23,9 @@ constexpr double shortest_way = 1e-6;
 /// rad: turns of the jaws and about the shaft that are no more than a solver's rounding; 1 um at the pads' ends.
 constexpr double turn_slack = 1e-4;
 
-/// Share of a tip's way across the force on it. Tissue that holds the tip pulls it back aside, too; as the force turns by
-/// that, a hand that is far from its command would swing about more with every step. By a force that grows alike in all
-/// directions the way is that to the place nearest to the command which the strength reaches.
+/// Share of a tip's way across the force on it. Tissue that holds the tip pulls it back aside, too; as the force turns
+/// by that, a hand that is far from its command would swing about more with every step. By a force that grows alike in
+/// all directions the way is that to the place nearest to the command which the strength reaches.
 double share_across(const Tool& tool, const Vec3& force, const Vec3& way) {
   const double strength = tool.definition.hand_force, stiffness = tool.stiffness_across;
   const double wanted = (stiffness * way - force).norm();

@@ -17,17 +17,17 @@ namespace calot {
 /// shaft.
 Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment);
 
-/// N at the hand, of the port's seal on a shaft that was pushed in by `way` (m; negative: drawn out) in `duration` s: against
-/// the way, the whole friction from 5 mm/s on, and in proportion below.
+/// N at the hand, of the port's seal on a shaft that was pushed in by `way` (m; negative: drawn out) in `duration` s:
+/// against the way, the whole friction from 5 mm/s on, and in proportion below.
 Vec3 port_drag(const Tool& tool, double way, double duration);
 
-/// Where tools come by the end of a step, one a tool, as commands and last states are. Waiting tools stay. Keeps each tool's
-/// command and what other tools press it with. Fails (simulation) where tools that meet find no balance.
+/// Where tools come by the end of a step, one a tool, as commands and last states are. Waiting tools stay. Keeps each
+/// tool's command and what other tools press it with. Fails (simulation) where tools that meet find no balance.
 Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
                                                 const std::vector<InstrumentState>& last);
 
-/// Sets tissue_stiffness and stiffness_across: how the tissue's force on the tip grew in a step, for the next one. The states are those at the
-/// step's begin and end; a tip that went less than 1 um keeps what it felt before.
+/// Sets tissue_stiffness and stiffness_across: how the tissue's force on the tip grew in a step, for the next one. The
+/// states are those at the step's begin and end; a tip that went less than 1 um keeps what it felt before.
 void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now);
 
 /// The name of a tool that another one is in or as near to as contact reaches, where both are; empty: none. Not of those

@@ -25,13 +25,14 @@ class TearWatch {
 Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, std::vector<WorldEvent>& events,
                     SolveStatistics& statistics);
 
-/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost. `slipped_before`, one a tool:
-/// it slid in the last step, too. Adds slip, release and clip_dropped. Fails (simulation) where a fold finds no rest.
+/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost. `slipped_before`, one a
+/// tool: it slid in the last step, too. Adds slip, release and clip_dropped. Fails (simulation) where a fold finds no
+/// rest.
 Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
                       SolveStatistics& statistics);
 
-/// At an angle at which closing jaws may take hold (closing_stops()): blades divide what is between them, and jaws that a
-/// fold fills hold it and stop. Adds what comes of it. Fails as close_blades() and release() do.
+/// At an angle at which closing jaws may take hold (closing_stops()): blades divide what is between them, and jaws that
+/// a fold fills hold it and stop. Adds what comes of it. Fails as close_blades() and release() do.
 Result<bool> close_jaws(Field& field, int instrument, TearWatch& tears, std::vector<WorldEvent>& events,
                         SolveStatistics& statistics);
 

@@ -21,7 +21,8 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
   state.tip_force = load.force;
   state.at_tip = force_at_tip(tool, load.force, load.moment);
-  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force);
+  state.handle_force =
+      handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force) + tool.drag;
   // Jaws that rest on a fold are no lag of the hand.
   InstrumentPose asked = tool.command;
   if (tool.jaw_stopped) asked.jaw = tool.pose.jaw;
@@ -110,6 +111,16 @@ void judge_stretch(const Field& field, const std::vector<OrganState>& before,
   }
 }
 
+/// What the seals of the ports drag at tools that come from where they were before.
+void feel_ports(std::vector<Tool>& tools, const std::vector<InstrumentState>& before, double duration) {
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    Tool& tool = tools[i];
+    const bool slid = i < before.size() && !tool.waits && !before[i].waits;
+    tool.drag =
+        slid ? port_drag(tool, tool.pose.insertion - before[i].pose.insertion, duration) : Vec3(Vec3::Zero());
+  }
+}
+
 void report_states(const Field& field, const std::vector<ToolLoad>& loads, StepReport& report) {
   report.instruments.clear();
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -133,6 +144,7 @@ void observe(Field& field, const std::vector<InstrumentAction>& actions, double 
   const std::vector<ToolLoad> loads = tool_loads(field);
   const std::vector<OrganState> before = report.organs;
   const std::vector<InstrumentState> tools_before = report.instruments;
+  feel_ports(field.tools, tools_before, duration);
   report_states(field, loads, report);
 
   // Events are raised when a condition begins, not while it lasts.
@@ -152,12 +164,7 @@ void observe(Field& field, const std::vector<InstrumentAction>& actions, double 
       events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
     tool.touched = state.touching;
     tool.over_limit = over;
-    if (i < tools_before.size()) {
-      feel_stiffness(tool, tools_before[i], state);
-      if (!state.waits && !tools_before[i].waits)
-        report.instruments[i].handle_force +=
-            port_drag(tool, state.pose.insertion - tools_before[i].pose.insertion, duration);
-    }
+    if (i < tools_before.size()) feel_stiffness(tool, tools_before[i], state);
     if (!state.meets.empty() && !tool.met) {
       WorldEvent event{EventKind::clash, 0, tool.definition.name, {}, state.meeting_force};
       event.text = state.meets;

@@ -115,8 +115,8 @@ std::vector<double> all_edge_lengths(const Field& field) {
   return out;
 }
 
-/// A strand's node that a tool pushes about may have next to no stiffness along some way. One that would go further than
-/// solves take it goes with its ends instead: the solve finds where it lies.
+/// A strand's node that a tool pushes about may have next to no stiffness along some way. One that would go further
+/// than solves take it goes with its ends instead: the solve finds where it lies.
 void make_believable(const Field& field, VecX& dx) {
   const BodyParts parts(field);
   for (std::size_t t = 0; t < field.tissues.size(); ++t) {

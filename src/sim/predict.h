@@ -15,14 +15,15 @@ struct Prediction {
   bool loaded = false;                     ///< whether the tools' motion or its own moves any organ
 };
 
-/// Answer of the organs to tools that move from `from` to `to` (one pose a tool), and the share of it that is safe. With
-/// `fresh` the tangent is factorised anew, else the last factor serves if there is one. Fails (simulation) where the tangent
-/// answers nothing that can be believed.
+/// Answer of the organs to tools that move from `from` to `to` (one pose a tool), and the share of it that is safe.
+/// With `fresh` the tangent is factorised anew, else the last factor serves if there is one. Fails (simulation) where
+/// the tangent answers nothing that can be believed.
 Result<Prediction> predict(Field& field, const std::vector<InstrumentPose>& from,
                            const std::vector<InstrumentPose>& to, bool fresh, SolveStatistics& statistics);
 
 /// The tools' motion while organs stay. Near the load at which a fold gives way the tangent is all but singular, and no
-/// part of its answer can be believed: that says nothing of the room that there is, and the solve finds where organs go.
+/// part of its answer can be believed: that says nothing of the room that there is, and the solve finds where organs
+/// go.
 Prediction of_tools_alone(Field& field, const std::vector<InstrumentPose>& from,
                           const std::vector<InstrumentPose>& to, SolveStatistics& statistics);
 

@@ -49,7 +49,8 @@ struct Tool {
   /// N/m, how the force on the tip grew with its way: along the force and across it; 0: none that counts.
   double tissue_stiffness = 0, stiffness_across = 0;
   MeetingState meeting = {};
-  bool met = false;  ///< it pressed on another tool at the last step, for events
+  bool met = false;          ///< it pressed on another tool at the last step, for events
+  Vec3 drag = Vec3::Zero();  ///< N at the hand, of the port's seal in the last step (hands.h)
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

@@ -1,6 +1,6 @@
 #pragma once
-// An instrument as a body of the group: two nodes (posed_part.h), held by a hand (hand.h) to where it is commanded. Other
-// instruments that it meets are joined to it by ToolMeeting; skins are not (hands.h).
+// An instrument as a body of the group: two nodes (posed_part.h), held by a hand (hand.h) to where it is commanded.
+// Other instruments that it meets are joined to it by ToolMeeting; skins are not (hands.h).
 
 #include "sim/body.h"
 #include "sim/hand.h"

@@ -35,7 +35,8 @@ class HandControl {
   void move_laparoscope(const HandMotion& motion, const SceneCamera& camera);
   bool out_of_reach() const { return out_of_reach_; }
   /// Where instruments are now, one each, and which wait outside. Hands pass over those; whose instrument was exchanged
-  /// holds the one that came in, from where it is, and so does one whose instrument was drawn back for another (`drawn`).
+  /// holds the one that came in, from where it is, and so does one whose instrument was drawn back for another
+  /// (`drawn`).
   void see(const std::vector<InstrumentPose>& poses, const std::vector<char>& waits,
            const std::vector<char>& drawn);
   /// For the mailbox: asks for the next instrument that waits for the selected hand's port; none: there is none.

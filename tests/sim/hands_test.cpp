@@ -89,6 +89,28 @@ TEST(Hands, APortsSealResistsAShaftThatSlidesThroughItWhicheverWay) {
   EXPECT_NEAR(felt_at(start.insertion - 1e-3), 0.7, 1e-9);
 }
 
+TEST(Hands, APortsSealIsFeltAsBeforeWhenAnOrganHasGoneAfterTheStep) {
+  SceneDefinition scene = test::ball_scene();
+  scene.instruments[0].port_friction = 0.7;
+  OrganDefinition other = test::bedded_ball();
+  other.name = "other";
+  for (Vec3* pole : {&other.neck, &other.fundus}) pole->x() += 60e-3;
+  scene.anatomy.organs.push_back(other);
+  World world = World::create(scene).value();
+  StepInput input{{world.report().instruments[0].pose}};
+  input.instruments[0].insertion += 0.2e-3;
+  ASSERT_TRUE(world.step(input));
+  const Vec3 felt = world.report().instruments[0].handle_force;
+  EXPECT_NEAR(felt.norm(), 0.7, 1e-9);
+  const FieldState before = world.state();
+  ASSERT_TRUE(world.remove("other", "taken out"));
+  EXPECT_EQ(world.report().instruments[0].handle_force, felt);
+  ASSERT_TRUE(world.step(input));
+  EXPECT_EQ(world.report().instruments[0].handle_force.norm(), 0);
+  ASSERT_TRUE(world.restore(before) && world.remove("ball", "taken out"));
+  EXPECT_EQ(world.report().instruments[0].handle_force, felt);
+}
+
 /// Two graspers whose shafts cross where one of them is led through the other.
 struct Crossed {
   World world;
