@@ -9,8 +9,8 @@ namespace calot {
 
 namespace {
 
-/// Up to this many nodes (0.4 MB) a table says at once where a block is.
-constexpr int table_nodes = 320;
+/// Up to this many nodes (1.4 MB) a table says at once where a block is.
+constexpr int table_nodes = 600;
 
 }  // namespace
 

@@ -4,13 +4,13 @@
 
 namespace calot {
 
-void Border::solve_with(const Cholesky& factor) {
+void Border::solve_with(const Cholesky& factor, Workers* workers) {
   if (constraints() == 0) {
     answers.resize(gradients.rows(), 0);
     complement.resize(0, 0);
     return;
   }
-  answers = factor.solve(gradients);
+  answers = factor.solve(gradients, workers);
   complement.noalias() = gradients.transpose() * answers;
   if (compliances.size() > 0) complement.diagonal() += compliances;
 }

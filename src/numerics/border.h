@@ -19,7 +19,7 @@ struct Border {
   int constraints() const { return static_cast<int>(gradients.cols()); }
   std::vector<int> kept() const;  ///< those without a compliance
   /// To a factor of K.
-  void solve_with(const Cholesky& factor);
+  void solve_with(const Cholesky& factor, Workers* workers = nullptr);
   /// A constraint that no step can keep beside the others: its gradient is none, or but for rounding in theirs. One with
   /// a compliance gives way instead.
   std::optional<int> dependent() const;

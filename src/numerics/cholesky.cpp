@@ -61,7 +61,7 @@ struct Cholesky::Impl {
     cholmod_finish(&common);
   }
 
-  FactorStatus factorise_dense(const BlockMatrix& matrix);
+  FactorStatus factorise_dense(const BlockMatrix& matrix, Workers* workers);
   FactorStatus factorise_sparse(const BlockMatrix& matrix);
 
   // CHOLMOD reads through non-const pointers and does not write through them here.
@@ -110,18 +110,18 @@ Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept, Facto
 
 FactorKind Cholesky::kind() const { return impl_->kind; }
 
-FactorStatus Cholesky::factorise(const BlockMatrix& matrix) {
+FactorStatus Cholesky::factorise(const BlockMatrix& matrix, Workers* workers) {
   // Neither library minds a NaN (CHOLMOD 3.0.14 takes one on the diagonal for a success), so look before.
   if (!matrix.all_finite()) return FactorStatus::not_finite;
   if (impl_.use_count() > 1) impl_ = std::make_shared<Impl>(*impl_);
   if (impl_->kind == FactorKind::sparse) return impl_->factorise_sparse(matrix);
-  return impl_->factorise_dense(matrix);
+  return impl_->factorise_dense(matrix, workers);
 }
 
-FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix) {
+FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix, Workers* workers) {
   const FactorStatus status = condensation->eliminate(matrix, kept);
   if (status != FactorStatus::ok) return status;
-  return kept.factorise() ? FactorStatus::ok : FactorStatus::not_positive_definite;
+  return kept.factorise(workers) ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
 FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
@@ -134,7 +134,18 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
 }
 
 VecX Cholesky::solve(const VecX& right) const { return solve_columns(right); }
-Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right) const { return solve_columns(right); }
+Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right, Workers* workers) const {
+  if (!impl_->condensation) return solve_columns(right);  // CHOLMOD's workspaces serve one thread
+  // Columns: two halves, as each part reads the whole factor.
+  const Eigen::Index together = 4;
+  const auto chunks = static_cast<int>((right.cols() + together - 1) / together);
+  Eigen::MatrixXd out(right.rows(), right.cols());
+  for_each_chunk(workers, chunks, [&](int chunk) noexcept {
+    const Eigen::Index first = chunk * together, count = std::min(together, right.cols() - first);
+    out.middleCols(first, count) = solve_columns<Eigen::MatrixXd>(right.middleCols(first, count));
+  });
+  return out;
+}
 
 template <class Columns>
 Columns Cholesky::solve_columns(const Columns& right) const {

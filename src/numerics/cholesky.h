@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/workers.h"
 #include "numerics/block_matrix.h"
 
 namespace calot {
@@ -54,11 +55,11 @@ class Cholesky {
   bool shares_factor_with(const Cholesky& other) const { return impl_ == other.impl_; }
 
   /// Factorises a matrix of the analysed pattern; values are checked to be finite before, the status after.
-  FactorStatus factorise(const BlockMatrix& matrix);
+  FactorStatus factorise(const BlockMatrix& matrix, Workers* workers = nullptr);
   /// Solves with the last factor, which must be ok.
   VecX solve(const VecX& right) const;
   /// Many columns in a fraction of the time that they take one by one.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right, Workers* workers = nullptr) const;
   /// Cheap estimate of the reciprocal condition number: (smallest / largest diagonal of L)^2.
   double reciprocal_condition() const;
   FactorKind kind() const;

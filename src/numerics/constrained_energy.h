@@ -1,6 +1,7 @@
 #pragma once
 // What Newton's method makes stationary: the energy of one body or of a group of them, with volumes that are kept.
 
+#include "base/workers.h"
 #include "numerics/block_matrix.h"
 #include "numerics/parts.h"
 
@@ -46,6 +47,8 @@ class ConstrainedEnergy {
   virtual void prepare(NewtonWorkspace&) const {}
   /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
   virtual double safe_share(const VecX& x, const VecX& step) const = 0;
+  /// Who share the work of a solve; none: the caller's thread does it.
+  virtual Workers* workers() const { return nullptr; }
 };
 
 }  // namespace calot

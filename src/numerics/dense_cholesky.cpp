@@ -24,10 +24,37 @@ struct Panel {
   }
 };
 
+/// Takes the product of `under` with itself off the lower triangle of `rest`, a block of columns at a time.
+template <class Under, class Rest>
+void take_product_off(const Under& under, Rest rest, Workers* workers) {
+  constexpr Eigen::Index columns = 2 * cholesky_block;  // narrower ones read the rows more often
+  const auto chunks = static_cast<int>((rest.cols() + columns - 1) / columns);
+  for_each_chunk(workers, chunks, [&](int chunk) noexcept {
+    // Chunks are taken from the last on, which is the smallest: the longest columns shall come first.
+    const Eigen::Index k = (chunks - 1 - chunk) * columns, size = std::min(columns, rest.cols() - k),
+                       below = rest.cols() - k - size;
+    const auto here = under.middleRows(k, size);
+    rest.block(k, k, size, size).template selfadjointView<Eigen::Lower>().rankUpdate(here, -1);
+    if (below > 0)
+      rest.block(k + size, k, below, size).noalias() -= under.bottomRows(below) * here.transpose();
+  });
+}
+
+/// Under a corner of a factor: what is there, times the inverse of its transpose.
+template <class Corner, class Under>
+void solve_under(const Corner& corner, Under under, Workers* workers) {
+  constexpr Eigen::Index rows = 96;  // twice as many as the corner has: less is not worth to be shared
+  const auto chunks = static_cast<int>((under.rows() + rows - 1) / rows);
+  for_each_chunk(workers, chunks, [&](int chunk) noexcept {
+    auto part = under.middleRows(chunk * rows, std::min(rows, under.rows() - chunk * rows));
+    corner.matrixU().template solveInPlace<Eigen::OnTheRight>(part);
+  });
+}
+
 }  // namespace
 
 // Block by block. As Eigen::LLT, which copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
-bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends) {
+bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends, Workers* workers) {
   for (Eigen::Index first = 0; first < a.rows(); first += cholesky_block) {
     const auto [k, size, below] = Panel(a, ends, first);
     const Eigen::LLT<Eigen::MatrixXd> corner(a.block(k, k, size, size));
@@ -35,8 +62,8 @@ bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends
     a.block(k, k, size, size).triangularView<Eigen::Lower>() = corner.matrixLLT();
     if (below == 0) continue;
     auto under = a.block(k + size, k, below, size);
-    corner.matrixU().solveInPlace<Eigen::OnTheRight>(under);
-    a.block(k + size, k + size, below, below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1);
+    solve_under(corner, under, workers);
+    take_product_off(under, a.block(k + size, k + size, below, below), workers);
   }
   return true;
 }

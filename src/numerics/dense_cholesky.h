@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/workers.h"
 #include "geometry/types.h"
 
 namespace calot {
@@ -12,8 +13,9 @@ inline constexpr Eigen::Index cholesky_block = 48;
 
 /// L in place of the lower triangle of a, the only part that is read; false when a is not positive definite. `ends`:
 /// one past the last row that is not zero in each block of columns, never falling: nothing below is read or written;
-/// none: all rows.
-bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends = {});
+/// none: all rows. The bits do not depend on who shares the work.
+bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends = {},
+                       Workers* workers = nullptr);
 
 /// (L L')^-1 right, of a factor that succeeded, with the same ends. Columns together take a fraction of the time.
 VecX cholesky_solve(const Eigen::MatrixXd& l, VecX right, const std::vector<Eigen::Index>& ends = {});

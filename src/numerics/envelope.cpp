@@ -107,7 +107,7 @@ void EnvelopeFactor::subtract(std::span<const int> nodes, const double* product)
     }
 }
 
-bool EnvelopeFactor::factorise() { return cholesky_in_place(l_, ends_); }
+bool EnvelopeFactor::factorise(Workers* workers) { return cholesky_in_place(l_, ends_, workers); }
 
 template <class Columns>
 Columns EnvelopeFactor::solve_columns(const Columns& right) const {

@@ -34,7 +34,7 @@ class EnvelopeFactor {
   /// Takes the lower triangle of `product`, 3 x 3 blocks of all pairs of `nodes`, by columns, off what is loaded.
   void subtract(std::span<const int> nodes, const double* product);
   /// False when the matrix that was loaded is not positive definite.
-  bool factorise();
+  bool factorise(Workers* workers = nullptr);
   /// With the last factor, which must have succeeded.
   VecX solve(const VecX& right) const;
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;

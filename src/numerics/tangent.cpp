@@ -21,9 +21,9 @@ void add_shifts(const VecX& shifts, std::span<const Part> parts, BlockMatrix& ma
     parts[p].for_nodes([&](int node) { matrix.add_to_diagonal(node, shifts[p]); });
 }
 
-NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, NewtonWorkspace& work,
-                              NewtonResult& result) {
-  FactorStatus status = work.factor.factorise(work.matrix);
+NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Workers* workers,
+                              NewtonWorkspace& work, NewtonResult& result) {
+  FactorStatus status = work.factor.factorise(work.matrix, workers);
   const Border& border = work.border;
   // Between a stiff joint and a strand of fat the condition is low without anything amiss.
   const bool weighed = std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.weighed; });
@@ -42,14 +42,14 @@ NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Newton
       mechanism(work.matrix, border.gradients, VecX(), x, parts)) {
     add_shifts(shifts_of(next_to_nothing, work.matrix, parts), parts, work.matrix);
     ++result.shifts;
-    status = work.factor.factorise(work.matrix);
+    status = work.factor.factorise(work.matrix, workers);
   }
   const bool shifted = status == FactorStatus::not_positive_definite;
   VecX shifts = shifted ? shifts_of(1e-4, work.matrix, parts) : VecX();
   while (status == FactorStatus::not_positive_definite) {
     add_shifts(shifts, parts, work.matrix);
     ++result.shifts;
-    status = work.factor.factorise(work.matrix);
+    status = work.factor.factorise(work.matrix, workers);
     shifts *= 4;
     if (!shifts.allFinite()) return NewtonStatus::not_finite;
   }
@@ -73,9 +73,9 @@ void factorise(const ConstrainedEnergy& problem, std::span<const Part> parts, co
   }
   const Timed timed(result.factorisation_s);
   work.factored = false;
-  result.status = factorise_matrix(parts, x, work, result);
+  result.status = factorise_matrix(parts, x, problem.workers(), work, result);
   if (result.status != NewtonStatus::converged) return;
-  work.border.solve_with(work.factor);
+  work.border.solve_with(work.factor, problem.workers());
   if (!work.border.complement.allFinite()) {
     result.status = NewtonStatus::not_finite;
   } else if (const std::optional<int> dependent = work.border.dependent()) {

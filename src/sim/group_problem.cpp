@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "fem/assembly.h"
 
@@ -303,7 +304,14 @@ std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
   std::vector<std::vector<int>> out;
   if (joins_.empty()) return out;
   const VecX x = coordinates();
-  for (const Join* join : joins_at(x)) join->add_cliques(x, close, out);
+  const std::vector<const Join*> joins = joins_at(x);
+  std::vector<std::vector<std::vector<int>>> of_join(joins.size());
+  for_each_chunk(workers(), static_cast<int>(joins.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    joins[k]->add_cliques(x, close, of_join[k]);
+  });
+  for (std::vector<std::vector<int>>& own : of_join)
+    out.insert(out.end(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
   return out;
 }
 

@@ -99,6 +99,7 @@ class GroupProblem : public ConstrainedEnergy {
   VecX compliances() const override;
   void prepare(NewtonWorkspace& work) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
+  Workers* workers() const override;
 
  private:
   struct Range {
@@ -117,7 +118,6 @@ class GroupProblem : public ConstrainedEnergy {
                        const VecX* x = nullptr) const;
   /// Those that may act at x, or on a step from there (null: none).
   std::vector<const Join*> joins_at(const VecX& x, const VecX* step = nullptr) const;
-  Workers* workers() const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
   /// One a node: what is not kept is condensed.

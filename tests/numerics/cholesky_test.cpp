@@ -49,6 +49,26 @@ TEST_P(CholeskyOf, AnalysisServesEveryMatrixOfItsPattern) {
   }
 }
 
+TEST_P(CholeskyOf, SharedWorkGivesTheSameBits) {
+  Rng rng(4);
+  Workers workers(3);
+  ASSERT_EQ(workers.threads(), 3);
+  // Several blocks of columns under a corner and several columns to solve for: more than one piece of each.
+  const BlockMatrix matrix = test::random_positive(rng, 150);
+  Eigen::MatrixXd right(matrix.size(), 9);
+  for (Eigen::Index k = 0; k < right.cols(); ++k)
+    right.col(k) = test::random_coordinates(rng, matrix.size(), 1.0);
+  Cholesky alone = factor(matrix), shared = factor(matrix);
+  ASSERT_EQ(alone.factorise(matrix), FactorStatus::ok);
+  const Eigen::MatrixXd x = alone.solve(right);
+  for (int round = 0; round < 20; ++round) {
+    ASSERT_EQ(shared.factorise(matrix, &workers), FactorStatus::ok);
+    ASSERT_EQ(shared.solve(right, &workers), x) << round;
+  }
+  for (Eigen::Index k = 0; k < right.cols(); ++k)
+    EXPECT_LT((matrix.multiply(x.col(k)) - right.col(k)).norm(), 1e-13 * right.col(k).norm()) << k;
+}
+
 TEST_P(CholeskyOf, SameMatrixGivesTheSameBits) {
   Rng rng(3);
   const BlockMatrix matrix = test::random_positive(rng, 20);
