@@ -1,5 +1,6 @@
 #include "numerics/newton.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -98,7 +99,22 @@ class Iteration {
     return std::max(state.worst_residual.value, state.worst_constraint.value) / settings_.tolerance;
   }
 
-  bool balanced() const { return imbalance(state_) <= 1.0 && increment_.value <= settings_.tolerance; }
+  bool balanced() const {
+    return in_place_ || (imbalance(state_) <= 1.0 && increment_.value <= settings_.tolerance);
+  }
+
+  /// Whether no coordinates can be nearer to balance: those of each part change by less than they are rounded to.
+  /// Stiffness times that is a force, of a stone that falls half a metre away 1e-4 of its weight.
+  bool is_below_rounding(const VecX& step) const {
+    constexpr double most = 1e-3;  // of the largest forces: what is further off is no rounding
+    if (work_.shifted || state_.worst_residual.value > most ||
+        state_.worst_constraint.value > settings_.constraint_tolerance)
+      return false;
+    return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+      return largest_coordinate(part, step) <=
+             std::numeric_limits<double>::epsilon() * largest_coordinate(part, x_);
+    });
+  }
 
   /// Whether no iteration follows; result_.status says why.
   bool ended() {
@@ -237,6 +253,7 @@ class Iteration {
     if (increment.value <= smallest_move) {
       // In balance to rounding no step improves it: a step that is no longer worth taking is the last increment.
       increment_ = relative_increment(step, 1.0);
+      in_place_ = is_below_rounding(step);
       if (!balanced()) result_.status = NewtonStatus::stalled;
       return balanced();
     }
@@ -260,6 +277,7 @@ class Iteration {
   State state_;
   Worst increment_;          ///< the last, relative
   double left_of_last_ = 0;  ///< share of the imbalance that the last step left
+  bool in_place_ = false;    ///< no step is worth taking, to rounding
   SecantSteps seen_;
 };
 

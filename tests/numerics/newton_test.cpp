@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "spring_net.h"
 
 namespace calot {
@@ -70,6 +72,28 @@ TEST(Newton, InBalanceToRoundingIsConverged) {
       EXPECT_LE(result.increment, tight.tolerance);
       EXPECT_LT((from - x).norm(), 1e-11);
     }
+  }
+}
+
+TEST(Newton, WhereCoordinatesAreTooCoarseForTheToleranceNoneIsNearerToBalance) {
+  for (bool constrained : {false, true}) {
+    Net net(constrained);
+    net.ground = 1e10;  // times what coordinates are rounded to, 1e-16 m: 1e-5 of the load
+    NewtonWorkspace work = net.workspace();
+    VecX x = net.rest();
+    double multiplier = 0;
+    const NewtonResult result = solve_equilibrium(net, {}, work, x, multiplier);
+    EXPECT_TRUE(result.converged()) << to_text(result.status);
+    EXPECT_GT(result.residual, NewtonSettings{}.tolerance);
+    EXPECT_GT((x - net.rest()).norm(), 1e-12);
+    const VecX left = residual(net, x, multiplier);
+    for (Eigen::Index k = 0; k < x.size(); ++k)
+      for (double way : {-1.0, 1.0}) {
+        if (net.rest()[k] == 0) continue;  // near the origin coordinates are as fine as one likes
+        VecX beside = x;
+        for (int steps = 0; steps < 3; ++steps) beside[k] = std::nextafter(beside[k], 10 * way);
+        EXPECT_GT(std::abs(residual(net, beside, multiplier)[k]), std::abs(left[k])) << k;
+      }
   }
 }
 
