@@ -6,6 +6,7 @@
 #include "app/interrupt.h"
 #include "app/play.h"
 #include "app/project.h"
+#include "app/result_files.h"
 #include "app/terminal.h"
 #include "session/json.h"
 #include "session/metrics.h"
@@ -46,7 +47,7 @@ std::vector<Named> files_of(const std::vector<std::string>& names) {
 
 /// Brings the world to rest and lets the demo try it: what cannot be filled or reached is found here.
 std::optional<Failure> build(ExerciseScript& script, std::vector<std::string>& rest) {
-  const Result<World> world = World::create(script.definition().scene, &interrupt_flag());
+  const Result<World> world = World::create(script.definition().scene, &interrupt_flag(), 1, kept_results());
   if (!world) return script.located(world.failure());
   rest = rest_remarks(world.value());
   std::vector<Problem> problems = script.rehearse(world.value());

@@ -7,6 +7,7 @@
 #include "app/output_folder.h"
 #include "app/project.h"
 #include "app/replay_checks.h"
+#include "app/result_files.h"
 #include "app/terminal.h"
 #include "lua/load_exercise.h"
 #include "render/offscreen.h"
@@ -250,7 +251,7 @@ Result<Played> play(const PlayRequest& request) {
     renderer = std::move(created).value();
     capture.emplace(*renderer, exercise, request, played.output);
   }
-  Result<World> world = World::create(exercise.scene, &interrupt_flag(), request.threads);
+  Result<World> world = World::create(exercise.scene, &interrupt_flag(), request.threads, kept_results());
   if (!world) return script.value()->located(world.failure());
   Result<Outputs> outputs = open_outputs(request, exercise, world.value());
   if (!outputs) return outputs.failure();

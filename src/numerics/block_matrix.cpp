@@ -85,6 +85,12 @@ void BlockMatrix::add_cliques(int first, std::vector<std::vector<int>>& cliques)
       cliques.push_back({first + j, first + pattern_->block_row[k]});
 }
 
+std::vector<std::vector<int>> BlockMatrix::couplings() const {
+  std::vector<std::vector<int>> out;
+  add_cliques(0, out);
+  return out;
+}
+
 BlockMatrix BlockMatrix::widened(std::span<const std::vector<int>> cliques) const {
   std::vector<std::vector<int>> all(cliques.begin(), cliques.end());
   add_cliques(0, all);

@@ -36,6 +36,8 @@ class BlockMatrix {
   BlockMatrix blank() const;
   bool same_pattern(const BlockMatrix& other) const { return pattern_ == other.pattern_; }
 
+  /// The pattern as cliques: a pair of nodes for each block.
+  std::vector<std::vector<int>> couplings() const;
   /// The same values with room for the couplings of further cliques.
   BlockMatrix widened(std::span<const std::vector<int>> cliques) const;
   /// Starts from a matrix whose pattern this one's holds.

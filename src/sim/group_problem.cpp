@@ -288,7 +288,11 @@ void GroupProblem::prepare(NewtonWorkspace& work) const {
     if (patterns_.joined.size() <= most_idle * close.size() && holds(work.matrix, close)) return;
   }
   patterns_.joined = cliques(false);
-  work = NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined), kept_nodes());
+  work = workspace();
+}
+
+NewtonWorkspace GroupProblem::workspace() const {
+  return NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined), kept_nodes());
 }
 
 std::vector<char> GroupProblem::kept_nodes() const {

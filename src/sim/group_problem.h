@@ -82,6 +82,8 @@ class GroupProblem : public ConstrainedEnergy {
   VecX resting_multipliers() const;
   /// Of each member, Pa; 0 where it has none among the multipliers.
   VecX pressures(const VecX& multipliers) const;
+  /// Room for what its patterns couple, as prepare() makes it; of two members or more.
+  NewtonWorkspace workspace() const;
   /// Writes a solution into the members' states.
   void keep(const VecX& x, const VecX& multipliers) const;
 

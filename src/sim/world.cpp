@@ -14,6 +14,7 @@
 #include "sim/body_kinds.h"
 #include "sim/change_bodies.h"
 #include "sim/clips.h"
+#include "sim/come_to_rest.h"
 #include "sim/exchange.h"
 #include "sim/field_hash.h"
 #include "sim/field_state.h"
@@ -118,47 +119,6 @@ void World::Impl::place_laparoscope(const InstrumentPose& pose) {
                                     : (looked_at - report.laparoscope.view.position).norm();
 }
 
-namespace {
-
-/// Hollow organs have come to rest alone: what is tied to them, or has no rest of its own, moves them on. Without
-/// friction, whose anchors belong to shapes that the tools' will come before.
-Result<bool> bring_to_rest_together(Field& field, const AnatomyDefinition& anatomy, bool dynamic) {
-  bool released = false;
-  for (Organ& organ : field.organs) {
-    const Result<bool> let_go = release_filled(organ);
-    if (!let_go) return let_go.failure();
-    released |= let_go.value();
-  }
-  if (released) field.group.forget_bodies();
-  const bool alone = anatomy.joints.empty() && field.tissues.empty() && !released &&
-                     std::all_of(field.organs.begin(), field.organs.end(),
-                                 [](const Organ& organ) { return is_hollow(organ.definition.shape); });
-  if (alone) return true;
-  SolveStatistics statistics;
-  const std::vector<Ground> rough = field.ground;
-  for (Ground& ground : field.ground) ground.friction = 0;
-  field.group.friction = 0;
-  const GroupSnapshot before = snapshot(field);
-  Result<bool> rested = settle_field(field, "at rest", statistics);
-  if (!rested && dynamic) {
-    restore(field, before);
-    rested = sink_field(field, statistics);
-  }
-  field.ground = rough;
-  field.group.friction = anatomy.friction;
-  if (!rested) return rested;
-  for (Organ& organ : field.organs) {
-    const ShellBody* shell = shell_of(organ);
-    if (shell == nullptr) continue;
-    ShellBody at_rest = *shell;
-    at_rest.keep_in_equilibrium(organ.state);
-    organ.body = std::make_shared<const ShellBody>(std::move(at_rest));
-  }
-  return true;
-}
-
-}  // namespace
-
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -186,7 +146,8 @@ std::vector<RestShift> shifts_from_drawn(const std::vector<Organ>& organs) {
 
 }  // namespace
 
-Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads) {
+Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads,
+                            KeptResults* kept) {
   std::vector<Problem> problems = validate(scene);
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   auto impl = std::make_unique<Impl>(threads);
@@ -216,8 +177,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   if (Result<bool> joined = join_bodies(scene.anatomy, impl->field); !joined) return joined.failure();
   if (Result<bool> made = add_tissues(scene.anatomy, impl->up, impl->field); !made) return made.failure();
-  if (Result<bool> rested = bring_to_rest_together(impl->field, scene.anatomy, limits.sinks); !rested)
-    return rested.failure();
+  if (Result<bool> rested = come_to_rest(scene, impl->field, kept); !rested) return rested.failure();
   impl->rest_shifts = shifts_from_drawn(impl->field.organs);
   impl->field.up = impl->up;
   impl->field.heart_rate = scene.anatomy.heart_rate;

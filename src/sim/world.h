@@ -19,6 +19,7 @@ namespace calot {
 struct DrawnSurface;
 struct Field;
 struct FieldState;
+class KeptResults;
 
 /// The point of an organ's skin that came to rest furthest from where it is drawn.
 struct RestShift {
@@ -31,9 +32,10 @@ class World {
   /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
   /// (validation), simulation (the rest state could not be found), resource (it would take too long) or interrupted
   /// (`stop` became true). Of `threads`, at most as many share the work of a step for the world's life: its bits are the
-  /// same whatever their number.
+  /// same whatever their number. What takes long is looked for among `kept` first, and kept there when it had to be found:
+  /// no bit depends on whether it was there; null: nothing is.
   static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr,
-                              int threads = 1);
+                              int threads = 1, KeptResults* kept = nullptr);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();

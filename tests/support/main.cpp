@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "base/log.h"
 #include "support/warnings.h"
 
@@ -27,6 +29,8 @@ class WarningsFail : public ::testing::EmptyTestEventListener {
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleMock(&argc, argv);
+  // Nothing that an earlier run has kept may decide a test, of this program or of one that it starts.
+  setenv("CALOT_CACHE", "", 1);
   calot::set_log_sink([](calot::LogLevel level, const std::string& text) {
     if (level == calot::LogLevel::warning) calot::test::warnings().push_back(text);
   });

@@ -1,0 +1,151 @@
+#include "sim/rest_state.h"
+
+#include "base/bytes.h"
+#include "sim/field_tissues.h"
+#include "sim/settle_field.h"
+
+namespace calot {
+namespace {
+
+std::vector<const Body*> bodies_of(const Field& field) {
+  std::vector<const Body*> out;
+  for (const Organ& organ : field.organs) out.push_back(organ.body.get());
+  for (const Tissue& tissue : field.tissues) out.push_back(tissue.body.get());
+  return out;
+}
+
+bool fits(const RestState& state, const Field& field) {
+  const std::vector<const Body*> bodies = bodies_of(field);
+  if (state.places.size() != bodies.size() || state.pressures.size() != field.organs.size()) return false;
+  if (state.factored && state.own.size() != bodies.size()) return false;
+  Eigen::Index size = 0;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (state.places[k].size() != bodies[k]->rest().size()) return false;
+    size += state.places[k].size();
+  }
+  return !state.factored || state.constraints.rows() == size;
+}
+
+/// As the search left them: values are written anew by each solve.
+void take_patterns(const RestState& state, const std::vector<const Body*>& bodies, GroupPatterns& patterns) {
+  patterns.own.clear();
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    patterns.own.push_back(state.own[k].empty() ? bodies[k]->pattern()
+                                                : BlockMatrix(bodies[k]->nodes(), state.own[k]));
+  patterns.joined = state.joined;
+}
+
+bool take_factor(const RestState& state, NewtonWorkspace& work) {
+  if (work.matrix.entries().size() != state.matrix.size()) return false;
+  work.matrix.assign(state.matrix);
+  if (work.factor.factorise(work.matrix) != FactorStatus::ok) return false;
+  work.border.gradients = state.constraints;
+  work.border.compliances = state.compliances;
+  work.border.solve_with(work.factor);
+  work.factored = true;
+  work.shifted = state.shifted;
+  return true;
+}
+
+}  // namespace
+
+RestState rest_state(const Field& field) {
+  RestState out;
+  for (const Organ& organ : field.organs) {
+    out.places.push_back(organ.state.x);
+    out.pressures.push_back(organ.state.datum_pressure);
+  }
+  for (const Tissue& tissue : field.tissues) out.places.push_back(tissue.now.state.x);
+  const Group& group = field.group;
+  out.factored = group.work.factored;
+  if (!out.factored) return out;
+  const std::vector<const Body*> bodies = bodies_of(field);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const BlockMatrix& own = group.patterns.own[k];
+    const bool widened = own.entries().size() != bodies[k]->pattern().entries().size();
+    out.own.push_back(widened ? own.couplings() : std::vector<std::vector<int>>());
+  }
+  out.joined = group.patterns.joined;
+  out.shifted = group.work.shifted;
+  out.matrix = group.work.matrix.entries();
+  out.constraints = group.work.border.gradients;
+  out.compliances = group.work.border.compliances;
+  return out;
+}
+
+bool take_rest_state(const RestState& state, Field& field) {
+  if (!fits(state, field)) return false;
+  const GroupSnapshot before = snapshot(field);
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    field.organs[k].state.x = state.places[k];
+    field.organs[k].state.datum_pressure = state.pressures[k];
+  }
+  for (std::size_t t = 0; t < field.tissues.size(); ++t)
+    field.tissues[t].now.state.x = state.places[field.organs.size() + t];
+  Group& group = field.group;
+  if (state.factored) take_patterns(state, bodies_of(field), group.patterns);
+  std::vector<ContactLoads> loads;
+  for (const Organ& organ : field.organs) loads.push_back(solve_loads(field, organ, present_poses(field)));
+  std::vector<Member> members = members_of(field, loads);
+  TissueMembers tissues(field);
+  tissues.add_to(members);
+  // A solve begins here, too: what joins the bodies is told who they are.
+  const std::vector<JoinPointer> joins = all_joins(field, present_poses(field));
+  const GroupProblem problem(members, joins, group.patterns);
+  if (!state.factored) return true;
+  group.work = problem.workspace();
+  if (take_factor(state, group.work)) return true;
+  restore(field, before);
+  return false;
+}
+
+namespace {
+
+std::span<const double> numbers_of(const VecX& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+VecX vector_of(const std::vector<double>& numbers) {
+  return Eigen::Map<const VecX>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+}  // namespace
+
+std::string to_bytes(const RestState& state) {
+  ByteWriter out;
+  out.add(state.places.size());
+  for (const VecX& x : state.places) out.add(numbers_of(x));
+  out.add(std::span<const double>(state.pressures));
+  out.add(state.own.size());
+  for (const std::vector<std::vector<int>>& own : state.own) out.add(own);
+  out.add(state.joined);
+  out.add(static_cast<char>(state.factored));
+  out.add(static_cast<char>(state.shifted));
+  out.add(std::span<const double>(state.matrix));
+  out.add(state.constraints.rows());
+  out.add(state.constraints.cols());
+  out.add(numbers_of(VecX(state.constraints.reshaped())));
+  out.add(numbers_of(state.compliances));
+  return out.bytes();
+}
+
+std::optional<RestState> rest_state_of(std::string_view bytes) {
+  constexpr std::size_t counts = sizeof(std::size_t);
+  ByteReader in(bytes);
+  RestState state;
+  state.places.resize(in.counted(counts));
+  for (VecX& x : state.places) x = vector_of(in.numbers<double>());
+  state.pressures = in.numbers<double>();
+  state.own.resize(in.counted(counts));
+  for (std::vector<std::vector<int>>& own : state.own) own = in.lists();
+  state.joined = in.lists();
+  state.factored = in.number<char>() != 0;
+  state.shifted = in.number<char>() != 0;
+  state.matrix = in.numbers<double>();
+  const auto rows = in.number<Eigen::Index>(), columns = in.number<Eigen::Index>();
+  const VecX constraints = vector_of(in.numbers<double>());
+  state.compliances = vector_of(in.numbers<double>());
+  if (!in.complete() || constraints.size() != rows * columns) return std::nullopt;
+  state.constraints = constraints.reshaped(rows, columns);
+  return state;
+}
+
+}  // namespace calot
