@@ -3,9 +3,9 @@
 // augmented Lagrangian (Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 17 and 18).
 //
 // Converged: of each part, largest nodal residual / largest internal nodal force and largest coordinate of the last
-// increment / length, and each constraint / its scale, are within their tolerances. So none hides another. What is stiff, lightly
-// loaded and far from the origin may stay further off: where a step by the true tangent is shorter than what coordinates
-// are rounded to, no state is nearer to balance.
+// increment / length, and each constraint / its scale, are within their tolerances. So none hides another. What is
+// stiff, lightly loaded and far from the origin may stay further off: where a step by the true tangent is shorter than
+// what coordinates are rounded to, no state is nearer to balance.
 
 #include <functional>
 
