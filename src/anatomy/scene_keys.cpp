@@ -53,8 +53,7 @@ std::vector<KeyTable> field_tables() {
                "coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated"),
            number("rest_within", &Anatomy::rest_within, quantity::length, 0, 1, "a distance",
                   "an organ that comes to rest further than this from where it is drawn is named in reports, "
-                  "and by "
-                  "calot check --build"),
+                  "and by calot check --build"),
            number("heart_rate", &Anatomy::heart_rate, quantity::number, 20, 240, "a heart's rate",
                   "beats a minute, with which what bleeds pulses"),
            number("table_head_up", &Anatomy::table_head_up, quantity::angle, -60 * deg, 60 * deg,

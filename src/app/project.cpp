@@ -101,10 +101,9 @@ Result<std::string> read_text(const fs::path& path, std::size_t most) {
               "restore it: this is none that was written here", {path.string(), 0, {}});
 }
 
-Result<std::string> write_text(const fs::path& path, const std::string& text) {
+Result<std::string> write_text(const fs::path& path, const std::string& text, fs::path part) {
   // A file that was there is lost only to a whole new one.
-  fs::path part = path;
-  part += ".part";
+  if (part.empty()) part = fs::path(path) += ".part";
   errno = 0;
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
   out << text;

@@ -34,7 +34,10 @@ std::optional<Failure> check_scenario_path(const std::string& path);
 /// The whole text of a file. Fails (usage) where it cannot be read or has more than `most` bytes.
 Result<std::string> read_text(const std::filesystem::path& path, std::size_t most = std::size_t{64} << 20);
 /// Fails (usage) where it cannot be written; a file that was there is then left as it was. The value is the path.
-Result<std::string> write_text(const std::filesystem::path& path, const std::string& text);
+/// `part`: where it is until it is whole, a name of the writer's own where several may write at once; empty: the path
+/// with ".part".
+Result<std::string> write_text(const std::filesystem::path& path, const std::string& text,
+                               std::filesystem::path part = {});
 /// Makes a folder and its parents. Fails (usage) where it cannot be made or written to.
 Result<std::filesystem::path> make_folder(const std::filesystem::path& path);
 

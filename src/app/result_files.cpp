@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "app/loaded_code.h"
+#include "app/project.h"
 #include "base/digest.h"
 
 namespace calot {
@@ -66,9 +65,9 @@ fs::path ResultFiles::file_of(const std::string& key) const {
 
 std::optional<std::string> ResultFiles::find(const std::string& key) {
   const fs::path path = file_of(key);
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const Result<std::string> read = read_text(path, 2 * most_bytes);
+  if (!read) return std::nullopt;
+  const std::string& text = read.value();
   const std::string name = path.stem().string();
   const std::size_t head = head_of(name, {}).size();
   if (text.size() < head) return std::nullopt;
@@ -82,18 +81,11 @@ std::optional<std::string> ResultFiles::find(const std::string& key) {
 void ResultFiles::keep(const std::string& key, const std::string& bytes) {
   static std::atomic<int> written{0};
   if (bytes.size() > most_bytes) return;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) return;
+  if (!make_folder(folder_)) return;
   const fs::path path = file_of(key);
   // Nobody else writes into this one: processes by their number, threads of one by their turn.
   const fs::path part = fmt::format("{}.{}-{}{}", path.string(), getpid(), written++, part_ending);
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  out << head_of(path.stem().string(), bytes) << bytes;
-  out.close();
-  if (out) fs::rename(part, path, error);
-  std::error_code ignored;
-  if (!out || error) fs::remove(part, ignored);
+  if (!write_text(path, head_of(path.stem().string(), bytes) + bytes, part)) return;
   tidy();
 }
 

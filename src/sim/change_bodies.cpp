@@ -78,14 +78,6 @@ void note_departure(Field& field, const Organ& organ, Departure departure) {
   field.membership.roll[organ.record].gone = std::move(departure);
 }
 
-/// Nothing that was made for the bodies there were serves.
-void finish_change(Field& field) {
-  renew_joins(field);
-  field.group.forget_bodies();
-  field.group.missed = {};
-  keep_members(field);
-}
-
 // ---- dividing
 
 /// Skin points of a rod that go to each piece: the one at the cut to both.
@@ -357,6 +349,13 @@ std::optional<Failure> check_room(const Field& field, int more_nodes) {
 
 }  // namespace
 
+void finish_change(Field& field) {
+  renew_joins(field);
+  field.group.forget_bodies();
+  field.group.missed = {};
+  keep_members(field);
+}
+
 Failure no_tube(const OrganDefinition& organ, const std::string& act, const std::string& done) {
   return fail(FailureKind::scenario,
               fmt::format("'{}' cannot be {}: it is a {}", organ.name, done, shape_name(organ.shape)),
@@ -405,38 +404,6 @@ bool can_be_divided(const Organ& organ, double share) {
   const auto* rod = dynamic_cast<const RodBody*>(organ.body.get());
   const int point = rod == nullptr ? -1 : rod->point_to_divide_at(share);
   return point >= 0 && !check_lengths(organ, *rod, point);
-}
-
-void set_clip(Field& field, int index, const Clip& clip) {
-  std::vector<Clip>& clips = field.organs[index].clips;
-  const auto behind =
-      std::find_if(clips.begin(), clips.end(), [&](const Clip& other) { return other.at > clip.at; });
-  clips.insert(behind, clip);
-  keep_to_clips(field, index);
-}
-
-Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
-  const Organ& organ = field.organs[index];
-  const RodBody* rod = rod_of(organ);
-  if (rod == nullptr) return no_tube(organ.definition, "clip", "clipped");
-  if (!(share >= 0 && share <= 1))
-    return fail(FailureKind::scenario,
-                fmt::format("{} cannot be clipped at {:g} of its length", quoted(organ), share),
-                "give a share of it from its start, 0, to its end, 1");
-  const double at = rod->at_share(share);
-  // As far past the tube as legs reach that a careful hand sets.
-  constexpr double past = 1e-3;
-  const double reach = std::min(0.5 * rod->flat_width(at) + past, clip_row(size).leg);
-  set_clip(field, index, {size, at, 0, Vec3::UnitZ(), Vec3::UnitY(), reach});
-  return true;
-}
-
-void keep_to_clips(Field& field, int index) {
-  Organ& organ = field.organs[index];
-  std::vector<RodBody::Pinch> pinches;
-  for (const Clip& clip : organ.clips) pinches.push_back({clip.at, clip.opening, clip.pressed});
-  organ.body = std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*organ.body).pinched(pinches));
-  finish_change(field);
 }
 
 Result<bool> remove_body(Field& field, int index, const std::string& why, double time) {

@@ -29,14 +29,6 @@ Result<Division> divide_body(Field& field, int organ, double share, double time)
 /// Whether a body is a tube that is long enough for that.
 bool can_be_divided(const Organ& organ, double share);
 
-/// Sets a clip on a tube, which is held flat there from now on.
-void set_clip(Field& field, int organ, const Clip& clip);
-/// Sets one that shuts it at a share of its length, 0 to 1, with its legs across. Fails (scenario) where it is no tube,
-/// or the share is none.
-Result<bool> clip_body(Field& field, int organ, double share, ClipSize size);
-/// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
-void keep_to_clips(Field& field, int organ);
-
 /// The joints of a body go with it, and tools let it go.
 Result<bool> remove_body(Field& field, int organ, const std::string& why, double time);
 
@@ -49,6 +41,8 @@ Result<bool> tie_bodies(Field& field, const JointDefinition& joint);
 /// Undoes all joints between two bodies. Where they were tied they never press on each other.
 Result<bool> untie_bodies(Field& field, int one, int other);
 
+/// After a change of bodies that is not made here: nothing that was made for those there were serves.
+void finish_change(Field& field);
 /// Renews field.members: call it when the field is complete, and after each change.
 void keep_members(Field& field);
 /// Sets the field back to other members, their bodies as they were when these began.

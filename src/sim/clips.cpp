@@ -1,5 +1,7 @@
 #include "sim/clips.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,6 +26,43 @@ double left_open(const Tool& tool, const TubeBetween& tube, const RodBody& rod, 
   const double open = 1 - std::clamp(held / (2 * half), 0.0, 1.0);
   return open < shut ? 0 : open;
 }
+
+/// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
+void keep_to_clips(Field& field, int index) {
+  Organ& organ = field.organs[index];
+  std::vector<RodBody::Pinch> pinches;
+  for (const Clip& clip : organ.clips) pinches.push_back({clip.at, clip.opening, clip.pressed});
+  organ.body = std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*organ.body).pinched(pinches));
+  finish_change(field);
+}
+
+}  // namespace
+
+void set_clip(Field& field, int index, const Clip& clip) {
+  std::vector<Clip>& clips = field.organs[index].clips;
+  const auto behind =
+      std::find_if(clips.begin(), clips.end(), [&](const Clip& other) { return other.at > clip.at; });
+  clips.insert(behind, clip);
+  keep_to_clips(field, index);
+}
+
+Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
+  const Organ& organ = field.organs[index];
+  const RodBody* rod = rod_of(organ);
+  if (rod == nullptr) return no_tube(organ.definition, "clip", "clipped");
+  if (!(share >= 0 && share <= 1))
+    return fail(FailureKind::scenario,
+                fmt::format("'{}' cannot be clipped at {:g} of its length", organ.definition.name, share),
+                "give a share of it from its start, 0, to its end, 1");
+  const double at = rod->at_share(share);
+  // As far past the tube as legs reach that a careful hand sets.
+  constexpr double past = 1e-3;
+  const double reach = std::min(0.5 * rod->flat_width(at) + past, clip_row(size).leg);
+  set_clip(field, index, {size, at, 0, Vec3::UnitZ(), Vec3::UnitY(), reach});
+  return true;
+}
+
+namespace {
 
 void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
   Tool& tool = field.tools[instrument];

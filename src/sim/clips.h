@@ -19,6 +19,12 @@ namespace calot {
 /// titanium clip came off (Arch Surg 127:718, 1992).
 inline constexpr double clip_hold = 4.4;
 
+/// Sets a clip on a tube, which is held flat there from now on.
+void set_clip(Field& field, int organ, const Clip& clip);
+/// Sets one that shuts it at a share of its length, 0 to 1, with its legs across. Fails (scenario) where it is no tube,
+/// or the share is none.
+Result<bool> clip_body(Field& field, int organ, double share, ClipSize size);
+
 /// Of each tool in which the action begins (`actions`: one a tool, or none) one clip, while it has some. Adds the
 /// events clip and clip_dropped.
 void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events);

@@ -16,15 +16,11 @@ const BodyState& state_of(const Field& field, std::size_t k) {
   return k < organs ? field.organs[k].state : field.tissues[k - organs].now.state;
 }
 
-namespace {
-
 const Body& body_of(const Field& field, std::size_t k) {
   const std::size_t organs = field.organs.size();
   if (k < organs) return *field.organs[k].body;
   return *field.tissues[k - organs].body;
 }
-
-}  // namespace
 
 Result<std::vector<MotionPart>> next_parts(const Field& field) {
   std::vector<MotionPart> out;

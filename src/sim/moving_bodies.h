@@ -9,6 +9,7 @@ namespace calot {
 std::size_t moving_bodies(const Field& field);
 BodyState& state_of(Field& field, std::size_t body);
 const BodyState& state_of(const Field& field, std::size_t body);
+const Body& body_of(const Field& field, std::size_t body);
 
 /// The next part of each body's motion, from where it is as it moves there; none where the field is static. Fails
 /// (simulation) where its liquid's motion cannot be found.

@@ -2,46 +2,39 @@
 
 #include "base/bytes.h"
 #include "sim/field_tissues.h"
+#include "sim/moving_bodies.h"
 #include "sim/settle_field.h"
 
 namespace calot {
 namespace {
 
-std::vector<const Body*> bodies_of(const Field& field) {
-  std::vector<const Body*> out;
-  for (const Organ& organ : field.organs) out.push_back(organ.body.get());
-  for (const Tissue& tissue : field.tissues) out.push_back(tissue.body.get());
-  return out;
-}
-
 bool fits(const RestState& state, const Field& field) {
-  const std::vector<const Body*> bodies = bodies_of(field);
-  if (state.places.size() != bodies.size() || state.pressures.size() != field.organs.size()) return false;
-  if (state.factored && state.own.size() != bodies.size()) return false;
-  Eigen::Index size = 0;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    if (state.places[k].size() != bodies[k]->rest().size()) return false;
-    size += state.places[k].size();
-  }
-  return !state.factored || state.constraints.rows() == size;
+  const std::size_t bodies = moving_bodies(field);
+  if (state.places.size() != bodies || state.pressures.size() != field.organs.size()) return false;
+  if (state.factored && state.own.size() != bodies) return false;
+  for (std::size_t k = 0; k < bodies; ++k)
+    if (state.places[k].size() != state_of(field, k).x.size()) return false;
+  return !state.factored || state.constraints.rows() == BodyParts(field).total();
 }
 
 /// As the search left them: values are written anew by each solve.
-void take_patterns(const RestState& state, const std::vector<const Body*>& bodies, GroupPatterns& patterns) {
+void take_patterns(const RestState& state, Field& field) {
+  GroupPatterns& patterns = field.group.patterns;
   patterns.own.clear();
-  for (std::size_t k = 0; k < bodies.size(); ++k)
-    patterns.own.push_back(state.own[k].empty() ? bodies[k]->pattern()
-                                                : BlockMatrix(bodies[k]->nodes(), state.own[k]));
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) {
+    const Body& body = body_of(field, k);
+    patterns.own.push_back(state.own[k].empty() ? body.pattern() : BlockMatrix(body.nodes(), state.own[k]));
+  }
   patterns.joined = state.joined;
 }
 
-bool take_factor(const RestState& state, NewtonWorkspace& work) {
+bool take_factor(const RestState& state, Workers* workers, NewtonWorkspace& work) {
   if (work.matrix.entries().size() != state.matrix.size()) return false;
   work.matrix.assign(state.matrix);
-  if (work.factor.factorise(work.matrix) != FactorStatus::ok) return false;
+  if (work.factor.factorise(work.matrix, workers) != FactorStatus::ok) return false;
   work.border.gradients = state.constraints;
   work.border.compliances = state.compliances;
-  work.border.solve_with(work.factor);
+  work.border.solve_with(work.factor, workers);
   work.factored = true;
   work.shifted = state.shifted;
   return true;
@@ -51,18 +44,14 @@ bool take_factor(const RestState& state, NewtonWorkspace& work) {
 
 RestState rest_state(const Field& field) {
   RestState out;
-  for (const Organ& organ : field.organs) {
-    out.places.push_back(organ.state.x);
-    out.pressures.push_back(organ.state.datum_pressure);
-  }
-  for (const Tissue& tissue : field.tissues) out.places.push_back(tissue.now.state.x);
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) out.places.push_back(state_of(field, k).x);
+  for (const Organ& organ : field.organs) out.pressures.push_back(organ.state.datum_pressure);
   const Group& group = field.group;
   out.factored = group.work.factored;
   if (!out.factored) return out;
-  const std::vector<const Body*> bodies = bodies_of(field);
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) {
     const BlockMatrix& own = group.patterns.own[k];
-    const bool widened = own.entries().size() != bodies[k]->pattern().entries().size();
+    const bool widened = own.entries().size() != body_of(field, k).pattern().entries().size();
     out.own.push_back(widened ? own.couplings() : std::vector<std::vector<int>>());
   }
   out.joined = group.patterns.joined;
@@ -76,14 +65,11 @@ RestState rest_state(const Field& field) {
 bool take_rest_state(const RestState& state, Field& field) {
   if (!fits(state, field)) return false;
   const GroupSnapshot before = snapshot(field);
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    field.organs[k].state.x = state.places[k];
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) state_of(field, k).x = state.places[k];
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
     field.organs[k].state.datum_pressure = state.pressures[k];
-  }
-  for (std::size_t t = 0; t < field.tissues.size(); ++t)
-    field.tissues[t].now.state.x = state.places[field.organs.size() + t];
   Group& group = field.group;
-  if (state.factored) take_patterns(state, bodies_of(field), group.patterns);
+  if (state.factored) take_patterns(state, field);
   std::vector<ContactLoads> loads;
   for (const Organ& organ : field.organs) loads.push_back(solve_loads(field, organ, present_poses(field)));
   std::vector<Member> members = members_of(field, loads);
@@ -94,7 +80,7 @@ bool take_rest_state(const RestState& state, Field& field) {
   const GroupProblem problem(members, joins, group.patterns);
   if (!state.factored) return true;
   group.work = problem.workspace();
-  if (take_factor(state, group.work)) return true;
+  if (take_factor(state, problem.workers(), group.work)) return true;
   restore(field, before);
   return false;
 }
