@@ -8,8 +8,27 @@
 namespace calot {
 namespace {
 
-Eigen::Map<const VecX> flat(const Eigen::Matrix3Xd& columns) { return {columns.data(), columns.size()}; }
-Eigen::Map<VecX> flat(Eigen::Matrix3Xd& columns) { return {columns.data(), columns.size()}; }
+using Rows = Eigen::MatrixX3d;
+
+/// The entries of all frames, in the order of FramedSolid::Placed.
+VecX entries_of(const std::vector<Mat3>& frames) {
+  VecX out(9 * static_cast<Eigen::Index>(frames.size()));
+  for (std::size_t p = 0; p < frames.size(); ++p)
+    out.segment<9>(9 * static_cast<Eigen::Index>(p)) = frames[p].transpose().reshaped();
+  return out;
+}
+
+/// How a frame's entries change with a turn about its own axes.
+Eigen::Matrix<double, 9, 3> entries_by_turn(const Mat3& frame) {
+  Eigen::Matrix<double, 9, 3> out;
+  for (Eigen::Index row = 0; row < 3; ++row) out.middleRows<3>(3 * row) = cross_matrix(frame.row(row));
+  return out;
+}
+
+/// Of a stiffness, the forces in one way by motions in another.
+Eigen::MatrixXd of_ways(const Eigen::MatrixXd& block, Eigen::Index force, Eigen::Index motion) {
+  return block(Eigen::seq(force, Eigen::last, 3), Eigen::seq(motion, Eigen::last, 3));
+}
 
 /// Of m with a determinant above 0.
 Mat3 polar_rotation(const Mat3& m) {
@@ -60,74 +79,118 @@ FramedSolid::FramedSolid(const VecX& rest, Parts parts) : parts_(std::move(parts
   for (const Piece& piece : parts_.pieces)
     for (int node : piece.nodes)
       place_.push_back(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin());
-  rest_.resize(3, first_.back());
+  const std::size_t pieces = parts_.pieces.size();
+  for (const Stiffness& s : parts_.stiffness) {
+    ByWays& own = by_ways_.emplace_back();
+    for (int motion = 0; motion < 3; ++motion)
+      for (int force = 0; force < 3; ++force)
+        if (s.one != s.other || motion >= force) own.blocks[motion][force] = of_ways(s.block, force, motion);
+  }
+  Placed placed = placed_at(rest);
+  answer(placed);
+  const VecX as_drawn = entries_of(std::vector<Mat3>(pieces, Mat3::Identity()));
+  for (const Eigen::MatrixXd& by_entries : placed.forces)
+    held_by_rest_.emplace_back((by_entries * as_drawn).reshaped(by_entries.rows() / 3, 3));
+  rest_ = std::move(placed.at);
+}
+
+FramedSolid::Placed FramedSolid::placed_at(const VecX& x) const {
+  Placed out;
   for (std::size_t p = 0; p < parts_.pieces.size(); ++p) {
-    auto own = rest_.middleCols(first_[p], count(p));
+    const Piece& piece = parts_.pieces[p];
+    Rows at(count(p), 3);
     for (Eigen::Index a = 0; a < count(p); ++a)
-      own.col(a) = rest.segment<3>(Eigen::Index{3} * parts_.pieces[p].nodes[static_cast<std::size_t>(a)]);
-    own.colwise() -= Vec3(own.rowwise().mean());
+      at.row(a) = x.segment<3>(Eigen::Index{3} * piece.nodes[static_cast<std::size_t>(a)]);
+    at.rowwise() -= at.colwise().mean().eval();
+    out.means.emplace_back(at.transpose() * piece.slopes.transpose());
+    out.at.push_back(std::move(at));
+  }
+  return out;
+}
+
+void FramedSolid::answer(Placed& placed) const {
+  const std::size_t pieces = parts_.pieces.size();
+  const auto entries = 9 * static_cast<Eigen::Index>(pieces);
+  for (std::size_t p = 0; p < pieces; ++p) placed.forces.emplace_back(3 * count(p), entries);
+  // Entry 3 row + way of a frame has the nodes go in that way by their places' row.
+  const auto add = [&](int to, int from, int motion, int force, const auto& block) {
+    for (int row = 0; row < 3; ++row)
+      placed.forces[to].col(9 * from + 3 * row + motion).segment(force * count(to), count(to)).noalias() =
+          block * placed.at[from].col(row);
+  };
+  for (std::size_t k = 0; k < by_ways_.size(); ++k) {
+    const int one = parts_.stiffness[k].one, other = parts_.stiffness[k].other;
+    for (int motion = 0; motion < 3; ++motion)
+      for (int force = 0; force < 3; ++force) {
+        const Eigen::MatrixXd& block = by_ways_[k].blocks[motion][force];
+        if (block.size() == 0) continue;
+        add(one, other, motion, force, block);
+        if (one != other || motion != force) add(other, one, force, motion, block.transpose());
+      }
+  }
+  for (std::size_t p = 0; p < pieces; ++p) {
+    Eigen::MatrixXd& moments = placed.moments.emplace_back(9, entries);
+    const Rows summed =
+        Eigen::Map<const Eigen::MatrixXd>(placed.forces[p].data(), count(p), 3 * entries).transpose() *
+        placed.at[p];
+    for (Eigen::Index k = 0; k < 3; ++k) moments.middleRows<3>(3 * k) = summed.col(k).reshaped(3, entries);
   }
 }
 
-void FramedSolid::look(const Eigen::Matrix3Xd& places, Seen& seen) const {
-  for (std::size_t p = 0; p < parts_.pieces.size(); ++p)
-    seen.at.middleCols(first_[p], count(p)) =
-        seen.frames[p].transpose() * places.middleCols(first_[p], count(p));
-  const Eigen::Matrix3Xd moved = seen.at - rest_;
-  seen.forces.setZero(3, moved.cols());
-  for (const Stiffness& s : parts_.stiffness) {
-    const Eigen::Index one = 3 * first_[s.one], other = 3 * first_[s.other];
-    flat(seen.forces).segment(one, s.block.rows()).noalias() +=
-        s.block * flat(moved).segment(other, s.block.cols());
-    if (s.one != s.other)
-      flat(seen.forces).segment(other, s.block.cols()).noalias() +=
-          s.block.transpose() * flat(moved).segment(one, s.block.rows());
+bool FramedSolid::fit(const Placed& placed, std::vector<Mat3>& frames) const {
+  constexpr int most_rounds = 60;
+  constexpr double turned = 1e-12;  // rad
+  const std::size_t pieces = parts_.pieces.size();
+  std::vector<Mat3> of_rest;
+  for (std::size_t p = 0; p < pieces; ++p) of_rest.emplace_back(held_by_rest_[p].transpose() * placed.at[p]);
+  for (int round = 0; round < most_rounds; ++round) {
+    const VecX entries = entries_of(frames);
+    double largest = 0;
+    for (std::size_t p = 0; p < pieces; ++p) {
+      const double turning = parts_.pieces[p].turning;
+      const Mat3 mean = frames[p].transpose() * placed.means[p];
+      const Vec3 left = 0.5 * axis_of(mean);
+      const Mat3 moments = (placed.moments[p] * entries).reshaped(3, 3) - of_rest[p];
+      const Mat3 by_places = moments * frames[p] + 0.5 * turning * cross_matrix(left) * mean.transpose();
+      const Vec3 turn = turning_hessian(turning, mean, by_places).inverse() * -axis_of(by_places.transpose());
+      const double angle = turn.norm();
+      if (!std::isfinite(angle)) return false;
+      largest = std::max(largest, angle);
+      if (angle > turned) frames[p] = frames[p] * Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+    }
+    if (largest <= turned) return true;
   }
-  seen.energy = 0.5 * flat(seen.forces).dot(flat(moved));
+  return false;
+}
+
+void FramedSolid::look(Seen& seen) const {
+  const VecX entries = entries_of(seen.frames);
+  seen.energy = 0;
   for (std::size_t p = 0; p < parts_.pieces.size(); ++p) {
     const Piece& piece = parts_.pieces[p];
-    seen.means[p] = seen.at.middleCols(first_[p], count(p)) * piece.slopes.transpose();
-    const Vec3 left = 0.5 * axis_of(seen.means[p]);
+    seen.at.emplace_back(seen.placed.at[p] * seen.frames[p]);
+    Rows& forces = seen.forces.emplace_back((seen.placed.forces[p] * entries).reshaped(count(p), 3));
+    forces -= held_by_rest_[p];
+    seen.energy += 0.5 * forces.cwiseProduct(seen.at[p] - rest_[p]).sum();
+    const Mat3 mean = seen.means.emplace_back(seen.frames[p].transpose() * seen.placed.means[p]);
+    const Vec3 left = 0.5 * axis_of(mean);
     seen.energy += 0.5 * piece.turning * left.squaredNorm();
-    for (Eigen::Index a = 0; a < count(p); ++a)
-      seen.forces.col(first_[p] + a) += 0.5 * piece.turning * left.cross(Vec3(piece.slopes.col(a)));
+    forces += piece.slopes.transpose() * (0.5 * piece.turning * cross_matrix(left)).transpose();
   }
 }
 
 FramedSolid::Seen FramedSolid::see(const VecX& x) const {
-  constexpr int most_rounds = 60;
-  constexpr double turned = 1e-12;  // rad
-  const double infinite = std::numeric_limits<double>::infinity();
-  const std::size_t pieces = parts_.pieces.size();
-  Seen out{false, std::vector<Mat3>(pieces), std::vector<Mat3>(pieces), rest_, rest_, infinite};
-  Eigen::Matrix3Xd places(3, rest_.cols());
-  for (std::size_t p = 0; p < pieces; ++p) {
-    auto own = places.middleCols(first_[p], count(p));
-    for (Eigen::Index a = 0; a < count(p); ++a)
-      own.col(a) = x.segment<3>(Eigen::Index{3} * parts_.pieces[p].nodes[static_cast<std::size_t>(a)]);
-    own.colwise() -= Vec3(own.rowwise().mean());
-    const Mat3 mean = own * parts_.pieces[p].slopes.transpose();
+  Seen out;
+  out.energy = std::numeric_limits<double>::infinity();
+  out.placed = placed_at(x);
+  for (const Mat3& mean : out.placed.means) {
     if (!(mean.determinant() > 0)) return out;
-    out.frames[p] = polar_rotation(mean);
+    out.frames.push_back(polar_rotation(mean));
   }
-  for (int round = 0; round < most_rounds; ++round) {
-    look(places, out);
-    double largest = 0;
-    for (std::size_t p = 0; p < pieces; ++p) {
-      const auto at = out.at.middleCols(first_[p], count(p)),
-                 forces = out.forces.middleCols(first_[p], count(p));
-      const Mat3 by_places = forces * at.transpose();
-      const Vec3 turn = turning_hessian(parts_.pieces[p].turning, out.means[p], by_places).inverse() *
-                        -axis_of(by_places.transpose());
-      const double angle = turn.norm();
-      if (!std::isfinite(angle)) return out.energy = infinite, out;
-      largest = std::max(largest, angle);
-      if (angle > turned)
-        out.frames[p] = out.frames[p] * Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-    }
-    if (largest <= turned) return out.admissible = true, out;
-  }
-  return out.energy = infinite, out;
+  answer(out.placed);
+  out.admissible = fit(out.placed, out.frames);
+  if (out.admissible) look(out);
+  return out;
 }
 
 double FramedSolid::value(const VecX& x) const { return see(x).energy; }
@@ -135,39 +198,44 @@ double FramedSolid::value(const VecX& x) const { return see(x).energy; }
 void FramedSolid::add_gradient(const VecX& x, VecX& gradient) const {
   const Seen seen = see(x);
   for (std::size_t p = 0; p < parts_.pieces.size(); ++p)
-    for (Eigen::Index a = 0; a < count(p); ++a)
-      gradient.segment<3>(Eigen::Index{3} * parts_.pieces[p].nodes[static_cast<std::size_t>(a)]) +=
-          seen.frames[p] * seen.forces.col(first_[p] + a);
+    for (Eigen::Index a = 0; a < count(p); ++a) {
+      auto own = gradient.segment<3>(Eigen::Index{3} * parts_.pieces[p].nodes[static_cast<std::size_t>(a)]);
+      if (seen.admissible)
+        own += seen.frames[p] * seen.forces[p].row(a).transpose();
+      else
+        own.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
 }
 
 void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   const Seen seen = see(x);
+  if (!seen.admissible) return matrix.add(nodes_[0], nodes_[0], Mat3::Constant(seen.energy));
   const auto pieces = static_cast<Eigen::Index>(parts_.pieces.size());
-  // Turns of each frame, as motions of the nodes in it, and the forces that they change.
-  Eigen::MatrixXd turns(3 * rest_.cols(), 3), mixed = Eigen::MatrixXd::Zero(3 * rest_.cols(), 3 * pieces);
-  for (Eigen::Index a = 0; a < rest_.cols(); ++a) turns.middleRows<3>(3 * a) = cross_matrix(seen.at.col(a));
   const auto rows = [&](int p) { return 3 * first_[p]; };
   const auto length = [&](int p) { return 3 * count(static_cast<std::size_t>(p)); };
-  for (const Stiffness& s : parts_.stiffness) {
-    mixed.block(rows(s.one), 3 * s.other, length(s.one), 3).noalias() +=
-        s.block * turns.middleRows(rows(s.other), length(s.other));
-    if (s.one != s.other)
-      mixed.block(rows(s.other), 3 * s.one, length(s.other), 3).noalias() +=
-          s.block.transpose() * turns.middleRows(rows(s.one), length(s.one));
+  // The forces that turns of each frame change, seen in the frames, and the energy's second derivative by two turns.
+  Eigen::MatrixXd mixed(3 * first_.back(), 3 * pieces), by_turns(3 * pieces, 3 * pieces);
+  for (int q = 0; q < pieces; ++q) {
+    const Eigen::Matrix<double, 9, 3> turn = entries_by_turn(seen.frames[q]);
+    for (int p = 0; p < pieces; ++p) {
+      // First all in x, then y and z.
+      const Eigen::MatrixX3d forces = seen.placed.forces[p].middleCols<9>(9 * q) * turn;
+      for (Eigen::Index a = 0; a < count(p); ++a)
+        for (Eigen::Index k = 0; k < 3; ++k)
+          mixed.block<1, 3>(rows(p) + 3 * a + k, 3 * q) = forces.row(k * count(p) + a);
+      by_turns.block<3, 3>(3 * p, 3 * q) =
+          entries_by_turn(seen.frames[p]).transpose() * seen.placed.moments[p].middleCols<9>(9 * q) * turn;
+    }
   }
-  Eigen::MatrixXd by_turns(3 * pieces, 3 * pieces);
   for (int p = 0; p < pieces; ++p) {
-    by_turns.middleRows<3>(3 * p).noalias() =
-        turns.middleRows(rows(p), length(p)).transpose() * mixed.middleRows(rows(p), length(p));
     const Piece& piece = parts_.pieces[static_cast<std::size_t>(p)];
-    const Mat3 by_places = seen.forces.middleCols(first_[p], length(p) / 3) *
-                           seen.at.middleCols(first_[p], length(p) / 3).transpose();
+    const Mat3 by_places = seen.forces[p].transpose() * seen.at[p];
     by_turns.block<3, 3>(3 * p, 3 * p) += turning_hessian(piece.turning, seen.means[p], by_places);
     const Mat3 left = change_of_left(seen.means[p]);
     for (Eigen::Index a = 0; 3 * a < length(p); ++a)
       mixed.block<3, 3>(rows(p) + 3 * a, 3 * p) -=
           0.5 * piece.turning * cross_matrix(piece.slopes.col(a)) * left +
-          cross_matrix(seen.forces.col(first_[p] + a));
+          cross_matrix(seen.forces[p].row(a));
   }
   const auto unknowns = 3 * static_cast<Eigen::Index>(nodes_.size());
   // Over all nodes in the world's directions: what pairs of pieces add, each but once, and what turns take away.

@@ -48,23 +48,47 @@ class FramedSolid {
   const Parts& parts() const { return parts_; }
 
  private:
-  /// The pieces in their frames; columns follow each other piece by piece.
+  /// Places in frames are linear in the frames' entries, nine a piece (R, row by row), and so is what the stiffness does
+  /// there: it is asked once a state, however often the frames turn until they fit.
+  struct Placed {
+    std::vector<Eigen::MatrixX3d> at;  ///< m, of each piece, from its middle: a row a node
+    std::vector<Mat3> means;           ///< mean deformation gradients
+    /// Of each piece, N and J by the entries of all frames: forces on its nodes, all in x, then y, then z; and the sums
+    /// of these times the nodes' places, by the entries of its own frame.
+    std::vector<Eigen::MatrixXd> forces, moments;
+  };
+  /// The pieces in their frames.
   struct Seen {
     bool admissible = false;
-    std::vector<Mat3> frames, means;  ///< mean deformation gradients in the frames
-    Eigen::Matrix3Xd at, forces;      ///< m, N
+    Placed placed;
+    std::vector<Mat3> frames, means;           ///< mean deformation gradients in the frames
+    std::vector<Eigen::MatrixX3d> at, forces;  ///< m, N
     double energy = 0;
   };
   Eigen::Index count(std::size_t piece) const { return first_[piece + 1] - first_[piece]; }
+  /// Places and mean deformation gradients.
+  Placed placed_at(const VecX& x) const;
+  /// What the stiffness does there.
+  void answer(Placed& placed) const;
+  /// Turns the frames to where the energy is least; false: there is no such place near.
+  bool fit(const Placed& placed, std::vector<Mat3>& frames) const;
+  /// Energy and forces in the frames.
+  void look(Seen& seen) const;
   Seen see(const VecX& x) const;
-  /// Energy and forces in the present frames.
-  void look(const Eigen::Matrix3Xd& places, Seen& seen) const;
 
   Parts parts_;
   std::vector<Eigen::Index> first_;  ///< column of each piece, and their number
   std::vector<int> nodes_;           ///< of all pieces, increasing
   std::vector<Eigen::Index> place_;  ///< of each column among them
-  Eigen::Matrix3Xd rest_;            ///< m, from each piece's middle
+  /// m, from each piece's middle, and N, what the stiffness does where these are displacements.
+  std::vector<Eigen::MatrixX3d> rest_, held_by_rest_;
+  /// N/m, as Parts::stiffness, but by ways: where the nodes of the other piece go in x, y, z (first index), the forces on
+  /// those of the one in x, y, z (second), a row for each of these and a column for each of those. A stiffness that is
+  /// its own has only those with first >= second: the others are their transposes.
+  struct ByWays {
+    std::array<std::array<Eigen::MatrixXd, 3>, 3> blocks;
+  };
+  std::vector<ByWays> by_ways_;  ///< as Parts::stiffness
 };
 
 }  // namespace calot
