@@ -89,9 +89,11 @@ class SkinJoin : public Join {
     std::vector<char> counts;  ///< triangles of its skin that are met
     std::vector<int> around;   ///< a triangle at each point
     // Near the other, at patches_x_:
-    std::vector<int> patches, rows, nodes;
+    std::vector<int> patches, rows;
     std::optional<ContactSkin> skin;
-    std::vector<int> triangles;         ///< of the body's skin, one a simplex
+    std::vector<int> triangles;  ///< of the body's skin, one a simplex
+    // Which of these patches has it, one a simplex, a skin point and an edge (a patch of several, where it is of several):
+    std::vector<int> patch_of_simplex, patch_of_point, patch_of_edge;
     std::optional<SurfaceEdges> edges;  ///< of all that is met of its skin; only of two surfaces
     ItemTree edge_tree{{}, {}};         ///< of those on the patches
     std::vector<Vec3> at, way;          ///< m, of the points that were looked up last; room
@@ -100,23 +102,38 @@ class SkinJoin : public Join {
   using Parts = std::array<VecX, 2>;  ///< of the group's coordinates: either body's
   Parts parts_of(const VecX& x) const;
   Side side_of(const Body& body, std::span<const JoinedPlace> joined) const;
-  /// Bound on how much any two of the skins' points move against each other by dx, m: those that hang on the nodes near
-  /// the other body, or on any.
-  double approach(const Parts& dx, bool near) const;
+  /// How all points of each patch near the other body move.
+  using PatchMoves = std::array<std::vector<SkinMoves>, 2>;
+  PatchMoves patch_moves(const Parts& dx) const;
+  /// Bound on how much any two of the skins' points move against each other by dx, m; those of two patches.
+  double approach(const Parts& dx) const;
+  static double approach(const PatchMoves& moves, int one, int other) {
+    return approach_of(moves[0][static_cast<std::size_t>(one)], moves[1][static_cast<std::size_t>(other)]);
+  }
+  /// Whether all that is nearer than `need` (m, of two patches, or the largest of any) at x is among what was looked for at `from` as far as
+  /// `reach`, m.
+  template <class Need>
+  bool remembered(const Parts& x, const Parts& from, double reach, const Need& need,
+                  double largest_need) const;
   void gather_patches(const Parts& x) const;
   Eigen::AlignedBox3d box_of_points(int k, int patch, const Parts& x) const;  ///< with what is about them
   /// Sees to it that the patches hold all that has gaps below `need`.
   void refresh_patches(const Parts& x, double need) const;
   /// And pairs_ all pairs, at most close_reach.
   void refresh_pairs(const Parts& x, double need) const;
+  void find_pairs(const Parts& x) const;
   /// Likewise edges_, at most as far as patches are remembered.
   void refresh_edges(const Parts& x, double need) const;
-  bool edges_remembered(const Parts& x, double need) const;
   /// Pairs that may have gaps below `need` at x, at most close_reach; their points are looked up. Valid until the next
   /// call.
   const std::vector<SkinPair>& pairs_below(const Parts& x, double need) const;
   /// Likewise edges.
   const std::vector<EdgesNear>& edges_below(const Parts& x, double need) const;
+  /// The same of what is remembered, nearer than `need` of two patches.
+  template <class Need>
+  const std::vector<SkinPair>& choose_pairs(const Parts& x, const Need& need) const;
+  template <class Need>
+  const std::vector<EdgesNear>& choose_edges(const Parts& x, const Need& need) const;
   /// Places, or motions, of all points near the other body, or of those of some pairs.
   void look_up(const Parts& x, bool motions) const;
   void look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const;
@@ -145,6 +162,13 @@ class SkinJoin : public Join {
   mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
   mutable bool pairs_known_ = false, edges_known_ = false, lacking_ = false;
   mutable Parts patches_x_, pairs_x_, edges_x_;
+  /// Patches of either that are near each other, by their places among those of their side, and how far apart, m, at
+  /// patches_x_.
+  struct NearPatches {
+    int one = 0, other = 0;
+    double apart = 0;
+  };
+  mutable std::vector<NearPatches> near_patches_;
   mutable double patches_reach_ = 0, edges_reach_ = 0;
   mutable std::vector<SkinPair> pairs_, chosen_;
   mutable std::vector<double> gaps_;  ///< m, of pairs_ at pairs_x_

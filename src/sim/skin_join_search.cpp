@@ -16,34 +16,46 @@ constexpr double edge_reach = self_edge_barrier.range + close_reach - self_barri
 
 using Box = Eigen::AlignedBox3d;
 
-/// Nodes of patches, increasing.
-std::vector<int> nodes_of(const Body& body, const std::vector<int>& patches) {
-  std::vector<char> hangs(body.nodes(), 0);
-  for (int patch : patches)
-    for (int node : body.face_nodes()[patch]) hangs[node] = 1;
-  std::vector<int> out;
-  for (int node = 0; node < body.nodes(); ++node)
-    if (hangs[node]) out.push_back(node);
-  return out;
-}
-
 std::array<VecX, 2> less(const std::array<VecX, 2>& x, const std::array<VecX, 2>& from) {
   return {x[0] - from[0], x[1] - from[1]};
 }
 
 }  // namespace
 
-double SkinJoin::approach(const Parts& dx, bool near) const {
-  std::array<SkinMoves, 2> moves;
+double SkinJoin::approach(const Parts& dx) const {
+  return approach_of(skin_motion(*sides_[0].body, dx[0]), skin_motion(*sides_[1].body, dx[1]));
+}
+
+SkinJoin::PatchMoves SkinJoin::patch_moves(const Parts& dx) const {
+  PatchMoves out;
   for (int k = 0; k < 2; ++k) {
-    const Side& side = sides_[k];
-    moves[k] = near ? skin_motion(*side.body, dx[k], side.nodes) : skin_motion(*side.body, dx[k]);
+    const Body& body = *sides_[k].body;
+    if (body.beyond_nodes() > 0) {  // whatever moves, moves it all
+      out[k].assign(sides_[k].patches.size(), skin_motion(body, dx[k]));
+      continue;
+    }
+    for (int patch : sides_[k].patches) out[k].push_back(skin_motion(body, dx[k], body.face_nodes()[patch]));
   }
-  return approach_of(moves[0], moves[1]);
+  return out;
+}
+
+// What two bodies do as one brings nothing nearer, nor does what they do elsewhere: of a gallbladder in its bed a part
+// moves against the liver, and most with it.
+template <class Need>
+bool SkinJoin::remembered(const Parts& x, const Parts& from, double reach, const Need& need,
+                          double largest_need) const {
+  // Most that is asked follows a small correction: then all nodes together say enough, at a tenth of the cost.
+  if (largest_need + approach(less(x, from)) <= reach) return true;
+  const PatchMoves since = patch_moves(less(x, from)), since_patches = patch_moves(less(x, patches_x_));
+  return std::all_of(near_patches_.begin(), near_patches_.end(), [&](const NearPatches& near) {
+    const double wanted = need(near.one, near.other);
+    return wanted + approach(since, near.one, near.other) <= reach ||
+           wanted + approach(since_patches, near.one, near.other) <= near.apart;
+  });
 }
 
 void SkinJoin::refresh_patches(const Parts& x, double need) const {
-  if (patches_known_ && need + approach(less(x, patches_x_), false) <= patches_reach_) return;
+  if (patches_known_ && need + approach(less(x, patches_x_)) <= patches_reach_) return;
   patches_known_ = true;
   pairs_known_ = edges_known_ = false;
   patches_x_ = x;
@@ -93,6 +105,7 @@ void SkinJoin::gather_patches(const Parts& x) const {
                             side.body->box_of(nodes, x[k], side.radius + side.body->beyond_nodes())});
   }
   near_ = false;
+  near_patches_.clear();
   const double between = around(patches[0]).exteriorDistance(around(patches[1]));
   if (between >= patches_reach_) {
     patches_reach_ = between;
@@ -109,11 +122,14 @@ void SkinJoin::gather_patches(const Parts& x) const {
     Side& side = sides_[k];
     std::vector<int> ids;
     for (const BoxedPatch& patch : patches[k]) ids.push_back(patch.patch);
-    side.nodes = nodes_of(*side.body, ids);
     if (side.patches == ids) continue;
     side.patches = std::move(ids);
     take_patches(side);
   }
+  for (std::size_t a = 0; a < patches[0].size(); ++a)
+    for (std::size_t b = 0; b < patches[1].size(); ++b)
+      if (const double apart = patches[0][a].box.exteriorDistance(patches[1][b].box); apart < patches_reach_)
+        near_patches_.push_back({static_cast<int>(a), static_cast<int>(b), apart});
 }
 
 Eigen::AlignedBox3d SkinJoin::box_of_points(int k, int patch, const Parts& x) const {
@@ -132,14 +148,17 @@ Eigen::AlignedBox3d SkinJoin::box_of_points(int k, int patch, const Parts& x) co
 /// The part of a skin that lies on its patches, as others meet it.
 void SkinJoin::take_patches(Side& side) const {
   const Body& body = *side.body;
-  std::vector<char> used(side.areas.size(), 0);
+  constexpr int none = -1;
+  side.patch_of_point.assign(side.areas.size(), none);
   std::vector<Triangle> faces;
   std::vector<Segment> segments;
   side.triangles.clear();
-  for (int patch : side.patches) {
-    for (int t = patch * side.met.each; t < (patch + 1) * side.met.each; ++t) {
+  side.patch_of_simplex.clear();
+  for (std::size_t place = 0; place < side.patches.size(); ++place) {
+    const int patch = side.patches[place], first = patch * side.met.each;
+    for (int t = first; t < first + side.met.each; ++t) {
       const Triangle& corners = side.met.triangles[t];
-      for (int corner : corners) used[corner] = 1;
+      for (int corner : corners) side.patch_of_point[corner] = static_cast<int>(place);
       if (!side.counts[t]) continue;
       if (corners[1] != corners[2])
         faces.push_back(corners);
@@ -148,17 +167,22 @@ void SkinJoin::take_patches(Side& side) const {
       else
         continue;
       side.triangles.push_back(t);
+      side.patch_of_simplex.push_back(static_cast<int>(place));
     }
   }
   side.rows.clear();
   std::vector<double> areas(side.areas.size(), 0.0);
-  for (std::size_t p = 0; p < used.size(); ++p)
-    if (used[p]) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
+  for (std::size_t p = 0; p < areas.size(); ++p)
+    if (side.patch_of_point[p] != none) side.rows.push_back(static_cast<int>(p)), areas[p] = side.areas[p];
   if (are_surfaces()) {
     if (!side.edges) side.edges.emplace(body.skin_rest(), side.met.triangles, side.counts);
     std::vector<int> edges;
-    for (int t : side.triangles)
-      edges.insert(edges.end(), side.edges->sides[t].begin(), side.edges->sides[t].end());
+    side.patch_of_edge.assign(side.edges->ends.size(), none);
+    for (std::size_t k = 0; k < side.triangles.size(); ++k)
+      for (int edge : side.edges->sides[side.triangles[k]]) {
+        edges.push_back(edge);
+        side.patch_of_edge[edge] = side.patch_of_simplex[k];
+      }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     side.edge_tree = ItemTree(side.edges->middles(body.skin_rest()), std::move(edges));
@@ -211,9 +235,14 @@ std::array<PlacedEdges, 2> SkinJoin::placed_edges(bool motions) const {
 void SkinJoin::refresh_pairs(const Parts& x, double need) const {
   refresh_patches(x, need);
   if (!near_) return pairs_.clear();
-  if (pairs_known_ && need + approach(less(x, pairs_x_), true) <= close_reach) return;
+  const auto needed = [&](int /*one*/, int /*other*/) { return need; };
+  if (pairs_known_ && remembered(x, pairs_x_, close_reach, needed, need)) return;
   refresh_patches(x, close_reach);
   if (!near_) return pairs_.clear();
+  find_pairs(x);
+}
+
+void SkinJoin::find_pairs(const Parts& x) const {
   look_up(x, false);
   pairs_ = skin_pairs(placed(false), {close_reach, 1});
   gaps_.clear();
@@ -223,25 +252,32 @@ void SkinJoin::refresh_pairs(const Parts& x, double need) const {
   ++searches_;
 }
 
-const std::vector<SkinPair>& SkinJoin::pairs_below(const Parts& x, double need) const {
-  refresh_pairs(x, need);
+template <class Need>
+const std::vector<SkinPair>& SkinJoin::choose_pairs(const Parts& x, const Need& need) const {
   chosen_.clear();
   if (pairs_.empty()) return chosen_;
-  const double below = need + approach(less(x, pairs_x_), true);
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    if (gaps_[k] < below) chosen_.push_back(pairs_[k]);
+  const PatchMoves since = patch_moves(less(x, pairs_x_));
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const SkinPair& pair = pairs_[k];
+    std::array<int, 2> both{sides_[pair.skin].patch_of_point[pair.point],
+                            sides_[pair.other].patch_of_simplex[pair.simplex]};
+    if (pair.skin == 1) std::swap(both[0], both[1]);
+    if (gaps_[k] < need(both[0], both[1]) + approach(since, both[0], both[1])) chosen_.push_back(pair);
+  }
   look_up(x, false, chosen_);
   return chosen_;
 }
 
-bool SkinJoin::edges_remembered(const Parts& x, double need) const {
-  return edges_known_ && need + approach(less(x, edges_x_), true) <= edges_reach_;
+const std::vector<SkinPair>& SkinJoin::pairs_below(const Parts& x, double need) const {
+  refresh_pairs(x, need);
+  return choose_pairs(x, [&](int /*one*/, int /*other*/) { return need; });
 }
 
 void SkinJoin::refresh_edges(const Parts& x, double need) const {
   const double reach = std::max(need, edge_reach);
   refresh_patches(x, need);
-  if (edges_remembered(x, need)) return;
+  const auto needed = [&](int /*one*/, int /*other*/) { return need; };
+  if (edges_known_ && remembered(x, edges_x_, edges_reach_, needed, need)) return;
   edges_.clear();
   if (near_) refresh_patches(x, reach);
   if (!near_) return;
@@ -253,16 +289,24 @@ void SkinJoin::refresh_edges(const Parts& x, double need) const {
   edges_known_ = true;
 }
 
+template <class Need>
+const std::vector<EdgesNear>& SkinJoin::choose_edges(const Parts& x, const Need& need) const {
+  chosen_edges_.clear();
+  if (edges_.empty()) return chosen_edges_;
+  const PatchMoves since = patch_moves(less(x, edges_x_));
+  for (const EdgesNear& pair : edges_) {
+    const int one = sides_[0].patch_of_edge[pair.edge], other = sides_[1].patch_of_edge[pair.other];
+    if (pair.distance < need(one, other) + approach(since, one, other)) chosen_edges_.push_back(pair);
+  }
+  look_up(x, false, chosen_edges_);
+  return chosen_edges_;
+}
+
 const std::vector<EdgesNear>& SkinJoin::edges_below(const Parts& x, double need) const {
   chosen_edges_.clear();
   if (!are_surfaces()) return chosen_edges_;
   refresh_edges(x, need);
-  if (edges_.empty()) return chosen_edges_;
-  const double below = need + approach(less(x, edges_x_), true);
-  for (const EdgesNear& pair : edges_)
-    if (pair.distance < below) chosen_edges_.push_back(pair);
-  look_up(x, false, chosen_edges_);
-  return chosen_edges_;
+  return choose_edges(x, [&](int /*one*/, int /*other*/) { return need; });
 }
 
 double SkinJoin::edge_distance(const EdgesNear& pair) const {
@@ -285,10 +329,9 @@ double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const
     if (!from[k].allFinite() || !by[k].allFinite()) return share;
   // A pair that loses more than 1 - contact_keep of its gap had no more than this. What could meet on a longer way would
   // be everything: that is gone in parts.
-  const double far = share * approach(by, false) / (1.0 - contact_keep);
+  const double far = share * approach(by) / (1.0 - contact_keep);
   if (far == 0) return share;
-  if (patches_known_ && far + approach(less(from, patches_x_), false) <= patches_reach_ && !near_)
-    return share;
+  if (patches_known_ && far + approach(less(from, patches_x_)) <= patches_reach_ && !near_) return share;
   const int parts = 1 + static_cast<int>(far / (0.5 * patch_reach));
   const double part = share / parts;
   for (int k = 0; k < parts; ++k) {
@@ -301,12 +344,17 @@ double SkinJoin::safe_share(const VecX& x, const VecX& step, double share) const
 
 double SkinJoin::safe_part(const Parts& x, const Parts& step) const {
   constexpr double lost = 1.0 - contact_keep;
-  refresh_patches(x, approach(step, false) / lost);
+  const double far = approach(step) / lost;
+  refresh_patches(x, std::max(far, close_reach));
   if (!near_) return 1.0;
-  const double far = approach(step, true) / lost;
+  const PatchMoves moves = patch_moves(step);
+  const auto need = [&](int one, int other) { return approach(moves, one, other) / lost; };
+  bool known = pairs_known_ && remembered(x, pairs_x_, close_reach, need, far);
+  // What is found where all stands serves the solve that follows, too: what is found on a way does not.
+  if (!known && (known = remembered(x, x, close_reach, need, far))) find_pairs(x);
   double share = 1.0;
-  if (far <= close_reach) {
-    const std::vector<SkinPair>& pairs = pairs_below(x, far);
+  if (known) {
+    const std::vector<SkinPair>& pairs = choose_pairs(x, need);
     if (!pairs.empty()) {
       look_up(step, true, pairs);
       share = calot::safe_share(placed(true), pairs, contact_keep);
@@ -325,10 +373,14 @@ double SkinJoin::safe_edges(const Parts& x, const Parts& step) const {
   // Edges that lie across each other when the motion ends were far apart before, and lost most of that: what counts is
   // how near they come.
   constexpr double most = self_edge_barrier.range, nearest = contact_keep * most, lost = 1.0 - contact_keep;
-  const double motion = approach(step, true), far = std::min(motion / lost, motion + nearest);
+  const PatchMoves moves = patch_moves(step);
+  const auto need = [&](int one, int other) {
+    const double motion = approach(moves, one, other);
+    return std::min(motion / lost, motion + nearest);
+  };
   std::vector<EdgesNear> on_way;
-  if (far <= close_reach && edges_remembered(x, far)) {
-    on_way = edges_below(x, far);
+  if (edges_known_ && remembered(x, edges_x_, edges_reach_, need, approach(step) / lost)) {
+    on_way = choose_edges(x, need);
     look_up(step, true, on_way);
   } else {
     look_up(x, false);
