@@ -42,6 +42,12 @@ Failure cannot_follow(const Field& field, const std::string& why, double done) {
       "organ more nodes where it is handled");
 }
 
+/// Which body a solve found no balance of, and how far it was from one.
+std::string out_of_balance(const Field& field, const NewtonResult& failed) {
+  return fmt::format("'{}' finds no balance: {} (residual {:.2g})", member_name(field, failed.part),
+                     to_text(failed.status), failed.residual);
+}
+
 /// Moves the organs by a share of what is predicted.
 void move_by(double share, const Prediction& prediction, Field& field) {
   const BodyParts parts(field);
@@ -61,6 +67,7 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
   int iterations_before = statistics.newton_iterations;
   double done = 0;
   NewtonResult last;  // of the solve that failed last, if any did in this part
+  std::string stuck;  // what failed last, in any part
   for (int part = 0; done < 1.0; ++part) {
     const Poses from = present_poses(field);
     grow_damage(field);
@@ -81,13 +88,12 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
     while (!accepted) {
       const int iterations = statistics.newton_iterations - iterations_before;
       if (part >= max_parts || iterations > step_iterations)
-        return cannot_follow(field, fmt::format("not in {} parts and {} Newton iterations", part, iterations),
+        return cannot_follow(field,
+                             fmt::format("not in {} parts and {} Newton iterations{}", part, iterations,
+                                         stuck.empty() ? "" : "; last, " + stuck),
                              done);
       if (share < smallest_share)
-        return cannot_follow(field,
-                             last.converged()
-                                 ? "the tissue it touches leaves it no room"
-                                 : fmt::format("{} (residual {:.2g})", to_text(last.status), last.residual),
+        return cannot_follow(field, last.converged() ? "the tissue it touches leaves it no room" : stuck,
                              done);
       const double next = share >= 1.0 ? 1.0 : done + share * left;
       const Poses poses = next >= 1.0 ? to : interpolate(from, to, share);
@@ -109,6 +115,7 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
         if (!held) return held;
         iterations_before += statistics.newton_iterations - iterations_moving;
       } else {
+        stuck = out_of_balance(field, last);
         restore(field, before);
         share *= 0.5;
       }

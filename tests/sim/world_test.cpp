@@ -107,7 +107,14 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   OrganDefinition ball = test::bedded_ball();
   ball.nodes = 20;
   ball.held[0].radius = 15e-3;
-  World world = World::create(test::ball_scene(ball)).value();
+  SceneDefinition scene = test::ball_scene(ball);
+  OrganDefinition elsewhere;
+  elsewhere.name = "duct";
+  elsewhere.shape = TubeShape{.points = {{0.1, 0, 0}, {0.13, 0, 0}}};
+  elsewhere.wall.thickness = 0.8e-3;
+  elsewhere.held = {{"first", "start", 4e-3, 1e6}};
+  scene.anatomy.organs.insert(scene.anatomy.organs.begin(), elsewhere);
+  World world = World::create(scene).value();
   test::Driver driver(world);
   const Vec3 top = world.landmark("ball.fundus"), out = (driver.trocar() - top).normalized();
   ASSERT_TRUE(driver.go(top + 2e-3 * out, 0.0, 2));
@@ -118,6 +125,7 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   ASSERT_EQ(failure.problems.size(), 1u);
   const std::string& message = failure.problems[0].message;
   EXPECT_NE(message.find("'left'"), std::string::npos) << message;
+  EXPECT_NE(message.find("'ball' finds no balance"), std::string::npos) << message;
   EXPECT_NE(message.find(" mm"), std::string::npos) << message;
   EXPECT_NE(message.find(" s"), std::string::npos) << message;
   EXPECT_FALSE(failure.problems[0].hint.empty());
