@@ -17,7 +17,7 @@ return calot.exercise {
       default = "standard",
       choices = {
         "standard", "varied", "short_cystic_duct", "low_union", "double_cystic_artery", "hepatic_artery_near_neck",
-        "hydrops", "phrygian_cap",
+        "hydrops", "phrygian_cap", "dilated_common_duct", "aberrant_right_duct",
       },
       title = "whose field: the standard one, one drawn by the seed, or a variant",
     },

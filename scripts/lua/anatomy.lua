@@ -9,7 +9,10 @@
 --   cystic_duct_length 20 mm (20.6 +- 11.4, 6 to 55), cystic_duct_diameter 3.6 mm (3.2, 2 to 6):
 --     doi 10.4103/NJCA.NJCA_69_21
 --   common_duct_diameter 6 mm (up to 6); hepatic part 26 mm (about 30): the same
+--   common_duct_widest false: the width of a duct that a stone further down has dilated, beyond some 7 mm: common
+--     knowledge, uncalibrated
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
+--   its two branches on the gallbladder, superficial and deep: drawn by eye
 --   cystic_artery_enters { -3.5, -13.5, 2 }: where it reaches the gallbladder, in mm from the bed's neck: towards the
 --     liver, to the patient's right and back, towards the fundus
 --   looks "bile": "pale" is how a gallbladder full of mucus looks (hydrops)
@@ -18,6 +21,11 @@
 --     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } }
 --     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it
 --   strength 1: how many times as strong tissue is, and as hard to divide: some 25 in a scarred triangle
+--   hepatic_ducts false: with true the right and the left hepatic duct, which join at the common duct's beginning, are
+--     there to be hurt: 10 mm (9) and 17 mm (17) long, 4 mm (3 to 4) across: common knowledge, uncalibrated. Without
+--     them the common duct comes out of the hilum, at no cost
+--   aberrant_duct false: with true a right posterior sectoral duct of its own, 2.6 mm across, crosses the triangle and
+--     enters the common hepatic duct at aberrant_union 0.2 of the common duct: drawn by eye, uncalibrated
 --   assistant true: a hand that holds the fundus up, as drawn; without it the organs hang 20 mm lower
 --   union 0.38, the share of the common duct at which the cystic duct enters; union_lies, by which the common duct is
 --     moved there; node_diameter 5 mm; bed_stiffness;
@@ -55,6 +63,20 @@ function anatomy.along(points, share)
     if left <= length(way) or k == #points then return add(points[k - 1], way, left / length(way)) end
     left = left - length(way)
   end
+end
+
+--- The radius of a tube's shape at a share of the way along it.
+function anatomy.radius_along(shape, share)
+  if not shape.radii then return shape.radius + share * ((shape.end_radius or shape.radius) - shape.radius) end
+  local points, ways = shape.points, { 0 }
+  for k = 2, #points do ways[k] = ways[k - 1] + length(minus(points[k], points[k - 1])) end
+  for k = 2, #points do
+    local before, behind = ways[k - 1] / ways[#ways], ways[k] / ways[#ways]
+    if share <= behind then
+      return shape.radii[k - 1] + (share - before) / (behind - before) * (shape.radii[k] - shape.radii[k - 1])
+    end
+  end
+  return shape.radii[#points]
 end
 
 --- A line from one place to another that bows aside until it is as long as asked; straight where that is too short.
@@ -96,6 +118,7 @@ local defaults = {
   cystic_duct_length = 20 * mm,
   cystic_duct_diameter = 3.6 * mm,
   common_duct_diameter = 6 * mm,
+  common_duct_widest = false,
   union = 0.38,
   union_lies = { 0, 0, 0 },
   cystic_artery_length = 17 * mm,
@@ -103,6 +126,9 @@ local defaults = {
   cystic_artery_enters = { -3.5, -13.5, 2 },
   second_cystic_artery = false,
   hepatic_artery_near_neck = false,
+  hepatic_ducts = false,
+  aberrant_duct = false,
+  aberrant_union = 0.2,
   node_diameter = 5 * mm,
   assistant = true,
   looks = "bile",
@@ -153,9 +179,31 @@ local function gallbladder(p)
   }
 end
 
+--- The cystic artery's branches on the gallbladder, places in the bed's frame: the superficial one over the free side,
+--- the deep one between gallbladder and bed; each from an artery of its own where there are two. They are drawn on the
+--- wall: as bodies they would cost nodes in each step, and what feels and bleeds in the triangle is the artery.
+local second_enters = { -4, -9, 4.5 }
+local function branches(p, enters, deep_enters)
+  local long = p.gallbladder_length / (80 * mm)
+  local function vessel(radius, from, places)
+    local points = { place(table.unpack(from)) }
+    for _, at in ipairs(places) do
+      points[#points + 1] = place(at[1], at[2], at[3] <= 36 and at[3] or 36 + (at[3] - 36) * long)
+    end
+    return { radius = radius * mm, points = points }
+  end
+  return {
+    vessel(0.6, enters, { { -9, -15, 5 }, { -14, -10, 11 }, { -16, -8, 19 }, { -14, -7, 28 }, { -13, -8, 40 },
+      { -14, -9, 55 }, { -13, -8, 68 } }),
+    vessel(0.5, deep_enters or enters, { { -3, -13, 8 }, { -1, -9, 15 }, { 4, -6, 25 }, { 10, -7, 37 },
+      { 14, -8, 52 }, { 14, -7, 64 } }),
+  }
+end
+
 local function tube(name, points, diameter, wall, held, more)
-  local shape = { type = "tube", points = points, radius = diameter / 2, nodes = 9 }
+  local shape = { type = "tube", points = points, nodes = 9 }
   for key, value in pairs(more or {}) do shape[key] = value end
+  if not shape.radii then shape.radius = diameter / 2 end
   return { name = name, shape = shape, wall = soft_wall(wall), held = held }
 end
 
@@ -186,6 +234,12 @@ local function take_out(field, name, level)
   end)
   if not was_organ and not was_tissue then
     error('the field has no "' .. tostring(name) .. '" to leave out: there are ' .. table.concat(names, ", "), level)
+  end
+  for _, organ in ipairs(organs) do
+    local injury = organ.injury
+    if injury and injury.together then
+      injury.together = keep(injury.together, function(both) return both.with ~= name end)
+    end
   end
   field.organs, field.tissue = organs, tissue
   field.joints = keep(field.joints, function(one) return not on(one.from) and not on(one.to) end)
@@ -237,29 +291,80 @@ function anatomy.standard(overrides)
     { 17, 30, -28 }, { 17, 16, -20 }, { 17, 3, -15 }, { 17, -10, -12 }, { 17, -28, -14 }, { 15, -70, -34 },
   })
   for k, share in ipairs { 0, 0, 0.6, 1, 0.6, 0 } do line[k] = add(line[k], p.union_lies, share) end
+  -- Dilated from the hilum, which holds it, to the stone behind the duodenum; the liver's back leaves it more room.
+  local radii
+  local wider = p.common_duct_widest and (p.common_duct_widest - p.common_duct_diameter) / 2 or 0
+  if wider > 0 then
+    radii = {}
+    for k, share in ipairs { 0, 0.5, 1, 1, 1, 0.2 } do
+      radii[k] = p.common_duct_diameter / 2 + share * wider
+      if k < 5 then line[k] = add(line[k], towards_fundus, -wider) end
+    end
+  end
   local common = tube("common_duct", line, p.common_duct_diameter, 1 * mm, {
     { name = "hepatic", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "duodenal", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
     { name = "hepatoduodenal_ligament", landmark = "middle", radius = 40 * mm, stiffness = 2e4 },
-  }, { nodes = 13, patient_end = "start" })
-  -- E2: less than 20 mm from where the hepatic ducts join, which is where it begins here.
-  common.injury = { cut = "Strasberg E1", closed = "Strasberg E1", partly = "Strasberg D", near_start = 20 * mm,
-    near = "Strasberg E2" }
+  }, { nodes = 13, patient_end = "start", radii = radii })
+  -- From where the hepatic ducts join, which is where it begins: E3 where no stump is left that is longer than the duct
+  -- is wide and could be sewn to (uncalibrated).
+  common.injury = { cut = "Strasberg E1", closed = "Strasberg E1", partly = "Strasberg D", near_start = {
+    { within = 20 * mm, called = "Strasberg E2" },
+    { within = 1.25 * p.common_duct_diameter, called = "Strasberg E3" },
+  } }
   common.keep_clear = 3 * mm -- of current; uncalibrated
   local union = anatomy.along(common.shape.points, p.union)
 
   -- It leaves the neck without a step, and enters the common duct's side.
-  local enters = add(union, unit(minus(neck, union)), p.common_duct_diameter / 2)
+  local enters = add(union, unit(minus(neck, union)), anatomy.radius_along(common.shape, p.union))
   local begins = add(neck, unit(minus(bladder.shape.along[2].at, neck)), 2.5 * mm)
   local cystic = tube("cystic_duct", bowed(begins, enters, p.cystic_duct_length, unit(add(caudal, back, -0.4))),
     5 * mm, 0.8 * mm, nil, { end_radius = p.cystic_duct_diameter / 2, patient_end = "end", nodes = 11 })
   cystic.injury = { unclipped = "Strasberg A" } -- its stump leaks
 
+  -- What else brings bile down: where it lies in the liver it is held.
+  local ducts, duct_joints = {}, {}
+  local function hepatic_duct(name, points, diameter, enters_at)
+    local duct = tube(name, points, diameter, 0.8 * mm, {
+      { name = "hilum", landmark = "start", radius = 5 * mm, stiffness = 1e6 },
+    }, { patient_end = "start" })
+    duct.keep_clear = 3 * mm
+    ducts[#ducts + 1] = duct
+    duct_joints[#duct_joints + 1] = joint(name .. ".end", enters_at, 4 * mm)
+    return duct
+  end
+  if p.hepatic_ducts then
+    local confluence = line[1]
+    -- E4: once one of them is cut off, right and left do not communicate.
+    for _, duct in ipairs { { "right", { 6, 7.5, -3 } }, { "left", { 8, -15, -3 } } } do
+      local side, way = duct[1], minus(place(table.unpack(duct[2])), bed_neck)
+      local points = { add(confluence, way), add(confluence, way, 0.1) }
+      hepatic_duct(side .. "_hepatic_duct", points, 4 * mm, "common_duct.start").injury =
+        { cut = "Strasberg E4", closed = "Strasberg E4", partly = "Strasberg D" }
+    end
+    duct_joints[#duct_joints + 1] = joint("right_hepatic_duct.end", "left_hepatic_duct.end", 3 * mm)
+  end
+  if p.aberrant_duct then
+    local joins = anatomy.along(common.shape.points, p.aberrant_union)
+    local comes = course(neck, { { -3, 21, -35.5 }, { 6, 17, -25 } })
+    local touches = add(joins, unit(minus(comes[2], joins)), anatomy.radius_along(common.shape, p.aberrant_union))
+    local way = { comes[1], comes[2], touches }
+    local aberrant = hepatic_duct("aberrant_right_duct", way, 2.6 * mm, "common_duct.middle")
+    -- A part of the liver drains by it alone: shut it is B, open towards the liver C.
+    aberrant.injury = { closed = "Strasberg B", unclipped = "Strasberg C", partly = "aberrant right duct injured",
+      together = {} }
+    for _, main in ipairs { common, table.unpack(ducts, 1, #ducts - 1) } do
+      main.injury.together = { { with = aberrant.name, called = "Strasberg E5" } }
+      table.insert(aberrant.injury.together, { with = main.name, called = "Strasberg E5" })
+    end
+  end
+
   -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
+  local behind = add({ 17, 5, -23.5 }, add(times(towards_fundus, -1), back, 1.8), wider / mm)
   local to_hilum = { { 6, 3.5, -14 }, { 4, 10, -26 } }
   if p.hepatic_artery_near_neck then to_hilum = { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 } } end
   local hepatic_artery = tube("right_hepatic_artery", course(neck, {
-    { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, { 17, 5, -23.5 }, table.unpack(to_hilum),
+    { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, behind, table.unpack(to_hilum),
   }), 3.4 * mm, 0.8 * mm, {
     { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "ligament", landmark = "middle", radius = 14 * mm, stiffness = 5e4 },
@@ -291,6 +396,7 @@ function anatomy.standard(overrides)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
   end
   cystic_artery("cystic_artery", 0.82, place(table.unpack(p.cystic_artery_enters)))
+  bladder.vessels = branches(p, p.cystic_artery_enters, p.second_cystic_artery and second_enters)
 
   -- The node lies between neck and artery, fast to the neck by all of its skin. It gives way as lymph nodes do (20 to
   -- 80 kPa, uncalibrated): a stone there would cost the solver half of its time to turn.
@@ -300,7 +406,9 @@ function anatomy.standard(overrides)
     shape = { type = "rigid", rounding = radius, centre = add(on_neck, outward, radius + 0.8 * mm), density = 1050,
       stiffness = 80 * kPa } }
   joints[#joints + 1] = joint("cystic_node.centre", "gallbladder.neck", 3 * radius)
-  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(-4, -9, 4.5)) end
+  for _, duct in ipairs(ducts) do organs[#organs + 1] = duct end
+  for _, one in ipairs(duct_joints) do joints[#joints + 1] = one end
+  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(table.unpack(second_enters))) end
 
   local field = {
     organs = organs,
@@ -321,6 +429,8 @@ anatomy.variants = {
   hepatic_artery_near_neck = { hepatic_artery_near_neck = true }, -- "caterpillar turn"; uncalibrated
   hydrops = { gallbladder_length = 90 * mm, gallbladder_width = 36 * mm, fill_pressure = 20 * mmHg, looks = "pale" },
   phrygian_cap = { phrygian_cap = true }, -- about 4 %
+  dilated_common_duct = { common_duct_widest = 10 * mm }, -- with a stone in it; uncalibrated
+  aberrant_right_duct = { aberrant_duct = true, hepatic_ducts = true }, -- uncalibrated
 }
 
 --- The standard field with what a variant changes, and then with what differs besides.

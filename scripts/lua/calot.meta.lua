@@ -269,6 +269,12 @@
 ---@field compared_with? string another organ of the same shape; the metrics mean_difference_pct and largest_difference_pct then say how far this one's skin is from moving like that one's
 ---@field injury? calot.injury what it is called when this organ, which should be kept, is hurt
 ---@field keep_clear? number current that flows nearer to it is the event activation_beside; 0: it may; default 0 * mm; 0 to 100 mm
+---@field vessels? calot.wall_vessel[] an artery's branches on a hollow organ's wall, drawn there, from which finer vessels grow
+
+---A branch of an artery that is drawn on a wall: it looks, and does nothing.
+---@class calot.wall_vessel
+---@field points calot.point[] its course on the skin or near it, from where the artery comes: two points or more
+---@field radius? number at its beginning; it tapers; default 0.5 * mm; 0.1 to 2 mm
 
 ---What an instructor calls an injury of this organ, such as "Strasberg E": the text of the event injury. What is left out is none.
 ---@class calot.injury
@@ -276,8 +282,18 @@
 ---@field closed? string a clip shuts it
 ---@field partly? string a clip holds a part of its width, or current goes through its wall
 ---@field unclipped? string it is divided without a shut clip on the patient's side
----@field near_start? number along a tube at rest, from its start: nearer, near stands for cut and closed (Strasberg's E2 instead of E1: less than 20 mm from where the hepatic ducts join); default 0 * mm; 0 to 200 mm
----@field near? string what cut and closed are called there
+---@field near_start? calot.injury_near_start[] what cut and closed are called near a tube's start: of those that hold, the one that reaches least far
+---@field together? calot.injury_together[] what cut, closed and unclipped are called where another organ is hurt too: the first that holds
+
+---A part of a duct that has a class of its own, such as Strasberg's E2 instead of E1.
+---@class calot.injury_near_start
+---@field within number along it at rest, from its start: up to there; 0.1 to 200 mm
+---@field called string what it is called there
+
+---Injuries that have a class together, such as Strasberg's E5.
+---@class calot.injury_together
+---@field with string the other organ: it is divided, or a clip shuts it
+---@field called string what it is called then, whichever was first
 
 ---The organ's wall.
 ---@class calot.wall
@@ -348,6 +364,7 @@
 ---@field points calot.point[] its middle at rest, from its start to its end: two points or more
 ---@field radius? number outer radius; default 2.5 * mm; 0.3 to 20 mm
 ---@field end_radius? number outer radius at its end; 0: as at its start; default 0 * mm; 0 to 20 mm
+---@field radii? number[] instead of both: outer radii at each of its points, straight in between; other organs feel it everywhere as thick as where it is thickest
 ---@field nodes? number of its middle line; default 11; 5 to 60
 ---@field pressure? number gauge pressure of what it carries; default 0 * kPa; -10 to 40 kPa
 ---@field carries? "bile"|"blood" a duct's bile, or an artery's blood; default "bile"

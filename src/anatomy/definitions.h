@@ -63,6 +63,10 @@ struct TubeShape {
   /// What drives it out of an end that is cut open where the patient feeds it, Pa, gauge, and what resists on the way
   /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (sim/leak.h).
   std::optional<double> feed_pressure = {}, feed_resistance = {};
+  /// m, outer, one at each of its points and straight in between, by the way along them; empty: from `radius` to
+  /// `end_radius`. Other bodies, but not instruments, feel a tube everywhere as thick as where it is thickest.
+  std::vector<double> radii = {};
+  double start_radius() const { return radii.empty() ? radius : radii.front(); }
   bool operator==(const TubeShape&) const = default;
 };
 
@@ -147,6 +151,18 @@ struct HeldRegion {
   bool while_filled = false;
 };
 
+/// What it is called to cut or close a tube near its start.
+struct InjuryNearStart {
+  double within = 0;  ///< m along the tube at rest, from its start
+  std::string called;
+};
+
+/// What an injury is called where another organ has been cut or closed too, whichever was first.
+struct InjuryTogether {
+  std::string with;  ///< an organ
+  std::string called;
+};
+
 /// What an instructor calls it when an organ that should be kept is hurt, such as "Strasberg E": the text of the event
 /// `injury`. Empty: it is none.
 struct InjuryDefinition {
@@ -154,13 +170,16 @@ struct InjuryDefinition {
   std::string closed;     ///< a clip shuts it
   std::string partly;     ///< a clip holds a part of its width, or current goes through its wall
   std::string unclipped;  ///< it is divided without a shut clip on the patient's side
-  double near_start =
-      0;  ///< m along a tube at rest, from its start: nearer, `near` stands for `cut` and `closed`
-  std::string near = {};
-  /// What `usual`, one of these two, is called that far (m) from the tube's start.
-  const std::string& at(const std::string& usual, double from_start) const {
-    return usual.empty() || from_start >= near_start ? usual : near;
-  }
+  /// Of these places that which reaches least far stands for `cut` and `closed`.
+  std::vector<InjuryNearStart> near_start = {};
+  /// The first of these that holds stands for `cut`, `closed` and `unclipped`.
+  std::vector<InjuryTogether> together = {};
+};
+
+/// A branch of an artery on a hollow organ's wall, which is drawn there and neither moves nor bleeds by itself.
+struct WallVessel {
+  std::vector<Vec3> points;  ///< m, at rest, on the skin or near it, from where the artery comes to the wall
+  double radius = 0.5e-3;    ///< m, there; it tapers towards its end
 };
 
 /// How a hollow organ is drawn: full of bile, or pale, as one that mucus has filled (hydrops).
@@ -181,6 +200,8 @@ struct OrganDefinition {
   std::string compared_with;  ///< another organ of the same shape and posture, see session/skin_difference.h
   InjuryDefinition injury;
   double keep_clear = 0;  ///< m: current nearer to it is the event `activation_beside`; 0: it may be (d)
+  std::vector<WallVessel> vessels =
+      {};  ///< from which its finer ones grow; none: from two places of its neck
 };
 
 /// What ties a place on one body to one on another, which follows it: where a duct grows out of an organ or enters

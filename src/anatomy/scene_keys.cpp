@@ -255,10 +255,19 @@ std::vector<KeyTable> organ_tables() {
            text("compared_with", &Organ::compared_with,
                 "another organ of the same shape; the metrics mean_difference_pct and "
                 "largest_difference_pct then say how far this one's skin is from moving like that one's"),
-           table("injury", &Organ::injury, "injury",
-                 "what it is called when this organ, which should be kept, is hurt"),
+           table("injury", "injury", "what it is called when this organ, which should be kept, is hurt"),
            number("keep_clear", &Organ::keep_clear, quantity::length, 0, 100 * mm, "a distance to keep",
-                  "current that flows nearer to it is the event activation_beside; 0: it may")}),
+                  "current that flows nearer to it is the event activation_beside; 0: it may"),
+           list(
+               "vessels", "wall_vessel",
+               "an artery's branches on a hollow organ's wall, drawn there, from which finer vessels grow")}),
+      keys_of<WallVessel>(
+          "wall_vessel", "A branch of an artery that is drawn on a wall: it looks, and does nothing.",
+          {required(
+               list("points", "point",
+                    "its course on the skin or near it, from where the artery comes: two points or more")),
+           number("radius", &WallVessel::radius, quantity::length, 0.1 * mm, 2 * mm,
+                  "a small vessel's radius", "at its beginning; it tapers")}),
       keys_of<InjuryDefinition>(
           "injury",
           "What an instructor calls an injury of this organ, such as \"Strasberg E\": the text of the event "
@@ -269,11 +278,23 @@ std::vector<KeyTable> organ_tables() {
                 "a clip holds a part of its width, or current goes through its wall"),
            text("unclipped", &InjuryDefinition::unclipped,
                 "it is divided without a shut clip on the patient's side"),
-           number("near_start", &InjuryDefinition::near_start, quantity::length, 0, 200 * mm,
-                  "a way along a duct",
-                  "along a tube at rest, from its start: nearer, near stands for cut and closed (Strasberg's "
-                  "E2 instead of E1: less than 20 mm from where the hepatic ducts join)"),
-           text("near", &InjuryDefinition::near, "what cut and closed are called there")}),
+           list("near_start", "injury_near_start",
+                "what cut and closed are called near a tube's start: of those that hold, the one that "
+                "reaches least far"),
+           list("together", "injury_together",
+                "what cut, closed and unclipped are called where another organ is hurt too: the first that "
+                "holds")}),
+      keys_of<InjuryNearStart>(
+          "injury_near_start",
+          "A part of a duct that has a class of its own, such as Strasberg's E2 instead of E1.",
+          {required(number("within", &InjuryNearStart::within, quantity::length, 0.1 * mm, 200 * mm,
+                           "a way along a duct", "along it at rest, from its start: up to there")),
+           required(text("called", &InjuryNearStart::called, "what it is called there"))}),
+      keys_of<InjuryTogether>(
+          "injury_together", "Injuries that have a class together, such as Strasberg's E5.",
+          {required(
+               text("with", &InjuryTogether::with, "the other organ: it is divided, or a clip shuts it")),
+           required(text("called", &InjuryTogether::called, "what it is called then, whichever was first"))}),
       keys_of<Wall>(
           "wall", "The organ's wall.",
           {number("thickness", &Wall::thickness, quantity::length, 0.1 * mm, 10 * mm, "a wall's thickness",
@@ -386,6 +407,10 @@ std::vector<KeyTable> shape_tables() {
                   "outer radius"),
            number("end_radius", &TubeShape::end_radius, quantity::length, 0, 20 * mm, "a duct's radius",
                   "outer radius at its end; 0: as at its start"),
+           list("radii", "number",
+                "instead of both: outer radii at each of its points, straight in between; other organs feel "
+                "it "
+                "everywhere as thick as where it is thickest"),
            count("nodes", &TubeShape::nodes, 5, 60, "a number of control nodes", "of its middle line"),
            number("pressure", &TubeShape::pressure, quantity::pressure, -10 * kPa, 40 * kPa,
                   "a pressure in a duct", "gauge pressure of what it carries"),

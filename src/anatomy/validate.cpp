@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -81,6 +82,34 @@ void check_swept(FieldCheck& check, const std::string& path, const SweptShape& s
       "make the organ thinner there, or bend its axis over a longer way");
 }
 
+/// Whether the list of a tube's radii, if there is one, fits its points.
+bool check_radii(FieldCheck& check, const std::string& path, const TubeShape& tube) {
+  if (tube.radii.empty()) return true;
+  if (tube.end_radius > 0)
+    check.problem(path + ".end_radius", "end_radius and radii are both given", "leave one out");
+  if (tube.radii.size() != tube.points.size()) {
+    check.problem(path + ".radii",
+                  fmt::format("{} radii of a tube along {} points", tube.radii.size(), tube.points.size()),
+                  "give one at each of its points");
+    return false;
+  }
+  bool good = true;
+  for (std::size_t i = 0; i < tube.radii.size(); ++i) {
+    const std::string at = fmt::format("{}.radii[{}]", path, i + 1);
+    good &= check.in_range(at, tube.radii[i], quantity::length, 0.3 * mm, 20 * mm, "a duct's radius");
+    if (!good || i == 0) continue;
+    // Beyond that its skin, balls about its middle, would lie within the wider one's.
+    const double way = (tube.points[i] - tube.points[i - 1]).norm();
+    if (std::abs(tube.radii[i] - tube.radii[i - 1]) <= 0.5 * way) continue;
+    check.problem(at,
+                  fmt::format("from {:.3g} to {:.3g} mm of radius over {:.3g} mm", tube.radii[i - 1] / mm,
+                              tube.radii[i] / mm, way / mm),
+                  "let it widen by half of the way at most, or put the points further apart");
+    good = false;
+  }
+  return good;
+}
+
 void check_tube(FieldCheck& check, const std::string& path, const TubeShape& tube) {
   check_limits(check, path, "shape_tube", tube);
   double length = 0;
@@ -89,15 +118,17 @@ void check_tube(FieldCheck& check, const std::string& path, const TubeShape& tub
     if (!check.place_within(at, tube.points[i], abdomen_reach, "a place in the abdomen")) return;
     if (i > 0) length += (tube.points[i] - tube.points[i - 1]).norm();
   }
-  if (tube.points.size() < 2) {
-    check.problem(path + ".points", fmt::format("a tube along {} points", tube.points.size()),
-                  "give its start and its end at least");
-  } else if (check.is_fine(path + ".radius") && length < 2 * tube.radius) {
+  if (tube.points.size() < 2)
+    return check.problem(path + ".points", fmt::format("a tube along {} points", tube.points.size()),
+                         "give its start and its end at least");
+  if (!check_radii(check, path, tube)) return;
+  const double widest =
+      tube.radii.empty() ? tube.radius : *std::max_element(tube.radii.begin(), tube.radii.end());
+  if (check.is_fine(path + ".radius") && length < 2 * widest)
     check.problem(path + ".points",
                   fmt::format("a tube {:.3g} mm long is shorter than it is thick ({:.3g} mm)", length / mm,
-                              2 * tube.radius / mm),
+                              2 * widest / mm),
                   "make it longer or thinner");
-  }
 }
 
 void check_lobe(FieldCheck& check, const std::string& path, const LobeShape& lobe) {
@@ -184,6 +215,60 @@ void check_axis(FieldCheck& check, const std::string& path, const OrganDefinitio
   }
 }
 
+void check_vessels(FieldCheck& check, const std::string& path, const OrganDefinition& organ) {
+  if (!organ.vessels.empty() && !is_hollow(organ.shape))
+    return check.problem(path, fmt::format("a {} has no wall to draw vessels on", shape_name(organ.shape)),
+                         "leave vessels out");
+  for (std::size_t i = 0; i < organ.vessels.size(); ++i) {
+    const WallVessel& vessel = organ.vessels[i];
+    const std::string at = fmt::format("{}[{}]", path, i + 1);
+    check_limits(check, at, "wall_vessel", vessel);
+    for (std::size_t k = 0; k < vessel.points.size(); ++k)
+      check.place_within(fmt::format("{}.points[{}]", at, k + 1), vessel.points[k], abdomen_reach,
+                         "a place in the abdomen");
+    if (vessel.points.size() < 2)
+      check.problem(at + ".points", fmt::format("a vessel along {} points", vessel.points.size()),
+                    "give its beginning and its end at least");
+  }
+}
+
+/// What an injury is called has to be said.
+void check_called(FieldCheck& check, const std::string& path, const std::string& called) {
+  if (called.empty())
+    check.problem(path + ".called", "the injury has no name", "say what an instructor calls it");
+}
+
+void check_near_start(FieldCheck& check, const std::string& path, const OrganDefinition& organ) {
+  const std::vector<InjuryNearStart>& near = organ.injury.near_start;
+  if (!near.empty() && !std::holds_alternative<TubeShape>(organ.shape))
+    return check.problem(path + ".near_start", fmt::format("a {} has no start", shape_name(organ.shape)),
+                         "leave near_start out; a tube has one");
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const std::string at = fmt::format("{}.near_start[{}]", path, i + 1);
+    check_limits(check, at, "injury_near_start", near[i]);
+    check_called(check, at, near[i].called);
+  }
+}
+
+/// Names of all organs but one.
+std::vector<std::string> others_than(const OrganDefinition& organ,
+                                     const std::vector<OrganDefinition>& organs) {
+  std::vector<std::string> others;
+  for (const OrganDefinition& other : organs)
+    if (&other != &organ) others.push_back(other.name);
+  return others;
+}
+
+void check_together(FieldCheck& check, const std::string& path, const OrganDefinition& organ,
+                    const std::vector<OrganDefinition>& organs) {
+  for (std::size_t i = 0; i < organ.injury.together.size(); ++i) {
+    const InjuryTogether& both = organ.injury.together[i];
+    const std::string at = fmt::format("{}.together[{}]", path, i + 1);
+    check.known(at + ".with", both.with, others_than(organ, organs), "other organ");
+    check_called(check, at, both.called);
+  }
+}
+
 void check_organ(FieldCheck& check, const std::string& path, const OrganDefinition& organ) {
   const bool has_own_nodes = !is_hollow(organ.shape) || std::holds_alternative<MeshFile>(organ.shape);
   check_limits(check, path, "organ", organ, has_own_nodes ? "nodes" : "");
@@ -199,9 +284,8 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
   if (std::holds_alternative<RigidShape>(organ.shape) && !organ.held.empty())
     check.problem(path + ".held", "a rigid thing is not held",
                   "let something support it, or tie it by a joint");
-  if (organ.injury.near_start > 0 && organ.injury.near.empty())
-    check.problem(path + ".injury.near", "what lies near the start has no name",
-                  "say what an instructor calls it, or leave near_start out");
+  check_near_start(check, path + ".injury", organ);
+  check_vessels(check, path + ".vessels", organ);
   check_wall(check, path + ".wall", organ.wall, radius_of(organ.shape));
   check_bile(check, path + ".bile", organ.bile);
   UniqueNames names(check, "held region");
@@ -221,10 +305,7 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
 void check_compared(FieldCheck& check, const std::string& path, const OrganDefinition& organ,
                     const std::vector<OrganDefinition>& organs) {
   if (organ.compared_with.empty()) return;
-  std::vector<std::string> others;
-  for (const OrganDefinition& other : organs)
-    if (&other != &organ) others.push_back(other.name);
-  if (!check.known(path, organ.compared_with, others, "other organ")) return;
+  if (!check.known(path, organ.compared_with, others_than(organ, organs), "other organ")) return;
   constexpr double same = 1e-9;  // m: rounding
   for (const OrganDefinition& other : organs) {
     if (&other == &organ || other.name != organ.compared_with) continue;
@@ -326,6 +407,7 @@ void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
     names.add(at + ".name", anatomy.organs[i].name);
     check_organ(check, at, anatomy.organs[i]);
     check_compared(check, at + ".compared_with", anatomy.organs[i], anatomy.organs);
+    check_together(check, at + ".injury", anatomy.organs[i], anatomy.organs);
   }
   check_joints(check, anatomy);
   check_tissue(check, anatomy);

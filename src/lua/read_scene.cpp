@@ -34,6 +34,13 @@ class SceneReader {
     if (const Value* shape = reader.take("shape")) read_shape(organ.shape, *shape, path + ".shape");
     lay_along(reader, organ);
     if (const Value* held = reader.take("held")) organ.held = read_held(*held, path + ".held");
+    read_vessels(reader, organ.vessels);
+    if (const Value* injury = reader.take("injury")) {
+      const TableReader of(check_, injury, path + ".injury", api_table("injury"));
+      of.read(organ.injury);
+      read_list(of, "near_start", "injury_near_start", organ.injury.near_start);
+      read_list(of, "together", "injury_together", organ.injury.together);
+    }
   }
 
  private:
@@ -147,15 +154,53 @@ class SceneReader {
     }
   }
 
+  /// A list replaces the radii that there were, and a radius the list.
+  void read_radii(const TableReader& reader, TubeShape& tube) {
+    const Value* radii = reader.take("radii");
+    if (radii == nullptr && (reader.has("radius") || reader.has("end_radius"))) tube.radii.clear();
+    if (radii == nullptr) return;
+    if (reader.has("radius"))
+      check_.problem(reader.path_of("radius"), "radius and radii are both given", "leave one out");
+    tube.radii.clear();
+    if (!reader.has("end_radius")) tube.end_radius = 0;
+    for (std::size_t i = 0; i < radii->items.size(); ++i) {
+      const Value& item = radii->items[i];
+      if (item.is(Value::Kind::number)) {
+        tube.radii.push_back(item.number);
+      } else {
+        check_.problem(indexed(reader.path_of("radii"), i), "this is no radius",
+                       "give numbers, such as 2.5 * mm");
+      }
+    }
+  }
+
   void read_tube(const TableReader& reader, TubeShape& tube) {
     reader.read(tube);
+    read_radii(reader, tube);
+    read_points(reader, tube.points);
+  }
+
+  /// Of "points", which replaces those that there are.
+  void read_points(const TableReader& reader, std::vector<Vec3>& out) {
     const Value* points = reader.take("points");
     if (points == nullptr) return;
-    tube.points.clear();
+    out.clear();
     for (std::size_t i = 0; i < points->items.size(); ++i)
       if (const std::optional<Vec3> at =
               read_point(check_, points->items[i], indexed(reader.path_of("points"), i)))
-        tube.points.push_back(*at);
+        out.push_back(*at);
+  }
+
+  void read_vessels(const TableReader& reader, std::vector<WallVessel>& out) {
+    const Value* vessels = reader.take("vessels");
+    if (vessels == nullptr) return;
+    out.clear();
+    for (std::size_t i = 0; i < vessels->items.size(); ++i) {
+      const TableReader of(check_, &vessels->items[i], indexed(reader.path_of("vessels"), i),
+                           api_table("wall_vessel"));
+      of.read(out.emplace_back());
+      read_points(of, out.back().points);
+    }
   }
 
   std::string find_mesh(const std::string& file, const std::string& path) {

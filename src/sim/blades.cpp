@@ -5,14 +5,11 @@
 #include "sim/between_jaws.h"
 #include "sim/change_bodies.h"
 #include "sim/grip.h"
+#include "sim/injury.h"
 #include "sim/settle_field.h"
 
 namespace calot {
 namespace {
-
-bool is_clipped(const Organ& organ) {
-  return std::any_of(organ.clips.begin(), organ.clips.end(), [](const Clip& clip) { return clip.shut(); });
-}
 
 void slide_out(Organ& organ, int instrument) {
   organ.unfelt.insert(std::lower_bound(organ.unfelt.begin(), organ.unfelt.end(), instrument), instrument);
@@ -21,13 +18,14 @@ void slide_out(Organ& organ, int instrument) {
 /// What is too short to be divided slides out of the blades.
 Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
                          std::vector<WorldEvent>& events) {
-  const std::string name = field.organs[tube.organ].definition.name;
-  const InjuryDefinition injury = field.organs[tube.organ].definition.injury;
-  const Vec3 at = rod_of(field.organs[tube.organ])->place_at(tube.at, field.organs[tube.organ].state.x);
-  const double share = rod_of(field.organs[tube.organ])->share_at(tube.at);
-  const std::string cut = injury.at(injury.cut, way_from_start(*rod_of(field.organs[tube.organ]), tube.at));
-  if (!can_be_divided(field.organs[tube.organ], share)) {
-    slide_out(field.organs[tube.organ], instrument);
+  Organ& whole = field.organs[tube.organ];
+  const std::string name = whole.definition.name;
+  const Vec3 at = rod_of(whole)->place_at(tube.at, whole.state.x);
+  const double share = rod_of(whole)->share_at(tube.at);
+  const std::string cut = injury_at(field, whole, whole.definition.injury.cut, tube.at);
+  const std::string leaking = injury_anywhere(field, whole, whole.definition.injury.unclipped);
+  if (!can_be_divided(whole, share)) {
+    slide_out(whole, instrument);
     return false;
   }
   const Result<Division> done = divide_body(field, tube.organ, share, field.time);
@@ -40,12 +38,12 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
   }
   events.push_back({EventKind::cut, 0, tool, name, done->share, at, EventCause::blades});
   const Organ& left = field.organs[done->patient];
-  const bool unclipped = !left.of_specimen && !is_clipped(left);
+  const bool unclipped = !left.of_specimen && !left.is_shut();
   if (unclipped)
     events.push_back({EventKind::cut_unclipped, 0, tool, name, done->share, at, EventCause::blades});
   if (!cut.empty()) events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, cut});
-  if (unclipped && !injury.unclipped.empty())
-    events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, injury.unclipped});
+  if (unclipped && !leaking.empty())
+    events.push_back({EventKind::injury, 0, tool, name, 0, at, EventCause::blades, leaking});
   return true;
 }
 

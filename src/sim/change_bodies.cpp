@@ -105,12 +105,20 @@ std::vector<Burn> burns_of_piece(const Organ& whole, const RodBody& piece) {
 /// What of a rod's state is one half's.
 Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool first, RodBody body) {
   Organ piece{whole.definition, nullptr, {}, {}, {}, {}, {}, {}, {}, {}};
-  if (!first) piece.definition.injury.near_start -= way_from_start(rod, cut.point);
+  if (!first)
+    for (InjuryNearStart& near : piece.definition.injury.near_start)
+      near.within -= way_from_start(rod, cut.point);
   auto& shape = std::get<TubeShape>(piece.definition.shape);
   shape.points = body.skin_rest();
   shape.nodes = body.nodes();
   shape.radius = body.skin_radii().front();
   shape.end_radius = body.skin_radii().back();
+  if (!shape.radii.empty()) {
+    shape.end_radius = 0;
+    shape.radii.clear();
+    for (std::size_t point = 0; point < shape.points.size(); ++point)
+      shape.radii.push_back(body.outer_radius(static_cast<double>(point)));
+  }
   piece.search.own.active = false;
   piece.state.x = rod.in_part(body, whole.state.x);
   if (const MotionPart& motion = whole.state.motion; motion.begin.x.size() > 0) {

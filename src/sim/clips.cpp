@@ -9,6 +9,7 @@
 #include "sim/between_jaws.h"
 #include "sim/change_bodies.h"
 #include "sim/grip.h"
+#include "sim/injury.h"
 #include "sim/spill.h"
 
 namespace calot {
@@ -82,7 +83,7 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
     const std::string name = organ.definition.name;
     const InjuryDefinition& injury = organ.definition.injury;
     const std::string called =
-        clip.shut() ? injury.at(injury.closed, way_from_start(rod, tube.at)) : injury.partly;
+        clip.shut() ? injury_at(field, organ, injury.closed, tube.at) : injury.partly;
     set_clip(field, tube.organ, clip);
     events.push_back({EventKind::clip, 0, tool.definition.name, name, open, at});
     if (!called.empty())

@@ -62,9 +62,9 @@ class DefinitionDigest {
   }
   void put(const TubeShape& d) {
     const auto& [points, radius, end_radius, nodes, pressure, patient_end, carries, feed_pressure,
-                 feed_resistance] = d;
-    put_all(points, radius, end_radius, nodes, pressure, patient_end, carries, feed_pressure,
-            feed_resistance);
+                 feed_resistance, radii] = d;
+    put_all(points, radius, end_radius, nodes, pressure, patient_end, carries, feed_pressure, feed_resistance,
+            radii);
   }
   void put(const RigidShape& d) {
     const auto& [size, rounding, centre, density, stiffness] = d;
@@ -95,14 +95,26 @@ class DefinitionDigest {
     put_all(name, landmark, radius, stiffness, while_filled);
   }
   void put(const InjuryDefinition& d) {
-    const auto& [cut, closed, partly, unclipped, near_start, near] = d;
-    put_all(cut, closed, partly, unclipped, near_start, near);
+    const auto& [cut, closed, partly, unclipped, near_start, together] = d;
+    put_all(cut, closed, partly, unclipped, near_start, together);
+  }
+  void put(const InjuryNearStart& d) {
+    const auto& [within, called] = d;
+    put_all(within, called);
+  }
+  void put(const InjuryTogether& d) {
+    const auto& [with, called] = d;
+    put_all(with, called);
   }
   void put(const OrganDefinition& d) {
     const auto& [name, shape, nodes, neck, fundus, liver_side, wall, bile, held, looks, extensions,
-                 compared_with, injury, keep_clear] = d;
+                 compared_with, injury, keep_clear, vessels] = d;
     put_all(name, shape, nodes, neck, fundus, liver_side, wall, bile, held, looks, extensions, compared_with,
-            injury, keep_clear);
+            injury, keep_clear, vessels);
+  }
+  void put(const WallVessel& d) {
+    const auto& [points, radius] = d;
+    put_all(points, radius);
   }
   void put(const JointDefinition& d) {
     const auto& [from, to, radius, stiffness] = d;

@@ -309,7 +309,7 @@ TubeFeed feed_of(const OrganDefinition& tube) {
   if (shape.carries == Carries::blood) {
     // Blood loses as much pressure on its way as along 35 mm of such a tube (d), by Poiseuille's law.
     constexpr double viscosity = 3.5e-3, length = 35e-3;
-    const double radius = std::max(shape.radius - tube.wall.thickness, 0.1e-3);
+    const double radius = std::max(shape.start_radius() - tube.wall.thickness, 0.1e-3);
     out = {12e3, 8 * viscosity * length / (pi * std::pow(radius, 4))};
   }
   return {shape.feed_pressure.value_or(out.pressure), shape.feed_resistance.value_or(out.resistance)};

@@ -1,6 +1,7 @@
 #pragma once
 // An organ of the world: its structure, where it is now, and what grips it.
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <map>
@@ -96,6 +97,9 @@ struct Organ {
   /// m^3, what is left in a tube that nothing feeds; none: it is full.
   std::optional<double> left_in = {};
   std::vector<Burn> burns = {};  ///< in the order in which they began
+  bool is_shut() const {         ///< by a clip
+    return std::any_of(clips.begin(), clips.end(), [](const Clip& clip) { return clip.shut(); });
+  }
 };
 
 /// The body as a shell, which alone is refined; null: it is none.

@@ -24,9 +24,25 @@ RodSection section_of(double young, double radius, double wall) {
   return wall < radius ? tube_section(young, radius - 0.5 * wall, wall) : solid_section(young, radius);
 }
 
+/// Of the way along points, for each.
+std::vector<double> shares_of_way(const std::vector<Vec3>& points) {
+  std::vector<double> out{0};
+  for (std::size_t k = 1; k < points.size(); ++k)
+    out.push_back(out.back() + (points[k] - points[k - 1]).norm());
+  const double whole = out.back();
+  for (double& share : out) share /= whole;
+  return out;
+}
+
 }  // namespace
 
 double RodBody::radius_along(double share) const {
+  if (!setup_.radii.empty()) {
+    const auto behind = std::upper_bound(radius_shares_.begin() + 1, radius_shares_.end() - 1, share);
+    const auto k = static_cast<std::size_t>(behind - radius_shares_.begin());
+    const double part = (share - radius_shares_[k - 1]) / (radius_shares_[k] - radius_shares_[k - 1]);
+    return setup_.radii[k - 1] + part * (setup_.radii[k] - setup_.radii[k - 1]);
+  }
   const double end = setup_.end_radius > 0 ? setup_.end_radius : setup_.radius;
   return setup_.radius + share * (end - setup_.radius);
 }
@@ -34,10 +50,16 @@ double RodBody::radius_along(double share) const {
 Result<RodBody> RodBody::create(const Setup& setup) {
   Result<Centreline> line = Centreline::create(setup.nodes);
   if (!line) return line.failure();
+  if (!setup.radii.empty() && setup.radii.size() != setup.points.size())
+    return fail(
+        FailureKind::scenario,
+        fmt::format("{} radii at {} points of '{}'", setup.radii.size(), setup.points.size(), setup.name),
+        "give one at each of its points");
   RodBody body(setup, std::move(line).value());
   Result<VecX> rest = body.line_.along(setup.points);
   if (!rest) return rest.failure();
   body.rest_ = std::move(rest).value();
+  body.radius_shares_ = shares_of_way(setup.points);
   std::vector<double> middles;
   for (const HeldPart& held : setup.held) middles.push_back(held.share * body.line_.spans());
   const StencilTable table = body.line_.stencils(middles);
@@ -52,6 +74,7 @@ Result<RodBody> RodBody::part(int first, int last) const {
   body.rest_ = line_.in_part(body.line_, rest_);
   body.part_ = {skin_shares_[first], skin_shares_[last]};
   body.held_at_ = held_at_;
+  body.radius_shares_ = radius_shares_;
   body.least_edge_ = *std::min_element(edge_lengths_.begin(), edge_lengths_.end());
   body.skin_parameters_.assign(skin_parameters_.begin() + first, skin_parameters_.begin() + last + 1);
   body.skin_shares_.assign(skin_shares_.begin() + first, skin_shares_.begin() + last + 1);

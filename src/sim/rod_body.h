@@ -31,6 +31,8 @@ class RodBody : public Body {
     int nodes = 11;
     Vec3 up = Vec3::UnitZ();
     std::vector<HeldPart> held;
+    /// m, outer, one at each point and straight in between by the way along them; empty: from radius to end_radius.
+    std::vector<double> radii = {};
   };
   /// A place at which something holds it flat.
   struct Pinch {
@@ -142,8 +144,9 @@ class RodBody : public Body {
 
   Setup setup_;
   Centreline line_;
-  std::array<double, 2> part_{0, 1};  ///< of the whole, by parameter: what of it is left
-  std::vector<Vec3> held_at_;         ///< m, middles of what is held
+  std::array<double, 2> part_{0, 1};   ///< of the whole, by parameter: what of it is left
+  std::vector<Vec3> held_at_;          ///< m, middles of what is held
+  std::vector<double> radius_shares_;  ///< of the whole: where setup's radii are, increasing
   /// Where the skin points are on the line, and as shares of the whole.
   std::vector<double> skin_parameters_, skin_shares_;
   Rod rod_;

@@ -21,6 +21,7 @@ Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSett
   setup.points = shape.points;
   setup.radius = shape.radius;
   setup.end_radius = shape.end_radius;
+  setup.radii = shape.radii;
   setup.wall = definition.wall.thickness;
   setup.shear_modulus = definition.wall.shear_modulus;
   setup.pressure = shape.pressure;

@@ -64,7 +64,14 @@ SceneMesh SceneBuilder::organ_mesh(const World& world, int organ) {
   SceneMesh mesh;
   mesh.material = material_of(definition);
   mesh.triangles = world.drawn_triangles(organ);
-  if (is_hollow(definition.shape)) mesh.vessels = grow_vessels(rest, mesh.triangles);
+  if (is_hollow(definition.shape)) {
+    std::vector<VesselTrunk> trunks;
+    for (const WallVessel& vessel : definition.vessels) {
+      VesselTrunk& trunk = trunks.emplace_back(VesselTrunk{vessel.points, vessel.radius});
+      for (Vec3& p : trunk.line) p = to_organ * p;
+    }
+    mesh.vessels = grow_vessels(rest, mesh.triangles, trunks);
+  }
   mesh.rest_positions = std::move(rest);
   return mesh;
 }

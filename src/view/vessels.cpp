@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/rng.h"
+#include "geometry/tri_mesh.h"
 
 namespace calot {
 namespace {
@@ -34,7 +35,7 @@ std::vector<std::vector<Edge>> stretched_edges(const std::vector<Vec3>& rest,
 }
 
 /// Two points near the low end, apart from each other across the axis: an artery's two branches.
-std::pair<int, int> roots(const std::vector<Vec3>& rest) {
+std::vector<int> usual_roots(const std::vector<Vec3>& rest) {
   double low = std::numeric_limits<double>::max(), high = -low;
   for (const Vec3& p : rest) low = std::min(low, p.z()), high = std::max(high, p.z());
   std::pair<int, int> best{0, 0};
@@ -44,16 +45,55 @@ std::pair<int, int> roots(const std::vector<Vec3>& rest) {
     if (rest[i].y() > rest[best.first].y() || rest[best.first].z() > limit) best.first = i;
     if (rest[i].y() < rest[best.second].y() || rest[best.second].z() > limit) best.second = i;
   }
-  return best;
+  return {best.first, best.second};
+}
+
+/// A trunk's line in small steps, each moved onto the tangent plane of the surface's point that is nearest to it.
+struct LaidTrunk {
+  std::vector<Vec3> places;
+  std::vector<int> nearest;  ///< of the surface's points, for each
+};
+
+LaidTrunk lay(const VesselTrunk& trunk, const std::vector<Vec3>& rest, const std::vector<Vec3>& normals) {
+  constexpr double step = 0.5e-3;  // m, about a voxel
+  LaidTrunk out;
+  const std::vector<Vec3>& line = trunk.line;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const Vec3 way = line[k + 1] - line[k];
+    const int steps = std::max(1, static_cast<int>(std::ceil(way.norm() / step)));
+    for (int i = k == 0 ? 0 : 1; i <= steps; ++i) {
+      const Vec3 at = line[k] + static_cast<double>(i) / steps * way;
+      const int nearest = nearest_of(rest, at);
+      out.nearest.push_back(nearest);
+      out.places.push_back(at - normals[nearest] * normals[nearest].dot(at - rest[nearest]));
+    }
+  }
+  // Corners of its line, and steps from one tangent plane to the next, are rounded off.
+  for (int pass = 0; pass < 6; ++pass) {
+    const std::vector<Vec3> before = out.places;
+    for (std::size_t i = 1; i + 1 < before.size(); ++i)
+      out.places[i] = 0.25 * before[i - 1] + 0.5 * before[i] + 0.25 * before[i + 1];
+  }
+  return out;
+}
+
+std::vector<Vec3> point_normals(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> out(rest.size(), Vec3::Zero());
+  for (const Triangle& t : triangles) {
+    const Vec3 area = (rest[t[1]] - rest[t[0]]).cross(rest[t[2]] - rest[t[0]]);
+    for (const int corner : t) out[corner] += area;
+  }
+  for (Vec3& normal : out) normal.normalize();
+  return out;
 }
 
 /// Each point's next point on its way to a root; -1 at roots and where no way leads.
-std::vector<int> ways(const std::vector<std::vector<Edge>>& edges, const std::pair<int, int>& from) {
+std::vector<int> ways(const std::vector<std::vector<Edge>>& edges, const std::vector<int>& from) {
   std::vector<double> distance(edges.size(), std::numeric_limits<double>::max());
   std::vector<int> next(edges.size(), -1);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (const int root : {from.first, from.second}) queue.push({distance[root] = 0, root});
+  for (const int root : from) queue.push({distance[root] = 0, root});
   while (!queue.empty()) {
     const auto [reached, point] = queue.top();
     queue.pop();
@@ -119,10 +159,19 @@ void stamp(VesselMap& map, const Vec3& a, const Vec3& b, double radius) {
 }  // namespace
 
 std::shared_ptr<const VesselMap> grow_vessels(const std::vector<Vec3>& rest,
-                                              const std::vector<Triangle>& triangles) {
+                                              const std::vector<Triangle>& triangles,
+                                              const std::vector<VesselTrunk>& trunks) {
   if (rest.empty()) return nullptr;
   Rng rng(0x7e55e1);
-  const std::vector<int> next = ways(stretched_edges(rest, triangles, rng), roots(rest));
+  const std::vector<Vec3> normals = point_normals(rest, triangles);
+  std::vector<LaidTrunk> laid;
+  std::vector<int> roots;
+  for (const VesselTrunk& trunk : trunks) {
+    laid.push_back(lay(trunk, rest, normals));
+    roots.insert(roots.end(), laid.back().nearest.begin(), laid.back().nearest.end());
+  }
+  if (roots.empty()) roots = usual_roots(rest);
+  const std::vector<int> next = ways(stretched_edges(rest, triangles, rng), roots);
   const std::vector<int> flow = flows(next, rng);
   const std::vector<Vec3> points = smoothed(rest, next, flow);
 
@@ -137,6 +186,12 @@ std::shared_ptr<const VesselMap> grow_vessels(const std::vector<Vec3>& rest,
   for (std::size_t i = 0; i < rest.size(); ++i)
     if (flow[i] > 0 && next[i] >= 0)
       stamp(*map, points[i], points[next[i]], std::min(trunk_radius, twig_radius * std::cbrt(flow[i])));
+  for (std::size_t k = 0; k < laid.size(); ++k) {
+    const std::vector<Vec3>& places = laid[k].places;
+    for (std::size_t i = 0; i + 1 < places.size(); ++i)
+      stamp(*map, places[i], places[i + 1],
+            trunks[k].radius * (1 - 0.5 * static_cast<double>(i) / static_cast<double>(places.size())));
+  }
   return map;
 }
 

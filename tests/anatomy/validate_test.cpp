@@ -20,10 +20,14 @@ OrganDefinition duct(std::vector<Vec3> points) {
   return organ;
 }
 
+/// A duct that joins the scene.
+OrganDefinition& with_duct(SceneDefinition& scene) {
+  return scene.anatomy.organs.emplace_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+}
+
 /// Another one between the gallbladder and a duct.
 TissueDefinition& tissue_in(SceneDefinition& scene) {
-  if (scene.anatomy.organs.size() < 2)
-    scene.anatomy.organs.push_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
+  if (scene.anatomy.organs.size() < 2) with_duct(scene);
   TissueDefinition& tissue = scene.anatomy.tissue.emplace_back();
   tissue.from = "gallbladder";
   tissue.to = "duct";
@@ -75,8 +79,67 @@ const std::vector<Refusal>& refusals() {
        "give 1 to"},
       {"PearRefineRadius", [](auto& s) { pear(s).refine_radius = 20; }, organ_path + ".shape.refine_radius",
        "20 m", "20 * mm"},
-      {"InjuryNear", [](auto& s) { organ(s).injury.near_start = 20 * mm; }, organ_path + ".injury.near",
-       "what lies near the start has no name", "leave near_start out"},
+      {"VesselOnADuct",
+       [](auto& s) {
+         with_duct(s).vessels = {{{Vec3::Zero(), Vec3(1 * mm, 0, 0)}}};
+       },
+       "scene.anatomy.organs[2].vessels", "a tube has no wall to draw vessels on", "leave vessels out"},
+      {"VesselOfOnePoint", [](auto& s) { organ(s).vessels = {{{Vec3::Zero()}}}; },
+       organ_path + ".vessels[1].points", "a vessel along 1 points", "beginning and its end"},
+      {"VesselTooWide",
+       [](auto& s) {
+         organ(s).vessels = {{{Vec3::Zero(), Vec3(1 * mm, 0, 0)}, 1}};
+       },
+       organ_path + ".vessels[1].radius", "1 m is not a small vessel's radius", "1 * mm"},
+      {"RadiiAndPoints",
+       [](auto& s) {
+         std::get<TubeShape>(with_duct(s).shape).radii = {2 * mm, 2 * mm, 2 * mm};
+       },
+       "scene.anatomy.organs[2].shape.radii", "3 radii of a tube along 2 points", "one at each"},
+      {"RadiiTooWide",
+       [](auto& s) {
+         std::get<TubeShape>(with_duct(s).shape).radii = {2 * mm, 2};
+       },
+       "scene.anatomy.organs[2].shape.radii[2]", "2 m is not a duct's radius", "2 * mm"},
+      {"RadiiTooSteep",
+       [](auto& s) {
+         auto& tube = std::get<TubeShape>(with_duct(s).shape);
+         tube.points = {Vec3::Zero(), Vec3(4 * mm, 0, 0), Vec3(30 * mm, 0, 0)};
+         tube.radii = {2 * mm, 5 * mm, 5 * mm};
+       },
+       "scene.anatomy.organs[2].shape.radii[2]", "from 2 to 5 mm of radius over 4 mm", "half of the way"},
+      {"RadiiAndEndRadius",
+       [](auto& s) {
+         auto& tube = std::get<TubeShape>(with_duct(s).shape);
+         tube.radii = {2 * mm, 2 * mm};
+         tube.end_radius = 2 * mm;
+       },
+       "scene.anatomy.organs[2].shape.end_radius", "both given", "leave one out"},
+      {"InjuryNearStart",
+       [](auto& s) {
+         with_duct(s).injury.near_start = {{20 * mm, ""}};
+       },
+       "scene.anatomy.organs[2].injury.near_start[1].called", "the injury has no name", "an instructor"},
+      {"InjuryNearNothing",
+       [](auto& s) {
+         with_duct(s).injury.near_start = {{0, "E2"}};
+       },
+       "scene.anatomy.organs[2].injury.near_start[1].within", "0 m", "0.1 to 200 mm"},
+      {"InjuryNearNoStart",
+       [](auto& s) {
+         organ(s).injury.near_start = {{20 * mm, "E2"}};
+       },
+       organ_path + ".injury.near_start", "a pear has no start", "leave near_start out"},
+      {"InjuryTogether",
+       [](auto& s) {
+         organ(s).injury.together = {{"duct", "E5"}};
+       },
+       organ_path + ".injury.together[1].with", "duct", ""},
+      {"InjuryTogetherUnnamed",
+       [](auto& s) {
+         with_duct(s).injury.together = {{"gallbladder", ""}};
+       },
+       "scene.anatomy.organs[2].injury.together[1].called", "the injury has no name", "an instructor"},
       {"SphereRadius", [](auto& s) { organ(s).shape = SphereShape{20}; }, organ_path + ".shape.radius",
        "20 m", "20 * mm"},
       {"MeshPath", [](auto& s) { organ(s).shape = MeshFile{}; }, organ_path + ".shape.path", "no mesh file",

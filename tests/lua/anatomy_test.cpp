@@ -68,8 +68,9 @@ TEST(Anatomy, TheStandardFieldComesToRest) {
 }
 
 TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {
-  const std::vector<std::string> variants = {"short_cystic_duct",        "low_union", "double_cystic_artery",
-                                             "hepatic_artery_near_neck", "hydrops",   "phrygian_cap"};
+  const std::vector<std::string> variants = {
+      "short_cystic_duct", "low_union",    "double_cystic_artery", "hepatic_artery_near_neck",
+      "hydrops",           "phrygian_cap", "dilated_common_duct",  "aberrant_right_duct"};
   const SceneDefinition standard = scene_of("anatomy.standard()");
   for (const std::string& name : variants) {
     const SceneDefinition scene = scene_of("anatomy.variant('" + name + "')");
@@ -80,13 +81,22 @@ TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {
   }
 }
 
+TEST(Anatomy, ADuctIsAsWideAlongItAsItsListSays) {
+  for (const OrganDefinition& organ : scene_of("anatomy.variant('dilated_common_duct')").anatomy.organs) {
+    if (organ.name != "common_duct") continue;
+    const auto& shape = std::get<TubeShape>(organ.shape);
+    ASSERT_EQ(shape.radii.size(), shape.points.size());
+    EXPECT_DOUBLE_EQ(shape.start_radius(), 3 * mm);
+    EXPECT_DOUBLE_EQ(shape.radii[3], 5 * mm);
+  }
+}
+
 TEST(Anatomy, SaysWhatItIsCalledWhenWhatShouldBeKeptIsHurt) {
   std::map<std::string, OrganDefinition> organs;
   for (const OrganDefinition& organ : scene_of("anatomy.standard()").anatomy.organs)
     organs[organ.name] = organ;
   const OrganDefinition& common = organs.at("common_duct");
-  EXPECT_EQ(common.injury.cut + ", " + common.injury.near + ", " + common.injury.partly,
-            "Strasberg E1, Strasberg E2, Strasberg D");
+  EXPECT_EQ(common.injury.cut + ", " + common.injury.partly, "Strasberg E1, Strasberg D");
   EXPECT_EQ(common.keep_clear, 3 * mm);
   EXPECT_EQ(organs.at("cystic_duct").injury.unclipped, "Strasberg A");
   EXPECT_EQ(organs.at("cystic_duct").injury.cut, "") << "it is what is to be divided";
@@ -151,6 +161,23 @@ TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
     EXPECT_THAT(to_text(loaded.failure()),
                 ::testing::AnyOf(::testing::HasSubstr("no parameter \"cystic_duct_lenght\""),
                                  ::testing::HasSubstr("no variant \"low_onion\"")));
+  }
+}
+
+TEST(Anatomy, RadiiThatAreNoneOrGivenTwiceAreRefusedAtTheirLine) {
+  for (const auto& [radii, what] :
+       {std::pair{"radius = 2 * mm, radii = { 2 * mm, 1 * mm }", "radius and radii are both given"},
+        std::pair{"radii = { 2 * mm, 'wide' }", "this is no radius"}}) {
+    const Folder folder;
+    const auto loaded = load_text(
+        folder,
+        test::with_scene(std::string("return { anatomy = { organs = { { name = 'duct', shape = { type = "
+                                     "'tube', points = { { 20 * mm, 0, 0 }, { 50 * mm, 0, 0 } }, ") +
+                         radii + " } } } } }")
+            .text());
+    ASSERT_FALSE(loaded) << radii;
+    EXPECT_THAT(to_text(loaded.failure()), ::testing::HasSubstr(what));
+    EXPECT_GT(loaded.failure().problems[0].place.line, 0);
   }
 }
 

@@ -71,8 +71,7 @@ TEST(EventCauses, WhatIsCutOrClosedNearATubesStartHasAClassOfItsOwn) {
     SceneDefinition scene = kept(InstrumentType::scissors);
     InjuryDefinition& injury = scene.anatomy.organs[0].injury;
     injury.unclipped.clear();
-    injury.near_start = near;
-    injury.near = "class E2";
+    injury.near_start = {{near, "class E2"}};
     Acting cutting(scene);
     ASSERT_TRUE(cutting.reach() && cutting.go(about(0), 12));
     EXPECT_EQ(only(cutting, EventKind::injury).text, called);
@@ -90,8 +89,7 @@ TEST(EventCauses, NearATubesStartStaysThereWhenTheTubeHasBeenDivided) {
   SceneDefinition scene = kept(InstrumentType::clip_applier);
   InjuryDefinition& injury = scene.anatomy.organs[0].injury;
   injury.closed = "class E";
-  injury.near = "class E2";
-  injury.near_start = 16e-3;
+  injury.near_start = {{16e-3, "class E2"}};
   Acting clipping(scene);
   ASSERT_TRUE(clipping.world.divide("duct", 0.5));
   // 4 mm from the cut, 19 mm from the start.

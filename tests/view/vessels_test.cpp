@@ -104,6 +104,33 @@ TEST(Vessels, WidthGrowsWithWhatAVesselServes) {
   EXPECT_GT(neck_filled, 100);
 }
 
+TEST(Vessels, GrowFromTheBranchesThatAreGivenAndLieAlongThem) {
+  const SceneMesh mesh = pear();
+  // Beside the surface, over the pear's free side and over the liver's.
+  const std::vector<VesselTrunk> trunks = {
+      {{{-14e-3, 0, 12e-3}, {-20e-3, 0, 40e-3}, {-19e-3, 0, 60e-3}}, 0.6e-3},
+      {{{14e-3, 0, 12e-3}, {20e-3, 0, 40e-3}, {19e-3, 0, 60e-3}}, 0.6e-3}};
+  const auto map = grow_vessels(mesh.rest_positions, mesh.triangles, trunks);
+  EXPECT_LE(connected_sets(*map).size(), 2u);
+  // Usually all that the pear gets comes through its neck; from a branch that begins beyond it, what the neck gets.
+  const auto filled_at_neck = [](const VesselMap& of) {
+    const auto layers = static_cast<std::ptrdiff_t>((20e-3 - of.lower.z()) / of.voxel);
+    const auto last = of.share.begin() + layers * of.size[0] * of.size[1];
+    return std::count(of.share.begin(), last, 255);
+  };
+  const std::vector<VesselTrunk> beyond = {{{{20e-3, 0, 35e-3}, {19e-3, 0, 60e-3}}, 0.6e-3}};
+  EXPECT_LT(2 * filled_at_neck(*grow_vessels(mesh.rest_positions, mesh.triangles, beyond)),
+            filled_at_neck(*grow_vessels(mesh.rest_positions, mesh.triangles)));
+  // Along each of its branches the wall is covered to its last half.
+  for (const double side : {-1.0, 1.0})
+    for (double z = 14e-3; z < 58e-3; z += 2e-3) {
+      double nearest = std::numeric_limits<double>::max();
+      for (const Vec3& p : vessel_voxels(*map))
+        if (side * p.x() > 0 && std::abs(p.y()) < 0.4e-3) nearest = std::min(nearest, std::abs(p.z() - z));
+      EXPECT_LT(nearest, map->voxel) << side << " " << z;
+    }
+}
+
 TEST(Vessels, SameSurfaceSameVessels) {
   const SceneMesh mesh = pear();
   EXPECT_EQ(grow_vessels(mesh.rest_positions, mesh.triangles)->share,
