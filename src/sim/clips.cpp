@@ -82,8 +82,7 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
     const Vec3 at = rod.place_at(tube.at, organ.state.x);
     const std::string name = organ.definition.name;
     const InjuryDefinition& injury = organ.definition.injury;
-    const std::string called =
-        clip.shut() ? injury_at(field, organ, injury.closed, tube.at) : injury.partly;
+    const std::string called = clip.shut() ? injury_at(field, organ, injury.closed, tube.at) : injury.partly;
     set_clip(field, tube.organ, clip);
     events.push_back({EventKind::clip, 0, tool.definition.name, name, open, at});
     if (!called.empty())
@@ -103,18 +102,92 @@ bool is_open_at(const Organ& organ, double end) {
                      [&](const Opening& opening) { return opening.point == static_cast<int>(end); });
 }
 
-/// Keeps a clip where it is, as its tube slides along by `way`, m.
-void draw_clip(Organ& organ, const ClipBetween& between, const Vec3& way) {
-  const RodBody& rod = *rod_of(organ);
-  Clip& clip = organ.clips[between.clip];
-  const Vec3 along =
-      rod.skin_point(between.points[1], organ.state.x) - rod.skin_point(between.points[0], organ.state.x);
-  clip.at -= way.dot(along) / along.squaredNorm();
-  // What a tube goes on as behind an end that is not open, or is tied to, stops a clip there.
+/// m along a tube from one of its skin points to the next, in the mean.
+double spacing(const RodBody& rod) { return rod.length() / rod.last_point(); }
+
+/// How near to each other two clips may come, middle to middle, in skin points.
+double least_apart(const Organ& organ, const Clip& one, const Clip& other) {
+  return 0.5 * (clip_row(one.size).wire + clip_row(other.size).wire) / spacing(*rod_of(organ));
+}
+
+/// The clip of a tube that is next to one on the side of `towards`, in skin points; -1: there is none.
+int next_clip(const Organ& organ, int clip, double towards) {
+  const int next = clip + (towards > 0 ? 1 : -1);
+  const bool there = next >= 0 && next < static_cast<int>(organ.clips.size());
+  return there && rod_of(organ)->has(organ.clips[next].at) ? next : -1;
+}
+
+/// Moves a clip along its tube by so many skin points, and before it those in its way, as far as there is room: what a
+/// tube goes on as behind an end that is not open, or is tied to, stops the first. Clips that were set nearer to each
+/// other than they are thick stay as near.
+void move_clip(Organ& organ, int index, double by) {
+  Clip& clip = organ.clips[index];
+  const double side = by > 0 ? 1 : -1;
+  if (const int next = next_clip(organ, index, by); next >= 0) {
+    const Clip& other = organ.clips[next];
+    const double apart = side * (other.at - clip.at),
+                 least = std::min(apart, least_apart(organ, clip, other));
+    const double pushed = side * by - (apart - least);
+    if (pushed > 0) move_clip(organ, next, side * pushed);
+    if (rod_of(organ)->has(other.at)) {
+      clip.at = side * std::min(side * (clip.at + by), side * other.at - least);
+      return;
+    }
+  }
+  clip.at += by;
   constexpr double stop = 0.5;
-  const double last = rod.last_point();
+  const double last = rod_of(organ)->last_point();
   if (!is_open_at(organ, 0)) clip.at = std::max(clip.at, stop);
   if (!is_open_at(organ, last)) clip.at = std::min(clip.at, last - stop);
+}
+
+/// A clip between a tool's pads, and by how many skin points it moves as its tube slides along them.
+struct Drawn {
+  int clip = 0;
+  double by = 0;
+};
+
+/// Of those between a tool's pads, as a tube slides along by `way`, m. The foremost come first.
+std::vector<Drawn> drawn_by(const Field& field, int instrument, const Organ& organ, const Vec3& way) {
+  const RodBody& rod = *rod_of(organ);
+  std::vector<Drawn> out;
+  for (const ClipBetween& between : clips_between(field, instrument, organ)) {
+    const Vec3 along =
+        rod.skin_point(between.points[1], organ.state.x) - rod.skin_point(between.points[0], organ.state.x);
+    out.push_back({between.clip, -way.dot(along) / along.squaredNorm()});
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Drawn& a, const Drawn& b) {
+    return (a.by > 0) != (b.by > 0) ? a.by > 0 : a.by > 0 ? a.clip > b.clip : a.clip < b.clip;
+  });
+  return out;
+}
+
+/// N, on a tool, of the springs of its grip on an organ.
+Vec3 grip_pull(const Field& field, int instrument, const Organ& organ) {
+  const Links grip = grip_links(organ, field.tools, present_poses(field));
+  Vec3 pull = Vec3::Zero();
+  for (std::size_t g = 0; g < organ.grips.size(); ++g)
+    if (organ.grips[g].instrument == instrument)
+      pull += grip.stiffness[g] * (organ.body->skin_point(grip.row[g], organ.state.x) - grip.target[g]);
+  return pull;
+}
+
+/// How many clips of a tube that it grips a tool would have to draw along: those between its pads, and those that touch
+/// them before them, on the side to which they are pulled.
+int clips_to_draw(const Field& field, int instrument, const Organ& organ) {
+  constexpr double touching = 1e-3;  // of their thickness: they have been pushed to just there
+  std::vector<int> drawn;
+  for (const Drawn& one : drawn_by(field, instrument, organ, grip_pull(field, instrument, organ)))
+    for (int clip = one.clip; clip >= 0;) {
+      drawn.push_back(clip);
+      const int next = one.by == 0 ? -1 : next_clip(organ, clip, one.by);
+      if (next < 0) break;
+      const Clip &of = organ.clips[clip], &before = organ.clips[next];
+      if (std::abs(before.at - of.at) > (1 + touching) * least_apart(organ, of, before)) break;
+      clip = next;
+    }
+  std::sort(drawn.begin(), drawn.end());
+  return static_cast<int>(std::unique(drawn.begin(), drawn.end()) - drawn.begin());
 }
 
 }  // namespace
@@ -122,15 +195,15 @@ void draw_clip(Organ& organ, const ClipBetween& between, const Vec3& way) {
 double hold_of_clips(const Field& field, int instrument) {
   int clips = 0;
   for (const Organ& organ : field.organs)
-    if (grip_count(organ, instrument) > 0)
-      clips += static_cast<int>(clips_between(field, instrument, organ).size());
+    if (grip_count(organ, instrument) > 0 && !organ.clips.empty())
+      clips += clips_to_draw(field, instrument, organ);
   return clips > 0 ? clips * clip_hold : std::numeric_limits<double>::infinity();
 }
 
 void draw_clips(Field& field, int instrument, const Vec3& way) {
   for (Organ& organ : field.organs)
-    if (grip_count(organ, instrument) > 0)
-      for (const ClipBetween& clip : clips_between(field, instrument, organ)) draw_clip(organ, clip, way);
+    if (grip_count(organ, instrument) > 0 && !organ.clips.empty())
+      for (const Drawn& one : drawn_by(field, instrument, organ, way)) move_clip(organ, one.clip, one.by);
 }
 
 void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& events) {

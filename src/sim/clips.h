@@ -8,8 +8,9 @@
 // (spill.h), and lies where it fell.
 //
 // Jaws that close on a clip hold it and not the wall beside it, which it keeps them off. Pulled along the tube harder
-// than it holds there, it slides along, past other clips, and falls where it comes to an open end. Jaws that would slip
-// first slide over it.
+// than it holds there, it slides along and falls where it comes to an open end. A clip in its way stops it until both are
+// pulled harder than both hold, and is pushed along then, past an open end before it. Jaws that would slip first slide
+// over it.
 
 #include "sim/field.h"
 
@@ -29,8 +30,8 @@ Result<bool> clip_body(Field& field, int organ, double share, ClipSize size);
 /// events clip and clip_dropped.
 void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events);
 
-/// Pull that the clips hold which a tool has between its pads, on what it holds, N: clip_hold each; infinite without
-/// any.
+/// Pull that the clips hold which a tool has between its pads, and those that touch them where the pull draws them, on
+/// what it holds, N: clip_hold each; infinite without any between them.
 double hold_of_clips(const Field& field, int instrument);
 
 /// Keeps the clips between a tool's pads there, as the tubes slide along the pads by `way` (m, patient's frame). The

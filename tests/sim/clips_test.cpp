@@ -231,7 +231,9 @@ TEST(Clips, GoWithThePieceOfADividedTubeThatTheyAreOn) {
 
 /// A clip near the end of a stump, and jaws of which `pads` N hold it across that are closed on it and draw it off.
 struct DrawnClip : ClipAndCut {
-  static constexpr double clip = 6e-3, cut_at = 7.5e-3;  // m, along the tube
+  static constexpr double clip = 6e-3;  // m, along the tube
+  double cut_at = 7.5e-3;               // m, likewise
+  double grasped = clip;                // m, likewise: the middle of the pads
   static SceneDefinition stiff(double pads) {
     SceneDefinition scene = ClipAndCut::scene(InstrumentType::atraumatic_grasper);
     // A tube that gives way less than a point's distance to what a clip holds.
@@ -249,19 +251,19 @@ struct DrawnClip : ClipAndCut {
     if (!clip_at(clip) || !world.divide("duct", 0.5 + cut_at / 40e-3)) return false;
     if (!step(away(), {InstrumentAction::none, InstrumentAction::exchange})) return false;
     for (int k = 0; k <= 6; ++k) {
-      InstrumentPose near = at(clip, 0.5);
+      InstrumentPose near = at(grasped, 0.5);
       near.insertion -= 30e-3 * (1 - k / 6.0);
       if (!step(near)) return false;
     }
     for (int k = 1; k <= 30; ++k)
-      if (!step(at(clip, 0.5 * (1 - k / 30.0)))) return false;
+      if (!step(at(grasped, 0.5 * (1 - k / 30.0)))) return false;
     return true;
   }
   /// Largest pull on the pads as they go that far along the tube, or until the clip is off, N.
   double draw(double way) {
     double largest = 0;
     for (double y = 0; y < way && !stump().clips.empty(); y += 0.2e-3) {
-      EXPECT_TRUE(step(at(clip + y, 0)));
+      EXPECT_TRUE(step(at(grasped + y, 0)));
       largest = std::max(largest, pad_pull(world.field(), 1).norm());
     }
     return largest;
@@ -283,6 +285,41 @@ TEST(Clips, DrawnAlongTheirTubeHarderThanTheyHoldTheySlipOffItsEnd) {
   EXPECT_EQ(fell->cause, EventCause::slipping);
   EXPECT_TRUE(hands.stump().clips.empty());
   EXPECT_TRUE(rod_of(hands.stump())->pinches().empty());
+}
+
+TEST(Clips, PushTheNextOneAlongWithWhatBothHoldAndFallOneAfterTheOther) {
+  DrawnClip hands(3 * clip_hold);
+  constexpr double other = 9e-3;  // m, along the tube
+  hands.cut_at = 11e-3;
+  // The first one lies just between the pads' edges: where it comes to the other, that is not between them.
+  const double pad = 0.5 * instrument_geometry(InstrumentType::atraumatic_grasper).jaw_width;
+  hands.grasped = DrawnClip::clip - pad + 0.3e-3;
+  ASSERT_TRUE(hands.clip_at(other) && hands.grasp());
+  ASSERT_EQ(hands.stump().clips.size(), 2u);
+  const auto apart = [&] {
+    const std::vector<Clip>& clips = hands.stump().clips;
+    const RodBody& rod = *rod_of(hands.stump());
+    return way_from_start(rod, clips[1].at) - way_from_start(rod, clips[0].at);
+  };
+  const double wire = clip_row(hands.stump().clips[0].size).wire, stood = hands.stump().clips[1].at;
+  constexpr double alone = 3e-3;  // m, on which the first one does not come to the other yet
+  EXPECT_NEAR(hands.draw(alone), clip_hold, 0.02 * clip_hold);
+  ASSERT_EQ(hands.stump().clips.size(), 2u);
+  EXPECT_EQ(hands.stump().clips[1].at, stood);
+  EXPECT_GT(apart(), wire);
+  double largest = 0, nearest = apart();
+  std::vector<std::size_t> left;
+  for (double y = alone; y < 12e-3 && !hands.stump().clips.empty(); y += 0.2e-3) {
+    ASSERT_TRUE(hands.step(DrawnClip::at(hands.grasped + y, 0)));
+    largest = std::max(largest, pad_pull(hands.world.field(), 1).norm());
+    const std::size_t now = hands.stump().clips.size();
+    if (left.empty() || left.back() != now) left.push_back(now);
+    if (now == 2) nearest = std::min(nearest, apart());
+  }
+  EXPECT_NEAR(nearest, wire, 0.02 * wire) << "neither is in the other";
+  EXPECT_NEAR(largest, 2 * clip_hold, 0.02 * 2 * clip_hold);
+  EXPECT_EQ(left, (std::vector<std::size_t>{2, 1, 0}));
+  EXPECT_EQ(hands.count(EventKind::clip_dropped), 2);
 }
 
 TEST(Clips, StayWhereJawsSlideOverThem) {
