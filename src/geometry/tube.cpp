@@ -65,6 +65,37 @@ Mat3 stretch(const LineFrame& frame, const TubeSection& section) {
   return out;
 }
 
+/// Where a ring of a tube's end stands, as shares of the section's half-axes: across the line, and along it outward.
+struct EndRing {
+  double wide = 1, out = 0;
+};
+
+/// A quarter of a circle, `ring` of `rings` on the way from the last section, 0, to the tip.
+EndRing round_end(double ring, int rings) {
+  const double angle = 0.5 * std::numbers::pi * ring / rings;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+/// The edge lies rolled outward by about its own thickness; then it goes in, to the lumen's end. Drawn by eye.
+EndRing cut_end(double share, double lumen) {
+  const double wall = 1 - lumen, curl = 0.12 + 0.2 * wall;
+  const std::array<EndRing, 6> rings = {{{1, 0},
+                                         {1 + curl, 0.6 * curl},
+                                         {1 + 0.5 * curl, 1.5 * curl},
+                                         {1 - 0.6 * wall, 1.1 * curl},
+                                         {std::max(0.25, lumen), -0.2},
+                                         {0, lumen > 0 ? -1.2 : -0.25}}};
+  const double at = share * (rings.size() - 1);
+  const std::size_t before = std::min(static_cast<std::size_t>(at), rings.size() - 2);
+  const double part = at - static_cast<double>(before);
+  return {(1 - part) * rings[before].wide + part * rings[before + 1].wide,
+          (1 - part) * rings[before].out + part * rings[before + 1].out};
+}
+
+EndRing end_ring(const TubeEnd& kind, double ring, int rings) {
+  return kind.cut ? cut_end(ring / rings, kind.lumen) : round_end(ring, rings);
+}
+
 }  // namespace
 
 std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const Vec3& first) {
@@ -130,7 +161,8 @@ void TubeMesh::join_rings(int before, int after) {
   }
 }
 
-void TubeMesh::place(std::span<const Vec3> line, std::span<const TubeSection> sections, Surface& out) const {
+void TubeMesh::place(std::span<const Vec3> line, std::span<const TubeSection> sections, Surface& out,
+                     const std::array<TubeEnd, 2>& ends) const {
   out.positions.resize(vertices());
   out.normals.resize(vertices());
   const std::vector<LineFrame> frames = parallel_frames(line, rest_);
@@ -154,30 +186,33 @@ void TubeMesh::place(std::span<const Vec3> line, std::span<const TubeSection> se
     }
   }
   const int tube = points_ * sectors_, cap = cap_rings_ * sectors_ + 1;
-  place_cap(frames.front(), line.front(), sections.front(), -1, tube, out);
-  place_cap(frames.back(), line.back(), sections.back(), 1, tube + cap, out);
+  place_cap(frames.front(), line.front(), sections.front(), -1, ends[0], tube, out);
+  place_cap(frames.back(), line.back(), sections.back(), 1, ends[1], tube + cap, out);
 }
 
 void TubeMesh::place_cap(const LineFrame& frame, const Vec3& end, const TubeSection& section, double outward,
-                         int first, Surface& out) const {
+                         const TubeEnd& kind, int first, Surface& out) const {
+  constexpr double step = 1e-3;  // of a ring, on which its direction is taken
   const Mat3 wide = stretch(frame, section);
   const Vec3 tip = outward * frame.tangent;
   const bool pressed =
       (section.pressed - frame.tangent.dot(section.pressed) * frame.tangent).squaredNorm() > 0;
   const double height = pressed ? std::min(section.radius, section.flattened) : section.radius;
   for (int r = 0; r < cap_rings_; ++r) {
-    const double angle = 0.5 * std::numbers::pi * (r + 1) / (cap_rings_ + 1);
-    const double c = std::cos(angle), s = std::sin(angle);
+    const int rings = cap_rings_ + 1;
+    const EndRing at = end_ring(kind, r + 1, rings), before = end_ring(kind, r + 1 - step, rings),
+                  after = end_ring(kind, r + 1 + step, rings);
     for (int k = 0; k < sectors_; ++k) {
       const Vec3 side = wide * around(frame, k);
       const Vec3 round = wide * (cosine_[k] * frame.up() - sine_[k] * frame.side);
-      const Vec3 rising = height * c * tip - s * side;  // by the angle
-      const Vec3 normal = outward * round.cross(rising);
-      out.positions[first + r * sectors_ + k] = end + c * side + height * s * tip;
+      const Vec3 on = height * (after.out - before.out) * tip + (after.wide - before.wide) * side;
+      const Vec3 normal = outward * round.cross(on);
+      out.positions[first + r * sectors_ + k] = end + at.wide * side + height * at.out * tip;
       out.normals[first + r * sectors_ + k] = normal.squaredNorm() > 0 ? Vec3(normal.normalized()) : tip;
     }
   }
-  out.positions[first + cap_rings_ * sectors_] = end + height * tip;
+  out.positions[first + cap_rings_ * sectors_] =
+      end + height * end_ring(kind, cap_rings_ + 1, cap_rings_ + 1).out * tip;
   out.normals[first + cap_rings_ * sectors_] = tip;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // A tube swept along a line of points, to be drawn: its triangles stay, its places and normals follow the line.
 
+#include <array>
 #include <span>
 
 #include "base/status.h"
@@ -15,6 +16,12 @@ struct TubeSection {
   /// Direction in which the section is flattened, of any length; only its part across the line counts, and its sign
   /// does not. Without one the section is round.
   Vec3 pressed = Vec3::Zero();
+};
+
+/// How a tube ends: rounded off, or cut across: its wall has curled outward there and shows what it is hollow by.
+struct TubeEnd {
+  bool cut = false;
+  double lumen = 0;  ///< of a cut one, as a share of its section; 0: it is solid
 };
 
 /// Directions across a line at each of its points: they turn with the tangent and not about it (rotation minimizing
@@ -33,7 +40,8 @@ std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const Vec3& f
 /// so that the whole follows the motion without a leap unless the line's beginning points back.
 std::vector<LineFrame> parallel_frames(std::span<const Vec3> line, const LineFrame& rest);
 
-/// A closed surface: rings of the sections, and round caps (as far out as the smaller half-axis) at both ends.
+/// A closed surface: rings of the sections, and at both ends round caps (as far out as the smaller half-axis) or cut
+/// edges with a lumen that ends inside.
 /// The vertices of a ring follow the frames however the section is pressed: what is painted on it does not turn.
 class TubeMesh {
  public:
@@ -50,13 +58,15 @@ class TubeMesh {
     std::vector<Vec3> positions;  ///< m
     std::vector<Vec3> normals;    ///< unit, outward
   };
-  /// As many points and sections as the line at rest has points; the same inputs give the same bits.
-  void place(std::span<const Vec3> line, std::span<const TubeSection> sections, Surface& out) const;
+  /// As many points and sections as the line at rest has points; `ends`: at its start and its end. The same inputs give
+  /// the same bits.
+  void place(std::span<const Vec3> line, std::span<const TubeSection> sections, Surface& out,
+             const std::array<TubeEnd, 2>& ends = {}) const;
 
  private:
   void join_rings(int before, int after);
   void place_cap(const LineFrame& frame, const Vec3& end, const TubeSection& section, double outward,
-                 int first, Surface& out) const;
+                 const TubeEnd& kind, int first, Surface& out) const;
   Vec3 around(const LineFrame& frame, int k) const { return cosine_[k] * frame.side + sine_[k] * frame.up(); }
 
   int points_ = 0, sectors_ = 0, cap_rings_ = 0;

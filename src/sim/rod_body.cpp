@@ -365,7 +365,12 @@ DrawnSurface RodBody::drawn(const VecX& x) const {
     }
   }
   TubeMesh::Surface surface;
-  tube_->place(skin_positions(x), sections, surface);
+  std::array<TubeEnd, 2> ends;  // a part's are cut
+  for (int k = 0; k < 2; ++k) {
+    const double at = k == 0 ? 0.0 : last_point();
+    ends[k] = {part_[k] != static_cast<double>(k), lumen_radius(at) / outer_radius(at)};
+  }
+  tube_->place(skin_positions(x), sections, surface, ends);
   return {std::move(surface.positions), std::move(surface.normals)};
 }
 

@@ -10,9 +10,11 @@
 namespace calot {
 namespace {
 
-constexpr double spared = 0.6;     // share of its middle's heat that the ends of a strand do not get
-constexpr double shrinks = 0.35;   // by which share charred fat is thinner
-constexpr double torn_part = 0.3;  // of a strand's way that hangs on to either end after it is torn
+constexpr double spared = 0.6;    // share of its middle's heat that the ends of a strand do not get
+constexpr double shrinks = 0.35;  // by which share charred fat is thinner
+constexpr double torn_part =
+    0.35;                      // of a strand's length: what is drawn of it at either end after it is torn
+constexpr double curls = 2.2;  // rad, by which the end of that has curled (d)
 
 /// A number in [0, 1) that is the same in every picture.
 double share_of(std::size_t strand, int lobule, int which) {
@@ -31,11 +33,34 @@ const SceneMesh& dented_ball() {
   return mesh;
 }
 
+/// A place on a strand, and which way the strand goes there.
+struct LobulePlace {
+  Vec3 at, along;  ///< m; unit
+};
+
+Vec3 unit_or_front(const Vec3& way) { return way.norm() > 0 ? way.normalized() : Vec3::UnitZ(); }
+
+LobulePlace on_whole(const StrandLine& line, double share) {
+  return {line.at(share), unit_or_front(line.to - line.from)};
+}
+
+/// What is left at an end of a torn strand has drawn back, and curls up towards the front, as the edge of a cut sheet
+/// does: an arc that leaves the end where the strand did. `share`: of that stump, from its end on; `length`: its own, m.
+LobulePlace on_stump(const StrandLine& line, bool first, double share, double length) {
+  const Vec3 &end = first ? line.from : line.to, &beyond = line.by;
+  const Vec3 along = unit_or_front(beyond - end), front = Vec3::UnitZ();
+  const Vec3 across = front - along * along.dot(front);
+  const Vec3 side = across.norm() > 0.1 ? across.normalized() : along.unitOrthogonal();
+  const double turned = curls * share;
+  const double radius = length / curls;
+  return {end + radius * (std::sin(turned) * along + (1 - std::cos(turned)) * side),
+          std::cos(turned) * along + std::sin(turned) * side};
+}
+
 /// Stretched along the strand, as lobules are; the volume stays.
-void add_lobule(const StrandLine& line, double share, double radius, double burnt, std::size_t strand,
-                int lobule, SceneMesh& out) {
-  const Vec3 way = line.to - line.from;
-  const Vec3 along = way.norm() > 0 ? way.normalized() : Vec3::UnitZ(), side = along.unitOrthogonal();
+void add_lobule(const LobulePlace& place, double radius, double burnt, std::size_t strand, int lobule,
+                SceneMesh& out) {
+  const Vec3 &along = place.along, side = along.unitOrthogonal();
   const double longer = 1.1 + 0.5 * share_of(strand, lobule, 0), turned = 6 * share_of(strand, lobule, 1);
   const double thick = radius * (0.75 + 0.5 * share_of(strand, lobule, 2));
   Mat3 shape;
@@ -50,7 +75,7 @@ void add_lobule(const StrandLine& line, double share, double radius, double burn
   const int first = static_cast<int>(out.positions.size());
   const SceneMesh& form = dented_ball();
   for (std::size_t i = 0; i < form.positions.size(); ++i) {
-    out.positions.emplace_back(line.at(share) + off_line + shape * form.positions[i]);
+    out.positions.emplace_back(place.at + off_line + shape * form.positions[i]);
     out.normals.emplace_back((normal_shape * form.normals[i]).normalized());
     out.rest_positions.emplace_back(pattern + radius * form.positions[i]);
     out.burnt.push_back(burnt);
@@ -68,17 +93,17 @@ void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::siz
     const StrandLaw::Setup& law = strand.strand.law.setup();
     const double radius = lobule_radius(strand);
     const bool torn = tissue.torn(k);
-    // What was torn has drawn back to its ends.
-    const double now = std::max((line.to - line.from).norm(), law.taut);
-    const double drawn_back = torn ? 2 * torn_part * law.taut / now : 1.0;
     const int lobules = std::max(1, static_cast<int>(std::lround(law.taut / (1.3 * radius))));
     const double heat = std::min(1.0, tissue.now.heated[k] / (tissue.definition.divide_energy * strand.area));
     for (int i = 0; i < lobules; ++i) {
       const double share = (i + 0.5) / lobules;
       // Where it is lifted it is heated most, and shrinks.
       const double burnt = heat * (1 - spared * std::abs(2 * share - 1));
-      add_lobule(line, share < 0.5 ? drawn_back * share : 1 - drawn_back * (1 - share),
-                 (1 - shrinks * burnt) * radius, burnt, first_strand + k, i, out);
+      const bool first = share < 0.5;
+      const LobulePlace place =
+          torn ? on_stump(line, first, 2 * (first ? share : 1 - share), torn_part * law.taut)
+               : on_whole(line, share);
+      add_lobule(place, (1 - shrinks * burnt) * radius, burnt, first_strand + k, i, out);
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Connective tissue to look at: fat in lobules along its strands, which hang where the strands do and part where they tear.
+// Connective tissue to look at: fat in lobules along its strands, which hang where the strands do and part where they tear:
+// what is left draws back to both ends and curls up.
 
 #include "render/scene.h"
 #include "sim/world.h"

@@ -55,6 +55,33 @@ TEST(TubeMesh, IsClosedAndFacesOutwardOnABentTaperedFlattenedLine) {
   }
 }
 
+TEST(TubeMesh, ACutEndIsClosedFacesOutwardAndShowsItsLumen) {
+  const Line line = straight(12, 12e-3);
+  for (int sectors : {7, 16, 20})
+    for (double lumen : {0.0, 0.5}) {
+      const TubeMesh tube = TubeMesh::create(line, sectors).value();
+      TubeMesh::Surface out;
+      tube.place(line, round(line, 2e-3), out, {TubeEnd{}, TubeEnd{true, lumen}});
+      const TriMesh mesh{out.positions, tube.triangles()};
+      for (const Problem& problem : check(mesh)) ADD_FAILURE() << sectors << ": " << to_text(problem);
+      const TubeMesh::Surface whole = placed(tube, line, round(line, 2e-3));
+      const std::size_t sections = line.size() * static_cast<std::size_t>(sectors);
+      double rolled = 0;
+      for (std::size_t i = 0; i < out.positions.size(); ++i) {
+        if (i < sections) {
+          EXPECT_EQ(out.positions[i], whole.positions[i]);
+        }
+        if (out.positions[i].x() > 12e-3) rolled = std::max(rolled, out.positions[i].tail<2>().norm());
+      }
+      if (sectors > 7) {  // of these the cap has too few rings to show it
+        EXPECT_GT(rolled, 1.1 * 2e-3) << "its edge has curled outward";
+      }
+      if (lumen > 0) {
+        EXPECT_LT(out.positions.back().x(), 12e-3 - 1e-3) << "it is hollow";
+      }
+    }
+}
+
 TEST(TubeMesh, TendsToTheCapsuleWithTheSquareOfTheSectors) {
   const double radius = 1e-3, length = 6e-3;
   const double exact = pi * radius * radius * (length + 4.0 / 3 * radius);
