@@ -115,5 +115,5 @@ return calot.exercise {
     pass = 70,
   },
 
-  golden = { at = { 0, 2.8 * s, 4.2 * s, 6.4 * s, 9 * s } },
+  golden = { at = { 0, 2.8 * s, 4.2 * s, 6.4 * s, 8.9 * s } },
 }

@@ -153,8 +153,8 @@ std::vector<KeyTable> field_tables() {
            jaws_only(
                number("pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
                       "a force that a hand gives a jaw",
-                      "force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force "
-                      "slips")),
+                      "force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a "
+                      "hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips")),
            jaws_only(number("pad_friction", &Instrument::pad_friction, quantity::number, 0.01, 5,
                             "a coefficient of friction",
                             "coefficient of friction of a pad; " + semm + " for semm_forceps")),

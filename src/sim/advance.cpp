@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/blades.h"
+#include "sim/close_within_pinch.h"
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/jaw_acts.h"
@@ -124,11 +125,11 @@ Result<bool> follow(Field& field, const Poses& to, double duration, const std::v
   return true;
 }
 
-/// Where the tools really go: jaws that rest on a fold close no further.
+/// Where the tools really go: jaws that rest on tissue close no further of themselves.
 Poses reachable(const Field& field, const Poses& targets) {
   Poses poses = targets;
   for (std::size_t i = 0; i < poses.size(); ++i)
-    if (field.tools[i].jaw_stopped && poses[i].jaw < field.tools[i].pose.jaw)
+    if (field.tools[i].jaws_rest() && poses[i].jaw < field.tools[i].pose.jaw)
       poses[i].jaw = field.tools[i].pose.jaw;
   return poses;
 }
@@ -152,6 +153,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   if (Result<bool> done = let_go(field, targets, events, statistics); !done) return done.failure();
   const Poses to = reachable(field, targets), start = present_poses(field);
+  std::vector<char> rested;
+  for (const Tool& tool : field.tools) rested.push_back(tool.jaws_rest());
   std::vector<std::vector<double>> holding_stops;
   for (std::size_t i = 0; i < to.size(); ++i)
     holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
@@ -160,18 +163,25 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     const double duration = (stop - std::exchange(reached, stop)) * field.step_time;
     Poses here = interpolate(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
-      if (field.tools[i].jaw_stopped) here[i].jaw = field.tools[i].pose.jaw;
-    for (std::size_t i = 0; i < here.size(); ++i)
-      if (here[i].jaw < field.tools[i].pose.jaw) make_room(field, static_cast<int>(i), here[i].jaw);
-    Result<bool> moved = follow(field, here, duration, slipped_before, events, statistics);
-    if (!moved) return moved.failure();
+      if (rested[i] || field.tools[i].jaws_rest()) here[i].jaw = field.tools[i].pose.jaw;
+    const Poses from = present_poses(field);
+    const auto go = [&](const Poses& poses) {
+      for (std::size_t i = 0; i < poses.size(); ++i)
+        if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, static_cast<int>(i), poses[i].jaw);
+      return follow(field, poses, duration, slipped_before, events, statistics);
+    };
+    if (Result<bool> moved = close_within_pinch(field, here, targets, go, events); !moved)
+      return moved.failure();
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
       const std::vector<double>& own = holding_stops[i];
-      if (field.tools[i].jaw_stopped || !std::binary_search(own.begin(), own.end(), stop)) continue;
+      const bool at_stop = std::binary_search(own.begin(), own.end(), stop);
+      const bool closed_on = rested[i] && field.tools[i].pose.jaw < from[i].jaw;
+      if (field.tools[i].pressing ? !closed_on : field.tools[i].jaw_stopped || !at_stop) continue;
       Result<bool> closed = close_jaws(field, static_cast<int>(i), tears, events, statistics);
       if (!closed) return closed.failure();
     }
   }
+  judge_clasps(field, slipped_before, events);
   feel_again(field);
   grow_damage(field);
   tears.judge(field, events);

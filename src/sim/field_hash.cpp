@@ -169,6 +169,7 @@ void add_tool(Hash& hash, const Tool& tool) {
   if (has_action(tool.definition.type, InstrumentAction::fire)) hash.add(tool.clips);
   hash.add(tool.touched);
   hash.add(tool.over_limit);
+  if (tool.pressing) hash.add(tool.pressing);
   if (tool.dry > 0) hash.add(tool.dry);
   if (tool.on_clip || tool.beside_kept)
     hash.add(static_cast<unsigned char>((tool.on_clip ? 1 : 0) | (tool.beside_kept ? 2 : 0)));
@@ -186,6 +187,7 @@ void add_tool(Hash& hash, const Tool& tool) {
   add_pose(hash, tool.pose);
   if (tool.tissue_stiffness > 0) hash.add(tool.tissue_stiffness);
   if (tool.stiffness_across > 0) hash.add(tool.stiffness_across);
+  if (tool.roll_stiffness > 0) hash.add(tool.roll_stiffness);
   if (!tool.meeting.with.empty()) {
     hash.add(tool.meeting.with);
     add_vector(hash, tool.meeting.force);

@@ -32,7 +32,9 @@ FieldState field_state(const Field& field) {
                            tool.stiffness_across,
                            tool.meeting,
                            tool.met,
-                           tool.drag});
+                           tool.drag,
+                           tool.pressing,
+                           tool.roll_stiffness});
   return state;
 }
 
@@ -66,6 +68,8 @@ void restore(Field& field, const FieldState& state) {
     tool.meeting = was.meeting;
     tool.met = was.met;
     tool.drag = was.drag;
+    tool.pressing = was.pressing;
+    tool.roll_stiffness = was.roll_stiffness;
   }
 }
 

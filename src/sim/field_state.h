@@ -25,6 +25,8 @@ struct ToolSnapshot {
   MeetingState meeting = {};
   bool met = false;
   Vec3 drag = Vec3::Zero();
+  bool pressing = false;
+  double roll_stiffness = 0;
 };
 
 struct FieldState {

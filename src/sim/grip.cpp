@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "sim/between_jaws.h"
+#include "sim/teeth.h"
 
 namespace calot {
 namespace {
@@ -18,14 +19,6 @@ constexpr double pad_reach = 0.5e-3;
 bool faces_pad(const Vec3& local, const InstrumentGeometry& g, double range) {
   return local.x() < contact_inset && local.x() > -range && before_pad(local, g);
 }
-
-}  // namespace
-
-bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
-  return std::abs(local.y()) < 0.5 * g.jaw_width && local.z() > g.jaw_rounding && local.z() < g.jaw_length;
-}
-
-namespace {
 
 void sort_grips(Organ& organ) {
   std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
@@ -89,7 +82,8 @@ void take_hold(Field& field, int instrument) {
   // Blades divide a tube, and a clip applier lets it be: neither has teeth.
   const bool teeth = instrument_row(tool.definition.type).jaws == JawUse::hold;
   for (Organ& organ : field.organs) {
-    if (!feels(organ, instrument) || (!teeth && !organ.body->skin_radii().empty())) continue;
+    if (!feels(organ, instrument) || (!teeth && !organ.body->skin_radii().empty()) || !is_bitten(organ))
+      continue;
     const std::vector<ClipBetween> clips = clips_between(field, instrument, organ);
     if (clips.empty()) {
       hold(tool, instrument, organ);

@@ -40,9 +40,6 @@ std::string held_organ(const Field& field, int instrument);
 /// True while skin of one organ is held by both pads.
 bool both_pads_hold(const Field& field, int instrument);
 
-/// Whether a point in a jaw's frame lies before its pad, however far away.
-bool before_pad(const Vec3& local, const InstrumentGeometry& geometry);
-
 /// Springs of an organ's held points for the tools at `poses`.
 Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
                  const std::vector<InstrumentPose>& poses);

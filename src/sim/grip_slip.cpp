@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "sim/clips.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
 #include "sim/settle_field.h"
+#include "sim/teeth.h"
 
 namespace calot {
 namespace {
@@ -105,6 +107,13 @@ Vec3 pad_pull(const Field& field, int instrument) {
   return pull - across * across.dot(pull);
 }
 
+Vec3 asked_of_friction(const Tool& tool, const Vec3& pull) {
+  const Mat3 hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear();
+  const double half = 0.5 * tool.pose.jaw;
+  const double out = pull.dot(hinge.col(2)), pressed_out = 2 * tool.definition.pinch_force * std::sin(half);
+  return pull + ((out + pressed_out) / std::cos(half) - out) * hinge.col(2);
+}
+
 double holding_limit(const Tool& tool) {
   return 2.0 * tool.definition.pad_friction * tool.definition.pinch_force;
 }
@@ -119,10 +128,16 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
+  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  // Clips, which the pads hold across, are drawn along by the pull alone.
+  const auto asked = [&] {
+    const Vec3 pull = pad_pull(field, instrument);
+    return hold_of_clips(field, instrument) < holding_limit(tool) ? pull : asked_of_friction(tool, pull);
+  };
   double limit = holding_limit(field, instrument);
-  Vec3 pull = pad_pull(field, instrument);
-  const double at_start = pull.norm();
-  if (at_start <= above * limit) return 0.0;
+  Vec3 pull = asked();
+  const double at_start = pad_pull(field, instrument).norm();
+  if (pull.norm() <= above * limit) return 0.0;
   const FieldState start = field_state(field);
   double way = shortest_way;
   while (!budget.spent()) {
@@ -132,7 +147,7 @@ Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
       restore(field, start);
       return slid.failure();
     }
-    const Vec3 now = pad_pull(field, instrument);
+    const Vec3 now = asked();
     limit = holding_limit(field, instrument);  // a clip that has come off holds no more
     const bool lost = !both_pads_hold(field, instrument);
     if (!lost && now.norm() < below * limit && way > shortest_way) {  // too far

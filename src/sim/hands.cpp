@@ -20,6 +20,8 @@ constexpr double unknown_stiffness = 2e3;
 constexpr double least_stiffness = 100;
 /// m: a shorter way tells nothing of how a force grows.
 constexpr double shortest_way = 1e-6;
+/// The same about the shaft: such forces on pads 5 mm wide, N m/rad, and ways at their edges, rad.
+constexpr double unknown_roll_stiffness = 12e-3, least_roll_stiffness = 0.6e-3, shortest_turn = 4e-4;
 /// rad: turns of the jaws and about the shaft that are no more than a solver's rounding; 1 um at the pads' ends.
 constexpr double turn_slack = 1e-4;
 
@@ -32,13 +34,27 @@ double share_across(const Tool& tool, const Vec3& force, const Vec3& way) {
   return wanted <= strength ? 1.0 : strength / wanted;
 }
 
+/// The torque that a hand holds about the shaft, N m.
+double roll_strength(const Tool& tool) { return tool.definition.hand_force * HandStrength().roll_arm; }
+
+/// How far a hand turns its tool about the shaft, rad, against the tissue's torque.
+double roll_within_strength(const Tool& tool, const InstrumentState& last, double command) {
+  const double strength = roll_strength(tool), torque = std::abs(last.roll_torque);
+  if (torque == 0 || (!(tool.roll_stiffness > 0) && torque <= strength)) return command;
+  const double away = last.roll_torque > 0 ? 1.0 : -1.0, into = -away * (command - tool.pose.roll);
+  const double stiffness = tool.roll_stiffness > 0 ? tool.roll_stiffness : unknown_roll_stiffness;
+  const double allowed = (strength - torque) / stiffness;
+  return into <= allowed ? command : tool.pose.roll - away * allowed;
+}
+
 /// Where a hand takes its tool against what the tissue does.
-InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, const InstrumentPose& command) {
+InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, InstrumentPose command) {
+  command.roll = roll_within_strength(tool, last, command.roll);
   const double strength = tool.definition.hand_force, force = last.at_tip.norm();
   if (force == 0 || (!(tool.tissue_stiffness > 0) && force <= strength)) return command;
   // Jaws that rest on a fold close no further, and the tip of open jaws is nearer to the hinge.
   InstrumentPose reached = command;
-  if (tool.jaw_stopped) reached.jaw = std::max(command.jaw, tool.pose.jaw);
+  if (tool.jaws_rest()) reached.jaw = std::max(command.jaw, tool.pose.jaw);
   const Vec3 away = last.at_tip / force;
   const Vec3 way = tip_position(tool.trocar, reached, tool.geometry) - last.tip;
   const double into = -way.dot(away);
@@ -196,7 +212,21 @@ Result<Poses> bring_tools(Field& field, const Poses& commands, const std::vector
   return to;
 }
 
+namespace {
+
+void feel_roll_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now) {
+  if (std::abs(now.roll_torque) < 0.5 * roll_strength(tool)) {
+    tool.roll_stiffness = 0;
+    return;
+  }
+  const double back = before.pose.roll - now.pose.roll, more = now.roll_torque - before.roll_torque;
+  if (std::abs(back) >= shortest_turn) tool.roll_stiffness = std::max(least_roll_stiffness, more / back);
+}
+
+}  // namespace
+
 void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now) {
+  feel_roll_stiffness(tool, before, now);
   const double force = now.at_tip.norm();
   // No single step makes twice as much of a force that the hand has to give way to.
   if (force < 0.5 * tool.definition.hand_force) {

@@ -5,6 +5,7 @@
 // (InstrumentDefinition::hand_force); beyond, the tip goes no further against that force, and back where it grew, so that
 // the force stays at the strength: rigid, then plastic. How the force grows with the way is the secant of the last step,
 // so that after a step of a motion it may be off by what that step's secant is.
+// Just so a hand turns its tool about the shaft until the tissue's torque is its strength times HandStrength::roll_arm.
 // Tools that meet press on each other by the contact barrier (tool_meeting.h) against the springs of their hands (hand.h),
 // solved together: each gives way until both hands carry the force. What touches no other tool comes exactly to where its
 // hand takes it.
@@ -26,8 +27,9 @@ Vec3 port_drag(const Tool& tool, double way, double duration);
 Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
                                                 const std::vector<InstrumentState>& last);
 
-/// Sets tissue_stiffness and stiffness_across: how the tissue's force on the tip grew in a step, for the next one. The
-/// states are those at the step's begin and end; a tip that went less than 1 um keeps what it felt before.
+/// Sets tissue_stiffness, stiffness_across and roll_stiffness: how the tissue's force on the tip and its torque about the
+/// shaft grew in a step, for the next one. The states are those at the step's begin and end; a tip that went less than
+/// 1 um, or a tool that rolled by less than 0.4 mrad, keeps what it felt before.
 void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now);
 
 /// The name of a tool that another one is in or as near to as contact reaches, where both are; empty: none. Not of those

@@ -9,6 +9,7 @@
 #include "sim/grip.h"
 #include "sim/grip_slip.h"
 #include "sim/leak.h"
+#include "sim/pads.h"
 
 namespace calot {
 namespace {
@@ -44,7 +45,7 @@ void note_hold(Field& field, int instrument, std::vector<WorldEvent>& events) {
   const InstrumentDefinition& tool = field.tools[instrument].definition;
   const EventKind kind = closed_on(field, instrument);
   const bool cuts = kind != EventKind::grasp;
-  events.push_back({kind, 0, tool.name, held_organ(field, instrument), 0, std::nullopt,
+  events.push_back({kind, 0, tool.name, between_pads(field, instrument), 0, std::nullopt,
                     cuts ? EventCause::blades : EventCause::none});
   for (const Organ& organ : field.organs) {
     if (cuts || !is_hollow(organ.definition.shape) || grip_count(organ, instrument) == 0) continue;
@@ -53,6 +54,14 @@ void note_hold(Field& field, int instrument, std::vector<WorldEvent>& events) {
         {EventKind::perforation, 0, tool.name, organ.definition.name, 0, std::nullopt, EventCause::pinch});
   }
   if (events.back().kind == EventKind::perforation) perforate(field, instrument);
+}
+
+/// Whether neither pad holds what both press on.
+bool slides(const Clasped& held, const Tool& tool) {
+  constexpr double most = 0.98;  // of what friction holds: points at the rim stick
+  for (std::size_t jaw : {0u, 1u})
+    if (held.along[jaw].norm() < most * tool.definition.pad_friction * held.pressed[jaw]) return false;
+  return true;
 }
 
 }  // namespace
@@ -70,19 +79,19 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
                     SolveStatistics& statistics) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    // Jaws that stop closing before a fold fills them press on nothing.
+    // Jaws that stop closing before tissue carries their pinch press on nothing.
     const bool closing = targets[i].jaw < tool.pose.jaw;
     if (targets[i].jaw > tool.pose.jaw) tool.lost = tool.beside = tool.has_cut = false;
-    if (closing || (tool.jaw_stopped && targets[i].jaw == tool.pose.jaw)) continue;
+    if (closing || (tool.jaws_rest() && targets[i].jaw == tool.pose.jaw)) continue;
     const int index = static_cast<int>(i);
-    const std::string organ = held_organ(field, index);
-    if (organ.empty()) continue;
-    if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
+    const std::string organ = between_pads(field, index);
     const bool held = tool.jaw_stopped && closed_on(field, index) == EventKind::grasp;
+    if (!held_organ(field, index).empty())
+      if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     if (held)
       events.push_back(
           {EventKind::release, 0, tool.definition.name, organ, 0, std::nullopt, EventCause::opening});
-    tool.jaw_stopped = false;
+    tool.jaw_stopped = tool.pressing = false;
   }
   return true;
 }
@@ -92,17 +101,19 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     const int index = static_cast<int>(i);
-    if (!tool.jaw_stopped) continue;
     const std::string organ = held_organ(field, index);
+    if (organ.empty() || !tool.jaws_rest()) continue;
     const Result<double> pull = slip(field, index, statistics);
     if (!pull) return pull.failure();
     if (pull.value() > 0 && !tool.slipping && !slipped_before[i])
       events.push_back({EventKind::slip, 0, tool.definition.name, organ, pull.value()});
     tool.slipping |= pull.value() > 0;
     if (pull.value() > 0) let_clips_fall(field, index, events);
-    if (both_pads_hold(field, index)) continue;
+    // What one pad alone has bitten is held as far as that goes.
+    if (both_pads_hold(field, index) || (!tool.jaw_stopped && pull.value() == 0)) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
-    tool.jaw_stopped = false;
+    tool.pressing = false;
+    if (!std::exchange(tool.jaw_stopped, false)) continue;
     tool.lost = true;
     events.push_back(
         {EventKind::release, 0, tool.definition.name, organ, 0, std::nullopt, EventCause::slipping});
@@ -121,18 +132,42 @@ Result<bool> close_jaws(Field& field, int instrument, TearWatch& tears, std::vec
   }
   take_hold(field, instrument);
   if (fold_fills_jaws(field, instrument)) {
-    tool.jaw_stopped = true;
-    tool.lost = tool.beside = false;
-    note_hold(field, instrument, events);
+    tool.pressing = tool.lost = tool.beside = false;
+    if (!std::exchange(tool.jaw_stopped, true)) note_hold(field, instrument, events);
     return true;
   }
   if (tool.pose.jaw > 0.5 * grip_grid) return true;
+  tool.pressing = false;
   if (use != JawUse::carry && !tool.has_cut && !is_in_trocar(tool))
     events.push_back(
         {use == JawUse::cut ? EventKind::empty_cut : EventKind::empty_grasp, 0, tool.definition.name, {}, 0});
   tool.beside = !held_organ(field, instrument).empty();
   // Closed, and only one pad holds: what it dragged along slips back.
   return tool.beside ? release(field, instrument, statistics) : Result<bool>(true);
+}
+
+void judge_clasps(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events) {
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    const int index = static_cast<int>(i);
+    if (!tool.pressing) continue;
+    const std::string organ = between_pads(field, index);
+    const bool before = std::exchange(tool.jaw_stopped, !organ.empty());
+    if (tool.jaw_stopped && !before) {
+      tool.lost = tool.beside = false;
+      note_hold(field, index, events);
+    } else if (before && !tool.jaw_stopped) {
+      tool.lost = true;
+      events.push_back(
+          {EventKind::release, 0, tool.definition.name, {}, 0, std::nullopt, EventCause::slipping});
+    }
+    const std::optional<Clasped> rubbed = before && tool.jaw_stopped ? clasped(field, index) : std::nullopt;
+    if (!rubbed || !slides(*rubbed, tool)) continue;
+    tool.slipping = true;
+    if (!slipped_before[i])
+      events.push_back(
+          {EventKind::slip, 0, tool.definition.name, organ, (rubbed->along[0] + rubbed->along[1]).norm()});
+  }
 }
 
 }  // namespace calot

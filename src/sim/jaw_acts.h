@@ -20,7 +20,7 @@ class TearWatch {
   std::vector<int> torn_;  ///< strands, one a tissue
 };
 
-/// Tools whose jaws are to open (targets: one a tool), or stop closing before a fold fills them, let go what they hold.
+/// Tools whose jaws are to open (targets: one a tool), or are not to press on, let go what they hold.
 /// Adds release. Fails (simulation) where what is let go finds no rest.
 Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, std::vector<WorldEvent>& events,
                     SolveStatistics& statistics);
@@ -35,5 +35,8 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
 /// a fold fills hold it and stop. Adds what comes of it. Fails as close_blades() and release() do.
 Result<bool> close_jaws(Field& field, int instrument, TearWatch& tears, std::vector<WorldEvent>& events,
                         SolveStatistics& statistics);
+
+/// After a step: what tissue that stopped the jaws is to both pads. Adds grasp, slip and release.
+void judge_clasps(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events);
 
 }  // namespace calot

@@ -328,7 +328,7 @@ double open_between(const Field& field, int index, double one, double other) {
     for (const TubeBetween& tube : tubes_between(field, static_cast<int>(i))) {
       if (tube.organ != index || tube.at < low || tube.at > high) continue;
       // Jaws that hold it have pressed it flat, to the angle that they stop at.
-      if (field.tools[i].jaw_stopped && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
+      if (field.tools[i].jaws_rest() && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
       const double lumen = 2 * rod.lumen_radius(tube.at);
       const double left = (tube.gap - 2 * rod.setup().wall) / lumen;
       open = std::min(open, left < shut ? 0.0 : left);

@@ -9,6 +9,7 @@
 #include "sim/field_tissues.h"
 #include "sim/grip.h"
 #include "sim/hands.h"
+#include "sim/pads.h"
 #include "sim/tool_loads.h"
 
 namespace calot {
@@ -25,23 +26,22 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
       handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force) + tool.drag;
   // Jaws that rest on a fold are no lag of the hand.
   InstrumentPose asked = tool.command;
-  if (tool.jaw_stopped) asked.jaw = tool.pose.jaw;
+  if (tool.jaws_rest()) asked.jaw = tool.pose.jaw;
   state.lag = (tip_position(tool.trocar, asked, tool.geometry) - state.tip).norm();
+  state.roll_torque = load.moment.dot(hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2));
+  state.roll_lag = std::abs(tool.command.roll - tool.pose.roll);
   state.meets = tool.meeting.with;
   state.meeting_force = tool.meeting.force.norm();
-  for (const Organ& organ : field.organs) {
-    const int held = grip_count(organ, static_cast<int>(index));
-    state.grip_points += held;
-    if (held > 0 && tool.jaw_stopped && state.holds.empty()) state.holds = organ.definition.name;
-  }
-  if (const double area = tool.jaw_stopped ? held_area(field, static_cast<int>(index)) : 0; area > 0)
-    state.pad_pressure = tool.definition.pinch_force / area;
+  const int number = static_cast<int>(index);
+  for (const Organ& organ : field.organs) state.grip_points += grip_count(organ, number);
+  if (tool.jaw_stopped) state.holds = between_pads(field, number);
+  state.pad_pressure = pad_pressure(field, number);
   state.clips = tool.clips;
   state.waits = tool.waits;
   state.aspirated = tool.needle.drawn_ever;
   state.touching = load.touches > 0;
   state.parts = load.parts;
-  const bool closed = tool.pose.jaw <= 0.5 * grip_grid;
+  const bool closed = tool.pose.jaw <= 0.5 * grip_grid || tool.pressing;
   const bool touches_jaws = load.parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0;
   if (!state.holds.empty()) {
     state.grip = GripState::holding;

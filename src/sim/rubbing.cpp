@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/teeth.h"
+
 namespace calot {
 namespace {
 
@@ -20,11 +22,15 @@ std::vector<Pose> shape_frames(const Field& field, const std::vector<InstrumentP
   return frames;
 }
 
-double coefficient(const Field& field, int shape) {
-  const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
-  return tool < field.tools.size()
-             ? field.tools[tool].definition.friction
-             : field.ground[static_cast<std::size_t>(shape) - shapes_per_tool * field.tools.size()].friction;
+/// At a place of a shape and by its normal there, both in the shape's frame.
+double coefficient(const Field& field, const Organ& organ, int shape, const Vec3& at, const Vec3& normal) {
+  const std::size_t index = static_cast<std::size_t>(shape) / shapes_per_tool;
+  if (index >= field.tools.size())
+    return field.ground[static_cast<std::size_t>(shape) - shapes_per_tool * field.tools.size()].friction;
+  const Tool& tool = field.tools[index];
+  const double smooth = tool.definition.friction;
+  if (shape % shapes_per_tool == 0 || is_bitten(organ) || !has_teeth(tool)) return smooth;
+  return smooth + teeth_share(at, normal, tool.geometry) * (tool.definition.pad_friction - smooth);
 }
 
 /// Whether each tool's jaws hold a part of the organ.
@@ -62,7 +68,9 @@ bool has_friction(const Field& field) {
                   [](const Ground& ground) { return ground.friction > 0; }))
     return true;
   return std::any_of(field.tools.begin(), field.tools.end(),
-                     [](const Tool& tool) { return tool.definition.friction > 0; });
+                     [](const Tool& tool) { return tool.definition.friction > 0; }) ||
+         (std::any_of(field.tools.begin(), field.tools.end(), has_teeth) &&
+          !std::all_of(field.organs.begin(), field.organs.end(), is_bitten));
 }
 
 FrictionLoad friction_load(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
@@ -85,8 +93,10 @@ double renew_friction(const Field& field, Organ& organ, const std::vector<Instru
   ContactPlaces places_before(organ.body->skin(), before);
   for (const auto& [point, shape, at, d, answer, area, radius] :
        organ.search.touching(*organ.body, organ.state.x, around)) {
-    const double mu = coefficient(field, shape);
-    if (mu <= 0 || is_holding_jaw(holding, shape)) continue;
+    if (is_holding_jaw(holding, shape)) continue;
+    const Pose to_shape = frames[shape].inverse();
+    const double mu = coefficient(field, organ, shape, to_shape * at, to_shape.linear() * d.gradient);
+    if (mu <= 0) continue;
     StickSlip hold;
     hold.normal = d.gradient;
     hold.limit = -mu * area * answer.derivative;

@@ -29,7 +29,7 @@ inline constexpr int friction_rounds = 15;
 /// Whether anything rubs at all: else nothing of this costs anything.
 bool has_friction(const Field& field);
 
-/// The organ's rubbing points, as they were at the last equilibrium, for the tools at `poses`. On jaws that
+/// Teeth rub on what they do not sink into by pad_friction (teeth.h). The organ's rubbing points, as they were at the last equilibrium, for the tools at `poses`. On jaws that
 /// hold some of it nothing rubs: their edges are part of the grip, whose limit is holding_limit (hold.h).
 FrictionLoad friction_load(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
 

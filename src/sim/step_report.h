@@ -51,6 +51,8 @@ struct InstrumentState {
   double pad_pressure = 0;   ///< Pa, mean, of pads that hold a wall: their pinch on its area
   std::string meets;         ///< another instrument that it presses on; empty: none
   double meeting_force = 0;  ///< N at the tip, of all that it presses on
+  double roll_torque = 0;  ///< N m, of the tissue on it about the shaft, right-handed about its tip direction
+  double roll_lag = 0;     ///< rad, about the shaft, from where it is commanded to be: its hand gives way
 };
 
 struct ClipState {

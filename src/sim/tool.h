@@ -31,7 +31,7 @@ struct Tool {
   Vec3 trocar = Vec3::Zero();  ///< m
   InstrumentPose pose;
   bool touched = false, over_limit = false;  ///< at the last step, for events
-  bool jaw_stopped = false;                  ///< the jaws rest on the fold they hold
+  bool jaw_stopped = false;                  ///< the jaws rest on what they hold
   bool lost = false;  ///< what it held slid off; until the jaws open or hold again; for reports
   bool beside =
       false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
@@ -48,9 +48,16 @@ struct Tool {
   InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
   /// N/m, how the force on the tip grew with its way: along the force and across it; 0: none that counts.
   double tissue_stiffness = 0, stiffness_across = 0;
+  double roll_stiffness =
+      0;  ///< N m/rad, how the tissue's torque about the shaft grew with its roll; 0: none that counts
   MeetingState meeting = {};
   bool met = false;          ///< it pressed on another tool at the last step, for events
   Vec3 drag = Vec3::Zero();  ///< N at the hand, of the port's seal in the last step (hands.h)
+  bool pressing =
+      false;  ///< what is between its jaws carries the pinch: they turn as that gives way or pushes
+
+  /// Whether tissue keeps its jaws from closing.
+  bool jaws_rest() const { return jaw_stopped || pressing; }
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

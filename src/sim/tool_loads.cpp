@@ -27,6 +27,7 @@ class LoadSum {
     load.moment += (at - tool.trocar).cross(force);
     if (touches && load.touches++ == 0) load.organ = organ;
     const bool is_shaft = shape % shapes_per_tool == 0;
+    if (!is_shaft) load.on_jaws[static_cast<std::size_t>(shape % shapes_per_tool - 1)] += force;
     add(load.parts, is_shaft ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
     const Vec3& tip = tips_[shape / shapes_per_tool];
     if (!is_shaft && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)

@@ -15,6 +15,7 @@ struct ToolLoad {
   int touches = 0;             ///< of all parts
   std::string organ;           ///< the first organ, else tissue, that touches it, or empty
   PartLoads parts;             ///< by ToolPart
+  std::array<Vec3, 2> on_jaws{Vec3::Zero(), Vec3::Zero()};  ///< N, of each jaw
 };
 std::vector<ToolLoad> tool_loads(const Field& field);
 

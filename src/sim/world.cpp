@@ -394,7 +394,7 @@ auto World::Impl::change(const std::string& what, const Change& change) -> declt
     return settled.failure();
   }
   // What hands felt was of what has changed.
-  for (Tool& tool : field.tools) tool.tissue_stiffness = tool.stiffness_across = 0;
+  for (Tool& tool : field.tools) tool.tissue_stiffness = tool.stiffness_across = tool.roll_stiffness = 0;
   report_states(field, report);
   keep_hash();
   still.reset();

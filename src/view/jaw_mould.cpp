@@ -87,7 +87,7 @@ std::optional<Vec3> Solids::pushed_out(Vec3 x, double least) const {
 void JawMould::follow(const Field& field, int instrument, double dt) {
   const Tool& tool = field.tools[instrument];
   std::vector<Held> held;
-  for (std::size_t k = 0; tool.jaw_stopped && k < field.organs.size(); ++k) {
+  for (std::size_t k = 0; tool.jaws_rest() && k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     for (const GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;

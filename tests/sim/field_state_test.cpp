@@ -85,6 +85,8 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("shifted", [](FieldState& s) { s.group.factor.shifted ^= true; });
   differs("pose", [](FieldState& s) { s.tools[0].pose.roll += 1e-12; });
   differs("jaws", [](FieldState& s) { s.tools[0].jaw_stopped ^= true; });
+  differs("pressing jaws", [](FieldState& s) { s.tools[0].pressing ^= true; });
+  differs("roll", [](FieldState& s) { s.tools[0].roll_stiffness += 1e-3; });
   differs("slip", [](FieldState& s) { s.tools[0].slipping ^= true; });
   differs("action", [](FieldState& s) { s.tools[0].action = InstrumentAction::activate; });
   differs("lost", [](FieldState& s) { s.tools[0].lost ^= true; });
@@ -112,7 +114,8 @@ TEST(StillSteps, AreWhatTheyWouldBeIfTheyWereComputed) {
   int substeps[2] = {0, 0}, still[2] = {0, 0};
   for (int skip = 0; skip < 2; ++skip) {
     SceneDefinition scene = refined_scene(skip == 1);
-    scene.instruments[0].pinch_force = 0.3;  // slips as it is lifted: no more in the first step that stays
+    scene = test::with_strong_jaws(scene);
+    scene.instruments[0].pad_friction = 0.075;  // slips as it is lifted: no more in the first step that stays
     test::FundusPath path(scene);
     ASSERT_TRUE(path.grasp(2) && path.lift(2)) << path.driver.why();
     ASSERT_TRUE(path.world.state().tools[0].slipping);

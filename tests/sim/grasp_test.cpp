@@ -61,7 +61,8 @@ TEST(Grasp, GraspedSkinStaysWithTheJaw) {
     const std::vector<Vec3> now = in_the_jaws();
     ASSERT_EQ(now.size(), before.size());
     for (std::size_t i = 0; i < now.size(); ++i) {
-      EXPECT_LT((now[i] - before[i]).norm(), 0.05e-3);
+      EXPECT_LT((now[i] - before[i]).tail<2>().norm(), 0.05e-3)
+          << "along the pads, which press it as it gives";
     }
   }
 }

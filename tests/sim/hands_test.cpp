@@ -68,6 +68,34 @@ TEST(Hands, WhatIsHeldIsPulledWithNoMoreThanItsHandHolds) {
   EXPECT_TRUE(tool.tip.allFinite());
 }
 
+TEST(Hands, AFoldIsTwistedWithNoMoreThanItsHandHoldsAboutTheShaft) {
+  SceneDefinition scene = test::ball_scene();
+  scene.instruments[0].hand_force = 1;  // N: 10 mN m
+  test::FundusPath path(scene);
+  ASSERT_TRUE(path.grasp()) << path.driver.why();
+  const InstrumentState& tool = path.world.report().instruments[0];
+  ASSERT_EQ(tool.holds, "ball");
+  StepInput input{{path.world.field().tools[0].command}};
+  double torque = 0, lag = 0;
+  const auto roll_to = [&](double roll) {
+    const int steps = 72;
+    const double from = input.instruments[0].roll;
+    for (int k = 1; k <= steps; ++k) {
+      input.instruments[0].roll = from + k * (roll - from) / steps;
+      const Result<StepReport> done = path.world.step(input);
+      ASSERT_TRUE(done) << to_text(done.failure());
+      torque = std::max(torque, std::abs(tool.roll_torque));
+      lag = std::max(lag, tool.roll_lag);
+    }
+  };
+  roll_to(2 * std::numbers::pi);
+  EXPECT_EQ(tool.holds, "ball");
+  EXPECT_LT(torque, 1.1 * 10e-3);
+  EXPECT_GT(lag, 1) << "else the hand had nothing to give way to";
+  roll_to(0);
+  EXPECT_EQ(tool.roll_lag, 0) << "it is exactly where it is commanded to be";
+}
+
 TEST(Hands, APortsSealResistsAShaftThatSlidesThroughItWhicheverWay) {
   SceneDefinition scene = test::ball_scene();
   scene.instruments[0].port_friction = 0.7;

@@ -10,6 +10,7 @@
 #include "rig.h"
 #include "sim/between_jaws.h"
 #include "sim/body_kinds.h"
+#include "sim/change_bodies.h"
 #include "sim/clips.h"
 #include "sim/field_state.h"
 #include "sim/join_bodies.h"

@@ -46,6 +46,13 @@ inline SceneDefinition ball_scene(const OrganDefinition& ball = bedded_ball()) {
   return scene;
 }
 
+/// With jaws that are strong enough to close until a fold of any wall fills them, and walls that bear that.
+inline SceneDefinition with_strong_jaws(SceneDefinition scene) {
+  scene.instruments[0].pinch_force = 100;
+  scene.anatomy.organs[0].wall.pinch_limit = 100;
+  return scene;
+}
+
 /// The standard gallbladder with an instrument of another type.
 inline SceneDefinition scene_with(InstrumentType type) {
   SceneDefinition scene = grasper_scene();

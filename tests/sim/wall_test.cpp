@@ -11,7 +11,7 @@
 namespace calot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A pear along an oblique axis, pressed to 4 kPa by a filling without weight, held softly at its neck.
 OrganDefinition pressed_pear() {

@@ -4,6 +4,7 @@
 
 #include "sim/grip.h"
 #include "sim/rig.h"
+#include "sim/teeth.h"
 
 namespace calot {
 namespace {
@@ -66,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Of, JawMouldGrasp, ::testing::Values("atraumatic_graspe
                          [](const auto& one) { return one.param; });
 
 TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
-  test::FundusPath path(test::scene_with(type));
+  test::FundusPath path(test::with_strong_jaws(test::scene_with(type)));
   JawMoulds moulds(path.world);
   expect_touched_skin(moulds, path.world);
   path.driver.watch = [&](const StepReport&) { moulds.follow(path.world); };
