@@ -217,7 +217,7 @@
 ---@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field hand_force? number force at the tip up to which its hand holds it where it is commanded to be; beyond, it gives way; default 20 * N; 0.05 to 100 N
 ---@field port_friction? number friction of the seal of its port on the shaft that slides through, which its hand feels; 0.25 to 3 N; default 0.5 * N; 0 to 10 N
----@field pinch_force? number force of each jaw on the fold it holds; a pull above 2 * pad_friction * pinch_force slips; jaws only; default 6.8 * N; 0.05 to 100 N
+---@field pinch_force? number force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
 ---@field power? number W of its current, where it can be activated: what strands of tissue it touches then share it, and are divided by it; default 30; 1 to 120
