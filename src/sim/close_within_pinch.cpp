@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/clips.h"
 #include "sim/field_state.h"
 #include "sim/grip.h"
 #include "sim/pads.h"
@@ -97,6 +98,8 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
   std::vector<std::size_t> pressing;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Tool& tool = field.tools[i];
+    // Clips between the pads carry whatever presses: jaws rest on the metal.
+    if (std::isfinite(hold_of_clips(field, static_cast<int>(i)))) continue;
     if (has_teeth(tool) && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
   }
   if (pressing.empty()) return go(to);

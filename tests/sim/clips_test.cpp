@@ -266,7 +266,8 @@ struct DrawnClip : ClipAndCut {
       EXPECT_TRUE(step(at(grasped + y, 0)));
       const Vec3 pull = pad_pull(world.field(), 1);
       largest = std::max(largest, pull.norm());
-      asked = std::max(asked, asked_of_friction(world.field().tools[1], pull).norm());
+      if (grip_count(stump(), 1) > 0)
+        asked = std::max(asked, asked_of_friction(world.field().tools[1], pull).norm());
     }
     return largest;
   }

@@ -64,11 +64,12 @@ TEST(Validation, ShapeDoesNotDependOnTheRate) {
     fmt::print("{} Hz against 50 Hz: skin {:.2e} m, force {:.1e}, pressure {:.1e}\n", rate, apart, force,
                std::abs(other.pressure / reference.pressure - 1));
     EXPECT_EQ(other.grip_points, reference.grip_points) << rate;
-    // Held points are set down where the wall is when a jaw passes a whole degree; the wall is found to 1e-6
-    // of the organ's size (0.1 m) there, and what follows repeats that.
-    EXPECT_LT(apart, 1e-6) << rate;
+    // Jaws stop where the fold carries their pinch to 2 %, 0.14 N (pinch_tolerance); a fold that carries 6.8 N over some
+    // 2 mm between open jaws and stopped ones does so within 0.02 to 0.04 mm, half of that each pad. What follows
+    // repeats that: the wall moves by no more, and the bile gives way by the thousandth part that the fold takes of it.
+    EXPECT_LT(apart, 20e-6) << rate;
     EXPECT_LT(force, 1e-3) << rate;
-    EXPECT_NEAR(other.pressure, reference.pressure, 1e-4 * reference.pressure) << rate;
+    EXPECT_NEAR(other.pressure, reference.pressure, 1e-3 * reference.pressure) << rate;
   }
 }
 
