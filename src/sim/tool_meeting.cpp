@@ -140,15 +140,18 @@ void ToolMeeting::add_gradient(const VecX& x, VecX& gradient) const {
 void ToolMeeting::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   std::array<ToolMatrix, 2> own_sum{ToolMatrix::Zero(), ToolMatrix::Zero()};
   ToolMatrix mixed = ToolMatrix::Zero();  // rows of the first side
+  // Pressed harder than any balance is they would rather slide around each other than part.
+  const double hardest = barrier_.sample(barrier_.soft_share * barrier_.range).derivative;
   for_near(x, barrier_.range,
            [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart& own, const PosedPart& other,
                const Shape& shape, int) {
              const DistanceSlope d = distance_slope(shape, at);
              const BarrierSample b = barrier_.sample(d.distance - point.radius);
              const double share = 0.5 * point.area;
-             const Vec3 pull = share * b.derivative * d.gradient;
+             const double pressed = std::max(b.derivative, hardest);
+             const Vec3 pull = share * pressed * d.gradient;
              const Mat3 bend = share * (b.second * d.gradient * d.gradient.transpose() +
-                                        b.derivative * distance_hessian(shape, at, d));
+                                        pressed * distance_hessian(shape, at, d));
              const PointAndToolMatrix carried = other.carried_hessian(at, pull, bend);
              const Eigen::Matrix<double, 3, 6> by_own = own.slopes(at);
              own_sum[side] += by_own.transpose() * bend * by_own + own.curvature(at, pull);
@@ -185,6 +188,21 @@ void ToolMeeting::add_cliques(const VecX& /*x*/, bool /*close*/,
   cliques.push_back(std::move(nodes));
 }
 
+namespace {
+
+/// m: the energy of what is pressed together so deep keeps it from going on, in smaller steps than the tools are thick.
+constexpr double deeper = contact_guard, look_each = 1e-3;
+
+template <class Holds>
+bool on_all_of_way(double share, double travel, const Holds& holds) {
+  const int looks = 1 + static_cast<int>(share * travel / look_each);
+  for (int k = 1; k <= looks; ++k)
+    if (!holds(share * k / looks)) return false;
+  return true;
+}
+
+}  // namespace
+
 double ToolMeeting::safe_share(const VecX& x, const VecX& step, double share) const {
   std::array<InstrumentPose, 2> from, to;
   double travel = 0;
@@ -195,29 +213,42 @@ double ToolMeeting::safe_share(const VecX& x, const VecX& step, double share) co
   }
   if (travel == 0) return share;
   const double reach = travel / (1 - contact_keep);
-  for_near(x, reach,
-           [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
-               const Shape& shape, int part) {
-             const Tool &own = *sides_[side].tool, &other = *sides_[1 - side].tool;
-             const Shape core = offset(core_of(shape), point.radius);
-             const double gap = signed_distance(core, at);
-             if ((1 - contact_keep) * gap > travel) return;
-             // The point's own way is bent; what it may stray from the chord falls with the square of the share.
-             for (int halvings = 0; halvings < 60; ++halvings) {
-               const InstrumentPose own_end = interpolate(from[side], to[side], share);
-               const double bend = path_bend(own, from[side], own_end, at);
-               if (gap > 0 && bend > 0.25 * gap) {
-                 share *= 0.5;
-                 continue;
-               }
-               const Vec3 motion = PosedPart(own, own_end, point.part).frame() * point.local - at;
-               const PartPath path(other, part, from[1 - side],
-                                   interpolate(from[1 - side], to[1 - side], share));
-               share *= path.share_apart(offset(core, bend), at, motion, contact_keep);
-               return;
-             }
-             share = 0;
-           });
+  for_near(
+      x, reach,
+      [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
+          const Shape& shape, int part) {
+        const Tool &own = *sides_[side].tool, &other = *sides_[1 - side].tool;
+        const Shape core = offset(core_of(shape), point.radius);
+        const double gap = signed_distance(core, at);
+        if ((1 - contact_keep) * gap > travel) return;
+        // Jaws that turned on what they hold may have come into the other tool: what is in it goes no deeper.
+        if (gap <= 0) {
+          const auto stays = [&](double at_share) {
+            const Vec3 there =
+                PosedPart(own, interpolate(from[side], to[side], at_share), point.part).frame() * point.local;
+            const PosedTool then(other,
+                                 tool_coordinates(interpolate(from[1 - side], to[1 - side], at_share)));
+            const Shape core_then = offset(core_of(contact_shape(then.shapes[part])), point.radius);
+            return signed_distance(core_then, there) >= gap - deeper;
+          };
+          while (share > 0 && !on_all_of_way(share, travel, stays)) share = share > 1e-6 ? 0.5 * share : 0;
+          return;
+        }
+        // The point's own way is bent; what it may stray from the chord falls with the square of the share.
+        for (int halvings = 0; halvings < 60; ++halvings) {
+          const InstrumentPose own_end = interpolate(from[side], to[side], share);
+          const double bend = path_bend(own, from[side], own_end, at);
+          if (bend > 0.25 * gap) {
+            share *= 0.5;
+            continue;
+          }
+          const Vec3 motion = PosedPart(own, own_end, point.part).frame() * point.local - at;
+          const PartPath path(other, part, from[1 - side], interpolate(from[1 - side], to[1 - side], share));
+          share *= path.share_apart(offset(core, bend), at, motion, contact_keep);
+          return;
+        }
+        share = 0;
+      });
   return share;
 }
 

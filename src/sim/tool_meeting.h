@@ -35,6 +35,7 @@ class ToolMeeting : public Join {
 
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
+  /// Exact where tools can be in balance; of what is deeper in each other the turning of the forces counts as there.
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
   double safe_share(const VecX& x, const VecX& step, double share) const override;
