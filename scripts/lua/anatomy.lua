@@ -496,7 +496,8 @@ function anatomy.tissue(p)
   local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
   local function fat(name, from, to, within, strands, more)
     local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
-      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide }
+      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide,
+      covered = true }
     for key, value in pairs(more or {}) do out[key] = value end
     return out
   end

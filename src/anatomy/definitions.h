@@ -230,6 +230,7 @@ struct TissueDefinition {
   double radius = 0.2e-3;      ///< m, of a strand as instruments feel it; 0: they do not (d, uncalibrated)
   /// J/m^2 of current's power that divides it: 1 mm of water, boiled away (d, uncalibrated).
   double divide_energy = 2.5e6;
+  bool covered = false;  ///< by a leaf of peritoneum towards the front: how it looks, no more
 };
 
 enum class GroundType { plane, capsule, box };

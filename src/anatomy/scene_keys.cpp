@@ -110,7 +110,9 @@ std::vector<KeyTable> field_tables() {
                "divide_energy", &TissueDefinition::divide_energy, quantity::number, 1e3, 1e8,
                "an energy to divide tissue",
                "of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; "
-               "uncalibrated")}),
+               "uncalibrated"),
+           flag("covered", &TissueDefinition::covered,
+                "true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is torn")}),
       keys_of<GroundDefinition>(
           "ground", "A shape that stays and is touched.",
           {text("name", &GroundDefinition::name, "its name, unique"),

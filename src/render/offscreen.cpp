@@ -21,11 +21,12 @@ constexpr int samples = 4;
 constexpr std::array all_materials{
     Material::gallbladder, Material::membrane,   Material::liver,  Material::fat,     Material::peritoneum,
     Material::steel,       Material::insulation, Material::artery, Material::capsule, Material::bowel,
-    Material::hydrops,     Material::bile,       Material::blood};
+    Material::hydrops,     Material::bile,       Material::blood,  Material::leaf};
 
-/// Omentum, bowel and walls lie behind all else: their shadows are never seen.
+/// Omentum, bowel and walls lie behind all else: their shadows are never seen. Light goes through a leaf.
 bool casts_shadow(Material material) {
-  return material != Material::fat && material != Material::peritoneum && material != Material::bowel;
+  return material != Material::fat && material != Material::peritoneum && material != Material::bowel &&
+         material != Material::leaf;
 }
 
 /// A vessel map on the card's side. Holding the map keeps its address from being given to another one.
@@ -265,11 +266,11 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
     draw_part(part);
   };
   for (const ScenePart& part : arrays.parts)
-    if (!is_liquid(part.material)) draw(part);
+    if (!shines_through(part.material)) draw(part);
   gl.Enable(GL_BLEND);
   gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_COLOR);
   for (const ScenePart& part : arrays.parts)
-    if (is_liquid(part.material)) draw(part);
+    if (shines_through(part.material)) draw(part);
   gl.Disable(GL_BLEND);
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.framebuffer);

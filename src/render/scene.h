@@ -25,10 +25,13 @@ enum class Material {
   hydrops,  ///< a gallbladder full of mucus: pale, its vessels pressed empty; rest frame as the gallbladder's
   bile,     ///< film and drops: golden where thin, green where deep; rest positions: (0, 0, its depth, m)
   blood,    ///< likewise, red and dark red
+  leaf,     ///< a thin leaf of peritoneum with fine vessels; rest positions: along, across, and 1 mm where it is whole
 };
 
 /// What lies behind it shines through: drawn after all that does not.
-inline bool is_liquid(Material material) { return material == Material::bile || material == Material::blood; }
+inline bool shines_through(Material material) {
+  return material == Material::bile || material == Material::blood || material == Material::leaf;
+}
 
 /// Blood vessels as a volume over rest positions: the share of each voxel that they fill.
 struct VesselMap {
@@ -60,7 +63,7 @@ struct SceneCamera {
 
 struct Scene {
   SceneCamera camera;
-  std::vector<SceneMesh> meshes;  ///< drawn in this order, but liquids last: near ones first is fastest
+  std::vector<SceneMesh> meshes;  ///< drawn in this order, but what shines through last: near ones first is fastest
 };
 
 }  // namespace calot

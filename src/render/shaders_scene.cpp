@@ -42,7 +42,7 @@ uniform vec3 view_axis;    // where the laparoscope looks
 uniform float intensity;
 uniform sampler3D noise_volume;
 uniform sampler2DShadow shadow_map;
-#ifdef LIQUID
+#ifdef SHINES_THROUGH
 layout(location = 0, index = 0) out vec4 colour;   // what it adds
 layout(location = 0, index = 1) out vec4 covered;  // share of what is below it that it hides, a colour channel
 #else
@@ -159,8 +159,36 @@ Surface surface_at(vec3 p) {
 // A liquid's own surface is a mirror without relief. Tissue shines through it by Beer and Lambert's law: ABSORBS is what
 // a colour channel loses in 1 mm.
 const char* const liquid_material = R"(
+#define SHINE 1.0
 Surface surface_at(vec3 p) {
   return Surface(ALBEDO, SCATTER, vec3(0.0), 0.0, 900.0, 1.6);
+}
+vec3 hidden_share(vec3 p) { return 1.0 - exp(-ABSORBS * max(p.z, 0.0)); }
+)";
+
+// A leaf of peritoneum: a whitish veil that is denser seen along it, with fine vessels and, where fat lies below it, a
+// yellow tinge. p is along, across and 1 where it is whole.
+const char* const leaf_material = R"(
+#define SHINE smoothstep(0.0, 0.6, rest.z)
+float vessel_share(vec3 p) {
+  vec3 q = vec3(p.xy, 0.0);
+  vec4 course = noise(q + 1.6 * noise(q, 2.2).rgb, 5.5);
+  vec4 twigs = noise(q + 0.6 * course.rgb, 2.2);
+  float trunk = smoothstep(0.17, 0.06, distance_to_zero(course, 5.5)) * smoothstep(-0.35, 0.25, twigs.a);
+  float twig = smoothstep(0.10, 0.03, distance_to_zero(twigs, 2.2)) * smoothstep(-0.1, 0.5, course.g);
+  return max(trunk, 0.6 * twig);
+}
+float yellow_share(vec3 p) { return smoothstep(-0.25, 0.45, noise(vec3(p.xy, 7.0), 3.4).a + 0.5 * broad.g); }
+Surface surface_at(vec3 p) {
+  vec4 folds = noise(vec3(p.xy * vec2(1.0, 0.45), 3.0), 2.6);
+  vec3 albedo = mix(vec3(0.50, 0.30, 0.225), vec3(0.66, 0.43, 0.17), yellow_share(p));
+  albedo = mix(albedo, vec3(0.30, 0.035, 0.03), 0.85 * vessel_share(p));
+  return Surface(albedo, vec3(0.42, 0.24, 0.17), 0.20 * broad.rgb + 0.34 * folds.rgb, 0.5, 200.0, 0.55);
+}
+vec3 hidden_share(vec3 p) {
+  float along_it = 1.0 - abs(dot(normalize(normal), normalize(place)));
+  float veil = 0.22 + 0.30 * yellow_share(p) + 0.35 * along_it * along_it + 0.45 * vessel_share(p);
+  return vec3(clamp(veil, 0.0, 0.9) * smoothstep(0.05, 0.9, p.z));
 }
 )";
 
@@ -221,9 +249,10 @@ void main() {
   float spot = 0.028 * (s.gloss + 2.0) / 8.0 * exp2(1.4427 * s.gloss * (nh - 1.0));
   float sheen = 0.055 * exp2(32.0 * (dot(tissue_n, h) - 1.0));
   vec3 mirrored = s.film * l.strength * l.seen * (spot + sheen) * vec3(1.0, 0.97, 0.93);
-#ifdef LIQUID
+#ifdef SHINES_THROUGH
   mirrored += s.film * fresnel * 2.2 * l.around;
-  vec3 hides = 1.0 - exp(-ABSORBS * max(rest.z, 0.0));
+  vec3 hides = hidden_share(rest);
+  mirrored *= SHINE;
   vec4 inner = exposed(lit), outer = exposed(mirrored);
   covered = vec4(hides, hides.g);
   colour = vec4(inner.rgb * hides + outer.rgb * (1.0 - inner.rgb * hides), outer.a);
@@ -315,6 +344,7 @@ double broad_cell(Material material) {
     case Material::peritoneum:
       return 29;
     case Material::artery:
+    case Material::leaf:
       return 9;
     case Material::steel:
     case Material::insulation:
@@ -345,7 +375,7 @@ std::string scene_vertex_shader(Material material) { return header(material) + v
 
 std::string scene_fragment_shader(Material material) {
   const std::string common =
-      header(material) + (is_liquid(material) ? "#define LIQUID\n" : "") + prelude + light_functions;
+      header(material) + (shines_through(material) ? "#define SHINES_THROUGH\n" : "") + prelude + light_functions;
   const char* const bile = "vec3(0.130, 0.172, 0.132)";
   switch (material) {
     case Material::gallbladder:
@@ -364,6 +394,8 @@ std::string scene_fragment_shader(Material material) {
              "#define ALBEDO vec3(0.150, 0.006, 0.005)\n#define ABSORBS vec3(0.9, 7.0, 7.0)\n"
              "#define SCATTER vec3(0.15, 0.01, 0.008)\n" +
              liquid_material + tissue_lighting;
+    case Material::leaf:
+      return common + leaf_material + tissue_lighting;
     case Material::capsule:
       return common + capsule_material + tissue_lighting;
     case Material::bowel:

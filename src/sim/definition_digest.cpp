@@ -122,9 +122,9 @@ class DefinitionDigest {
   }
   void put(const TissueDefinition& d) {
     const auto& [name, from, to, within, start, stop, strands, slack, stiffness, stiffening, strength,
-                 break_energy, density, radius, divide_energy] = d;
+                 break_energy, density, radius, divide_energy, covered] = d;
     put_all(name, from, to, within, start, stop, strands, slack, stiffness, stiffening, strength,
-            break_energy, density, radius, divide_energy);
+            break_energy, density, radius, divide_energy, covered);
   }
   void put(const GroundDefinition& d) {
     const auto& [name, type, point, normal, to, size, radius, friction, looks] = d;

@@ -5,6 +5,7 @@
 #include "view/clip_mesh.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
+#include "view/leaf_mesh.h"
 #include "view/needle_mesh.h"
 #include "view/spill_mesh.h"
 #include "view/structure_mesh.h"
@@ -106,6 +107,7 @@ Scene SceneBuilder::build(const World& world) const {
   }
   if (SceneMesh tissue = tissue_mesh(world); !tissue.triangles.empty())
     scene.meshes.push_back(std::move(tissue));
+  if (SceneMesh leaf = leaf_mesh(world); !leaf.triangles.empty()) scene.meshes.push_back(std::move(leaf));
   for (SceneMesh& mesh : spill_meshes(world)) scene.meshes.push_back(std::move(mesh));
   for (const Organ& organ : world.field().organs) {
     if (!definition.laparoscope.show_structure || shell_of(organ) == nullptr) continue;

@@ -1,0 +1,160 @@
+#include "view/leaf_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim/field.h"
+#include "view/surfaces.h"
+
+namespace calot {
+namespace {
+
+constexpr double thickness = 1e-3;  // in units of rest positions: what a whole leaf has
+constexpr double clear = 0.25e-3;   // m, of the tubes that it covers: they are drawn by other triangles
+constexpr double wrapped = 1.1;     // rad, how far it reaches over a tube's front, beyond its crest (d)
+constexpr int columns_a_strand = 3, rows = 18;
+
+/// One strand, or what several are in the mean.
+struct Fibre {
+  double at = 0;  ///< m, along the tissue at rest
+  Vec3 from = Vec3::Zero(), by = Vec3::Zero(), to = Vec3::Zero();
+  double whole = 0, thick = 0;  ///< 1: not torn; m, how far fat stands out before it
+};
+
+/// Unit, the way along which a tissue is longest at rest: between two of its strands that lie far apart.
+Vec3 long_way(const std::vector<Vec3>& points) {
+  const auto furthest = [&](const Vec3& from) {
+    return *std::max_element(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) {
+      return (a - from).squaredNorm() < (b - from).squaredNorm();
+    });
+  };
+  const Vec3 one = furthest(points[0]), other = furthest(one);
+  return one == other ? Vec3(Vec3::UnitX()) : Vec3((other - one).normalized());
+}
+
+/// In their order along the tissue.
+std::vector<Fibre> fibres_of(const Tissue& tissue, const std::vector<Organ>& organs) {
+  const std::vector<StrandLine> lines = strand_lines(tissue, organs);
+  std::vector<Vec3> rest;
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    rest.emplace_back(tissue.body->rest().segment<3>(3 * static_cast<Eigen::Index>(k)));
+  const Vec3 way = long_way(rest);
+  std::vector<Fibre> out;
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    out.push_back({way.dot(rest[k]), lines[k].from, lines[k].by, lines[k].to, tissue.torn(k) ? 0.0 : 1.0,
+                   lobule_radius(tissue.strands->strands()[k])});
+  std::sort(out.begin(), out.end(), [](const Fibre& a, const Fibre& b) { return a.at < b.at; });
+  return out;
+}
+
+/// What the fibres are about `at`: a sheet evens out what its single strands do.
+Fibre mean_about(double at, double reach, const std::vector<Fibre>& fibres) {
+  Fibre out;
+  double sum = 0;
+  for (const Fibre& f : fibres) {
+    const double weight = std::exp(-std::pow((f.at - at) / reach, 2));
+    sum += weight;
+    out.from += weight * f.from;
+    out.by += weight * f.by;
+    out.to += weight * f.to;
+    out.whole += weight * f.whole;
+    out.thick += weight * f.thick;
+  }
+  return {at, out.from / sum, out.by / sum, out.to / sum, out.whole / sum, out.thick / sum};
+}
+
+/// Strands end on a bent tube here and there; in between it is not where their mean is.
+Vec3 on_tube_near(const Vec3& place, const Organ& organ) {
+  if (rod_of(organ) == nullptr) return place;
+  const std::vector<Vec3> line = organ.body->skin_positions(organ.state.x);
+  Vec3 nearest = line[0];
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vec3 way = line[i] - line[i - 1];
+    const double share = std::clamp(way.dot(place - line[i - 1]) / way.squaredNorm(), 0.0, 1.0);
+    const Vec3 there = line[i - 1] + share * way;
+    if ((there - place).squaredNorm() < (nearest - place).squaredNorm()) nearest = there;
+  }
+  return nearest;
+}
+
+/// Across a fibre, from beyond the crest of one tube, over it and the fat between, to beyond that of the other; v is 0 to 1.
+Vec3 across(const Fibre& fibre, const std::array<double, 2>& radii, const Vec3& front, double v) {
+  const Vec3 way = (fibre.to - fibre.from).normalized();
+  const Vec3 up = (front - way * way.dot(front)).normalized();
+  constexpr double over_tube = 0.22;  // of v, at either end
+  const auto on_tube = [&](const Vec3& middle, double radius, double angle) -> Vec3 {
+    return middle + (radius + clear) * (std::cos(angle) * up + std::sin(angle) * way);
+  };
+  if (v < over_tube) return on_tube(fibre.from, radii[0], -wrapped * (1 - v / over_tube));
+  if (v > 1 - over_tube) return on_tube(fibre.to, radii[1], wrapped * (1 - (1 - v) / over_tube));
+  const double t = (v - over_tube) / (1 - 2 * over_tube);
+  const Vec3 one = on_tube(fibre.from, radii[0], 0), other = on_tube(fibre.to, radii[1], 0);
+  constexpr double dents = 1.6;  // times a lobule's radius: as far as it stands out (view/tissue_mesh.cpp)
+  const Vec3 top = fibre.by + dents * fibre.thick * up;
+  const Vec3 middle = 2 * top - 0.5 * (one + other);  // of the parabola through all three
+  return (1 - t) * (1 - t) * one + 2 * t * (1 - t) * middle + t * t * other;
+}
+
+double smooth_step(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+void add_leaf(const Tissue& tissue, const std::vector<Organ>& organs, SceneMesh& out) {
+  const std::vector<Fibre> fibres = fibres_of(tissue, organs);
+  if (fibres.size() < 3) return;
+  std::array<double, 2> radii{};
+  const std::array<int, 2>& ends_on = tissue.strands->bodies();
+  for (int k = 0; k < 2; ++k) radii[k] = organs[ends_on[k]].body->thickest();
+  const double first = fibres.front().at, last = fibres.back().at;
+  const double reach = 1.6 * (last - first) / static_cast<double>(fibres.size() - 1);
+  const int columns = columns_a_strand * static_cast<int>(fibres.size());
+  const auto fibre_at = [&](double u) {
+    Fibre mean = mean_about(first + u * (last - first), reach, fibres);
+    mean.from = on_tube_near(mean.from, organs[ends_on[0]]);
+    mean.to = on_tube_near(mean.to, organs[ends_on[1]]);
+    return mean;
+  };
+  const Vec3 along = fibre_at(1).by - fibre_at(0).by;
+  // Towards the front: what covers the triangle is its side that the laparoscope sees.
+  Vec3 front = along.cross(fibre_at(0.5).to - fibre_at(0.5).from).normalized();
+  if (front.dot(Vec3(0, -0.4, 1)) < 0) front = -front;
+  std::vector<Fibre> at;
+  for (int i = 0; i <= columns; ++i) at.push_back(fibre_at(static_cast<double>(i) / columns));
+  SceneMesh mesh = sheet(Material::leaf, columns, rows, [&](double u, double v) {
+    return across(at[static_cast<std::size_t>(std::lround(u * columns))], radii, front, v);
+  });
+  const std::size_t middle = mesh.normals.size() / 2;
+  if (mesh.normals[middle].dot(front) < 0) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (Vec3& n : mesh.normals) n = -n;
+  }
+  const double width = (at[columns / 2].to - at[columns / 2].from).norm() + radii[0] + radii[1];
+  for (std::size_t p = 0; p < mesh.positions.size(); ++p) {
+    const double u = static_cast<double>(p % (columns + 1)) / columns,
+                 v = static_cast<double>(p / (columns + 1)) / rows;
+    const double ends = smooth_step(0, 0.15, std::min(u, 1 - u)) * smooth_step(0, 0.2, std::min(v, 1 - v));
+    const double whole = smooth_step(0.35, 0.75, at[p % (columns + 1)].whole);
+    // It lies on a layer of fat that evens out its creases, but for their faintest part.
+    mesh.normals[p] = (mesh.normals[p] + 0.8 * front).normalized();
+    mesh.rest_positions[p] = {u * (last - first), v * width, thickness * ends * whole};
+  }
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](int p) { return mesh.rest_positions[p].z() == 0; });
+  });
+  append(out, mesh);
+}
+
+}  // namespace
+
+SceneMesh leaf_mesh(const World& world) {
+  SceneMesh out;
+  out.material = Material::leaf;
+  const Field& field = world.field();
+  for (const Tissue& tissue : field.tissues)
+    if (tissue.definition.covered) add_leaf(tissue, field.organs, out);
+  return out;
+}
+
+}  // namespace calot
