@@ -144,6 +144,28 @@ std::vector<RestShift> shifts_from_drawn(const std::vector<Organ>& organs) {
   return out;
 }
 
+/// All organs of a scene, in its order, each as make_organ() has it; after a failure that is not the scenario's there may be
+/// fewer. A lobe is half of the time that it takes: two threads make lobes and what is filled at once.
+std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinition& scene,
+                                                            const ContactLoads& still, const Vec3& up,
+                                                            FillingLimits& limits, Workers& workers) {
+  const std::vector<OrganDefinition>& organs = scene.anatomy.organs;
+  std::vector<std::optional<Result<RestedOrgan>>> out(organs.size());
+  const auto make_those = [&](bool lobes) noexcept {
+    for (std::size_t k = 0; k < organs.size(); ++k) {
+      if (std::holds_alternative<LobeShape>(organs[k].shape) != lobes) continue;
+      // No lobe is filled: what is left of the limits is that of the others alone.
+      out[k] =
+          make_organ(organs[k], still, up, scene.solver.tolerance,
+                     organs[k].extensions ? scene.solver.extension_levels : 0, lobes ? nullptr : &limits);
+      if (!*out[k] && out[k]->failure().kind != FailureKind::scenario) return;
+    }
+  };
+  do_at_once(
+      &workers, [&]() noexcept { make_those(true); }, [&]() noexcept { make_those(false); });
+  return out;
+}
+
 }  // namespace
 
 Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads,
@@ -162,15 +184,14 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
   FillingLimits limits{stop};
   limits.sinks = scene.solver.motion == SolverMotion::dynamics;
-  for (std::size_t k = 0; k < scene.anatomy.organs.size(); ++k) {
-    const OrganDefinition& definition = scene.anatomy.organs[k];
-    Result<RestedOrgan> made = make_organ(definition, still, impl->up, scene.solver.tolerance,
-                                          definition.extensions ? scene.solver.extension_levels : 0, &limits);
-    if (made) {
-      impl->field.add(std::move(made).value());
+  auto organs = make_organs(scene, still, impl->up, limits, impl->workers);
+  for (std::size_t k = 0; k < organs.size(); ++k) {
+    if (!organs[k]) continue;  // after what failed
+    if (*organs[k]) {
+      impl->field.add(std::move(*organs[k]).value());
       continue;
     }
-    Failure failure = at_organ(made.failure(), k);
+    Failure failure = at_organ(organs[k]->failure(), k);
     if (failure.kind != FailureKind::scenario) return failure;
     problems.insert(problems.end(), failure.problems.begin(), failure.problems.end());
   }
