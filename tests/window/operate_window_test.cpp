@@ -195,5 +195,52 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   EXPECT_EQ(std::get<LiveCommand>(events[0]), LiveCommand::abandon);
 }
 
+/// A key that the screen's own keyboard presses and lets go: the pointer is where the window holds it.
+bool press(const char* key) {
+  const std::string command = std::string("xdotool key ") + key + " 2>/dev/null";
+  return std::system(command.c_str()) == 0;
+}
+
+TEST(Window, KeysOfTheKeyboardExchangeInstrumentsAndAskForATimeOut) {
+  const Screen screen;
+  if (!screen.is_there() || std::system("command -v xdotool >/dev/null") != 0)
+    GTEST_SKIP() << "there is no Xvfb or no keyboard for it (packages xvfb, xdotool)";
+  WindowOptions options = small_window();
+  LiveInstrument waiting = options.instruments[0];
+  waiting.definition.name = "hook";
+  options.instruments.insert(options.instruments.begin() + 1, waiting);
+  const auto view = small_view();
+  view->hands.insert(view->hands.begin() + 1, view->hands[0]);
+  view->hands[1].name = "hook";
+  view->hands[1].waits = true;
+  LiveMailbox mailbox;
+  Result<OperateWindow> opened = OperateWindow::open(options, mailbox);
+  ASSERT_TRUE(opened) << to_text(opened.failure());
+  keep_libraries();
+  OperateWindow& window = opened.value();
+  ASSERT_TRUE(window.turn(view).value());
+  window.go_on();
+  ASSERT_TRUE(window.turn(view).value());
+  taken(mailbox);
+
+  // The server hands a key on when it likes: a turn of the window takes what there is.
+  const auto sent_by = [&](const char* key) {
+    std::vector<LiveEvent> events;
+    if (!press(key)) return events;
+    for (int turns = 0; turns < 200 && events.empty(); ++turns) {
+      if (!window.turn(nullptr).value()) break;
+      events = taken(mailbox);
+    }
+    return events;
+  };
+  const std::vector<LiveEvent> exchanged = sent_by("x");
+  ASSERT_EQ(exchanged.size(), 1u);
+  EXPECT_EQ(std::get<LiveInput>(exchanged[0]).instrument, 1) << "the one that waits for this port";
+  EXPECT_EQ(std::get<LiveInput>(exchanged[0]).action, InstrumentAction::exchange);
+  const std::vector<LiveEvent> stopped = sent_by("t");
+  ASSERT_EQ(stopped.size(), 1u);
+  EXPECT_EQ(std::get<SessionAct>(stopped[0]).kind, EventKind::time_out);
+}
+
 }  // namespace
 }  // namespace calot
