@@ -1,7 +1,9 @@
 #include "view/leaf_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "sim/field.h"
@@ -64,10 +66,14 @@ Fibre mean_about(double at, double reach, const std::vector<Fibre>& fibres) {
   return {at, out.from / sum, out.by / sum, out.to / sum, out.whole / sum, out.thick / sum};
 }
 
+/// The middle line of a tube, m; of what is none nothing.
+std::vector<Vec3> middle_line(const Organ& organ) {
+  return rod_of(organ) ? organ.body->skin_positions(organ.state.x) : std::vector<Vec3>();
+}
+
 /// Strands end on a bent tube here and there; in between it is not where their mean is.
-Vec3 on_tube_near(const Vec3& place, const Organ& organ) {
-  if (rod_of(organ) == nullptr) return place;
-  const std::vector<Vec3> line = organ.body->skin_positions(organ.state.x);
+Vec3 on_tube_near(const Vec3& place, const std::vector<Vec3>& line) {
+  if (line.empty()) return place;
   Vec3 nearest = line[0];
   for (std::size_t i = 1; i < line.size(); ++i) {
     const Vec3 way = line[i] - line[i - 1];
@@ -76,6 +82,29 @@ Vec3 on_tube_near(const Vec3& place, const Organ& organ) {
     if ((there - place).squaredNorm() < (nearest - place).squaredNorm()) nearest = there;
   }
   return nearest;
+}
+
+/// Evenly along the tissue, from its first strand to its last.
+std::vector<Fibre> evened(const std::vector<Fibre>& fibres, const Organ& one, const Organ& other) {
+  const double first = fibres.front().at, whole = fibres.back().at - first;
+  const double reach = 1.6 * whole / static_cast<double>(fibres.size() - 1);  // (d)
+  const int columns = columns_a_strand * static_cast<int>(fibres.size());
+  const std::vector<Vec3> of_one = middle_line(one), of_other = middle_line(other);
+  std::vector<Fibre> out;
+  for (int i = 0; i <= columns; ++i) {
+    Fibre mean = mean_about(first + i * whole / columns, reach, fibres);
+    mean.from = on_tube_near(mean.from, of_one);
+    mean.to = on_tube_near(mean.to, of_other);
+    out.push_back(mean);
+  }
+  return out;
+}
+
+/// Unit, across the sheet towards the front: what covers the triangle is its side that the laparoscope sees.
+Vec3 front_of(const std::vector<Fibre>& at) {
+  const Fibre& middle = at[at.size() / 2];
+  const Vec3 along = at.back().by - at.front().by, out = along.cross(middle.to - middle.from).normalized();
+  return out.dot(Vec3(0, -0.4, 1)) < 0 ? Vec3(-out) : out;
 }
 
 /// Across a fibre, from beyond the crest of one tube, over it and the fat between, to beyond that of the other; v is 0 to 1.
@@ -101,48 +130,45 @@ double smooth_step(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-void add_leaf(const Tissue& tissue, const std::vector<Organ>& organs, SceneMesh& out) {
-  const std::vector<Fibre> fibres = fibres_of(tissue, organs);
-  if (fibres.size() < 3) return;
-  std::array<double, 2> radii{};
-  const std::array<int, 2>& ends_on = tissue.strands->bodies();
-  for (int k = 0; k < 2; ++k) radii[k] = organs[ends_on[k]].body->thickest();
-  const double first = fibres.front().at, last = fibres.back().at;
-  const double reach = 1.6 * (last - first) / static_cast<double>(fibres.size() - 1);
-  const int columns = columns_a_strand * static_cast<int>(fibres.size());
-  const auto fibre_at = [&](double u) {
-    Fibre mean = mean_about(first + u * (last - first), reach, fibres);
-    mean.from = on_tube_near(mean.from, organs[ends_on[0]]);
-    mean.to = on_tube_near(mean.to, organs[ends_on[1]]);
-    return mean;
-  };
-  const Vec3 along = fibre_at(1).by - fibre_at(0).by;
-  // Towards the front: what covers the triangle is its side that the laparoscope sees.
-  Vec3 front = along.cross(fibre_at(0.5).to - fibre_at(0.5).from).normalized();
-  if (front.dot(Vec3(0, -0.4, 1)) < 0) front = -front;
-  std::vector<Fibre> at;
-  for (int i = 0; i <= columns; ++i) at.push_back(fibre_at(static_cast<double>(i) / columns));
-  SceneMesh mesh = sheet(Material::leaf, columns, rows, [&](double u, double v) {
-    return across(at[static_cast<std::size_t>(std::lround(u * columns))], radii, front, v);
-  });
-  const std::size_t middle = mesh.normals.size() / 2;
-  if (mesh.normals[middle].dot(front) < 0) {
+void face(SceneMesh& mesh, const Vec3& front) {
+  if (mesh.normals[mesh.normals.size() / 2].dot(front) < 0) {
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     for (Vec3& n : mesh.normals) n = -n;
   }
-  const double width = (at[columns / 2].to - at[columns / 2].from).norm() + radii[0] + radii[1];
+  // It lies on a layer of fat that evens out its creases, but for their faintest part.
+  for (Vec3& n : mesh.normals) n = (n + 0.8 * front).normalized();
+}
+
+/// Along and across, and how much of it is there: it thins out at its rim and towards what is torn.
+void lay_out(SceneMesh& mesh, const std::vector<Fibre>& at, double width) {
+  const std::size_t columns = at.size() - 1;
   for (std::size_t p = 0; p < mesh.positions.size(); ++p) {
-    const double u = static_cast<double>(p % (columns + 1)) / columns,
-                 v = static_cast<double>(p / (columns + 1)) / rows;
-    const double ends = smooth_step(0, 0.15, std::min(u, 1 - u)) * smooth_step(0, 0.2, std::min(v, 1 - v));
-    const double whole = smooth_step(0.35, 0.75, at[p % (columns + 1)].whole);
-    // It lies on a layer of fat that evens out its creases, but for their faintest part.
-    mesh.normals[p] = (mesh.normals[p] + 0.8 * front).normalized();
-    mesh.rest_positions[p] = {u * (last - first), v * width, thickness * ends * whole};
+    const Fibre& fibre = at[p % at.size()];
+    const double u = static_cast<double>(p % at.size()) / static_cast<double>(columns),
+                 v = static_cast<double>(p / at.size()) / rows;
+    const double rim = smooth_step(0, 0.15, std::min(u, 1 - u)) * smooth_step(0, 0.2, std::min(v, 1 - v));
+    mesh.rest_positions[p] = {fibre.at - at.front().at, v * width,
+                              thickness * rim * smooth_step(0.35, 0.75, fibre.whole)};
   }
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return std::all_of(t.begin(), t.end(), [&](int p) { return mesh.rest_positions[p].z() == 0; });
   });
+}
+
+void add_leaf(const Tissue& tissue, const std::vector<Organ>& organs, SceneMesh& out) {
+  const std::vector<Fibre> fibres = fibres_of(tissue, organs);
+  if (fibres.size() < 3 || !(fibres.front().at < fibres.back().at)) return;
+  const Organ &one = organs[tissue.strands->bodies()[0]], &other = organs[tissue.strands->bodies()[1]];
+  const std::array<double, 2> radii{one.body->thickest(), other.body->thickest()};
+  const std::vector<Fibre> at = evened(fibres, one, other);
+  const Vec3 front = front_of(at);
+  const int columns = static_cast<int>(at.size()) - 1;
+  SceneMesh mesh = sheet(Material::leaf, columns, rows, [&](double u, double v) {
+    return across(at[static_cast<std::size_t>(std::lround(u * columns))], radii, front, v);
+  });
+  face(mesh, front);
+  const Fibre& middle = at[at.size() / 2];
+  lay_out(mesh, at, (middle.to - middle.from).norm() + radii[0] + radii[1]);
   append(out, mesh);
 }
 
