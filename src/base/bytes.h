@@ -61,6 +61,8 @@ class ByteReader {
     lacking_ = true;
     return 0;
   }
+  /// What was read does not fit together: it counts as if bytes had lacked.
+  void refuse() { lacking_ = true; }
   /// Whether all was there, and nothing is left.
   bool complete() const { return !lacking_ && left_.empty(); }
 

@@ -15,8 +15,9 @@ const std::vector<BodyKind>& body_kinds() {
 }
 
 Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
-                               double tolerance, int levels, FillingLimits* limits) {
-  return body_kinds()[definition.shape.index()].make(definition, {loads, up, tolerance, levels, limits});
+                               double tolerance, int levels, FillingLimits* limits, KeptResults* kept) {
+  return body_kinds()[definition.shape.index()].make(definition,
+                                                     {loads, up, tolerance, levels, limits, kept});
 }
 
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads) {

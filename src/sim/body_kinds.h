@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "base/kept_results.h"
 #include "sim/organ.h"
 
 namespace calot {
@@ -23,6 +24,7 @@ struct OrganSetting {
   double tolerance = 1e-6;
   int levels = 0;                   ///< of structural extensions that may refine it
   FillingLimits* limits = nullptr;  ///< may be null
+  KeptResults* kept = nullptr;      ///< as of World::create
 };
 
 struct BodyKind {
@@ -34,7 +36,8 @@ struct BodyKind {
 const std::vector<BodyKind>& body_kinds();
 
 Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
-                               double tolerance, int levels = 0, FillingLimits* limits = nullptr);
+                               double tolerance, int levels = 0, FillingLimits* limits = nullptr,
+                               KeptResults* kept = nullptr);
 
 /// Fails (scenario) where an organ at rest is inside the ground.
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads);

@@ -57,7 +57,7 @@ Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSett
           stiffness += held.stiffness;
     return stiffness;
   };
-  Result<RestedOrgan> made = organ_as_drawn(definition, SolidBody::create(setup), setting);
+  Result<RestedOrgan> made = organ_as_drawn(definition, SolidBody::create(setup, setting.kept), setting);
   if (made)
     for (const Landmark& landmark : landmark_rows())
       if (has_landmark(definition.shape, landmark))

@@ -1,6 +1,6 @@
 #include "sim/rest_state.h"
 
-#include "base/bytes.h"
+#include "geometry/matrix_bytes.h"
 #include "sim/field_tissues.h"
 #include "sim/moving_bodies.h"
 #include "sim/settle_field.h"
@@ -106,9 +106,7 @@ std::string to_bytes(const RestState& state) {
   out.add(static_cast<char>(state.factored));
   out.add(static_cast<char>(state.shifted));
   out.add(std::span<const double>(state.matrix));
-  out.add(state.constraints.rows());
-  out.add(state.constraints.cols());
-  out.add(numbers_of(VecX(state.constraints.reshaped())));
+  add_matrix(state.constraints, out);
   out.add(numbers_of(state.compliances));
   return out.bytes();
 }
@@ -126,11 +124,9 @@ std::optional<RestState> rest_state_of(std::string_view bytes) {
   state.factored = in.number<char>() != 0;
   state.shifted = in.number<char>() != 0;
   state.matrix = in.numbers<double>();
-  const auto rows = in.number<Eigen::Index>(), columns = in.number<Eigen::Index>();
-  const VecX constraints = vector_of(in.numbers<double>());
+  state.constraints = matrix_of(in);
   state.compliances = vector_of(in.numbers<double>());
-  if (!in.complete() || constraints.size() != rows * columns) return std::nullopt;
-  state.constraints = constraints.reshaped(rows, columns);
+  if (!in.complete()) return std::nullopt;
   return state;
 }
 

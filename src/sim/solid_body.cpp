@@ -54,7 +54,7 @@ SolidMesh mesh_of(const SolidBody::Setup& setup, const LoopSurface& surface) {
 
 }  // namespace
 
-Result<SolidBody> SolidBody::create(const Setup& setup) {
+Result<SolidBody> SolidBody::create(const Setup& setup, KeptResults* kept) {
   const Result<LoopSurface> surface = LoopSurface::create(setup.control);
   if (!surface) return surface.failure();
   SolidBody body;
@@ -62,7 +62,7 @@ Result<SolidBody> SolidBody::create(const Setup& setup) {
   body.rest_ = VecX::Zero(3 * (Eigen::Index{setup.box.points()} + mode_nodes));
   body.rest_.head(3 * Eigen::Index{setup.box.points()}) = to_coordinates(setup.control.points);
   body.mesh_ = mesh_of(setup, surface.value());
-  Result<ReducedSolid> reduced = reduce(body.mesh_, body.rest_, setup.material);
+  Result<ReducedSolid> reduced = kept_or_reduced(body.mesh_, body.rest_, setup.material, kept);
   if (!reduced) return reduced.failure();
   body.solid_ = FramedSolid(body.rest_, std::move(reduced->parts));
   const std::vector<Vec3> points = blend_all(body.mesh_.rows, body.mesh_.rows.value, body.rest_);

@@ -3,8 +3,8 @@
 // strips that turn on their own. What is touched is its skin, a Loop surface: it yields as the control nodes do, so a
 // dent narrower than they stand apart is shallower than a finer solid's.
 
+#include "fem/kept_reduction.h"
 #include "fem/links.h"
-#include "fem/solid_reduction.h"
 #include "geometry/box_surface.h"
 #include "geometry/tri_mesh.h"
 #include "sim/body.h"
@@ -32,8 +32,8 @@ class SolidBody : public Body {
     /// Elastic foundation at a skin point, on a triangle of the control mesh, at rest, N/m per m^2 (0: none).
     std::function<double(const Vec3& x, int triangle)> foundation = {};
   };
-  /// Fails (scenario) where the shape folds over itself.
-  static Result<SolidBody> create(const Setup& setup);
+  /// Fails (scenario) where the shape folds over itself. `kept` as of World::create: for its reduction.
+  static Result<SolidBody> create(const Setup& setup, KeptResults* kept = nullptr);
 
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }

@@ -148,16 +148,17 @@ std::vector<RestShift> shifts_from_drawn(const std::vector<Organ>& organs) {
 /// fewer. A lobe is half of the time that it takes: two threads make lobes and what is filled at once.
 std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinition& scene,
                                                             const ContactLoads& still, const Vec3& up,
-                                                            FillingLimits& limits, Workers& workers) {
+                                                            FillingLimits& limits, Workers& workers,
+                                                            KeptResults* kept) {
   const std::vector<OrganDefinition>& organs = scene.anatomy.organs;
   std::vector<std::optional<Result<RestedOrgan>>> out(organs.size());
   const auto make_those = [&](bool lobes) noexcept {
     for (std::size_t k = 0; k < organs.size(); ++k) {
       if (std::holds_alternative<LobeShape>(organs[k].shape) != lobes) continue;
-      // No lobe is filled: what is left of the limits is that of the others alone.
-      out[k] =
-          make_organ(organs[k], still, up, scene.solver.tolerance,
-                     organs[k].extensions ? scene.solver.extension_levels : 0, lobes ? nullptr : &limits);
+      // No lobe is filled, and nothing of the others is kept: limits and kept results are each one thread's alone.
+      out[k] = make_organ(organs[k], still, up, scene.solver.tolerance,
+                          organs[k].extensions ? scene.solver.extension_levels : 0, lobes ? nullptr : &limits,
+                          lobes ? kept : nullptr);
       if (!*out[k] && out[k]->failure().kind != FailureKind::scenario) return;
     }
   };
@@ -184,7 +185,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
   FillingLimits limits{stop};
   limits.sinks = scene.solver.motion == SolverMotion::dynamics;
-  auto organs = make_organs(scene, still, impl->up, limits, impl->workers);
+  auto organs = make_organs(scene, still, impl->up, limits, impl->workers, kept);
   for (std::size_t k = 0; k < organs.size(); ++k) {
     if (!organs[k]) continue;  // after what failed
     if (*organs[k]) {

@@ -17,21 +17,22 @@ class RestCache : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    // A ball and a duct that grows out of it come to rest together.
-    std::string text = small_scenario();
-    const std::string end = "{ landmark = \"bed\" } } } }";
-    text.replace(
-        text.find(end), end.size(),
-        "{ landmark = \"bed\" } } }, { name = 'duct', shape = { type = 'tube', radius = 2 * mm, points = { "
-        "{ 0, 0, 60 * mm }, { 0, 0, 75 * mm }, { 0, 0, 90 * mm } } }, held = { { name = 'root', landmark = "
-        "'start' }, { "
-        "landmark = 'end' } } } }");
-    spill(folder_ / "small.lua", text);
+    write_ball_and(
+        "name = 'duct', shape = { type = 'tube', radius = 2 * mm, points = { { 0, 0, 60 * mm }, { 0, 0, 75 * "
+        "mm "
+        "}, { 0, 0, 90 * mm } } }, held = { { name = 'root', landmark = 'start' }, { landmark = 'end' } }");
     setenv("CALOT_CACHE", cache().c_str(), 1);
   }
   void TearDown() override {
     setenv("CALOT_CACHE", "", 1);
     ProgramTest::TearDown();
+  }
+  /// A ball and another organ come to rest together.
+  void write_ball_and(const std::string& organ) {
+    std::string text = small_scenario();
+    const std::string end = "{ landmark = \"bed\" } } } }";
+    text.replace(text.find(end), end.size(), "{ landmark = \"bed\" } } }, { " + organ + " } }");
+    spill(folder_ / "small.lua", text);
   }
   fs::path cache() const { return folder_ / "kept"; }
   std::vector<fs::path> kept() const {
@@ -76,6 +77,28 @@ TEST_F(RestCache, ABrokenFileIsFoundAnew) {
     EXPECT_EQ(recording("again"), first);
     EXPECT_EQ(slurp(path), whole);
   }
+}
+
+TEST_F(RestCache, ALobesReductionFoundOnDiskPlaysToTheSameBits) {
+  write_ball_and(
+      "name = 'liver', shape = { type = 'lobe', bed_width = 0, bed_depth = 0 }, neck = { -80 * mm, 150 * mm, "
+      "-150 * mm }, fundus = { -80 * mm, 150 * mm, -110 * mm }, liver_side = { 0, 1, 0 }");
+  setenv("CALOT_CACHE", "", 1);
+  const std::string off = recording("off");
+  setenv("CALOT_CACHE", cache().c_str(), 1);
+  EXPECT_EQ(recording("cold"), off);
+  EXPECT_EQ(recording("warm"), off);
+  const std::vector<fs::path> both = kept();
+  ASSERT_EQ(both.size(), 2u) << "the lobe's reduction, and how the two rest";
+  for (const fs::path& one : both) {
+    std::string broken = slurp(one);
+    const std::string whole = broken;
+    broken[whole.size() / 2] = static_cast<char>(broken[whole.size() / 2] ^ 1);
+    spill(one, broken);
+    EXPECT_EQ(recording("again"), off);
+    EXPECT_EQ(slurp(one), whole);
+  }
+  EXPECT_EQ(kept().size(), 2u);
 }
 
 TEST_F(RestCache, AFolderThatCannotBeMadeIsNoError) {

@@ -13,15 +13,7 @@ SceneDefinition field_of_all_kinds(bool lobe, double rate = 50) {
   SceneDefinition scene = test::triangle_scene();
   scene.anatomy.organs[0].held = {{"bed", "bed", 14e-3, 3e5, true}, {"base", "neck", 6e-3, 3e5}};
   scene.anatomy.organs[0].liver_side = Vec3::UnitY();
-  if (lobe) {
-    OrganDefinition& liver = scene.anatomy.organs[1];
-    liver = {};
-    liver.name = "liver";
-    liver.shape = LobeShape{.bed_width = 0, .bed_depth = 0};
-    liver.neck = test::beside_neck(0, 26, 0);
-    liver.fundus = test::beside_neck(0, 26, 40);
-    liver.liver_side = Vec3::UnitY();
-  }
+  if (lobe) scene.anatomy.organs[1] = test::lobe_behind();
   for (OrganDefinition& organ : scene.anatomy.organs) {
     organ.wall.density = 1050;
     auto* tube = std::get_if<TubeShape>(&organ.shape);

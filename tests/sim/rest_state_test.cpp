@@ -4,30 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "anatomy/key_table.h"
-#include "base/kept_results.h"
 #include "sim/definition_digest.h"
+#include "support/remembered_results.h"
 #include "triangle_rig.h"
 
 namespace calot {
 namespace {
-
-struct RememberedResults : KeptResults {
-  std::optional<std::string> find(const std::string& key) override {
-    const auto at = all.find(key);
-    if (at == all.end()) return std::nullopt;
-    ++found;
-    return at->second;
-  }
-  void keep(const std::string& key, const std::string& bytes) override {
-    ++kept;
-    all[key] = bytes;
-  }
-  std::map<std::string, std::string> all;
-  int found = 0, kept = 0;
-};
 
 World made(const SceneDefinition& scene, KeptResults* kept) {
   return World::create(scene, nullptr, 1, kept).value();
@@ -52,7 +35,7 @@ SceneDefinition triangle(SolverMotion motion = SolverMotion::statics) {
 }
 
 void expect_same_bits(const SceneDefinition& scene) {
-  RememberedResults results;
+  test::RememberedResults results;
   const std::vector<std::uint64_t> anew = played(made(scene, nullptr));
   EXPECT_EQ(played(made(scene, &results)), anew) << "to keep it changes nothing";
   ASSERT_EQ(results.kept, 1);
@@ -66,8 +49,29 @@ TEST(RestState, ThatWasKeptPlaysToTheSameBitsInDynamics) {
   expect_same_bits(triangle(SolverMotion::dynamics));
 }
 
+TEST(RestState, OfAFieldWithALobeIsKeptBesideTheLobesReduction) {
+  SceneDefinition scene = triangle();
+  scene.anatomy.organs[1] = test::lobe_behind();
+  const std::vector<std::uint64_t> anew = played(made(scene, nullptr));
+  test::RememberedResults results;
+  EXPECT_EQ(played(made(scene, &results)), anew);
+  EXPECT_EQ(results.kept, 2);
+  EXPECT_EQ(played(made(scene, &results)), anew);
+  EXPECT_EQ(results.found, 2);
+  EXPECT_EQ(results.kept, 2) << "neither was made again";
+  SceneDefinition other = scene;
+  other.anatomy.organs[0].bile.fill_volume.reset();
+  other.anatomy.organs[0].bile.fill_pressure = 900;
+  made(other, &results);
+  EXPECT_EQ(results.found, 3) << "beside another gallbladder it is the same lobe";
+  other.anatomy.organs[1].shape = LobeShape{.bed_width = 0, .bed_depth = 0, .young = 7e3};
+  made(other, &results);
+  EXPECT_EQ(results.found, 3);
+  EXPECT_EQ(results.kept, 5);
+}
+
 TEST(RestState, ThatWasKeptIsReportedAlike) {
-  RememberedResults results;
+  test::RememberedResults results;
   const World first = made(triangle(), &results), second = made(triangle(), &results);
   ASSERT_EQ(results.found, 1);
   ASSERT_EQ(first.rest_shifts().size(), second.rest_shifts().size());
@@ -82,7 +86,7 @@ TEST(RestState, ThatWasKeptIsReportedAlike) {
 }
 
 TEST(RestState, ThatIsBrokenIsFoundAnew) {
-  RememberedResults results;
+  test::RememberedResults results;
   const std::uint64_t anew = made(triangle(), &results).state_hash();
   const std::string whole = results.all.begin()->second;
   std::string longer = whole + "x", other_organs = whole;
@@ -96,7 +100,7 @@ TEST(RestState, ThatIsBrokenIsFoundAnew) {
 }
 
 TEST(RestState, OfAnotherFieldIsRefusedAndChangesNothing) {
-  RememberedResults results;
+  test::RememberedResults results;
   made(triangle(), &results);
   const RestState state = rest_state_of(results.all.begin()->second).value();
   EXPECT_EQ(to_bytes(state), results.all.begin()->second);

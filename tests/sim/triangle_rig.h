@@ -57,4 +57,15 @@ inline SceneDefinition triangle_scene() {
   return scene;
 }
 
+/// A lobe instead of the bar.
+inline OrganDefinition lobe_behind() {
+  OrganDefinition liver;
+  liver.name = "liver";
+  liver.shape = LobeShape{.bed_width = 0, .bed_depth = 0};
+  liver.neck = beside_neck(0, 26, 0);
+  liver.fundus = beside_neck(0, 26, 40);
+  liver.liver_side = Vec3::UnitY();
+  return liver;
+}
+
 }  // namespace calot::test
