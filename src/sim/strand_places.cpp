@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "sim/rod_body.h"
 
@@ -62,11 +63,17 @@ struct Facing {
 
 std::vector<Facing> facing(const TissueDefinition& definition, const std::vector<Candidate>& candidates,
                            double thickest, const SkinFinder& other) {
+  constexpr double rounding = 1e-12;  // m
   std::vector<Facing> out;
+  std::optional<Vec3> last;
   for (const Candidate& from : candidates) {
-    NearestSkin to = other.nearest(from.at, definition.within + from.radius + thickest);
+    double within = definition.within + from.radius + thickest;
+    // Candidates that follow each other lie close: what is nearest to one bounds how far the search for the next goes.
+    if (last) within = std::min(within, (*last - from.at).norm() + rounding);
+    NearestSkin to = other.nearest(from.at, within);
     if (to.place.points.empty()) continue;
     const Vec3 at = other.at(to.place);
+    last = at;
     const Facing found{from, std::move(to), at};
     const bool on_far_side = (at - from.at).dot(from.normal) < 0;
     if (!on_far_side && found.gap() >= 0 && found.gap() <= definition.within) out.push_back(found);
