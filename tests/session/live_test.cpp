@@ -189,19 +189,9 @@ TEST(Live, TheLaparoscopeMovesAsAnInstrumentAndItsReplayGoesThroughTheSameStates
   EXPECT_EQ(again.report().laparoscope.pose, input.pose);
 }
 
-/// The small scene with scissors that wait for the grasper's port.
-SceneDefinition shared_port() {
-  SceneDefinition scene = test::small_scene();
-  scene.instruments.push_back(default_instrument(InstrumentType::scissors));
-  scene.instruments.back().name = "blades";
-  scene.instruments.back().port = scene.instruments[0].port;
-  scene.instruments.back().waits = true;
-  return scene;
-}
-
 TEST(Live, WhatIsAskedToComeInComesOnceTheOtherOneIsDrawnBackAndGoesOnFromThere) {
   Rig rig;
-  rig.world = World::create(shared_port()).value();
+  rig.world = World::create(test::shared_port()).value();
   const auto blades = [&](InstrumentAction action, double insertion_by) {
     LiveInput wanted = rig.input(insertion_by);
     wanted.instrument = 1;

@@ -28,6 +28,16 @@ inline SceneDefinition small_scene() {
   return scene;
 }
 
+/// The small scene with scissors that wait for the grasper's port.
+inline SceneDefinition shared_port() {
+  SceneDefinition scene = small_scene();
+  scene.instruments.push_back(default_instrument(InstrumentType::scissors));
+  scene.instruments.back().name = "blades";
+  scene.instruments.back().port = scene.instruments[0].port;
+  scene.instruments.back().waits = true;
+  return scene;
+}
+
 inline ExerciseDefinition small_exercise() {
   ExerciseDefinition exercise;
   exercise.id = "small";

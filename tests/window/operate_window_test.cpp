@@ -16,6 +16,8 @@
 
 #include "render/image_compare.h"
 #include "render/offscreen.h"
+#include "session/runner.h"
+#include "session/session_for_tests.h"
 #include "support/mock_organ.h"
 
 namespace calot {
@@ -201,17 +203,31 @@ bool press(const char* key) {
   return std::system(command.c_str()) == 0;
 }
 
+/// What was put into the mailbox has the blades come in for the grasper.
+void expect_exchange_in_a_session(const std::vector<LiveInstrument>& instruments, LiveMailbox& mailbox) {
+  World world = World::create(test::shared_port()).value();
+  ASSERT_TRUE(world.report().instruments[1].waits);
+  LiveOptions options;
+  options.begins_at_once = true;
+  LiveSource hands(instruments, mailbox, options);
+  ExerciseDefinition exercise = test::small_exercise();
+  exercise.scene = world.scene();
+  test::TimedScript script(0.2, exercise);
+  const SessionResult result = run_session(world, script, hands, {});
+  EXPECT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
+  EXPECT_TRUE(world.report().instruments[0].waits);
+  EXPECT_FALSE(world.report().instruments[1].waits);
+}
+
 TEST(Window, KeysOfTheKeyboardExchangeInstrumentsAndAskForATimeOut) {
   const Screen screen;
   if (!screen.is_there() || std::system("command -v xdotool >/dev/null") != 0)
     GTEST_SKIP() << "there is no Xvfb or no keyboard for it (packages xvfb, xdotool)";
   WindowOptions options = small_window();
-  LiveInstrument waiting = options.instruments[0];
-  waiting.definition.name = "hook";
-  options.instruments.insert(options.instruments.begin() + 1, waiting);
+  options.instruments = live_instruments(test::shared_port());
   const auto view = small_view();
   view->hands.insert(view->hands.begin() + 1, view->hands[0]);
-  view->hands[1].name = "hook";
+  view->hands[1].name = "blades";
   view->hands[1].waits = true;
   LiveMailbox mailbox;
   Result<OperateWindow> opened = OperateWindow::open(options, mailbox);
@@ -237,6 +253,8 @@ TEST(Window, KeysOfTheKeyboardExchangeInstrumentsAndAskForATimeOut) {
   ASSERT_EQ(exchanged.size(), 1u);
   EXPECT_EQ(std::get<LiveInput>(exchanged[0]).instrument, 1) << "the one that waits for this port";
   EXPECT_EQ(std::get<LiveInput>(exchanged[0]).action, InstrumentAction::exchange);
+  mailbox.put(exchanged[0]);
+  expect_exchange_in_a_session(options.instruments, mailbox);
   const std::vector<LiveEvent> stopped = sent_by("t");
   ASSERT_EQ(stopped.size(), 1u);
   EXPECT_EQ(std::get<SessionAct>(stopped[0]).kind, EventKind::time_out);
