@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "sim/field.h"
+#include "sim/skin_place.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -66,35 +68,32 @@ Fibre mean_about(double at, double reach, const std::vector<Fibre>& fibres) {
   return {at, out.from / sum, out.by / sum, out.to / sum, out.whole / sum, out.thick / sum};
 }
 
-/// The middle line of a tube, m; of what is none nothing.
-std::vector<Vec3> middle_line(const Organ& organ) {
-  return rod_of(organ) ? organ.body->skin_positions(organ.state.x) : std::vector<Vec3>();
-}
-
 /// Strands end on a bent tube here and there; in between it is not where their mean is.
-Vec3 on_tube_near(const Vec3& place, const std::vector<Vec3>& line) {
-  if (line.empty()) return place;
-  Vec3 nearest = line[0];
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vec3 way = line[i] - line[i - 1];
-    const double share = std::clamp(way.dot(place - line[i - 1]) / way.squaredNorm(), 0.0, 1.0);
-    const Vec3 there = line[i - 1] + share * way;
-    if ((there - place).squaredNorm() < (nearest - place).squaredNorm()) nearest = there;
+class TubeMiddle {
+ public:
+  explicit TubeMiddle(const Organ& organ) {
+    if (rod_of(organ)) finder_.emplace(*organ.body, organ.body->skin_positions(organ.state.x));
   }
-  return nearest;
-}
+  /// Of what is no tube: the place itself.
+  Vec3 nearest(const Vec3& place) const {
+    return finder_ ? finder_->at(finder_->nearest(place).place) : place;
+  }
+
+ private:
+  std::optional<SkinFinder> finder_;
+};
 
 /// Evenly along the tissue, from its first strand to its last.
 std::vector<Fibre> evened(const std::vector<Fibre>& fibres, const Organ& one, const Organ& other) {
   const double first = fibres.front().at, whole = fibres.back().at - first;
   const double reach = 1.6 * whole / static_cast<double>(fibres.size() - 1);  // (d)
   const int columns = columns_a_strand * static_cast<int>(fibres.size());
-  const std::vector<Vec3> of_one = middle_line(one), of_other = middle_line(other);
+  const TubeMiddle of_one(one), of_other(other);
   std::vector<Fibre> out;
   for (int i = 0; i <= columns; ++i) {
     Fibre mean = mean_about(first + i * whole / columns, reach, fibres);
-    mean.from = on_tube_near(mean.from, of_one);
-    mean.to = on_tube_near(mean.to, of_other);
+    mean.from = of_one.nearest(mean.from);
+    mean.to = of_other.nearest(mean.to);
     out.push_back(mean);
   }
   return out;

@@ -29,8 +29,8 @@ struct Crossing {
 TEST(ToolMeeting, ItsForcesAndStiffnessAreTheSlopesOfItsEnergyWhateverParts) {
   const Crossing crossing;
   Rng rng(11);
-  int pressed = 0;
-  for (int k = 0; k < 20000 && pressed < 6; ++k) {
+  int pressed = 0, balanced = 0;
+  for (int k = 0; k < 20000 && (pressed < 6 || balanced < 6); ++k) {
     // The tips of both come together anyhow.
     const Vec3 meet(0.01, 0.02, -0.13);
     const auto near = [&] { return Vec3(meet + test::random_vector(rng, 6e-3)); };
@@ -39,7 +39,7 @@ TEST(ToolMeeting, ItsForcesAndStiffnessAreTheSlopesOfItsEnergyWhateverParts) {
         tool_coordinates(pose_reaching(crossing.across.trocar, near(), rng.uniform(-2, 2), 0.4));
     const ToolMeeting meeting({&crossing.down, 0}, {&crossing.across, 2});
     const double gap = meeting.gap(x, 0.05e-3);
-    if (gap > 0.04e-3 || gap < -0.038e-3) continue;  // deeper there is no balance
+    if (gap > 0.04e-3 || gap < -0.2e-3) continue;
     ++pressed;
     const auto value = [&](const VecX& at) { return meeting.value(at); };
     const auto slope = [&](const VecX& at) {
@@ -47,18 +47,21 @@ TEST(ToolMeeting, ItsForcesAndStiffnessAreTheSlopesOfItsEnergyWhateverParts) {
       meeting.add_gradient(at, out);
       return out;
     };
-    std::vector<std::vector<int>> cliques;
-    meeting.add_cliques(x, true, cliques);
-    BlockMatrix matrix(4, cliques);
-    meeting.add_hessian(x, matrix);
     const VecX expected = test::difference_gradient(value, x, 1e-9);
     EXPECT_GT(expected.head<6>().norm(), 1e-3);
     EXPECT_GT(expected.tail<6>().norm(), 1e-3);
     EXPECT_LT(test::relative_error(slope(x), expected), 1e-5) << gap;
+    if (gap < -0.038e-3) continue;  // deeper there is no balance, and stiffness is not exact
+    ++balanced;
+    std::vector<std::vector<int>> cliques;
+    meeting.add_cliques(x, true, cliques);
+    BlockMatrix matrix(4, cliques);
+    meeting.add_hessian(x, matrix);
     EXPECT_LT(test::relative_error(test::dense(matrix), test::difference_hessian(slope, x, 1e-10)), 1e-4)
         << gap;
   }
-  EXPECT_EQ(pressed, 6);
+  EXPECT_GE(pressed, 6);
+  EXPECT_GE(balanced, 6);
 }
 
 TEST(ToolMeeting, ThePointsOfAToolLieInItAndReachItsSurface) {
