@@ -357,20 +357,49 @@ std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
       [&](std::span<const Met> some, std::vector<SelfPair>& out) { measure(net, skin, some, out); });
 }
 
+namespace {
+
+/// The edges at a pair's point, each with each of its triangle's: met(lower, higher).
+template <class Met>
+void for_edges_of(const SkinNet& net, const SelfPair& pair, const Met& met) {
+  for (int k = net.edge_begin[pair.skin_point]; k < net.edge_begin[pair.skin_point + 1]; ++k)
+    for (int other : net.edges.sides[pair.triangle])
+      met(std::min(net.edges_around[k], other), std::max(net.edges_around[k], other));
+}
+
+/// For each edge those of higher number that it meets at the pairs, most of them several times: of[begin[e]] .. of[begin[e + 1] - 1].
+struct EdgesMet {
+  std::vector<int> begin, of;
+
+  EdgesMet(const SkinNet& net, std::span<const SelfPair> pairs) : begin(net.edges.ends.size() + 1, 0) {
+    for (const SelfPair& pair : pairs) for_edges_of(net, pair, [&](int edge, int) { ++begin[edge + 1]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    of.resize(static_cast<std::size_t>(begin.back()));
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (const SelfPair& pair : pairs)
+      for_edges_of(net, pair, [&](int edge, int other) { of[next[edge]++] = other; });
+  }
+};
+
+}  // namespace
+
 std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin) {
-  std::vector<std::pair<int, int>> found;
-  for (const SelfPair& pair : pairs)
-    for (int k = net.edge_begin[pair.skin_point]; k < net.edge_begin[pair.skin_point + 1]; ++k)
-      for (int other : net.edges.sides[pair.triangle])
-        found.emplace_back(std::min(net.edges_around[k], other), std::max(net.edges_around[k], other));
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  const EdgesMet met(net, pairs);
   const PlacedEdges edges{&net.edges, &skin.points};
+  const int size = static_cast<int>(net.edges.ends.size());
+  std::vector<int> seen_with(net.edges.ends.size(), -1);
   std::vector<EdgesNear> out;
-  for (const auto& [edge, other] : found) {
-    EdgesNear pair{edge, other, 0};
-    if (!skin.motion) pair.distance = nearest_of_edges(places_of(edges, edges, pair)).distance;
-    if ((skin.motion || pair.distance < skin.reach) && !net.edges_neighbour(edge, other)) out.push_back(pair);
+  for (int edge = 0; edge < size; ++edge) {
+    const std::size_t first = out.size();
+    for (int k = met.begin[edge]; k < met.begin[edge + 1]; ++k) {
+      const int other = met.of[k];
+      if (std::exchange(seen_with[other], edge) == edge || net.edges_neighbour(edge, other)) continue;
+      EdgesNear pair{edge, other, 0};
+      if (!skin.motion) pair.distance = nearest_of_edges(places_of(edges, edges, pair)).distance;
+      if (skin.motion || pair.distance < skin.reach) out.push_back(pair);
+    }
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
+              [](const EdgesNear& a, const EdgesNear& b) { return a.other < b.other; });
   }
   return out;
 }
