@@ -131,15 +131,16 @@ double SelfContact::refresh(const Body& body, const VecX& x, double need, double
     if (need + approach <= pairs_reach_ && need_edges + approach <= edges_reach_) return approach;
   }
   edges_reach_ = std::max(need_edges, least_edges_reach);
-  pairs_reach_ = std::max({close_reach, need, std::hypot(edges_reach_, beside)});
-  refresh_groups(body, x, pairs_reach_);
+  pairs_reach_ = std::max(close_reach, need);
+  refresh_groups(body, x, std::max(pairs_reach_, std::hypot(edges_reach_, beside)));
   pairs_known_ = true;
   pairs_x_ = x;
   nearest_ = pairs_reach_;
   nearest_edges_ = edges_reach_;
   look_up(body, x, at_);
-  near_ = near_pairs(*net_, {at_, nullptr, pairs_reach_, 1}, groups_, workers);
-  edges_near_ = edges_at(*net_, near_, {at_, nullptr, edges_reach_, 1});
+  const SkinMotion still{at_, nullptr, pairs_reach_, edges_reach_};
+  near_ = near_pairs(*net_, still, groups_, workers);
+  edges_near_ = edges_at(*net_, near_, still);
   for (const SelfPair& pair : near_) nearest_ = std::min(nearest_, pair.distance);
   for (const EdgesNear& pair : edges_near_) nearest_edges_ = std::min(nearest_edges_, pair.distance);
   return 0;
@@ -284,8 +285,7 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   }
   look_up(body, x, at_);
   look_up(body, step, way_);
-  // A point at an edge is further from what it meets by as much as the edge is long.
-  const SkinMotion moving{at_, &way_, beside, lost};
+  const SkinMotion moving{at_, &way_, 0, 0, lost};
   const std::vector<SelfPair> pairs = near_pairs(*net_, moving, groups_, workers);
   for (const SelfPair& pair : pairs) share = cut_by(*net_, pair, at_, way_, keep, share);
   for (const EdgesNear& pair : edges_at(*net_, pairs, moving))

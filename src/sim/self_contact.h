@@ -32,7 +32,7 @@ inline constexpr double close_reach = 0.8e-3;
 inline constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
 
 /// Of edges that cross.
-inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, self_barrier.stiffness};
+inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, 100 * self_barrier.stiffness};
 /// Of these: couple_below and uncouple_above in proportion.
 constexpr double edges_couple(double of_points) {
   return of_points * (self_edge_barrier.range / self_barrier.range);

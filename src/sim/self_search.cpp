@@ -23,13 +23,29 @@ struct Differences {
       if (skin.motion) motions = std::max(motions, ((*skin.motion)[a] - (*skin.motion)[b]).squaredNorm());
     }
   }
-  /// How near another point must be to a corner for the pair to be looked for: within what a place in the triangle
-  /// can be from its nearest corner (1 / sqrt(3) of the longest edge) and, on a way, what the motions differ by: a
-  /// pair that loses the share `lost` has a corner that comes so far nearer, but for that difference.
-  double reach(const SkinMotion& skin) const {
-    return skin.reach + std::sqrt(places / 3) + std::sqrt(motions) / skin.lost;
+  /// How much nearer another point may be to the triangle than to its corners: what a place in it can be from its nearest
+  /// corner (1 / sqrt(3) of the longest edge) and, on a way, what the motions differ by: a pair that loses the share
+  /// `lost` has a corner that comes so far nearer, but for that difference.
+  double beside_corner(const SkinMotion& skin) const {
+    return std::sqrt(places / 3) + std::sqrt(motions) / skin.lost;
   }
 };
+
+/// How long an edge between two points is at most, there and on the way, m.
+double longest_on_way(const SkinMotion& skin, int p, int q) {
+  const double length = (skin.points[p] - skin.points[q]).norm();
+  return skin.motion ? length + ((*skin.motion)[p] - (*skin.motion)[q]).norm() : length;
+}
+
+/// How near a triangle must be to a point that the pair is looked for, m.
+double reach_of_point(const SkinNet& net, const SkinMotion& skin, int p) {
+  double longest = 0;
+  for (int k = net.edge_begin[p]; k < net.edge_begin[p + 1]; ++k) {
+    const auto& [a, b] = net.edges.ends[net.edges_around[k]];
+    longest = std::max(longest, longest_on_way(skin, a, b));
+  }
+  return std::max(skin.reach, std::hypot(skin.edges_reach, 0.5 * longest));
+}
 
 /// Distance of two points less what they can lose of it.
 double least_distance(const SkinMotion& skin, int p, int q) {
@@ -42,42 +58,55 @@ bool one_piece(const SkinNet& net, int p, int q) {
   return (net.rest[p] - net.rest[q]).squaredNorm() < net.apart * net.apart;
 }
 
-/// How near others must be to points and to groups of them, found when asked for.
+/// Where a point meets triangles around another.
+struct Near {
+  double own = -1;     ///< m, how near a triangle must be to the point; below 0: not known yet
+  double corners = 0;  ///< m, how much nearer another may be to a triangle around the point than to it
+  void take(const Near& other) {
+    own = std::max(own, other.own);
+    corners = std::max(corners, other.corners);
+  }
+  /// How near this and the other must be that one meets a triangle around the other.
+  double meets(const Near& other) const { return std::max(own + other.corners, other.own + corners); }
+};
+
+/// The same of points and of groups of them, found when asked for.
 class Reaches {
  public:
   Reaches(const SkinNet& net, const SkinMotion& skin)
-      : net_(net),
-        skin_(skin),
-        point_(net.rest.size(), -1),
-        group_(net.nodes.size(), -1),
-        box_(net.nodes.size()) {}
+      : net_(net), skin_(skin), point_(net.rest.size()), group_(net.nodes.size()), box_(net.nodes.size()) {}
 
-  double of_point(int p) {
-    if (point_[p] < 0)
+  const Near& of_point(int p) {
+    Near& near = point_[p];
+    if (near.own < 0) {
+      near.own = reach_of_point(net_, skin_, p);
       for (int k = net_.begin[p]; k < net_.begin[p + 1]; ++k)
-        point_[p] = std::max(point_[p], Differences(net_.triangles[net_.around[k]], skin_).reach(skin_));
-    return point_[p];
+        near.corners =
+            std::max(near.corners, Differences(net_.triangles[net_.around[k]], skin_).beside_corner(skin_));
+    }
+    return near;
   }
   /// Whether all of one group is too far from all of the other, as they stand; on a way nothing is said.
   bool apart(int a, int b) {
     if (skin_.motion) return false;
-    const double near = std::max(of_group(a), of_group(b));
+    const double near = of_group(a).meets(of_group(b));
     return box_[a].squaredExteriorDistance(box_[b]) >= near * near;
   }
 
  private:
-  double of_group(int n) {
-    if (group_[n] >= 0) return group_[n];
+  const Near& of_group(int n) {
+    Near& near = group_[n];
+    if (near.own >= 0) return near;
     for (int k = net_.nodes[n].first; k < net_.nodes[n].last; ++k) {
       box_[n].extend(skin_.points[net_.order[k]]);
-      group_[n] = std::max(group_[n], of_point(net_.order[k]));
+      near.take(of_point(net_.order[k]));
     }
-    return group_[n];
+    return near;
   }
 
   const SkinNet& net_;
   const SkinMotion& skin_;
-  std::vector<double> point_, group_;
+  std::vector<Near> point_, group_;
   std::vector<Eigen::AlignedBox3d> box_;
 };
 
@@ -131,7 +160,7 @@ class Boxes {
     for_each_chunk(workers, chunks_of_skin, [&](int k) noexcept {
       const Chunk chunk = chunk_of(size, chunks_of_skin, k);
       for (int t = chunk.begin; t < chunk.end; ++t)
-        of_triangle[t] = Differences(net_.triangles[t], skin_).reach(skin_);
+        of_triangle[t] = skin_.reach + Differences(net_.triangles[t], skin_).beside_corner(skin_);
     });
     for (int t = 0; t < size; ++t)
       for (int p : net_.triangles[t]) reach_[p] = std::max(reach_[p], of_triangle[t]);
@@ -283,7 +312,7 @@ bool SkinNet::edges_neighbour(int edge, int other) const {
 
 std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach,
                                    Workers* workers) {
-  const SkinMotion still{points, nullptr, reach, 1};
+  const SkinMotion still{points, nullptr, reach, 0, 1};
   return Boxes(net, still, workers).near(workers);
 }
 
@@ -294,7 +323,7 @@ void meet(const SkinNet& net, const SkinMotion& skin, std::span<const GroupPair>
           std::vector<std::pair<int, int>>& found) {
   Reaches reaches(net, skin);
   const auto meet = [&](int row, int corner, double distance) {
-    if (distance >= reaches.of_point(corner)) return;
+    if (distance >= reaches.of_point(row).own + reaches.of_point(corner).corners) return;
     for (int k = net.begin[corner]; k < net.begin[corner + 1]; ++k) found.emplace_back(row, net.around[k]);
   };
   for (const auto& [a, b] : groups) {
@@ -314,6 +343,8 @@ void meet(const SkinNet& net, const SkinMotion& skin, std::span<const GroupPair>
 /// Those that are looked for.
 void measure(const SkinNet& net, const SkinMotion& skin, std::span<const std::pair<int, int>> found,
              std::vector<SelfPair>& pairs) {
+  int last_row = -1;
+  double reach = 0;
   for (const auto& [row, triangle] : found) {
     if (net.neighbours(row, triangle)) continue;
     if (skin.motion) {
@@ -323,7 +354,8 @@ void measure(const SkinNet& net, const SkinMotion& skin, std::span<const std::pa
     const Triangle& t = net.triangles[triangle];
     const std::array<Vec3, 3> corners{skin.points[t[0]], skin.points[t[1]], skin.points[t[2]]};
     const double distance = nearest_point(skin.points[row], corners).distance;
-    if (distance < skin.reach) pairs.push_back({row, triangle, distance});
+    if (std::exchange(last_row, row) != row) reach = reach_of_point(net, skin, row);
+    if (distance < reach) pairs.push_back({row, triangle, distance});
   }
 }
 
@@ -359,32 +391,46 @@ std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
 
 namespace {
 
-/// The edges at a pair's point, each with each of its triangle's: met(lower, higher).
+/// Calls met(lower, higher) for edges at a pair's point and of its triangle that may be near each other.
 template <class Met>
-void for_edges_of(const SkinNet& net, const SelfPair& pair, const Met& met) {
-  for (int k = net.edge_begin[pair.skin_point]; k < net.edge_begin[pair.skin_point + 1]; ++k)
-    for (int other : net.edges.sides[pair.triangle])
-      met(std::min(net.edges_around[k], other), std::max(net.edges_around[k], other));
+void for_edges_of(const SkinNet& net, const SkinMotion& skin, const SelfPair& pair, const Met& met) {
+  const auto length_squared = [&](int edge) {
+    const auto& [a, b] = net.edges.ends[edge];
+    return (skin.points[a] - skin.points[b]).squaredNorm();
+  };
+  const auto& sides = net.edges.sides[pair.triangle];
+  double lengths_squared[3];
+  for (int i = 0; i < 3; ++i) lengths_squared[i] = length_squared(sides[i]);
+  const double room_squared = pair.distance * pair.distance - skin.edges_reach * skin.edges_reach;
+  for (int k = net.edge_begin[pair.skin_point]; k < net.edge_begin[pair.skin_point + 1]; ++k) {
+    const int edge = net.edges_around[k];
+    const double own_squared = length_squared(edge);
+    for (int i = 0; i < 3; ++i)
+      if (skin.motion || 4 * room_squared <= std::min(own_squared, lengths_squared[i]))
+        met(std::min(edge, sides[i]), std::max(edge, sides[i]));
+  }
 }
 
 /// For each edge those of higher number that it meets at the pairs, most of them several times: of[begin[e]] .. of[begin[e + 1] - 1].
 struct EdgesMet {
   std::vector<int> begin, of;
 
-  EdgesMet(const SkinNet& net, std::span<const SelfPair> pairs) : begin(net.edges.ends.size() + 1, 0) {
-    for (const SelfPair& pair : pairs) for_edges_of(net, pair, [&](int edge, int) { ++begin[edge + 1]; });
+  EdgesMet(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin)
+      : begin(net.edges.ends.size() + 1, 0) {
+    for (const SelfPair& pair : pairs)
+      for_edges_of(net, skin, pair, [&](int edge, int) { ++begin[edge + 1]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     of.resize(static_cast<std::size_t>(begin.back()));
     std::vector<int> next(begin.begin(), begin.end() - 1);
     for (const SelfPair& pair : pairs)
-      for_edges_of(net, pair, [&](int edge, int other) { of[next[edge]++] = other; });
+      for_edges_of(net, skin, pair, [&](int edge, int other) { of[next[edge]++] = other; });
   }
 };
 
 }  // namespace
 
 std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin) {
-  const EdgesMet met(net, pairs);
+  const EdgesMet met(net, pairs, skin);
   const PlacedEdges edges{&net.edges, &skin.points};
   const int size = static_cast<int>(net.edges.ends.size());
   std::vector<int> seen_with(net.edges.ends.size(), -1);
@@ -396,7 +442,7 @@ std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pa
       if (std::exchange(seen_with[other], edge) == edge || net.edges_neighbour(edge, other)) continue;
       EdgesNear pair{edge, other, 0};
       if (!skin.motion) pair.distance = nearest_of_edges(places_of(edges, edges, pair)).distance;
-      if (skin.motion || pair.distance < skin.reach) out.push_back(pair);
+      if (skin.motion || pair.distance < skin.edges_reach) out.push_back(pair);
     }
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
               [](const EdgesNear& a, const EdgesNear& b) { return a.other < b.other; });

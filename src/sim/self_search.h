@@ -46,9 +46,9 @@ struct SkinNet {
 struct SkinMotion {
   const std::vector<Vec3>& points;            ///< m
   const std::vector<Vec3>* motion = nullptr;  ///< m
-  /// What is looked for: pairs nearer than this, m, and, with a motion, those that could lose more than the share
-  /// `lost` of their distance on the way.
-  double reach = 0, lost = 1;
+  /// What is looked for: pairs nearer than this, m, and such that edges at them may be nearer than `edges_reach`, m; with a
+  /// motion, those that could lose more than the share `lost` of their distance on the way.
+  double reach = 0, edges_reach = 0, lost = 1;
 };
 
 /// A skin point and a triangle of the same skin that are no neighbours.
@@ -67,9 +67,10 @@ std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& 
 /// of the triangles around them are read.
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
                                  std::span<const GroupPair> groups, Workers* workers = nullptr);
-/// All edges at the points of those pairs with edges of their triangles, edge < other, but for neighbours; ordered. Where two edges come within d of each
-/// other an end of one is as near to a triangle at the other as hypot(d, half the shorter's length): what parts them is
-/// across both. Where `skin` stays these are measured, and only those nearer than its reach returned.
+/// All edges at the points of those pairs with edges of their triangles that may come within edges_reach of each other, edge
+/// < other, but for neighbours; ordered. Where two edges come within d of each other an end of the shorter is as near to a
+/// triangle at the other as hypot(d, half its length): what parts them is across both. Where `skin` stays these are
+/// measured, and only those nearer than edges_reach returned.
 std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin);
 
 }  // namespace calot
