@@ -337,13 +337,8 @@ Vec3 World::port_position(const std::string& port) const {
 
 namespace {
 
-/// Where a landmark is, or was last.
-SkinPlace skin_place(const Field& field, const std::string& name) {
-  const auto [organ, skin_point] = find_landmark(field.organs, name);
-  if (skin_point >= 0) {
-    const Organ& at = field.organs[organ];
-    return {at.body->surface_point(skin_point, at.state.x), at.body->skin_normals(at.state.x)[skin_point]};
-  }
+/// Where a landmark of an organ that went was last.
+const SkinPlace& last_place(const Field& field, const std::string& name) {
   const std::size_t dot = name.rfind('.');
   const BodyRecord* record = dot == std::string::npos ? nullptr : gone_body(field, name.substr(0, dot));
   if (record == nullptr || !record->gone->landmarks.contains(name.substr(dot + 1)))
@@ -353,8 +348,17 @@ SkinPlace skin_place(const Field& field, const std::string& name) {
 
 }  // namespace
 
-Vec3 World::landmark(const std::string& name) const { return skin_place(impl_->field, name).at; }
-Vec3 World::landmark_normal(const std::string& name) const { return skin_place(impl_->field, name).normal; }
+Vec3 World::landmark(const std::string& name) const {
+  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
+  if (skin_point < 0) return last_place(impl_->field, name).at;
+  const Organ& at = impl_->field.organs[organ];
+  return at.body->surface_point(skin_point, at.state.x);
+}
+
+Vec3 World::landmark_normal(const std::string& name) const {
+  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
+  return skin_point < 0 ? last_place(impl_->field, name).normal : skin_normals(organ)[skin_point];
+}
 
 double World::seen_area(const std::array<Vec3, 3>& corners) const {
   constexpr double margin = 2e-3;  // m: as thick as what such a triangle is stretched between
