@@ -38,16 +38,19 @@ double most(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
+struct Speed {
+  double tip, turn;  ///< m/s; rad/s
+};
+
 /// Share of the way to `to` that an instrument may go in dt.
 double share_within_speed(const LiveInstrument& instrument, const InstrumentPose& from,
-                          const InstrumentPose& to, double tip_speed, double dt) {
+                          const InstrumentPose& to, const Speed& speed, double dt) {
   const auto tip = [&](const InstrumentPose& pose) {
     return tip_position(instrument.trocar, pose, instrument.geometry);
   };
   const double way = (tip(to) - tip(from)).norm();
   const double turn = std::max(std::abs(to.roll - from.roll), std::abs(to.jaw - from.jaw));
-  return std::min(
-      {1.0, way > 0 ? tip_speed * dt / way : 1.0, turn > 0 ? LiveSource::most_turn_speed * dt / turn : 1.0});
+  return std::min({1.0, way > 0 ? speed.tip * dt / way : 1.0, turn > 0 ? speed.turn * dt / turn : 1.0});
 }
 
 }  // namespace
@@ -151,6 +154,7 @@ void LiveSource::begin(const World& world) {
   given_ = asked_;
   states_now_ = world.report().instruments;
   told_to_wait_.assign(states_now_.size(), 0);
+  catching_up_.assign(instruments_.size(), 0);
   started_ = options_.begins_at_once || options_.stamped;
   last_input_ = due_ = clock_.now();
 }
@@ -178,7 +182,8 @@ bool LiveSource::wait_until_due(double dt) {
   }
   // A step that begins late by less than its length is made up for; beyond that the session's time falls behind.
   const double behind = clock_.now() - due_;
-  if (behind > dt) {
+  late_ = behind > dt;
+  if (late_) {
     figures_.slowed += behind;
     ++figures_.slowed_steps;
     due_ += behind;
@@ -393,8 +398,12 @@ StepInput LiveSource::follow(double dt) {
     const bool drawn_back = std::any_of(exchanges_.begin(), exchanges_.end(), [&](const Exchange& exchange) {
       return exchange.leaving == static_cast<int>(i);
     });
-    const double share =
-        share_within_speed(instruments_[i], pose, to, drawn_back ? withdrawing_speed : most_tip_speed, dt);
+    if (late_) catching_up_[i] = 1;
+    Speed speed{most_tip_speed, most_turn_speed};
+    if (catching_up_[i]) speed = {late_tip_speed, late_turn_speed};
+    if (drawn_back) speed.tip = withdrawing_speed;
+    const double share = share_within_speed(instruments_[i], pose, to, speed, dt);
+    if (share >= 1) catching_up_[i] = 0;
     lags = lags || (share < 1 && !drawn_back);
     pose = share < 1 ? interpolate(pose, to, share) : to;
   }
@@ -446,8 +455,9 @@ std::vector<std::string> LiveSource::notes() const {
                     f.slowed_steps, f.slowed));
   if (f.following_steps > 0)
     notes.push_back(
-        fmt::format("in {} steps an instrument went after a jump of its input at {:g} m/s or {:g} rad/s",
-                    f.following_steps, most_tip_speed, most_turn_speed));
+        fmt::format("in {} steps an instrument went after a jump of its input, at {:g} m/s or {:g} rad/s, or "
+                    "{:g} m/s and {:g} rad/s after late steps",
+                    f.following_steps, most_tip_speed, most_turn_speed, late_tip_speed, late_turn_speed));
   if (f.refused > 0)
     notes.push_back(fmt::format("{} lines of input were refused, and changed nothing", f.refused));
   if (f.full > 0)

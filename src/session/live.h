@@ -136,6 +136,9 @@ class LiveSource : public InputSource {
   /// An instrument goes after what is asked of it at this speed and no faster: a jump of a tracker or the first place of
   /// all is not a blow. m/s at the tip; rad/s about the shaft and between the jaws.
   static constexpr double most_tip_speed = 1.0, most_turn_speed = 12.0;
+  /// And where a step has taken longer than it lasts, until it is where it is asked to be: the hand went on meanwhile, and its
+  /// whole way in one step would be a blow, whose step takes longer still.
+  static constexpr double late_tip_speed = 0.1, late_turn_speed = 3.0;
   /// m/s, of an instrument that is drawn back into its port for another one to come in.
   static constexpr double withdrawing_speed = 0.15;
 
@@ -190,7 +193,9 @@ class LiveSource : public InputSource {
   bool paused_ = false;
   std::optional<double> lost_at_;
   std::string ended_by_;
-  double due_ = 0;  ///< when the present step may begin, on the clock
+  double due_ = 0;                  ///< when the present step may begin, on the clock
+  bool late_ = false;               ///< it begins later than it should by more than its length
+  std::vector<char> catching_up_;  ///< instruments that go after their hands since a late step
   double paused_since_ = 0, step_began_ = 0;
   std::optional<double> last_input_;
   std::optional<double> fresh_;  ///< when the newest input came that the running step took

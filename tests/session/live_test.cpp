@@ -157,6 +157,23 @@ TEST(Live, AJumpIsGoneAfterAtAHandsSpeedAndSaid) {
   EXPECT_THAT(result.notes[0], HasSubstr("jump"));
 }
 
+TEST(Live, WhatAHandDidWhileAStepTookTooLongIsGoneAfterSlowly) {
+  Rig rig;
+  // The fourth step takes half a second; meanwhile the hand has gone on by 6 mm.
+  rig.session.observer = [&](const World& world, const Progress&, bool) {
+    if (std::abs(world.report().time - 4 / steps_a_second) < 1e-9) rig.clock.pass(0.5);
+  };
+  rig.send_at(0.3, rig.input(6e-3));
+  rig.send_at(0.75, rig.input(26e-3));
+  const std::vector<double> found = insertions(rig.play(0.4));
+  std::vector<double> ways;
+  for (std::size_t i = 1; i < found.size(); ++i)
+    if (found[i] != found[i - 1]) ways.push_back(found[i] - found[i - 1]);
+  const double late = LiveSource::late_tip_speed / steps_a_second, usual = LiveSource::most_tip_speed / steps_a_second;
+  const auto is = [](double way) { return testing::DoubleNear(way, 1e-12); };
+  EXPECT_THAT(ways, ElementsAre(is(late), is(late), is(late), is(usual))) << "in time again, it is quick again";
+}
+
 TEST(Live, TheLaparoscopeMovesAsAnInstrumentAndItsReplayGoesThroughTheSameStates) {
   Rig rig;
   const test::Folder folder;
