@@ -80,7 +80,8 @@ void Workers::share(Loop& loop, int chunks, Call call, const void* on) {
   // What another thread still does of this loop may have loops within: these stand behind it.
   Patience patience;
   while (loop.left > 0)
-    if (!std::any_of(&loop + 1, loops_.data() + loops_.size(), [](Loop& within) { return within.take_chunk(); }))
+    if (!std::any_of(&loop + 1, loops_.data() + loops_.size(),
+                     [](Loop& within) { return within.take_chunk(); }))
       patience.pause();
   loop.busy = false;
 }

@@ -193,8 +193,8 @@ class LiveSource : public InputSource {
   bool paused_ = false;
   std::optional<double> lost_at_;
   std::string ended_by_;
-  double due_ = 0;                  ///< when the present step may begin, on the clock
-  bool late_ = false;               ///< it begins later than it should by more than its length
+  double due_ = 0;                 ///< when the present step may begin, on the clock
+  bool late_ = false;              ///< it begins later than it should by more than its length
   std::vector<char> catching_up_;  ///< instruments that go after their hands since a late step
   double paused_since_ = 0, step_began_ = 0;
   std::optional<double> last_input_;

@@ -169,9 +169,11 @@ TEST(Live, WhatAHandDidWhileAStepTookTooLongIsGoneAfterSlowly) {
   std::vector<double> ways;
   for (std::size_t i = 1; i < found.size(); ++i)
     if (found[i] != found[i - 1]) ways.push_back(found[i] - found[i - 1]);
-  const double late = LiveSource::late_tip_speed / steps_a_second, usual = LiveSource::most_tip_speed / steps_a_second;
+  const double late = LiveSource::late_tip_speed / steps_a_second,
+               usual = LiveSource::most_tip_speed / steps_a_second;
   const auto is = [](double way) { return testing::DoubleNear(way, 1e-12); };
-  EXPECT_THAT(ways, ElementsAre(is(late), is(late), is(late), is(usual))) << "in time again, it is quick again";
+  EXPECT_THAT(ways, ElementsAre(is(late), is(late), is(late), is(usual)))
+      << "in time again, it is quick again";
 }
 
 TEST(Live, TheLaparoscopeMovesAsAnInstrumentAndItsReplayGoesThroughTheSameStates) {
