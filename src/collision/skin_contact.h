@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "base/workers.h"
 #include "collision/barrier.h"
 #include "collision/simplex_distance.h"
 #include "collision/surface_parts.h"
@@ -94,7 +95,8 @@ struct SkinReach {
   double reach = 0, lost = 1, nearer = std::numeric_limits<double>::infinity();
 };
 /// All of them, in increasing order.
-std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinReach& looked_for);
+std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinReach& looked_for,
+                                 Workers* workers = nullptr);
 
 /// A point of one skin and a part of another that press on each other.
 struct SkinTouch {

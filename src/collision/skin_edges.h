@@ -44,7 +44,8 @@ EdgePair places_of(const PlacedEdges& one, const PlacedEdges& other, const Edges
 
 /// All pairs looked for, among the edges in the trees (by their middles at rest); ordered.
 std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one, const PlacedEdges& other,
-                                  const ItemTree& of_other, const SkinReach& looked_for);
+                                  const ItemTree& of_other, const SkinReach& looked_for,
+                                  Workers* workers = nullptr);
 
 /// An edge of one skin that goes through a triangle of another: a simplex of that.
 struct PiercedTriangle {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "collision/skin_contact.h"
 #include "collision/skin_edges.h"
@@ -97,35 +98,72 @@ double distance_of(const std::array<Vec3, 3>& one, std::size_t corners, const st
   return pierced_at(one[0], one[1], other) ? 0 : std::numeric_limits<double>::infinity();
 }
 
-/// Items of one skin against those of another: calls found(item, other item, their distance) for all that are looked for.
-template <class One, class Other, class Found>
+/// Items of one skin against those of another.
+template <class One, class Other>
 class Search {
  public:
   /// `radii`: sum of both, m.
-  Search(const One& one, const Other& other, const SkinReach& wanted, double radii, Found found)
+  Search(const One& one, const Other& other, const SkinReach& wanted, double radii)
       : one_(one),
         other_(other),
         wanted_(wanted),
         radii_(radii),
         moving_(one.moves() || other.moves()),
-        still_reach_(reach(0)),
-        found_(std::move(found)) {
-    if (!one.tree().nodes.empty() && !other.tree().nodes.empty()) visit(0, 0);
+        still_reach_(reach(0)) {}
+
+  /// hit(item, other item, their distance) of all that are looked for, in no order, but always the same.
+  template <class Hit>
+  auto find(const Hit& hit, Workers* workers) const {
+    const std::vector<NodePair> starts = first_pairs();
+    std::vector<std::vector<decltype(hit(0, 0, 0.0))>> found(starts.size() + 1);
+    for_each_chunk(workers, static_cast<int>(starts.size()), [&](int k) noexcept {
+      visit(starts[k], [&](int item, int other, double distance) { found[k].push_back(hit(item, other, distance)); });
+    });
+    auto& out = found.back();
+    for (std::size_t k = 0; k < starts.size(); ++k) out.insert(out.end(), found[k].begin(), found[k].end());
+    return std::move(out);
   }
 
  private:
-  void visit(int a, int b) {
-    const ItemTree::Node &p = one_.tree().nodes[a], &q = other_.tree().nodes[b];
-    if (are_far(one_.group(a), other_.group(b))) return;
-    if (p.left < 0 && q.left < 0) {
-      compare(p, q, other_.group(b));
-    } else if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first)) {
-      visit(p.left, b);
-      visit(p.right, b);
-    } else {
-      visit(a, q.left);
-      visit(a, q.right);
+  struct NodePair {
+    int one, other;
+  };
+  bool are_leaves(const NodePair& at) const {
+    return one_.tree().nodes[at.one].left < 0 && other_.tree().nodes[at.other].left < 0;
+  }
+  /// The two halves of the larger of both.
+  std::array<NodePair, 2> halves(const NodePair& at) const {
+    const ItemTree::Node &p = one_.tree().nodes[at.one], &q = other_.tree().nodes[at.other];
+    if (q.left < 0 || (p.left >= 0 && p.last - p.first >= q.last - q.first))
+      return {{{p.left, at.other}, {p.right, at.other}}};
+    return {{{at.one, q.left}, {at.one, q.right}}};
+  }
+  /// Whence all is reached that is not too far apart: enough of them to be shared by threads.
+  std::vector<NodePair> first_pairs() const {
+    constexpr std::size_t enough = 16;
+    std::vector<NodePair> out;
+    if (one_.tree().nodes.empty() || other_.tree().nodes.empty()) return out;
+    out.push_back({0, 0});
+    for (bool split = true; split && out.size() < enough;) {
+      split = false;
+      for (const NodePair& at : std::exchange(out, {})) {
+        if (are_far(one_.group(at.one), other_.group(at.other))) continue;
+        if (are_leaves(at)) {
+          out.push_back(at);
+          continue;
+        }
+        split = true;
+        for (const NodePair& half : halves(at)) out.push_back(half);
+      }
     }
+    return out;
+  }
+
+  template <class Found>
+  void visit(const NodePair& at, const Found& found) const {
+    if (are_far(one_.group(at.one), other_.group(at.other))) return;
+    if (are_leaves(at)) return compare(at, found);
+    for (const NodePair& half : halves(at)) visit(half, found);
   }
 
   /// How far apart items may be that are looked for, if they move by that against each other.
@@ -151,24 +189,28 @@ class Search {
     return swept(one).squaredExteriorDistance(swept(other)) >= near * near;
   }
 
-  void compare(const ItemTree::Node& p, const ItemTree::Node& q, const Bound& others) {
+  template <class Found>
+  void compare(const NodePair& at, const Found& found) const {
+    const ItemTree::Node &p = one_.tree().nodes[at.one], &q = other_.tree().nodes[at.other];
+    const Bound& others = other_.group(at.other);
     for (int i = p.first; i < p.last; ++i) {
       const Bound& own = one_.own(i);
       if (are_far(own, others)) continue;
       // Most are told apart by their boxes alone, which costs a tenth.
       for (int j = q.first; j < q.last; ++j)
-        if (!are_far(own, other_.own(j))) meet(one_.tree().order[i], other_.tree().order[j]);
+        if (!are_far(own, other_.own(j))) meet(one_.tree().order[i], other_.tree().order[j], found);
     }
   }
 
-  void meet(const int& item, const int& other) {
+  template <class Found>
+  void meet(const int& item, const int& other, const Found& found) const {
     const std::span<const int> ids = one_.corners(item), other_ids = other_.corners(other);
     std::array<Vec3, 3> corners, other_corners;
     for (std::size_t i = 0; i < ids.size(); ++i) corners[i] = one_.at(ids[i]);
     for (std::size_t k = 0; k < other_ids.size(); ++k) other_corners[k] = other_.at(other_ids[k]);
     const double near = moving_ ? reach(std::sqrt(largest_motion_squared(ids, other_ids))) : still_reach_;
     const double distance = distance_of(corners, ids.size(), other_corners, other_ids.size());
-    if (distance < near) found_(item, other, distance);
+    if (distance < near) found(item, other, distance);
   }
 
   /// Of a point of one against one of the other, m^2.
@@ -185,7 +227,6 @@ class Search {
   double radii_;
   bool moving_;
   double still_reach_;  ///< m, where nothing moves
-  Found found_;
 };
 
 }  // namespace
@@ -215,33 +256,46 @@ ItemTree::ItemTree(const std::vector<Vec3>& centres, std::vector<int> items) : o
   }
 }
 
-std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinReach& looked_for) {
-  std::vector<decltype(points_of(skins[0]))> points;
-  std::vector<decltype(simplices_of(skins[0]))> simplices;
-  for (const PlacedSkin& skin : skins) {
-    points.push_back(points_of(skin));
-    simplices.push_back(simplices_of(skin));
-  }
+std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinReach& looked_for,
+                                 Workers* workers) {
+  std::vector<std::optional<decltype(points_of(skins[0]))>> points(skins.size());
+  std::vector<std::optional<decltype(simplices_of(skins[0]))>> simplices(skins.size());
+  for_each_chunk(workers, 2 * static_cast<int>(skins.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk) / 2;
+    if (chunk % 2 == 0)
+      points[k].emplace(points_of(skins[k]));
+    else
+      simplices[k].emplace(simplices_of(skins[k]));
+  });
   std::vector<SkinPair> out;
   for (std::size_t a = 0; a < skins.size(); ++a)
     for (std::size_t b = 0; b < skins.size(); ++b) {
       if (a == b) continue;
-      Search(points[a], simplices[b], looked_for, skins[a].skin->radius() + skins[b].skin->radius(),
-             [&](int point, int simplex, double /*distance*/) {
-               out.push_back({static_cast<int>(a), point, static_cast<int>(b), simplex});
-             });
+      const Search search(*points[a], *simplices[b], looked_for, skins[a].skin->radius() + skins[b].skin->radius());
+      const std::vector<SkinPair> found = search.find(
+          [&](int point, int simplex, double /*distance*/) {
+            return SkinPair{static_cast<int>(a), point, static_cast<int>(b), simplex};
+          },
+          workers);
+      out.insert(out.end(), found.begin(), found.end());
     }
   std::sort(out.begin(), out.end());
   return out;
 }
 
 std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one, const PlacedEdges& other,
-                                  const ItemTree& of_other, const SkinReach& looked_for) {
-  std::vector<EdgesNear> out;
-  Search(edges_of(one, of_one), edges_of(other, of_other), looked_for, 0,
-         [&](int edge, int other_edge, double distance) {
-           out.push_back({edge, other_edge, one.motions || other.motions ? 0 : distance});
-         });
+                                  const ItemTree& of_other, const SkinReach& looked_for, Workers* workers) {
+  std::optional<decltype(edges_of(one, of_one))> edges, others;
+  do_at_once(
+      workers, [&]() noexcept { edges.emplace(edges_of(one, of_one)); },
+      [&]() noexcept { others.emplace(edges_of(other, of_other)); });
+  const bool moving = one.motions || other.motions;
+  std::vector<EdgesNear> out = Search(*edges, *others, looked_for, 0)
+                                   .find(
+                                       [&](int edge, int other_edge, double distance) {
+                                         return EdgesNear{edge, other_edge, moving ? 0 : distance};
+                                       },
+                                       workers);
   std::sort(out.begin(), out.end(), [](const EdgesNear& a, const EdgesNear& b) {
     return std::tie(a.edge, a.other) < std::tie(b.edge, b.other);
   });
@@ -253,14 +307,18 @@ std::vector<PiercedTriangle> pierced_triangles(const PlacedEdges& one, const Ite
   constexpr double reach = 1e-9;  // m: more than none
   std::vector<PiercedTriangle> out;
   const auto at = [&](int point) { return (*other.points)[point]; };
-  Search(edges_of(one, of_one), simplices_of(other), {reach, 1}, 0,
-         [&](int edge, int simplex, double /*distance*/) {
-           const auto [from, to] = one.edges->ends[edge];
-           const Triangle& t = other.skin->triangle(simplex);
-           if (const auto place =
-                   pierced_at((*one.points)[from], (*one.points)[to], {at(t[0]), at(t[1]), at(t[2])}))
-             out.push_back({edge, simplex, *place});
-         });
+  const auto edges = edges_of(one, of_one);
+  const auto simplices = simplices_of(other);
+  const SkinReach looked_for{reach, 1};
+  const Search search(edges, simplices, looked_for, 0);
+  for (const auto& [edge, simplex] :
+       search.find([](int e, int s, double /*distance*/) { return std::pair(e, s); }, nullptr)) {
+    const auto [from, to] = one.edges->ends[edge];
+    const Triangle& t = other.skin->triangle(simplex);
+    if (const auto place =
+            pierced_at((*one.points)[from], (*one.points)[to], {at(t[0]), at(t[1]), at(t[2])}))
+      out.push_back({edge, simplex, *place});
+  }
   std::sort(out.begin(), out.end(), [](const PiercedTriangle& a, const PiercedTriangle& b) {
     return std::tie(a.edge, a.simplex) < std::tie(b.edge, b.simplex);
   });

@@ -119,7 +119,7 @@ FactorStatus Cholesky::factorise(const BlockMatrix& matrix, Workers* workers) {
 }
 
 FactorStatus Cholesky::Impl::factorise_dense(const BlockMatrix& matrix, Workers* workers) {
-  const FactorStatus status = condensation->eliminate(matrix, kept);
+  const FactorStatus status = condensation->eliminate(matrix, kept, workers);
   if (status != FactorStatus::ok) return status;
   return kept.factorise(workers) ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }

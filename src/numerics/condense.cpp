@@ -167,10 +167,10 @@ void Condensation::gather(const BlockMatrix& matrix) {
             matrix.entries()[static_cast<std::size_t>(move.from + c * move.stride + r)];
 }
 
-FactorStatus Condensation::eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept) {
+FactorStatus Condensation::eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept, Workers* workers) {
   gather(matrix);
   product_.resize(layout_->widest * layout_->widest);
-  kept.clear();
+  kept.clear(workers);
   for (const KeptBlock& block : layout_->kept_blocks)
     kept.set(block.i, block.j, matrix.entries().data() + block.from, block.stride);
   for (const Piece& piece : layout_->pieces) {

@@ -25,7 +25,7 @@ class Condensation {
   std::vector<std::vector<int>> kept_couplings() const;
   /// Eliminates the condensed unknowns of a matrix of the analysed pattern, whose values must be finite, and loads the
   /// Schur complement into `kept`, a factor of kept_couplings(). Not positive definite: some piece is not.
-  FactorStatus eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept);
+  FactorStatus eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept, Workers* workers = nullptr);
 
   /// Loads on all unknowns (3 a node) as loads on the kept ones.
   template <class Columns>

@@ -78,9 +78,13 @@ EnvelopeFactor EnvelopeFactor::blank() const {
   return out;
 }
 
-void EnvelopeFactor::clear() {
-  for (Eigen::Index column = 0; column < size(); ++column)
-    l_.col(column).segment(column, end_of(column) - column).setZero();
+void EnvelopeFactor::clear(Workers* workers) {
+  constexpr int chunks = 8;
+  for_each_chunk(workers, chunks, [&](int k) noexcept {
+    const Chunk columns = chunk_of(static_cast<int>(size()), chunks, k);
+    for (Eigen::Index column = columns.begin; column < columns.end; ++column)
+      l_.col(column).segment(column, end_of(column) - column).setZero();
+  });
 }
 
 void EnvelopeFactor::set(int i, int j, const double* block, int stride) {

@@ -29,7 +29,7 @@ class EnvelopeFactor {
   Eigen::Index size() const { return l_.rows(); }
   /// A matrix of these nodes is loaded by clear() and then set() for its blocks of coupled nodes (i, j), either half:
   /// entry (r, c) at block[c * stride + r], of a diagonal one the lower half is read.
-  void clear();
+  void clear(Workers* workers = nullptr);
   void set(int i, int j, const double* block, int stride);
   /// Takes the lower triangle of `product`, 3 x 3 blocks of all pairs of `nodes`, by columns, off what is loaded.
   void subtract(std::span<const int> nodes, const double* product);

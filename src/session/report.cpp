@@ -56,6 +56,7 @@ OrderedJson timing_json(const SessionResult& session, double start_to_first_fram
                       {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
                       {"wall_s", timing.wall_s},
                       {"simulation_s", timing.simulation_s},
+                      {"slowest_second_s", timing.slowest_s},
                       {"frames_s", timing.frames_s},
                       {"assembly_s", timing.assembly_s},
                       {"factorisation_s", timing.factorisation_s},

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "base/units.h"
 #include "session/metrics.h"
@@ -77,7 +79,7 @@ class Session {
     if (!read_input()) return;
     const Clock::time_point start = Clock::now();
     Result<StepReport> report = world_.step(input_);
-    result_.timing.simulation_s += seconds_since(start);
+    note_time(seconds_since(start));
     if (!report) return note_failed_step(report.failure());
     note_report();
     for (const WorldEvent& event : report->events) result_.progress.add_event(event);
@@ -87,6 +89,14 @@ class Session {
     if (!done) return end(done.failure());
     if (done.value()) return end(SessionEnd::steps_done);
     if (bails_out) end(SessionEnd::bailed_out);
+  }
+
+  void note_time(double taken) {
+    SessionTiming& timing = result_.timing;
+    timing.simulation_s += taken;
+    const double second = std::floor(world_.report().time - dt_ / 2);  // in which the step lies
+    in_second_ = std::exchange(second_, second) == second ? in_second_ + taken : taken;
+    timing.slowest_s = std::max(timing.slowest_s, in_second_);
   }
 
   /// What who operates did besides moving; true where that ends the operation.
@@ -218,6 +228,7 @@ class Session {
   const SessionOptions& options_;
   SkinDifferences differences_;
   double dt_;
+  double second_ = -1, in_second_ = 0;  ///< the simulated second of the last step, and what it took so far, s
   StepInput input_;  ///< its poses are held where the source has ended
   int refused_ = 0;  ///< changes of structural extensions
   bool ended_ = false;

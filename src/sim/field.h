@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fem/assembly.h"
 #include "sim/members.h"
 #include "sim/skin_rubbing.h"
 #include "sim/spilled.h"
@@ -69,6 +70,8 @@ struct Field {
   std::shared_ptr<const FieldMembers> members;  ///< as it is now, for states; null before keep_members()
   std::uint64_t lives = 0;                      ///< that were given to bodies
 
+  /// Null: one thread does all.
+  Workers* workers() const { return assembly ? &assembly->workers() : nullptr; }
   /// The first one's last factor serves on.
   void add(RestedOrgan made);
   /// Puts an organ on the roll.

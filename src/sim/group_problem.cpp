@@ -34,7 +34,7 @@ GroupProblem::GroupProblem(std::span<const Member> members, std::span<const Join
   if (joins.empty()) return;
   std::vector<GroupPlace> bodies;
   for (std::size_t k = 0; k < members.size(); ++k)
-    bodies.push_back({&members[k].body, static_cast<int>(ranges_[k].first) / 3});
+    bodies.push_back({&members[k].body, static_cast<int>(ranges_[k].first) / 3, workers()});
   for (const JoinPointer& join : joins) join->begin(bodies);
 }
 

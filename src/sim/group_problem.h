@@ -28,6 +28,7 @@ struct Member {
 struct GroupPlace {
   const Body* body = nullptr;
   int first_node = 0;
+  Workers* workers = nullptr;  ///< who share what is asked about it; none: who asks, alone
 };
 
 /// What joins bodies: an energy over nodes of several of them, in the group's numbering. What it remembers is no part of

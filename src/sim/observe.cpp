@@ -127,8 +127,11 @@ void report_states(const Field& field, const std::vector<ToolLoad>& loads, StepR
     report.instruments.push_back(instrument_state(field, i, loads[i]));
     report.instruments.back().action = field.tools[i].action;
   }
-  report.organs.clear();
-  for (const Organ& organ : field.organs) report.organs.push_back(organ_state(organ));
+  report.organs.resize(field.organs.size());
+  for_each_chunk(field.workers(), static_cast<int>(field.organs.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    report.organs[k] = organ_state(field.organs[k]);
+  });
   report.tissues = tissue_states(field);
   report.lost = field.spill.lost;
 }

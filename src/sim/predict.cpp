@@ -136,7 +136,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
                 const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
                 Prediction& out) {
   const BodyParts parts(field);
-  Workers* workers = field.assembly ? &field.assembly->workers() : nullptr;
+  Workers* workers = field.workers();
   std::vector<double> own(field.organs.size(), out.share);
   for_each_chunk(workers, static_cast<int>(own.size()), [&](int chunk) noexcept {
     const auto k = static_cast<std::size_t>(chunk);
@@ -173,12 +173,11 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   const bool moving = !all_stand_still(field);
   if (from == to && !moving) return out;
   out.travel = largest_travel(field, to);
-  std::vector<ContactLoads> loads;
+  const std::vector<ContactLoads> loads = solve_loads(field, from);
   std::vector<std::vector<ContactPair>> pairs;
   VecX load = VecX::Zero(parts.total());
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     Organ& organ = field.organs[k];
-    loads.push_back(solve_loads(field, organ, from));
     {
       const Timed timed(statistics.contact_s);
       pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel));
@@ -227,12 +226,12 @@ Prediction of_tools_alone(Field& field, const Poses& from, const Poses& to, Solv
   out.dx = out.first_order = VecX::Zero(BodyParts(field).total());
   out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
   out.travel = largest_travel(field, to);
-  std::vector<ContactLoads> loads;
+  const std::vector<ContactLoads> loads = solve_loads(field, from);
   std::vector<std::vector<ContactPair>> pairs;
   const Timed timed(statistics.contact_s);
-  for (Organ& organ : field.organs) {
-    loads.push_back(solve_loads(field, organ, from));
-    pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads.back(), out.travel));
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel));
   }
   keep_apart(field, loads, pairs, from, to, out);
   return out;

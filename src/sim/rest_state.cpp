@@ -70,8 +70,7 @@ bool take_rest_state(const RestState& state, Field& field) {
     field.organs[k].state.datum_pressure = state.pressures[k];
   Group& group = field.group;
   if (state.factored) take_patterns(state, field);
-  std::vector<ContactLoads> loads;
-  for (const Organ& organ : field.organs) loads.push_back(solve_loads(field, organ, present_poses(field)));
+  const std::vector<ContactLoads> loads = solve_loads(field, present_poses(field));
   std::vector<Member> members = members_of(field, loads);
   TissueMembers tissues(field);
   tissues.add_to(members);

@@ -36,6 +36,15 @@ ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vect
   return out;
 }
 
+std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses) {
+  std::vector<ContactLoads> out(field.organs.size());
+  for_each_chunk(field.workers(), static_cast<int>(out.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    out[k] = solve_loads(field, field.organs[k], poses);
+  });
+  return out;
+}
+
 void count(const NewtonResult& result, SolveStatistics& statistics) {
   statistics.newton_iterations += result.iterations;
   statistics.assembly_s += result.assembly_s;
@@ -92,11 +101,8 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
-  std::vector<ContactLoads> loads;
-  for (Organ& organ : field.organs) {
-    fade_details(largest_travel(field, poses), organ.state);
-    loads.push_back(solve_loads(field, organ, poses));
-  }
+  for (Organ& organ : field.organs) fade_details(largest_travel(field, poses), organ.state);
+  std::vector<ContactLoads> loads = solve_loads(field, poses);
   std::vector<Member> members = members_of(field, loads);
   TissueMembers tissues(field);
   tissues.add_to(members);

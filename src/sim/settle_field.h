@@ -13,6 +13,8 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
 
 /// The same for a solve: with the organ's inertia in the part of a motion that it is in, if any.
 ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
+/// Those of all organs.
+std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses);
 
 /// Adds a solve's counts and times.
 void count(const NewtonResult& result, SolveStatistics& statistics);

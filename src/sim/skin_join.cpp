@@ -39,6 +39,7 @@ SkinJoin::SkinJoin(const Body& one, const Body& other, std::array<int, 2> bodies
 
 void SkinJoin::begin(std::span<const GroupPlace> bodies) const {
   const bool present = std::max(bodies_[0], bodies_[1]) < static_cast<int>(bodies.size());
+  workers_ = present ? bodies[bodies_[0]].workers : nullptr;
   for (int k = 0; k < 2; ++k) {
     Side& side = sides_[k];
     if (!present) {

@@ -158,6 +158,7 @@ class SkinJoin : public Join {
   std::optional<SkinOverlap> deepest_inside(const Crossing& crossing, int k, bool hollow) const;
 
   std::array<int, 2> bodies_;
+  mutable Workers* workers_ = nullptr;  ///< of the solve
   mutable std::array<Side, 2> sides_;
   mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
   mutable bool pairs_known_ = false, edges_known_ = false, lacking_ = false;

@@ -244,7 +244,7 @@ void SkinJoin::refresh_pairs(const Parts& x, double need) const {
 
 void SkinJoin::find_pairs(const Parts& x) const {
   look_up(x, false);
-  pairs_ = skin_pairs(placed(false), {close_reach, 1});
+  pairs_ = skin_pairs(placed(false), {close_reach, 1}, workers_);
   gaps_.clear();
   for (const SkinPair& pair : pairs_) gaps_.push_back(gap_of(pair));
   pairs_x_ = x;
@@ -283,7 +283,7 @@ void SkinJoin::refresh_edges(const Parts& x, double need) const {
   if (!near_) return;
   look_up(x, false);
   const std::array<PlacedEdges, 2> at = placed_edges(false);
-  edges_ = near_edges(at[0], sides_[0].edge_tree, at[1], sides_[1].edge_tree, {reach, 1});
+  edges_ = near_edges(at[0], sides_[0].edge_tree, at[1], sides_[1].edge_tree, {reach, 1}, workers_);
   edges_x_ = x;
   edges_reach_ = reach;
   edges_known_ = true;
@@ -362,7 +362,7 @@ double SkinJoin::safe_part(const Parts& x, const Parts& step) const {
   } else {
     look_up(x, false);
     look_up(step, true);
-    share = calot::safe_share(placed(true), skin_pairs(placed(true), {0, lost}), contact_keep);
+    share = calot::safe_share(placed(true), skin_pairs(placed(true), {0, lost}, workers_), contact_keep);
   }
   if (!are_surfaces() || share == 0) return share;
   // Where points have stopped a motion already, edges are looked for on what is left of it.
@@ -386,7 +386,7 @@ double SkinJoin::safe_edges(const Parts& x, const Parts& step) const {
     look_up(x, false);
     look_up(step, true);
     const std::array<PlacedEdges, 2> moving = placed_edges(true);
-    on_way = near_edges(moving[0], sides_[0].edge_tree, moving[1], sides_[1].edge_tree, {0, lost, nearest});
+    on_way = near_edges(moving[0], sides_[0].edge_tree, moving[1], sides_[1].edge_tree, {0, lost, nearest}, workers_);
   }
   const std::array<PlacedEdges, 2> moving = placed_edges(true);
   double share = 1.0;

@@ -97,7 +97,8 @@ TEST(SkinSearch, FindsWhatLookingAtAllPairsFindsInThatOrder) {
     const std::vector<SkinPair> found = skin_pairs(skins, {reach, 1});
     EXPECT_EQ(found, by_looking_at_all(skins, {reach, 1}));
     EXPECT_GT(found.size(), 20u);
-    EXPECT_EQ(found, skin_pairs(skins, {reach, 1}));
+    Workers workers(3);
+    EXPECT_EQ(found, skin_pairs(skins, {reach, 1}, &workers));
   }
 }
 
@@ -168,6 +169,13 @@ TEST(SkinSearch, FindsTheEdgesThatAreNear) {
     EXPECT_EQ(std::pair(found[k].edge, found[k].other), std::pair(expected[k].edge, expected[k].other));
     EXPECT_NEAR(found[k].distance, expected[k].distance, 1e-12);
   }
+  Workers workers(3);
+  const std::vector<EdgesNear> shared =
+      near_edges(one.placed(false), one.tree, other.placed(false), other.tree, {reach, 1}, &workers);
+  ASSERT_EQ(shared.size(), found.size());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    EXPECT_EQ(std::tuple(shared[k].edge, shared[k].other, shared[k].distance),
+              std::tuple(found[k].edge, found[k].other, found[k].distance));
 }
 
 TEST(SkinSearch, NoEdgeThatIsNotFoundComesAsNearAsIsLookedFor) {

@@ -328,6 +328,8 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   EXPECT_EQ(json["notes"], nlohmann::json::array({"a note"}));
   EXPECT_EQ(json["rest"], nlohmann::json::array({"ball lies elsewhere"}));
   EXPECT_GT(json["timing"]["real_time_factor"].get<double>(), 0);
+  EXPECT_GT(json["timing"]["slowest_second_s"].get<double>(), 0);
+  EXPECT_LE(json["timing"]["slowest_second_s"].get<double>(), json["timing"]["simulation_s"].get<double>());
   double sum = 0;
   for (const auto& part : json["score"]["parts"]) {
     for (const char* key : {"name", "measured", "benchmark", "points", "weight", "event_times_s"}) {
