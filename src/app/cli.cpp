@@ -145,6 +145,12 @@ void add_operate(Program& program) {
       ->type_name("FILE");
   command.add_flag("--devices", operate.devices,
                    "list what is plugged in, and print a device file to start from");
+  command
+      .add_option(
+          "--quality", operate.quality,
+          "of the picture: live or golden, as fine as golden images and three times as slow (default: live "
+          "where no graphics card draws, else golden)")
+      ->check(CLI::IsMember({"live", "golden"}));
   command.add_option("--size", operate.size, "size of the picture before it is scaled to the window, px")
       ->type_name("WxH")
       ->capture_default_str();

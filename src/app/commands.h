@@ -46,6 +46,7 @@ struct OperateCommand : SessionCommand {
   std::string igtl;   ///< where OpenIGTLink comes from instead, see app/sockets.h
   std::string registration;  ///< file that says how its tools lie in the field; empty: as the field itself
   std::string device;        ///< file that says what a gamepad does; empty: the usual
+  std::string quality;       ///< of the picture, "live" or "golden"; empty: as what draws allows
   bool exam = false, stamped = false, no_window = false;
   bool devices = false;  ///< list them, and no more
 };

@@ -101,6 +101,8 @@ Result<OperateWindow> open_window(const Operation& operation, LiveMailbox& mailb
   options.instruments = operation.instruments;
   options.picture_width = operation.request.width;
   options.picture_height = operation.request.height;
+  if (!operation.command.quality.empty())
+    options.quality = operation.command.quality == "live" ? live_quality : golden_quality;
   if (!operation.command.device.empty()) {
     const std::string& file = operation.command.device;
     std::ifstream in(file, std::ios::binary);

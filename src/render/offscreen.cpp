@@ -17,7 +17,6 @@
 namespace calot {
 namespace {
 
-constexpr int samples = 4;
 constexpr std::array all_materials{
     Material::gallbladder, Material::membrane,   Material::liver,  Material::fat,     Material::peritoneum,
     Material::steel,       Material::insulation, Material::artery, Material::capsule, Material::bowel,
@@ -42,6 +41,7 @@ struct OffscreenRenderer::Impl {
   GlFunctions gl;
   Lens lens;
   int width, height;
+  DrawQuality quality;
   Target shadow, drawn, resolved, occlusion, smooth_occlusion, glow, blurred, picture;
   GLuint noise = 0, vertices = 0, indices = 0, vertex_array = 0, empty_array = 0;
   std::array<GLuint, all_materials.size()> scene_programs{};
@@ -52,8 +52,9 @@ struct OffscreenRenderer::Impl {
   const std::shared_ptr<const VesselMap> no_vessels =
       std::make_shared<VesselMap>(VesselMap{Vec3::Zero(), 1.0, {1, 1, 1}, {0}});
 
-  Impl(std::unique_ptr<GlContext> owner, const GlFunctions& functions, int w, int h)
-      : context(std::move(owner)), gl(functions), width(w), height(h) {}
+  Impl(std::unique_ptr<GlContext> owner, const GlFunctions& functions, int w, int h,
+       const DrawQuality& wanted)
+      : context(std::move(owner)), gl(functions), width(w), height(h), quality(wanted) {}
 
   std::optional<Failure> build();
   std::optional<Failure> build_programs();
@@ -137,11 +138,12 @@ std::optional<Failure> OffscreenRenderer::Impl::build_programs() {
 }
 
 std::optional<Failure> OffscreenRenderer::Impl::build_targets() {
-  const Vec2 inner = 2 * lens.field_radius(height) * lens.inner_scale * lens.inner_extent(width, height);
+  const Vec2 inner =
+      quality.detail * 2 * lens.field_radius(height) * lens.inner_scale * lens.inner_extent(width, height);
   const int w = static_cast<int>(std::ceil(inner.x())), h = static_cast<int>(std::ceil(inner.y()));
   const std::pair<Target*, Result<Target>> made[] = {
       {&shadow, make_shadow_target(gl, shadow_map_side)},
-      {&drawn, make_multisample_target(gl, w, h, samples)},
+      {&drawn, make_multisample_target(gl, w, h, quality.samples)},
       {&resolved, make_resolved_target(gl, w, h)},
       {&occlusion, make_colour_target(gl, (w + 1) / 2, (h + 1) / 2)},
       {&smooth_occlusion, make_colour_target(gl, (w + 1) / 2, (h + 1) / 2)},
@@ -339,20 +341,20 @@ OffscreenRenderer::OffscreenRenderer(OffscreenRenderer&&) noexcept = default;
 OffscreenRenderer& OffscreenRenderer::operator=(OffscreenRenderer&&) noexcept = default;
 OffscreenRenderer::~OffscreenRenderer() = default;
 
-Result<OffscreenRenderer> OffscreenRenderer::create(int width, int height) {
+Result<OffscreenRenderer> OffscreenRenderer::create(int width, int height, const DrawQuality& quality) {
   if (width < 16 || height < 16 || width > 4096 || height > 4096)
     return fail(FailureKind::usage, fmt::format("a picture of {} x {} cannot be drawn", width, height),
                 "choose sides of 16 to 4096 pixels");
   Result<OsmesaContext> context = OsmesaContext::create();
   if (!context) return context.failure();
-  return create(std::make_unique<OsmesaContext>(std::move(context).value()), width, height);
+  return create(std::make_unique<OsmesaContext>(std::move(context).value()), width, height, quality);
 }
 
-Result<OffscreenRenderer> OffscreenRenderer::create(std::unique_ptr<GlContext> context, int width,
-                                                    int height) {
+Result<OffscreenRenderer> OffscreenRenderer::create(std::unique_ptr<GlContext> context, int width, int height,
+                                                    const DrawQuality& quality) {
   const Result<GlFunctions> gl = load_gl(context->loader());
   if (!gl) return gl.failure();
-  auto impl = std::make_unique<Impl>(std::move(context), gl.value(), width, height);
+  auto impl = std::make_unique<Impl>(std::move(context), gl.value(), width, height, quality);
   if (auto failure = impl->build()) return *failure;
   return OffscreenRenderer(std::move(impl));
 }
@@ -383,8 +385,9 @@ void OffscreenRenderer::show(int x, int y, int width, int height) const {
   const GlFunctions& gl = impl_->gl;
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, impl_->picture.framebuffer);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  const bool scaled = width != impl_->width || height != impl_->height;
   gl.BlitFramebuffer(0, 0, impl_->width, impl_->height, x, y, x + width, y + height, GL_COLOR_BUFFER_BIT,
-                     GL_LINEAR);
+                     scaled ? GL_LINEAR : GL_NEAREST);
 }
 
 Image OffscreenRenderer::shown(int x, int y, int width, int height) const {

@@ -12,13 +12,24 @@
 
 namespace calot {
 
-/// Same scene, same size: same bytes, at any thread count. Use it from the thread that created it.
+/// How finely a scene is drawn before the lens bends it.
+struct DrawQuality {
+  int samples = 4;    ///< a pixel; 0: its middle alone
+  double detail = 1;  ///< pixels along a side for one of golden images
+};
+inline constexpr DrawQuality golden_quality{};
+/// For who operates without a graphics card: a third of golden quality's time (tests/bench/frame_bench.cpp).
+inline constexpr DrawQuality live_quality{0, 0.6};
+
+/// Same scene, same size and quality: same bytes, at any thread count. Use it from the thread that created it.
 class OffscreenRenderer {
  public:
   /// Failures: usage (a size outside 16 to 4096), resource (no OpenGL), internal (a shader does not compile).
-  static Result<OffscreenRenderer> create(int width = 960, int height = 540);
+  static Result<OffscreenRenderer> create(int width = 960, int height = 540,
+                                          const DrawQuality& quality = golden_quality);
   /// By another context, which is current and stays so while this draws; what it draws depends on its OpenGL.
-  static Result<OffscreenRenderer> create(std::unique_ptr<GlContext> context, int width, int height);
+  static Result<OffscreenRenderer> create(std::unique_ptr<GlContext> context, int width, int height,
+                                          const DrawQuality& quality = golden_quality);
   OffscreenRenderer(OffscreenRenderer&&) noexcept;
   OffscreenRenderer& operator=(OffscreenRenderer&&) noexcept;
   ~OffscreenRenderer();

@@ -41,9 +41,12 @@ void give_creased_normals(SceneMesh& mesh, double crease) {
   if (volume < 0)
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   std::vector<std::vector<int>> around(mesh.positions.size());
+  const double cosine = std::cos(crease);
   std::vector<Vec3> face;
+  std::vector<double> lengths;  // of these
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     face.push_back(area_normal(mesh.positions, mesh.triangles[t]));
+    lengths.push_back(face.back().norm());
     for (const int corner : mesh.triangles[t]) around[corner].push_back(static_cast<int>(t));
   }
   SceneMesh split;
@@ -54,8 +57,7 @@ void give_creased_normals(SceneMesh& mesh, double crease) {
       const int point = mesh.triangles[t][k];
       Vec3 normal = Vec3::Zero();
       for (const int other : around[point])
-        if (face[other].dot(face[t]) >= std::cos(crease) * face[other].norm() * face[t].norm())
-          normal += face[other];
+        if (face[other].dot(face[t]) >= cosine * lengths[other] * lengths[t]) normal += face[other];
       corners[k] = static_cast<int>(split.positions.size());
       split.positions.push_back(mesh.positions[point]);
       split.rest_positions.push_back(mesh.rest_positions[point]);

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "render/offscreen.h"
 #include "window/draw_lists.h"
 #include "window/overlay.h"
 #include "window/window_system.h"
@@ -22,6 +21,9 @@ constexpr double jaw_speed = 120 * units::deg, roll_speed = 120 * units::deg;  /
 constexpr double longest_turn = 0.1;  // s that held keys count for at once
 constexpr double still_after = 1;     // s without a new state: time stands still
 constexpr double idle_wait = 5e-3;    // s
+/// s. Where nothing is new the window stays as it is for so long: without a graphics card a swap takes milliseconds of a
+/// core, which the simulation needs.
+constexpr double longest_stale = 0.1;
 
 /// Where the picture is in the window, px from the upper left.
 struct PicturePlace {
@@ -57,8 +59,9 @@ struct OperateWindow::Impl {
   WindowEvents events;
   std::vector<GamepadState> pads;  ///< at the last turn
   std::optional<Vec2> pointer;
-  double last_turn = 0, last_picture = 0;
+  double last_turn = 0, last_picture = 0, last_swap = 0;
   bool captured = false, was_acting = false;
+  bool disturbed = true;  ///< pointer, keys or size have changed since the last swap
 
   Impl(std::shared_ptr<Glfw> owner, WindowOptions wanted, LiveMailbox& box)
       : library(std::move(owner)), options(std::move(wanted)), mailbox(box) {
@@ -99,7 +102,10 @@ OperateWindow::Impl::~Impl() {
 }
 
 std::optional<Failure> OperateWindow::Impl::build() {
-  window = make_window(options.width, options.height, "Calot: " + options.title);
+  // Pixel for pixel: without a graphics card to enlarge a picture takes as long as to draw it.
+  window =
+      make_window(options.width > 0 ? options.width : options.picture_width + static_cast<int>(panel_width),
+                  options.height > 0 ? options.height : options.picture_height, "Calot: " + options.title);
   if (window == nullptr) return no_window("no window with OpenGL 3.3 can be opened");
   auto context = std::make_unique<WindowContext>(window);
   if (!context->make_current()) return no_window("the window's OpenGL cannot be used");
@@ -107,8 +113,11 @@ std::optional<Failure> OperateWindow::Impl::build() {
   const Result<GlFunctions> functions = load_gl(context->loader());
   if (!functions) return functions.failure();
   gl = functions.value();
+  const std::string_view draws = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
+  const bool in_software = draws.starts_with("llvmpipe") || draws.starts_with("softpipe");
   Result<OffscreenRenderer> created =
-      OffscreenRenderer::create(std::move(context), options.picture_width, options.picture_height);
+      OffscreenRenderer::create(std::move(context), options.picture_width, options.picture_height,
+                                options.quality.value_or(in_software ? live_quality : golden_quality));
   if (!created) return created.failure();
   renderer = std::move(created).value();
   listen();  // before ImGui, which passes on what it hears
@@ -131,6 +140,7 @@ void OperateWindow::Impl::listen() {
   };
   glfwSetCursorPosCallback(window, [](GLFWwindow* from, double x, double y) {
     Impl& impl = *self(from);
+    impl.disturbed = true;
     if (impl.pointer && impl.captured) {
       impl.events.right += x - impl.pointer->x();
       impl.events.down += y - impl.pointer->y();
@@ -140,6 +150,7 @@ void OperateWindow::Impl::listen() {
   glfwSetScrollCallback(
       window, [](GLFWwindow* from, double, double notches) { self(from)->events.wheel += notches; });
   glfwSetKeyCallback(window, [](GLFWwindow* from, int code, int, int action, int held) {
+    self(from)->disturbed = true;
     if (action != GLFW_PRESS) return;
     if (code == GLFW_KEY_TAB) self(from)->events.next_hand = true;
     if (code == GLFW_KEY_C) self(from)->events.laparoscope = true;
@@ -149,12 +160,16 @@ void OperateWindow::Impl::listen() {
     if (code == GLFW_KEY_ESCAPE) self(from)->events.menu = true;
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int, int action, int) {
+    self(from)->disturbed = true;
     if (action == GLFW_PRESS) self(from)->events.click = true;
   });
   // Who looks elsewhere does not operate.
   glfwSetWindowFocusCallback(window, [](GLFWwindow* from, int focused) {
     if (focused == GLFW_FALSE) self(from)->events.menu = true;
+    self(from)->disturbed = true;
   });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* from) { self(from)->disturbed = true; });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* from, int, int) { self(from)->disturbed = true; });
 }
 
 /// Captured, the pointer is hidden and its way has no end.
@@ -327,6 +342,7 @@ Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
   const double now = glfwGetTime();
   const double dt = std::min(now - self.last_turn, longest_turn);
   self.last_turn = now;
+  self.disturbed |= newest != nullptr;
   if (newest) {
     const Result<bool> drawn = self.renderer->draw(newest->scene);
     if (!drawn) return drawn.failure();
@@ -343,6 +359,9 @@ Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
   if (operates && self.events.menu) self.open_menu();
   self.events = {};
   if (clicks_on) self.go_on();
+  if (!self.disturbed && now - self.last_swap < longest_stale) return true;
+  self.last_swap = now;
+  self.disturbed = false;
   self.draw_frame();
   glfwSwapBuffers(self.window);
   return true;
@@ -352,6 +371,7 @@ void OperateWindow::set_result(const std::string& lines) {
   impl_->set_captured(false);
   impl_->state.menu = true;
   impl_->state.result = lines;
+  impl_->disturbed = true;
 }
 
 WindowEvents& OperateWindow::events() { return impl_->events; }

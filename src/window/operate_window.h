@@ -4,10 +4,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "render/image.h"
+#include "render/offscreen.h"
 #include "window/gamepad.h"
 #include "window/live_view.h"
 
@@ -15,8 +16,9 @@ namespace calot {
 
 struct WindowOptions {
   std::string title;
-  int width = 1280, height = 720;                 ///< px, of the window
+  int width = 0, height = 0;                      ///< px, of the window; 0: as the picture and the panel need
   int picture_width = 960, picture_height = 540;  ///< px, of the picture that is drawn and scaled
+  std::optional<DrawQuality> quality;             ///< none: live where a processor draws, else golden
   LiveMode mode = LiveMode::practice;
   std::vector<LiveInstrument> instruments;
   GamepadMap gamepad;

@@ -19,14 +19,21 @@ SceneDefinition standard() {
   return scene;
 }
 
-void frame(benchmark::State& state) {
+void frame(benchmark::State& state, const DrawQuality& quality) {
   const World world = World::create(standard()).value();
   SceneBuilder builder(world);
-  OffscreenRenderer renderer = OffscreenRenderer::create().value();
+  OffscreenRenderer renderer = OffscreenRenderer::create(960, 540, quality).value();
   for (auto _ : state)
     if (!renderer.render(builder.build(world))) return state.SkipWithError("no picture");
 }
-BENCHMARK(frame)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(frame, golden, golden_quality)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(frame, live, live_quality)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
 
 void start_to_first_frame(benchmark::State& state) {
   for (auto _ : state) {

@@ -123,7 +123,7 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   const Screen screen;
   if (!screen.is_there()) GTEST_SKIP() << "there is no Xvfb (package xvfb)";
   const auto view = small_view();
-  Result<OffscreenRenderer> offscreen = OffscreenRenderer::create(320, 180);
+  Result<OffscreenRenderer> offscreen = OffscreenRenderer::create(320, 180, live_quality);
   ASSERT_TRUE(offscreen);
   const Image expected = offscreen->render(view->scene).value();
 
@@ -142,6 +142,9 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   EXPECT_TRUE(compared->within) << compared->differing_pixels << " pixels by up to " << compared->max_delta;
   ASSERT_TRUE(window.turn(nullptr).value());
   EXPECT_EQ(window.shown().rgb, window.shown().rgb);
+  rounding.differing_pixels = 100;
+  const Image finer = OffscreenRenderer::create(320, 180)->render(view->scene).value();
+  EXPECT_FALSE(compare(finer, window.shown(), rounding)->within) << "golden quality is another picture";
 
   window.events().right = 30;
   ASSERT_TRUE(window.turn(nullptr).value());
