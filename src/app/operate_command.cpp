@@ -119,7 +119,7 @@ Result<Played> operate_in_window(Operation& operation) {
   Result<OperateWindow> window = open_window(operation, operation.mailbox);
   if (!window) return window.failure();
   log_info(fmt::format("Drawn by {}.", window->description()));
-  if (window->description().starts_with("llvmpipe"))
+  if (window->in_software())
     log_info(
         "That is software: hands are asked once a picture, and a smaller one is faster: --size 480x270.");
   std::future<Result<Played>> session = std::async(std::launch::async, [&] { return attempts(operation); });

@@ -117,7 +117,8 @@ class Search {
     const std::vector<NodePair> starts = first_pairs();
     std::vector<std::vector<decltype(hit(0, 0, 0.0))>> found(starts.size() + 1);
     for_each_chunk(workers, static_cast<int>(starts.size()), [&](int k) noexcept {
-      visit(starts[k], [&](int item, int other, double distance) { found[k].push_back(hit(item, other, distance)); });
+      visit(starts[k],
+            [&](int item, int other, double distance) { found[k].push_back(hit(item, other, distance)); });
     });
     auto& out = found.back();
     for (std::size_t k = 0; k < starts.size(); ++k) out.insert(out.end(), found[k].begin(), found[k].end());
@@ -271,12 +272,12 @@ std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinRe
   for (std::size_t a = 0; a < skins.size(); ++a)
     for (std::size_t b = 0; b < skins.size(); ++b) {
       if (a == b) continue;
-      const Search search(*points[a], *simplices[b], looked_for, skins[a].skin->radius() + skins[b].skin->radius());
-      const std::vector<SkinPair> found = search.find(
-          [&](int point, int simplex, double /*distance*/) {
-            return SkinPair{static_cast<int>(a), point, static_cast<int>(b), simplex};
-          },
-          workers);
+      const double radii = skins[a].skin->radius() + skins[b].skin->radius();
+      const auto hit = [&](int point, int simplex, double /*distance*/) {
+        return SkinPair{static_cast<int>(a), point, static_cast<int>(b), simplex};
+      };
+      const std::vector<SkinPair> found =
+          Search(*points[a], *simplices[b], looked_for, radii).find(hit, workers);
       out.insert(out.end(), found.begin(), found.end());
     }
   std::sort(out.begin(), out.end());
@@ -290,12 +291,10 @@ std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one
       workers, [&]() noexcept { edges.emplace(edges_of(one, of_one)); },
       [&]() noexcept { others.emplace(edges_of(other, of_other)); });
   const bool moving = one.motions || other.motions;
-  std::vector<EdgesNear> out = Search(*edges, *others, looked_for, 0)
-                                   .find(
-                                       [&](int edge, int other_edge, double distance) {
-                                         return EdgesNear{edge, other_edge, moving ? 0 : distance};
-                                       },
-                                       workers);
+  const auto hit = [&](int edge, int other_edge, double distance) {
+    return EdgesNear{edge, other_edge, moving ? 0 : distance};
+  };
+  std::vector<EdgesNear> out = Search(*edges, *others, looked_for, 0).find(hit, workers);
   std::sort(out.begin(), out.end(), [](const EdgesNear& a, const EdgesNear& b) {
     return std::tie(a.edge, a.other) < std::tie(b.edge, b.other);
   });
@@ -305,18 +304,16 @@ std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one
 std::vector<PiercedTriangle> pierced_triangles(const PlacedEdges& one, const ItemTree& of_one,
                                                const PlacedSkin& other) {
   constexpr double reach = 1e-9;  // m: more than none
-  std::vector<PiercedTriangle> out;
   const auto at = [&](int point) { return (*other.points)[point]; };
   const auto edges = edges_of(one, of_one);
   const auto simplices = simplices_of(other);
   const SkinReach looked_for{reach, 1};
-  const Search search(edges, simplices, looked_for, 0);
-  for (const auto& [edge, simplex] :
-       search.find([](int e, int s, double /*distance*/) { return std::pair(e, s); }, nullptr)) {
+  const auto both = [](int edge, int simplex, double /*distance*/) { return std::pair(edge, simplex); };
+  std::vector<PiercedTriangle> out;
+  for (const auto& [edge, simplex] : Search(edges, simplices, looked_for, 0).find(both, nullptr)) {
     const auto [from, to] = one.edges->ends[edge];
     const Triangle& t = other.skin->triangle(simplex);
-    if (const auto place =
-            pierced_at((*one.points)[from], (*one.points)[to], {at(t[0]), at(t[1]), at(t[2])}))
+    if (const auto place = pierced_at((*one.points)[from], (*one.points)[to], {at(t[0]), at(t[1]), at(t[2])}))
       out.push_back({edge, simplex, *place});
   }
   std::sort(out.begin(), out.end(), [](const PiercedTriangle& a, const PiercedTriangle& b) {

@@ -67,4 +67,7 @@ void add_elements(std::span<const FaceNodes> elements, BlockMatrix& matrix, Asse
   Assembly::add_alone(elements, matrix, compute);
 }
 
+/// Null where there is none: one thread does all.
+inline Workers* workers_of(Assembly* assembly) { return assembly ? &assembly->workers() : nullptr; }
+
 }  // namespace calot

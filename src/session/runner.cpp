@@ -185,7 +185,8 @@ class Session {
     result_.rest = rest_remarks(world_);
     const std::vector<OrganDefinition>& organs = world_.scene().anatomy.organs;
     for (std::size_t i = 0; i < organs.size(); ++i)
-      result_.progress.set_metric(organs[i].name + ".rest_shift_mm", world_.rest_shifts()[i].distance / units::mm);
+      result_.progress.set_metric(organs[i].name + ".rest_shift_mm",
+                                  world_.rest_shifts()[i].distance / units::mm);
   }
 
   void note_refusals() {
@@ -229,8 +230,8 @@ class Session {
   SkinDifferences differences_;
   double dt_;
   double second_ = -1, in_second_ = 0;  ///< the simulated second of the last step, and what it took so far, s
-  StepInput input_;  ///< its poses are held where the source has ended
-  int refused_ = 0;  ///< changes of structural extensions
+  StepInput input_;                     ///< its poses are held where the source has ended
+  int refused_ = 0;                     ///< changes of structural extensions
   bool ended_ = false;
   SessionResult result_;
 };

@@ -19,8 +19,8 @@ namespace calot {
 struct SessionTiming {
   double wall_s = 0;        ///< of the loop, frames included
   double simulation_s = 0;  ///< inside World::step
-  double slowest_s = 0;     ///< the most of it in any simulated second: of the seconds 0 to 1, 1 to 2 ... begun
-  double frames_s = 0;      ///< inside the frame callback
+  double slowest_s = 0;  ///< the most of it in any simulated second: of the seconds 0 to 1, 1 to 2 ... begun
+  double frames_s = 0;   ///< inside the frame callback
   int substeps = 0, newton_iterations = 0;
   double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
 };

@@ -27,7 +27,7 @@ BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, ContactSea
   pairs_.reset();
 }
 
-Workers* BodyProblem::workers() const { return assembly_ ? &assembly_->workers() : nullptr; }
+Workers* BodyProblem::workers() const { return workers_of(assembly_); }
 
 const std::vector<ContactPair>& BodyProblem::pairs() const {
   if (!pairs_) pairs_ = search_->pairs(body_, start_, loads_, 0.0);

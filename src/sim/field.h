@@ -71,7 +71,7 @@ struct Field {
   std::uint64_t lives = 0;                      ///< that were given to bodies
 
   /// Null: one thread does all.
-  Workers* workers() const { return assembly ? &assembly->workers() : nullptr; }
+  Workers* workers() const { return workers_of(assembly); }
   /// The first one's last factor serves on.
   void add(RestedOrgan made);
   /// Puts an organ on the roll.

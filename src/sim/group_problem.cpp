@@ -93,8 +93,7 @@ void GroupProblem::for_each_member(const Work& work, std::span<const Join* const
 }
 
 Workers* GroupProblem::workers() const {
-  Assembly* assembly = members_.empty() ? nullptr : members_[0].assembly;
-  return assembly ? &assembly->workers() : nullptr;
+  return members_.empty() ? nullptr : workers_of(members_[0].assembly);
 }
 
 std::vector<const Join*> GroupProblem::joins_at(const VecX& x, const VecX* step) const {

@@ -101,7 +101,8 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   NewtonSettings settings;
   settings.tolerance = field.tolerance;
   settings.max_iterations = max_iterations;
-  for (Organ& organ : field.organs) fade_details(largest_travel(field, poses), organ.state);
+  const double travel = largest_travel(field, poses);
+  for (Organ& organ : field.organs) fade_details(travel, organ.state);
   std::vector<ContactLoads> loads = solve_loads(field, poses);
   std::vector<Member> members = members_of(field, loads);
   TissueMembers tissues(field);

@@ -386,7 +386,8 @@ double SkinJoin::safe_edges(const Parts& x, const Parts& step) const {
     look_up(x, false);
     look_up(step, true);
     const std::array<PlacedEdges, 2> moving = placed_edges(true);
-    on_way = near_edges(moving[0], sides_[0].edge_tree, moving[1], sides_[1].edge_tree, {0, lost, nearest}, workers_);
+    on_way = near_edges(moving[0], sides_[0].edge_tree, moving[1], sides_[1].edge_tree, {0, lost, nearest},
+                        workers_);
   }
   const std::array<PlacedEdges, 2> moving = placed_edges(true);
   double share = 1.0;

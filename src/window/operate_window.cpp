@@ -60,6 +60,7 @@ struct OperateWindow::Impl {
   std::vector<GamepadState> pads;  ///< at the last turn
   std::optional<Vec2> pointer;
   double last_turn = 0, last_picture = 0, last_swap = 0;
+  bool in_software = false;
   bool captured = false, was_acting = false;
   bool disturbed = true;  ///< pointer, keys or size have changed since the last swap
 
@@ -114,7 +115,7 @@ std::optional<Failure> OperateWindow::Impl::build() {
   if (!functions) return functions.failure();
   gl = functions.value();
   const std::string_view draws = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
-  const bool in_software = draws.starts_with("llvmpipe") || draws.starts_with("softpipe");
+  in_software = draws.starts_with("llvmpipe") || draws.starts_with("softpipe");
   Result<OffscreenRenderer> created =
       OffscreenRenderer::create(std::move(context), options.picture_width, options.picture_height,
                                 options.quality.value_or(in_software ? live_quality : golden_quality));
@@ -147,8 +148,10 @@ void OperateWindow::Impl::listen() {
     }
     impl.pointer = Vec2(x, y);
   });
-  glfwSetScrollCallback(
-      window, [](GLFWwindow* from, double, double notches) { self(from)->events.wheel += notches; });
+  glfwSetScrollCallback(window, [](GLFWwindow* from, double, double notches) {
+    self(from)->disturbed = true;
+    self(from)->events.wheel += notches;
+  });
   glfwSetKeyCallback(window, [](GLFWwindow* from, int code, int, int action, int held) {
     self(from)->disturbed = true;
     if (action != GLFW_PRESS) return;
@@ -385,6 +388,8 @@ Image OperateWindow::shown() const {
   const PicturePlace where = impl_->place();
   return impl_->renderer->shown(where.x, height - where.y - where.height, where.width, where.height);
 }
+
+bool OperateWindow::in_software() const { return impl_->in_software; }
 
 std::string OperateWindow::description() const { return impl_->renderer->description(); }
 

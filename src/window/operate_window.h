@@ -60,6 +60,7 @@ class OperateWindow {
   /// The window's picture as it is shown, without the panel.
   Image shown() const;
   std::string description() const;  ///< what draws
+  bool in_software() const;         ///< a processor does, no graphics card
 
  private:
   struct Impl;

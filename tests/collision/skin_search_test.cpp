@@ -97,6 +97,7 @@ TEST(SkinSearch, FindsWhatLookingAtAllPairsFindsInThatOrder) {
     const std::vector<SkinPair> found = skin_pairs(skins, {reach, 1});
     EXPECT_EQ(found, by_looking_at_all(skins, {reach, 1}));
     EXPECT_GT(found.size(), 20u);
+    EXPECT_EQ(found, skin_pairs(skins, {reach, 1}));
     Workers workers(3);
     EXPECT_EQ(found, skin_pairs(skins, {reach, 1}, &workers));
   }
