@@ -30,6 +30,8 @@ Material material_of(const OrganDefinition& organ) {
 }  // namespace
 
 SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())), moulds_(world) {
+  for (const InstrumentDefinition& instrument : world.scene().instruments)
+    instruments_.push_back(instrument_model(instrument.type));
   for (const Organ& organ : world.field().organs) {
     const auto k = static_cast<std::size_t>(organ.record);
     if (k >= organs_.size()) organs_.resize(k + 1);
@@ -84,8 +86,7 @@ Scene SceneBuilder::build(const World& world) const {
   for (std::size_t i = 0; i < definition.instruments.size(); ++i) {
     if (world.report().instruments[i].waits) continue;
     const Vec3 trocar = world.port_position(definition.instruments[i].port);
-    for (SceneMesh& mesh :
-         instrument_meshes(definition.instruments[i].type, trocar, world.report().instruments[i].pose))
+    for (SceneMesh& mesh : posed(instruments_[i], trocar, world.report().instruments[i].pose))
       scene.meshes.push_back(std::move(mesh));
     const Tool& tool = world.field().tools[i];
     for (SceneMesh& mesh : loaded_clip(tool)) scene.meshes.push_back(std::move(mesh));

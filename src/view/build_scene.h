@@ -2,6 +2,7 @@
 
 #include "render/scene.h"
 #include "sim/world.h"
+#include "view/instrument_parts.h"
 #include "view/jaw_mould.h"
 
 namespace calot {
@@ -20,7 +21,8 @@ class SceneBuilder {
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
   /// All that does not move of an organ: material, rest positions, triangles, vessels.
   static SceneMesh organ_mesh(const World& world, int organ);
-  std::vector<SceneMesh> organs_;  // the scene's
+  std::vector<SceneMesh> organs_;             // the scene's
+  std::vector<InstrumentModel> instruments_;  // the scene's
   JawMoulds moulds_;
 };
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -70,8 +69,7 @@ SceneMesh pole(const InstrumentGeometry& g, double side) {
 
 }  // namespace
 
-std::vector<SceneMesh> electrode_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                        const InstrumentGeometry& geometry) {
+InstrumentModel electrode_model(const InstrumentGeometry& geometry) {
   const double r = geometry.shaft_radius, neck = 0.96 * geometry.neck_radius;
   const double handle = geometry.jaw_length - geometry.working_length;
   SceneMesh insulation = turned(Material::insulation,
@@ -86,10 +84,7 @@ std::vector<SceneMesh> electrode_meshes(const Vec3& trocar, const InstrumentPose
   SceneMesh steel = turned(Material::steel, {{0, -0.4 * r}, {neck, -0.4 * r}, {neck, end}, {0, end}}, 40);
   append(steel, pole(geometry, 1));
   append(steel, pole(geometry, -1));
-  const Pose hinge = hinge_frame(trocar, pose, geometry);
-  move(insulation, hinge);
-  move(steel, hinge);
-  return {steel, insulation};
+  return {geometry, {steel, insulation}, {}};
 }
 
 }  // namespace calot

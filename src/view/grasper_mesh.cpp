@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -54,15 +53,9 @@ SceneMesh jaw_mesh(const InstrumentGeometry& g) {
 
 }  // namespace
 
-std::vector<SceneMesh> grasper_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                      const InstrumentGeometry& geometry) {
-  auto [steel, insulation] = forceps_shaft(trocar, pose, geometry);
-  for (int jaw = 0; jaw < 2; ++jaw) {
-    SceneMesh part = jaw_mesh(geometry);
-    move(part, jaw_frame(trocar, pose, geometry, jaw));
-    append(steel, part);
-  }
-  return {steel, insulation};
+InstrumentModel grasper_model(const InstrumentGeometry& geometry) {
+  const InstrumentPart jaw{jaw_mesh(geometry), {}};
+  return {geometry, forceps_shaft(geometry), {jaw, jaw}};
 }
 
 }  // namespace calot

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -28,8 +27,7 @@ std::vector<Vec3> wire(const InstrumentGeometry& g) {
 
 }  // namespace
 
-std::vector<SceneMesh> hook_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                   const InstrumentGeometry& geometry) {
+InstrumentModel hook_model(const InstrumentGeometry& geometry) {
   const double r = geometry.shaft_radius, neck = 0.99 * geometry.neck_radius;
   const double handle = geometry.jaw_length - geometry.working_length;
   const double end = geometry.jaw_length - geometry.electrode_radius - bare;
@@ -42,10 +40,7 @@ std::vector<SceneMesh> hook_meshes(const Vec3& trocar, const InstrumentPose& pos
                                  {0, end}},
                                 40);
   SceneMesh steel = bent_bar(Material::steel, wire(geometry), thin * geometry.electrode_radius);
-  const Pose hinge = hinge_frame(trocar, pose, geometry);
-  move(insulation, hinge);
-  move(steel, hinge);
-  return {steel, insulation};
+  return {geometry, {steel, insulation}, {}};
 }
 
 }  // namespace calot

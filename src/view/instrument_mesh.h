@@ -2,13 +2,15 @@
 
 #include <vector>
 
-#include "render/scene.h"
-#include "sim/instrument.h"
+#include "view/instrument_parts.h"
 
 namespace calot {
 
 /// An instrument of any type as it is drawn. Nothing drawn lies outside its instrument_shapes(): what is seen is
 /// what touches.
-std::vector<SceneMesh> instrument_meshes(InstrumentType type, const Vec3& trocar, const InstrumentPose& pose);
+InstrumentModel instrument_model(InstrumentType type);
+
+/// Where it stands: what is steel of it, and what is insulated.
+std::vector<SceneMesh> posed(const InstrumentModel& model, const Vec3& trocar, const InstrumentPose& pose);
 
 }  // namespace calot

@@ -109,8 +109,7 @@ SceneMesh bent_bar(Material material, const std::vector<Vec3>& line, double radi
   return mesh;
 }
 
-ForcepsShaft forceps_shaft(const Vec3& trocar, const InstrumentPose& pose,
-                           const InstrumentGeometry& geometry) {
+InstrumentPart forceps_shaft(const InstrumentGeometry& geometry) {
   const double r = geometry.shaft_radius;
   const double outside = geometry.jaw_length - geometry.working_length;  // the handle, in the hinge's frame
   const double scale = r / 2.5e-3;                                       // lengths are those of a 5 mm shaft
@@ -132,9 +131,6 @@ ForcepsShaft forceps_shaft(const Vec3& trocar, const InstrumentPose& pose,
   append(steel, prong(geometry, -1));
   append(steel, bar(0.5 * r, 0.42 * r, -0.65 * r));
   append(steel, bar(0.26 * r, 0.945 * r, -0.95 * r));
-  const Pose hinge = hinge_frame(trocar, pose, geometry);
-  move(insulation, hinge);
-  move(steel, hinge);
   return {steel, insulation};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // What drawn instruments have in common. All in the hinge's frame (sim/instrument.h) unless said otherwise.
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -39,11 +40,20 @@ SceneMesh jaw_slab(Material material, const Outline& outline, const std::vector<
 /// A round bar along a line in the plane of the hinge frame's x and z, its far end a half ball about the last point.
 SceneMesh bent_bar(Material material, const std::vector<Vec3>& line, double radius);
 
-/// Insulated shaft and its steel end with a clevis and its pin, where the instrument stands.
-struct ForcepsShaft {
-  SceneMesh steel, insulation;
+/// What is steel and what is insulated of one part that moves as a whole.
+struct InstrumentPart {
+  SceneMesh steel, insulation;  ///< without points where it has none
 };
-ForcepsShaft forceps_shaft(const Vec3& trocar, const InstrumentPose& pose,
-                           const InstrumentGeometry& geometry);
+
+/// An instrument as it is drawn, wherever it stands: laid out once, and only moved for each picture.
+struct InstrumentModel {
+  InstrumentGeometry geometry;
+  InstrumentPart shaft;  ///< in the hinge's frame
+  std::array<InstrumentPart, 2>
+      jaws;  ///< each in its jaw's frame (sim/instrument.h); empty where it has none
+};
+
+/// Insulated shaft and its steel end with a clevis and its pin.
+InstrumentPart forceps_shaft(const InstrumentGeometry& geometry);
 
 }  // namespace calot

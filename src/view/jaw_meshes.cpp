@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -11,15 +10,10 @@ namespace {
 
 using MakeJaw = SceneMesh (*)(const InstrumentGeometry& geometry, int jaw);
 
-std::vector<SceneMesh> with_jaws(const Vec3& trocar, const InstrumentPose& pose,
-                                 const InstrumentGeometry& geometry, MakeJaw make) {
-  auto [steel, insulation] = forceps_shaft(trocar, pose, geometry);
-  for (int jaw = 0; jaw < 2; ++jaw) {
-    SceneMesh part = make(geometry, jaw);
-    move(part, jaw_frame(trocar, pose, geometry, jaw));
-    append(steel, part);
-  }
-  return {steel, insulation};
+InstrumentModel with_jaws(const InstrumentGeometry& geometry, MakeJaw make) {
+  return {geometry,
+          forceps_shaft(geometry),
+          {InstrumentPart{make(geometry, 0), {}}, InstrumentPart{make(geometry, 1), {}}}};
 }
 
 /// Both jaws bow to the same side: a jaw's frame is turned about z against the other's.
@@ -80,19 +74,14 @@ SceneMesh applier_jaw(const InstrumentGeometry& g, int) {
 
 }  // namespace
 
-std::vector<SceneMesh> dissector_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                        const InstrumentGeometry& geometry) {
-  return with_jaws(trocar, pose, geometry, dissector_jaw);
+InstrumentModel dissector_model(const InstrumentGeometry& geometry) {
+  return with_jaws(geometry, dissector_jaw);
 }
 
-std::vector<SceneMesh> scissors_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                       const InstrumentGeometry& geometry) {
-  return with_jaws(trocar, pose, geometry, scissors_jaw);
+InstrumentModel scissors_model(const InstrumentGeometry& geometry) {
+  return with_jaws(geometry, scissors_jaw);
 }
 
-std::vector<SceneMesh> applier_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                      const InstrumentGeometry& geometry) {
-  return with_jaws(trocar, pose, geometry, applier_jaw);
-}
+InstrumentModel applier_model(const InstrumentGeometry& geometry) { return with_jaws(geometry, applier_jaw); }
 
 }  // namespace calot

@@ -1,21 +1,15 @@
 #pragma once
+
+#include "view/instrument_parts.h"
 // Instruments whose jaws are solid steel, as they are drawn. Nothing drawn lies outside instrument_shapes().
-
-#include <vector>
-
-#include "render/scene.h"
-#include "sim/instrument.h"
 
 namespace calot {
 
 /// Slim jaws that taper and bow to one side, ribbed where they meet.
-std::vector<SceneMesh> dissector_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                        const InstrumentGeometry& geometry);
+InstrumentModel dissector_model(const InstrumentGeometry& geometry);
 /// Two blades that meet in an edge.
-std::vector<SceneMesh> scissors_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                       const InstrumentGeometry& geometry);
+InstrumentModel scissors_model(const InstrumentGeometry& geometry);
 /// Two straight jaws with a groove that a clip's leg lies in.
-std::vector<SceneMesh> applier_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                      const InstrumentGeometry& geometry);
+InstrumentModel applier_model(const InstrumentGeometry& geometry);
 
 }  // namespace calot

@@ -113,7 +113,9 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
 
 void JawMould::apply(const Field& field, int instrument, int organ, std::vector<Vec3>& positions,
                      std::vector<Vec3>& normals) const {
-  if (!active()) return;
+  const int record = field.organs[organ].record;
+  const auto of_organ = [&](const Held& held) { return held.record == record; };
+  if (!active() || std::none_of(held_.begin(), held_.end(), of_organ)) return;
   const InstrumentGeometry& g = field.tools[instrument].geometry;
   // Functions about 1 mm apart across the pads, so that the two sides of a fold move apart, and 2 mm along them.
   constexpr double around = 2.5e-3;  // m beyond the pads
@@ -126,7 +128,7 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
   // The skin around what is held stays where it is.
   std::vector<Vec3> ways(positions.size(), Vec3::Zero());
   for (const Held& held : held_)
-    if (held.record == field.organs[organ].record) ways[held.skin_point] = smooth(weight_) * held.way;
+    if (of_organ(held)) ways[held.skin_point] = smooth(weight_) * held.way;
   std::vector<Vec3> from, to;
   for (std::size_t p = 0; p < positions.size(); ++p) {
     if (!form.contains(positions[p])) continue;

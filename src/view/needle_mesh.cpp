@@ -3,13 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
 namespace calot {
 
-std::vector<SceneMesh> needle_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                     const InstrumentGeometry& geometry) {
+InstrumentModel needle_model(const InstrumentGeometry& geometry) {
   const double r = geometry.shaft_radius;
   const double neck = 0.98 * geometry.neck_radius, needle = 0.99 * geometry.electrode_radius;
   const double handle = geometry.jaw_length - geometry.working_length;
@@ -27,10 +25,7 @@ std::vector<SceneMesh> needle_meshes(const Vec3& trocar, const InstrumentPose& p
     profile.emplace_back(k == arc ? 0.0 : needle * std::cos(a), front + needle * std::sin(a));
   }
   SceneMesh steel = turned(Material::steel, profile, 40);
-  const Pose hinge = hinge_frame(trocar, pose, geometry);
-  move(insulation, hinge);
-  move(steel, hinge);
-  return {steel, insulation};
+  return {geometry, {steel, insulation}, {}};
 }
 
 SceneMesh needle_end_mesh(const Vec3& trocar, const InstrumentPose& pose, const InstrumentGeometry& geometry,

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "view/instrument_parts.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -14,12 +13,8 @@ void rib(int row, Vec3& at) {
   if (row <= 1) at.x() += depth * (0.5 + 0.5 * std::cos(at.z() / 1.5e-3 * 6.283));
 }
 
-struct Jaw {
-  SceneMesh steel, insulation;
-};
-
 /// A heated steel plate under an insulating cover.
-Jaw jaw_meshes(const InstrumentGeometry& g) {
+InstrumentPart jaw_part(const InstrumentGeometry& g) {
   const double wide = 0.5 * g.jaw_width, thick = g.jaw_thickness, round = g.jaw_rounding;
   const Outline outline{0.1e-3, g.jaw_length - 0.05e-3, 0.62 * wide, wide - 0.05e-3};
   const double middle =
@@ -37,18 +32,9 @@ Jaw jaw_meshes(const InstrumentGeometry& g) {
 
 }  // namespace
 
-std::vector<SceneMesh> semm_meshes(const Vec3& trocar, const InstrumentPose& pose,
-                                   const InstrumentGeometry& geometry) {
-  auto [steel, insulation] = forceps_shaft(trocar, pose, geometry);
-  for (int jaw = 0; jaw < 2; ++jaw) {
-    Jaw part = jaw_meshes(geometry);
-    const Pose frame = jaw_frame(trocar, pose, geometry, jaw);
-    move(part.steel, frame);
-    move(part.insulation, frame);
-    append(steel, part.steel);
-    append(insulation, part.insulation);
-  }
-  return {steel, insulation};
+InstrumentModel semm_model(const InstrumentGeometry& geometry) {
+  const InstrumentPart jaw = jaw_part(geometry);
+  return {geometry, forceps_shaft(geometry), {jaw, jaw}};
 }
 
 }  // namespace calot

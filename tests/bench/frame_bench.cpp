@@ -1,4 +1,4 @@
-// The picture of the standard field, and the way from a scene to its first frame.
+// The picture of the standard field, the scene that it is drawn of, and the way from a scene to its first frame.
 
 #include <benchmark/benchmark.h>
 
@@ -34,6 +34,14 @@ BENCHMARK_CAPTURE(frame, live, live_quality)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
+
+/// The part of a picture that the simulation's thread does: what it sees, as plain data.
+void scene(benchmark::State& state) {
+  const World world = World::create(standard()).value();
+  const SceneBuilder builder(world);
+  for (auto _ : state) benchmark::DoNotOptimize(builder.build(world));
+}
+BENCHMARK(scene)->Unit(benchmark::kMillisecond);
 
 void start_to_first_frame(benchmark::State& state) {
   for (auto _ : state) {

@@ -4,6 +4,7 @@
 
 #include "base/rng.h"
 #include "collision/shapes.h"
+#include "view/instrument_mesh.h"
 
 namespace calot {
 namespace {
@@ -29,7 +30,7 @@ TEST(GrasperMesh, NothingDrawnLiesOutsideWhatTouches) {
     const InstrumentPose pose = random_pose(rng);
     const std::vector<Shape> shapes = instrument_shapes(trocar, pose, geometry);
     double outermost = -1;
-    for (const SceneMesh& mesh : grasper_meshes(trocar, pose, geometry))
+    for (const SceneMesh& mesh : posed(grasper_model(geometry), trocar, pose))
       for (const Vec3& p : mesh.positions) outermost = std::max(outermost, depth_in_union(shapes, p));
     EXPECT_LT(outermost, 1e-5) << "pose " << i;  // a hundredth of a millimetre: nothing an eye could see
   }
@@ -43,7 +44,7 @@ TEST(GrasperMesh, TheDrawnJawsReachWhereTheTouchingJawsDo) {
   for (int jaw = 0; jaw < 2; ++jaw) {
     const Pose from_world = jaw_frame(trocar, pose, geometry, jaw).inverse();
     Vec3 high = Vec3::Constant(-1), low = Vec3::Constant(1);
-    for (const SceneMesh& mesh : grasper_meshes(trocar, pose, geometry))
+    for (const SceneMesh& mesh : posed(grasper_model(geometry), trocar, pose))
       for (const Vec3& p : mesh.positions) {
         const Vec3 q = from_world * p;
         const bool of_this_jaw = q.z() > 4e-3 && q.x() > -1e-4 && q.x() < geometry.jaw_thickness + 1e-4;
@@ -58,7 +59,8 @@ TEST(GrasperMesh, TheDrawnJawsReachWhereTheTouchingJawsDo) {
 
 TEST(GrasperMesh, FacesTheWayItsTrianglesTurn) {
   // Back faces are not drawn: a normal against its triangle's turn would be a hole or a dark patch.
-  for (const SceneMesh& mesh : grasper_meshes(Vec3::Zero(), {0.1, 0.2, 0.1, 0.3, 0.4}, InstrumentGeometry{}))
+  for (const SceneMesh& mesh :
+       posed(grasper_model(InstrumentGeometry{}), Vec3::Zero(), {0.1, 0.2, 0.1, 0.3, 0.4}))
     for (const Triangle& t : mesh.triangles) {
       const Vec3& a = mesh.positions[t[0]];
       const Vec3 turn = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
@@ -71,7 +73,8 @@ TEST(GrasperMesh, MovesRigidlyWithTheInstrument) {
   const InstrumentPose a{0.3, 0.1, 0.1, 0.2, 0.5}, b{-0.2, 0.4, 0.2, 1.2, 0.5};
   const Vec3 trocar(0.01, -0.02, 0);
   const Pose motion = hinge_frame(trocar, b, geometry) * hinge_frame(trocar, a, geometry).inverse();
-  const auto before = grasper_meshes(trocar, a, geometry), after = grasper_meshes(trocar, b, geometry);
+  const auto before = posed(grasper_model(geometry), trocar, a),
+             after = posed(grasper_model(geometry), trocar, b);
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t m = 0; m < before.size(); ++m)
     for (std::size_t i = 0; i < before[m].positions.size(); ++i)

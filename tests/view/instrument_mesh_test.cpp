@@ -29,7 +29,7 @@ TEST_P(InstrumentMesh, LiesInsideWhatTouches) {
     const InstrumentPose pose = random_pose(rng, geometry);
     const std::vector<Shape> shapes = instrument_shapes(trocar, pose, geometry);
     double outermost = -1;
-    for (const SceneMesh& mesh : instrument_meshes(type, trocar, pose))
+    for (const SceneMesh& mesh : posed(instrument_model(type), trocar, pose))
       for (const Vec3& p : mesh.positions) {
         double nearest = 1;
         for (const Shape& shape : shapes) nearest = std::min(nearest, signed_distance(shape, p));
@@ -44,7 +44,7 @@ TEST_P(InstrumentMesh, ReachesItsTip) {
   const InstrumentPose pose{0.2, -0.3, 0.12, 0.7, 0};
   const Pose from_world = hinge_frame(trocar, pose, geometry).inverse();
   double end = 0;
-  for (const SceneMesh& mesh : instrument_meshes(type, trocar, pose))
+  for (const SceneMesh& mesh : posed(instrument_model(type), trocar, pose))
     for (const Vec3& p : mesh.positions) end = std::max(end, (from_world * p).z());
   EXPECT_NEAR(end, geometry.jaw_length, 0.3e-3);
   EXPECT_NEAR((from_world * tip_position(trocar, pose, geometry)).z(), geometry.jaw_length, 1e-15);
@@ -54,7 +54,7 @@ TEST_P(InstrumentMesh, FacesTheWayItsTrianglesTurn) {
   // Back faces are not drawn: a normal against its triangle's turn would be a hole or a dark patch.
   const double jaw = 0.6 * geometry.jaw_opening;
   constexpr double sliver = -1e-18;  // m^2: where two rings close on a line the turn is rounding
-  for (const SceneMesh& mesh : instrument_meshes(type, Vec3::Zero(), {0.1, 0.2, 0.1, 0.3, jaw}))
+  for (const SceneMesh& mesh : posed(instrument_model(type), Vec3::Zero(), {0.1, 0.2, 0.1, 0.3, jaw}))
     for (const Triangle& t : mesh.triangles) {
       const Vec3& a = mesh.positions[t[0]];
       const Vec3 turn = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
@@ -69,7 +69,7 @@ TEST_P(InstrumentMesh, HasNoHoleButTheGraspersWindow) {
       geometry.jaw_length * (type == InstrumentType::atraumatic_grasper ? beyond_window : middle);
   const Vec3 from = hinge * Vec3(20e-3, 0, z), to = hinge * Vec3(-20e-3, 0, z);
   int met = 0;  // a line across enters and leaves at least once
-  for (const SceneMesh& mesh : instrument_meshes(type, trocar, {0, 0, 0.1, 0, 0}))
+  for (const SceneMesh& mesh : posed(instrument_model(type), trocar, {0, 0, 0.1, 0, 0}))
     for (const Triangle& t : mesh.triangles) {
       const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
       const auto side = [&](const Vec3& p, const Vec3& q) {
