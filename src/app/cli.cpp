@@ -35,12 +35,13 @@ struct Program {
   std::function<ExitCode()> chosen;
 };
 
-void add_threads(CLI::App& command, int& threads) {
+template <class Count>
+void add_threads(CLI::App& command, Count& threads) {
   command
       .add_option("--threads", threads, "threads that share the work of a step; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, most_threads))
-      ->capture_default_str();
+      ->default_str(std::to_string(usual_threads()));
 }
 
 void add_fail_below(CLI::App& command, std::optional<double>& points, const char* about) {
@@ -156,6 +157,11 @@ void add_operate(Program& program) {
       ->capture_default_str();
   add_new_session_options(command, operate);
   add_report_options(command, operate);
+  command.get_option("--threads")
+      ->description(
+          "threads that share the work of a step, one less where the processor draws a window unless said; "
+          "results do not "
+          "depend on it");
   command.footer(
       "Lines of input: pose T NAME pitch yaw insertion roll jaw [ACTION], tip T NAME x y z roll jaw "
       "[ACTION],\n"

@@ -15,8 +15,8 @@ namespace calot {
 
 /// Shared by the commands that play a session.
 struct SessionCommand {
-  int threads = usual_threads();
-  std::string output;  ///< folder
+  std::optional<int> threads;  ///< none: as many as is usual
+  std::string output;          ///< folder
   bool json = false, no_render = false;
   std::string size = "960x540";      ///< "WxH", px
   std::vector<double> at;            ///< s, of frames besides the scenario's own

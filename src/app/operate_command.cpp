@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <future>
 #include <iterator>
+#include <thread>
 
 #include "app/commands.h"
 #include "app/conclude.h"
@@ -65,10 +68,12 @@ struct Operation {
 Result<Played> attempts(Operation& operation) {
   PlayRequest& request = operation.request;
   for (int attempt = 0;; ++attempt) {
-    LiveSource source(operation.instruments, operation.mailbox, live_options(operation.command));
-    const LiveMode mode = source.figures().mode;
-    StepTeller teller(mode);
-    ViewMaker view(operation.latest, operation.exercise.time_limit, mode, source, attempt);
+    LiveOptions options = live_options(operation.command);
+    if (!operation.command.no_window) options.pictures = std::make_shared<LivePictures>();
+    LiveSource source(operation.instruments, operation.mailbox, options);
+    StepTeller teller(options.mode);
+    ViewMaker view(operation.latest, operation.exercise.time_limit, options.mode, source, options.pictures,
+                   attempt);
     request.live = &source;
     request.on_state = [&](const World& world, const Progress& progress) {
       teller.look(world, progress);
@@ -114,14 +119,30 @@ Result<OperateWindow> open_window(const Operation& operation, LiveMailbox& mailb
   return OperateWindow::open(std::move(options), mailbox);
 }
 
+/// Where a processor draws, pictures and steps share its cores, and a step whose second thread waits for a picture takes
+/// longer than one that has no second one.
+int threads_beside_pictures() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()) - 1, 1, usual_threads());
+}
+
+/// The library that draws in software takes as many threads as there are cores unless its environment says otherwise: it
+/// is left those that the steps do not take. To be said before other threads begin.
+void leave_cores_to_steps() {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const std::string left = std::to_string(std::max(1, cores - threads_beside_pictures()));
+  setenv("LP_NUM_THREADS", left.c_str(), 0);
+}
+
 /// The window has the main thread, as window systems want it; the session another.
 Result<Played> operate_in_window(Operation& operation) {
   Result<OperateWindow> window = open_window(operation, operation.mailbox);
   if (!window) return window.failure();
   log_info(fmt::format("Drawn by {}.", window->description()));
-  if (window->in_software())
+  if (window->in_software()) {
     log_info(
         "That is software: hands are asked once a picture, and a smaller one is faster: --size 480x270.");
+    operation.request.threads = operation.command.threads.value_or(threads_beside_pictures());
+  }
   std::future<Result<Played>> session = std::async(std::launch::async, [&] { return attempts(operation); });
   std::optional<Result<Played>> played;
   std::optional<Failure> broken;
@@ -215,7 +236,8 @@ ExitCode operate_command(const OperateCommand& command) {
   if (command.devices) return print_devices(command.json);
   PlayRequest request;
   request.scenario = command.scenario;
-  request.threads = command.threads;
+  request.threads = command.threads.value_or(usual_threads());
+  if (!command.no_window) leave_cores_to_steps();
   request.render = false;
   request.write = true;
   request.output = command.output;

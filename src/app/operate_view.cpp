@@ -40,6 +40,8 @@ void ViewMaker::look(const World& world, const Progress& progress) {
                            source_.is_drawn_back(static_cast<int>(i))});
   }
   view->hands.push_back({laparoscope_name, "", 0, 0, report.laparoscope.pose});
+  view->pictures = pictures_;
+  view->inputs = source_.take_unseen();
   latest_.put(std::move(view));
 }
 

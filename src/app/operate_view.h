@@ -12,8 +12,14 @@ namespace calot {
 class ViewMaker {
  public:
   /// The source must outlive it.
-  ViewMaker(LatestView& latest, double time_limit, LiveMode mode, const LiveSource& source, int attempt)
-      : latest_(latest), time_limit_(time_limit), mode_(mode), source_(source), attempt_(attempt) {}
+  ViewMaker(LatestView& latest, double time_limit, LiveMode mode, LiveSource& source,
+            std::shared_ptr<LivePictures> pictures, int attempt)
+      : latest_(latest),
+        time_limit_(time_limit),
+        mode_(mode),
+        source_(source),
+        pictures_(std::move(pictures)),
+        attempt_(attempt) {}
   /// To be told of every state; makes a view of it where the last one has been taken.
   void look(const World& world, const Progress& progress);
 
@@ -21,7 +27,8 @@ class ViewMaker {
   LatestView& latest_;
   double time_limit_;
   LiveMode mode_;
-  const LiveSource& source_;
+  LiveSource& source_;
+  std::shared_ptr<LivePictures> pictures_;
   int attempt_;
   std::optional<SceneBuilder> builder_;
 };

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 ExitCode run_command(const RunCommand& command) {
   PlayRequest request;
   request.scenario = command.scenario;
-  request.threads = command.threads;
+  request.threads = command.threads.value_or(usual_threads());
   request.render = !command.no_render;
   request.at = command.at;
   if (command.seed) request.seed = *command.seed;
@@ -50,7 +50,7 @@ ExitCode replay_command(const ReplayCommand& command) {
   if (!wrong && !scenario) wrong = scenario.failure();
   if (wrong) return print_failure(*wrong, "calot replay --help", command.json);
   request.scenario = scenario.value();
-  request.threads = command.threads;
+  request.threads = command.threads.value_or(usual_threads());
   request.params = recording->header.params;
   request.seed = recording->header.seed;
   request.replay = &recording.value();

@@ -124,6 +124,20 @@ void LiveMailbox::close() {
   room_.notify_all();
 }
 
+// ---- pictures
+
+void LivePictures::note_shown(const std::vector<double>& inputs) {
+  const std::scoped_lock lock(mutex_);
+  last_ = clock_.now();
+  if (shown_++ == 0) first_ = last_;
+  for (const double at : inputs) waits_.push_back(last_ - at);
+}
+
+LivePictures::Figures LivePictures::figures() const {
+  const std::scoped_lock lock(mutex_);
+  return {shown_, first_, last_, median(waits_), most(waits_)};
+}
+
 // ---- the source
 
 LiveSource::LiveSource(std::vector<LiveInstrument> instruments, LiveMailbox& mailbox, LiveOptions options,
@@ -319,6 +333,7 @@ void LiveSource::apply(const LiveInput& input, double at) {
     figures_.longest_silence = std::max(figures_.longest_silence, at - *last_input_);
   }
   last_input_ = fresh_ = at;
+  if (options_.pictures) unseen_.push_back(at);
   said_silence_ = false;
   if (lost_at_) set_paused(false, "The input is back.");
 }
@@ -437,6 +452,7 @@ LiveFigures LiveSource::figures() const {
   figures.wait_most = most(waits_);
   figures.state_median = median(states_);
   figures.state_most = most(states_);
+  if (options_.pictures) figures.pictures = options_.pictures->figures();
   return figures;
 }
 

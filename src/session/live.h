@@ -7,9 +7,11 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -102,6 +104,28 @@ class LiveMailbox {
   bool closed_ = false;
 };
 
+/// What was seen of a session's states, and how soon after the inputs that led to them: noted by who shows pictures, in
+/// another thread than the session's.
+class LivePictures {
+ public:
+  explicit LivePictures(LiveClock& clock = steady_clock()) : clock_(clock) {}
+  /// A state is seen now that is the first one to follow these inputs; each by when it came, s of the clock.
+  void note_shown(const std::vector<double>& inputs);
+  struct Figures {
+    int shown = 0;
+    double first = 0, last = 0;             ///< s of the clock, when they were shown
+    double wait_median = 0, wait_most = 0;  ///< s, from an input to the first picture that follows it
+  };
+  Figures figures() const;
+
+ private:
+  LiveClock& clock_;
+  mutable std::mutex mutex_;
+  int shown_ = 0;
+  double first_ = 0, last_ = 0;
+  std::vector<double> waits_;
+};
+
 struct LiveOptions {
   LiveMode mode = LiveMode::practice;
   /// The inputs' times decide in which step they count, and steps follow each other as fast as they can. Else a step
@@ -112,6 +136,7 @@ struct LiveOptions {
   double return_within = 30;    ///< s that a lost source has to come back, in practice
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> say;  ///< what the operator should know, as it happens
+  std::shared_ptr<LivePictures> pictures;       ///< of who shows the session; none: nobody does
 };
 
 /// How a live session went besides what happened in it. Times are of the clock, s.
@@ -128,6 +153,7 @@ struct LiveFigures {
   int following_steps = 0;     ///< in which an instrument had not reached what was asked: see most_tip_speed
   double wait_median = 0, wait_most = 0;    ///< from an input's coming to the step that takes it
   double state_median = 0, state_most = 0;  ///< from there to the state that it led to, pictures left out
+  std::optional<LivePictures::Figures> pictures;  ///< where they were shown
 };
 
 /// Takes the place of a demo. `next` waits until its step is due.
@@ -151,6 +177,9 @@ class LiveSource : public InputSource {
   LiveFigures figures() const;
   /// Whether an instrument goes back into its port for another one: what is asked of it does not count.
   bool is_drawn_back(int instrument) const;
+  /// When the inputs came that the present state is the first to follow: those since it was asked last. s of the clock;
+  /// kept only where pictures are shown.
+  std::vector<double> take_unseen() { return std::exchange(unseen_, {}); }
   bool wants_restart() const { return ended_by_ == "restart"; }
 
  private:
@@ -202,7 +231,7 @@ class LiveSource : public InputSource {
   bool running_ = false;         ///< a step was handed out
   bool said_silence_ = false;
   LiveFigures figures_;
-  std::vector<double> waits_, states_;
+  std::vector<double> waits_, states_, unseen_;
 };
 
 }  // namespace calot

@@ -70,6 +70,16 @@ OrderedJson timing_json(const SessionResult& session, double start_to_first_fram
   return json;
 }
 
+/// As many a second as there were while time did not stand still.
+OrderedJson pictures_json(const LiveFigures& live) {
+  if (!live.pictures) return {};
+  const LivePictures::Figures& seen = *live.pictures;
+  const double time = seen.last - seen.first - live.paused;
+  return {{"shown", seen.shown},
+          {"a_second", time > 0 ? OrderedJson((seen.shown - 1) / time) : OrderedJson()},
+          {"input_to_picture_s", {{"median", seen.wait_median}, {"most", seen.wait_most}}}};
+}
+
 OrderedJson operated_json(const LiveFigures& live) {
   return {{"mode", to_text(live.mode)},
           {"pacing", live.stamped ? "stamped" : "real_time"},
@@ -85,7 +95,8 @@ OrderedJson operated_json(const LiveFigures& live) {
           {"longest_step_s", live.longest_step},
           {"longest_silence_s", live.longest_silence},
           {"input_to_step_s", {{"median", live.wait_median}, {"most", live.wait_most}}},
-          {"input_to_state_s", {{"median", live.state_median}, {"most", live.state_most}}}};
+          {"input_to_state_s", {{"median", live.state_median}, {"most", live.state_most}}},
+          {"pictures", pictures_json(live)}};
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ struct LiveView {
   double step_time = 0, step_limit = 0;  ///< s; no limit: 0
   int step_number = 0;
   std::string last_event;
-  std::vector<HandView> hands;  ///< the laparoscope is the last
+  std::vector<HandView> hands;             ///< the laparoscope is the last
+  std::shared_ptr<LivePictures> pictures;  ///< to be told when this one is shown; may be null
+  std::vector<double> inputs;              ///< with these, see LivePictures::note_shown
 };
 
 /// One thread puts, another takes; what was not taken is replaced.

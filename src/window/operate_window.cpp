@@ -345,8 +345,9 @@ Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
   const double now = glfwGetTime();
   const double dt = std::min(now - self.last_turn, longest_turn);
   self.last_turn = now;
-  self.disturbed |= newest != nullptr;
-  if (newest) {
+  const bool is_new = newest != nullptr;
+  self.disturbed |= is_new;
+  if (is_new) {
     const Result<bool> drawn = self.renderer->draw(newest->scene);
     if (!drawn) return drawn.failure();
     self.state.pictures_a_second +=
@@ -367,6 +368,8 @@ Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
   self.disturbed = false;
   self.draw_frame();
   glfwSwapBuffers(self.window);
+  if (is_new && self.view->pictures && self.view->time > 0)
+    self.view->pictures->note_shown(self.view->inputs);
   return true;
 }
 

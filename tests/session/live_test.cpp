@@ -135,6 +135,32 @@ TEST(Live, TheNewestInputBeforeAStepIsTheOneThatCounts) {
   EXPECT_NEAR(figures.wait_most, 0.015, 0.0021) << "from 0.065 to 0.08 s";
 }
 
+TEST(Live, EveryInputWaitsForTheFirstPictureOfAStateThatFollowsIt) {
+  Rig rig;
+  rig.options.pictures = std::make_shared<LivePictures>(rig.clock);
+  for (const double time : {0.05, 0.055, 0.065}) rig.send_at(time, rig.input(1e-3));
+  rig.session.observer = [&](const World& world, const Progress&, bool) {
+    // Of the states that follow the inputs, at 0.08 s and 0.1 s, the first one is left out; the later ones have none new.
+    const double time = world.report().time;
+    if (time < 0.01 || std::abs(time - 0.08) < 1e-9) return;
+    rig.options.pictures->note_shown(rig.source->take_unseen());
+  };
+  rig.play(0.14);
+  const LivePictures::Figures seen = rig.source->figures().pictures.value();
+  EXPECT_EQ(seen.shown, 6) << "of seven states";
+  EXPECT_NEAR(seen.last - seen.first, 0.12, 0.0041) << "each is there when its step begins: 0 to 0.12 s";
+  EXPECT_NEAR(seen.wait_median, 0.025, 0.0021) << "from 0.055 to 0.08 s";
+  EXPECT_NEAR(seen.wait_most, 0.03, 0.0021) << "from 0.05 to 0.08 s";
+}
+
+TEST(Live, WhereNobodyShowsPicturesNoneAreCounted) {
+  Rig rig;
+  rig.send_at(0.05, rig.input(1e-3));
+  rig.play(0.14);
+  EXPECT_THAT(rig.source->take_unseen(), IsEmpty());
+  EXPECT_FALSE(rig.source->figures().pictures);
+}
+
 TEST(Live, TheClockBeginsWithTheFirstInputUnlessItBeginsAtOnce) {
   Rig rig;
   rig.options.begins_at_once = false;

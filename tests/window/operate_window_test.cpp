@@ -150,7 +150,12 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
   ASSERT_TRUE(window.turn(nullptr).value());
   EXPECT_THAT(taken(mailbox), testing::IsEmpty()) << "nobody has begun";
   window.go_on();
+  view->pictures = std::make_shared<LivePictures>();
+  view->time = 0.02;
+  view->inputs = {steady_clock().now() - 1};
   ASSERT_TRUE(window.turn(view).value());
+  EXPECT_EQ(view->pictures->figures().shown, 1);
+  EXPECT_GE(view->pictures->figures().wait_most, 1) << "the input came a second before the picture";
   std::vector<LiveEvent> events = taken(mailbox);
   ASSERT_EQ(events.size(), 1u);
   const LiveInput start = std::get<LiveInput>(events[0]);
@@ -158,6 +163,7 @@ TEST(Window, ShowsTheOffscreenPictureTurnsTheMouseIntoMotionPausesAndGivesUpWhen
 
   window.events().right = 30;
   ASSERT_TRUE(window.turn(nullptr).value());
+  EXPECT_EQ(view->pictures->figures().shown, 1) << "nothing new was there to be shown";
   events = taken(mailbox);
   ASSERT_EQ(events.size(), 1u);
   const LiveInstrument left = small_window().instruments[0];
