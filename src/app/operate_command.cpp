@@ -62,6 +62,7 @@ struct Operation {
   std::vector<LiveInstrument> instruments;
   LiveMailbox mailbox;
   LatestView latest;
+  SceneDetail detail = SceneDetail::full;
 };
 
 /// One attempt after another, each with its own recording, until one is not begun again.
@@ -72,8 +73,9 @@ Result<Played> attempts(Operation& operation) {
     if (!operation.command.no_window) options.pictures = std::make_shared<LivePictures>();
     LiveSource source(operation.instruments, operation.mailbox, options);
     StepTeller teller(options.mode);
-    ViewMaker view(operation.latest, operation.exercise.time_limit, options.mode, source, options.pictures,
-                   attempt);
+    ViewMaker view(
+        operation.latest, source,
+        {operation.exercise.time_limit, options.mode, operation.detail, options.pictures, attempt});
     request.live = &source;
     request.on_state = [&](const World& world, const Progress& progress) {
       teller.look(world, progress);
@@ -138,11 +140,13 @@ Result<Played> operate_in_window(Operation& operation) {
   Result<OperateWindow> window = open_window(operation, operation.mailbox);
   if (!window) return window.failure();
   log_info(fmt::format("Drawn by {}.", window->description()));
+  if (window->quality() == live_quality) operation.detail = SceneDetail::coarse;
   if (window->in_software()) {
     log_info(
         "That is software: hands are asked once a picture, and a smaller one is faster: --size 480x270.");
     operation.request.threads = operation.command.threads.value_or(threads_beside_pictures());
   }
+  operation.latest.when_put = OperateWindow::wake;
   std::future<Result<Played>> session = std::async(std::launch::async, [&] { return attempts(operation); });
   std::optional<Result<Played>> played;
   std::optional<Failure> broken;

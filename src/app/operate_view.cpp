@@ -18,16 +18,16 @@ void show_step(const Progress& progress, double time, LiveMode mode, LiveView& v
 }  // namespace
 
 void ViewMaker::look(const World& world, const Progress& progress) {
-  if (!builder_) builder_.emplace(world);
+  if (!builder_) builder_.emplace(world, options_.detail);
   builder_->follow(world);
   if (!latest_.wanted()) return;
   const StepReport& report = world.report();
   auto view = std::make_shared<LiveView>();
-  view->attempt = attempt_;
+  view->attempt = options_.attempt;
   view->scene = builder_->build(world);
   view->time = report.time;
-  view->time_limit = time_limit_;
-  show_step(progress, report.time, mode_, *view);
+  view->time_limit = options_.time_limit;
+  show_step(progress, report.time, options_.mode, *view);
   if (!progress.events().empty()) {
     const SessionEvent& event = progress.events().back();
     view->last_event = fmt::format("{} {} at {:.1f} s", to_text(event.kind), event.instrument, event.time);
@@ -40,7 +40,7 @@ void ViewMaker::look(const World& world, const Progress& progress) {
                            source_.is_drawn_back(static_cast<int>(i))});
   }
   view->hands.push_back({laparoscope_name, "", 0, 0, report.laparoscope.pose});
-  view->pictures = pictures_;
+  view->pictures = options_.pictures;
   view->inputs = source_.take_unseen();
   latest_.put(std::move(view));
 }

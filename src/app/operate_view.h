@@ -11,25 +11,23 @@ namespace calot {
 
 class ViewMaker {
  public:
+  struct Options {
+    double time_limit = 0;  ///< s
+    LiveMode mode = LiveMode::practice;
+    SceneDetail detail = SceneDetail::full;
+    std::shared_ptr<LivePictures> pictures;
+    int attempt = 0;
+  };
   /// The source must outlive it.
-  ViewMaker(LatestView& latest, double time_limit, LiveMode mode, LiveSource& source,
-            std::shared_ptr<LivePictures> pictures, int attempt)
-      : latest_(latest),
-        time_limit_(time_limit),
-        mode_(mode),
-        source_(source),
-        pictures_(std::move(pictures)),
-        attempt_(attempt) {}
+  ViewMaker(LatestView& latest, LiveSource& source, Options options)
+      : latest_(latest), source_(source), options_(std::move(options)) {}
   /// To be told of every state; makes a view of it where the last one has been taken.
   void look(const World& world, const Progress& progress);
 
  private:
   LatestView& latest_;
-  double time_limit_;
-  LiveMode mode_;
   LiveSource& source_;
-  std::shared_ptr<LivePictures> pictures_;
-  int attempt_;
+  Options options_;
   std::optional<SceneBuilder> builder_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -142,7 +143,7 @@ std::optional<Failure> OffscreenRenderer::Impl::build_targets() {
       quality.detail * 2 * lens.field_radius(height) * lens.inner_scale * lens.inner_extent(width, height);
   const int w = static_cast<int>(std::ceil(inner.x())), h = static_cast<int>(std::ceil(inner.y()));
   const std::pair<Target*, Result<Target>> made[] = {
-      {&shadow, make_shadow_target(gl, shadow_map_side)},
+      {&shadow, make_shadow_target(gl, quality.shadow)},
       {&drawn, make_multisample_target(gl, w, h, quality.samples)},
       {&resolved, make_resolved_target(gl, w, h)},
       {&occlusion, make_colour_target(gl, (w + 1) / 2, (h + 1) / 2)},
@@ -318,7 +319,15 @@ void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   set(lens_program, "field", Vec2(0.5 * width / radius, 0.5 * height / radius));
   set(lens_program, "extent", extent);
   gl.Uniform1f(at(lens_program, "barrel"), static_cast<float>(lens.barrel));
+  // In software a pixel outside the round field costs as much as one inside, though its shader returns at once.
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture.framebuffer);
+  gl.ClearColor(0, 0, 0, 1);
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  const int half = std::min(width / 2 + 1, static_cast<int>(std::ceil(radius)) + 1);
+  gl.Enable(GL_SCISSOR_TEST);
+  gl.Scissor(width / 2 - half, 0, 2 * half + 1, height);
   full_screen(lens_program, picture, {resolved.colour, smooth_occlusion.colour, glow.colour});
+  gl.Disable(GL_SCISSOR_TEST);
 }
 
 Image OffscreenRenderer::Impl::read(GLuint framebuffer, int left, int lower, int w, int h) const {
@@ -395,6 +404,8 @@ Image OffscreenRenderer::shown(int x, int y, int width, int height) const {
 }
 
 const Lens& OffscreenRenderer::lens() const { return impl_->lens; }
+
+const DrawQuality& OffscreenRenderer::quality() const { return impl_->quality; }
 
 std::string OffscreenRenderer::description() const {
   const auto text = [&](GLenum name) { return reinterpret_cast<const char*>(impl_->gl.GetString(name)); };

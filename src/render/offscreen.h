@@ -16,10 +16,12 @@ namespace calot {
 struct DrawQuality {
   int samples = 4;    ///< a pixel; 0: its middle alone
   double detail = 1;  ///< pixels along a side for one of golden images
+  int shadow = 640;   ///< pixels along a side of the light's view
+  bool operator==(const DrawQuality&) const = default;
 };
 inline constexpr DrawQuality golden_quality{};
 /// For who operates without a graphics card: a third of golden quality's time (tests/bench/frame_bench.cpp).
-inline constexpr DrawQuality live_quality{0, 0.6};
+inline constexpr DrawQuality live_quality{0, 0.6, 448};
 
 /// Same scene, same size and quality: same bytes, at any thread count. Use it from the thread that created it.
 class OffscreenRenderer {
@@ -46,6 +48,7 @@ class OffscreenRenderer {
   Image shown(int x, int y, int width, int height) const;
 
   const Lens& lens() const;
+  const DrawQuality& quality() const;
   /// What draws: "llvmpipe (LLVM 15.0.6, 128 bits), Mesa 22.3.6", for reports and golden images.
   std::string description() const;
 

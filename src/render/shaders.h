@@ -7,8 +7,6 @@
 
 namespace calot {
 
-inline constexpr int shadow_map_side = 640;  ///< px
-
 std::string scene_vertex_shader(Material material);
 std::string scene_fragment_shader(Material material);
 

@@ -79,21 +79,19 @@ double lobule_radius(const PlacedStrand& strand) {
 }
 
 std::vector<StrandLine> strand_lines(const Tissue& tissue, const std::vector<Organ>& organs) {
-  std::array<std::vector<Vec3>, 2> skins;
-  for (int k = 0; k < 2; ++k) {
-    const Organ& organ = organs[static_cast<std::size_t>(tissue.strands->bodies()[k])];
-    skins[k] = organ.body->skin_positions(organ.state.x);
-  }
-  const auto on_skin = [](const CarriedPlace& place, const std::vector<Vec3>& skin) {
+  // The few points that carry strands: a gallbladder's skin has 30 thousand.
+  const auto on_skin = [&](const CarriedPlace& place, std::size_t side) {
+    const Organ& organ = organs[static_cast<std::size_t>(tissue.strands->bodies()[side])];
     Vec3 out = Vec3::Zero();
-    for (std::size_t i = 0; i < place.points.size(); ++i) out += place.weights[i] * skin[place.points[i]];
+    for (std::size_t i = 0; i < place.points.size(); ++i)
+      out += place.weights[i] * organ.body->skin_point(place.points[i], organ.state.x);
     return out;
   };
   std::vector<StrandLine> out;
   for (const PlacedStrand& strand : tissue.strands->strands())
-    out.push_back({on_skin(strand.one, skins[0]),
+    out.push_back({on_skin(strand.one, 0),
                    tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(out.size())),
-                   on_skin(strand.other, skins[1])});
+                   on_skin(strand.other, 1)});
   return out;
 }
 

@@ -29,13 +29,38 @@ Material material_of(const OrganDefinition& organ) {
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(const World& world) : still_(still_meshes(world.scene())), moulds_(world) {
-  for (const InstrumentDefinition& instrument : world.scene().instruments)
-    instruments_.push_back(instrument_model(instrument.type));
+namespace {
+
+constexpr double coarse_error = 0.15e-3;  // m: a pixel of live quality sees 0.4 mm at 90 mm
+constexpr double coarse_share =
+    0.25;  // of a surface that bends: its triangles still are 1.3 mm long on a gallbladder
+
+void make_coarse(SceneMesh& mesh) {
+  if (!mesh.triangles.empty()) mesh = coarser(mesh, coarse_error, 0).mesh;
+}
+
+void make_coarse(InstrumentPart& part) {
+  make_coarse(part.steel);
+  make_coarse(part.insulation);
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(const World& world, SceneDetail detail)
+    : detail_(detail), still_(still_meshes(world.scene())), moulds_(world) {
+  const bool coarse = detail == SceneDetail::coarse;
+  if (coarse)
+    for (SceneMesh& mesh : still_) make_coarse(mesh);
+  for (const InstrumentDefinition& instrument : world.scene().instruments) {
+    InstrumentModel& model = instruments_.emplace_back(instrument_model(instrument.type));
+    if (!coarse) continue;
+    for (InstrumentPart* part : {&model.shaft, &model.jaws[0], &model.jaws[1]}) make_coarse(*part);
+  }
   for (const Organ& organ : world.field().organs) {
     const auto k = static_cast<std::size_t>(organ.record);
     if (k >= organs_.size()) organs_.resize(k + 1);
-    organs_[k] = organ_mesh(world, world.organ(organ.definition.name).value());
+    SceneMesh mesh = organ_mesh(world, world.organ(organ.definition.name).value());
+    organs_[k] = coarse ? coarser(mesh, coarse_error, coarse_share) : CoarseMesh{std::move(mesh), {}};
   }
 }
 
@@ -99,14 +124,18 @@ Scene SceneBuilder::build(const World& world) const {
   for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
     const auto record = static_cast<std::size_t>(world.field().organs[i].record);
     // One that came since is laid out anew for each picture: a duct or a stone takes no time.
-    SceneMesh mesh = record < organs_.size() ? organs_[record] : organ_mesh(world, static_cast<int>(i));
-    DrawnSkin skin = moulds_.skin(world, static_cast<int>(i));
-    mesh.positions = std::move(skin.positions);
-    mesh.normals = std::move(skin.normals);
-    mesh.burnt = burnt_shares(world.field().organs[i]);
-    scene.meshes.push_back(std::move(mesh));
+    CoarseMesh drawn =
+        record < organs_.size() ? organs_[record] : CoarseMesh{organ_mesh(world, static_cast<int>(i)), {}};
+    const int index = static_cast<int>(i);
+    DrawnSkin skin = drawn.kept.empty() ? moulds_.skin(world, index) : moulds_.skin(world, index, drawn);
+    drawn.mesh.positions = std::move(skin.positions);
+    drawn.mesh.normals = std::move(skin.normals);
+    drawn.mesh.burnt = burnt_shares(world.field().organs[i]);
+    if (!drawn.kept.empty() && !drawn.mesh.burnt.empty())
+      drawn.mesh.burnt = entries(drawn.mesh.burnt, drawn.kept);
+    scene.meshes.push_back(std::move(drawn.mesh));
   }
-  if (SceneMesh tissue = tissue_mesh(world); !tissue.triangles.empty())
+  if (SceneMesh tissue = tissue_mesh(world, detail_ == SceneDetail::coarse); !tissue.triangles.empty())
     scene.meshes.push_back(std::move(tissue));
   if (SceneMesh leaf = leaf_mesh(world); !leaf.triangles.empty()) scene.meshes.push_back(std::move(leaf));
   for (SceneMesh& mesh : spill_meshes(world)) scene.meshes.push_back(std::move(mesh));

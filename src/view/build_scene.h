@@ -2,15 +2,20 @@
 
 #include "render/scene.h"
 #include "sim/world.h"
+#include "view/coarse_mesh.h"
 #include "view/instrument_parts.h"
 #include "view/jaw_mould.h"
 
 namespace calot {
 
+/// How finely surfaces are laid out. Coarse ones are for pictures of live quality (render/offscreen.h): what they leave out
+/// is smaller than a pixel before the lens.
+enum class SceneDetail { full, coarse };
+
 /// What the laparoscope would see. Keeps what does not change from step to step; build one for a world.
 class SceneBuilder {
  public:
-  explicit SceneBuilder(const World& world);
+  explicit SceneBuilder(const World& world, SceneDetail detail = SceneDetail::full);
   /// To be told of every step, drawn or not: a picture shows something of the way to it (view/jaw_mould.h).
   void follow(const World& world) { moulds_.follow(world); }
   /// The picture of the world's present state. The laparoscope is where it was moved to, else where it stood at rest: a
@@ -18,10 +23,11 @@ class SceneBuilder {
   Scene build(const World& world) const;
 
  private:
+  SceneDetail detail_;
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
   /// All that does not move of an organ: material, rest positions, triangles, vessels.
   static SceneMesh organ_mesh(const World& world, int organ);
-  std::vector<SceneMesh> organs_;             // the scene's
+  std::vector<CoarseMesh> organs_;  // the scene's; of full ones all points are kept, and none is named
   std::vector<InstrumentModel> instruments_;  // the scene's
   JawMoulds moulds_;
 };

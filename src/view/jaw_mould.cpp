@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "sim/grip.h"
 #include "skin/free_form.h"
+#include "view/surfaces.h"
 
 namespace calot {
 namespace {
@@ -111,8 +113,9 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
   if (weight_ == 0) held_.clear();
 }
 
-void JawMould::apply(const Field& field, int instrument, int organ, std::vector<Vec3>& positions,
-                     std::vector<Vec3>& normals) const {
+void JawMould::apply(const Field& field, int instrument, int organ, const std::vector<int>& points,
+                     DrawnSkin& skin) const {
+  std::vector<Vec3>& positions = skin.positions;
   const int record = field.organs[organ].record;
   const auto of_organ = [&](const Held& held) { return held.record == record; };
   if (!active() || std::none_of(held_.begin(), held_.end(), of_organ)) return;
@@ -125,16 +128,24 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
   lattice.half.array() += around;
   lattice.nodes = {5, 7, 9};
   FreeForm form(lattice);
-  // The skin around what is held stays where it is.
-  std::vector<Vec3> ways(positions.size(), Vec3::Zero());
+  std::map<int, Vec3> ways;  // of skin points that are held
   for (const Held& held : held_)
     if (of_organ(held)) ways[held.skin_point] = smooth(weight_) * held.way;
   std::vector<Vec3> from, to;
+  const auto goes = [&](const Vec3& place, const Vec3& way) {
+    if (!form.contains(place)) return;
+    from.push_back(place);
+    to.push_back(place + way);
+  };
+  // The skin around what is held stays where it is.
   for (std::size_t p = 0; p < positions.size(); ++p) {
-    if (!form.contains(positions[p])) continue;
-    from.push_back(positions[p]);
-    to.push_back(positions[p] + ways[p]);
+    const auto held = ways.find(points.empty() ? static_cast<int>(p) : points[p]);
+    goes(positions[p], held != ways.end() ? held->second : Vec3(Vec3::Zero()));
+    if (held != ways.end()) ways.erase(held);
   }
+  // What is held is felt though it is not drawn.
+  const Organ& held_organ = field.organs[organ];
+  for (const auto& [point, way] : ways) goes(held_organ.body->skin_point(point, held_organ.state.x), way);
   // Neighbours on a fold come close to each other: without damping their small differences would be blown up.
   constexpr double damping = 0.06;
   if (!form.manipulate(from, to, damping)) return;  // finite and paired: it does not fail
@@ -146,7 +157,7 @@ void JawMould::apply(const Field& field, int instrument, int organ, std::vector<
     const std::optional<Vec3> place = solids.pushed_out(start + form.displacement(start), least);
     if (!place) continue;
     positions[p] = *place;
-    normals[p] = form.moved_normal(start, normals[p]);
+    if (!skin.normals.empty()) skin.normals[p] = form.moved_normal(start, skin.normals[p]);
   }
 }
 
@@ -165,7 +176,21 @@ DrawnSkin JawMoulds::skin(const World& world, int organ) const {
   // What is drawn around a line has no skin points to be moulded by.
   if (!world.field().organs[static_cast<std::size_t>(organ)].body->skin_radii().empty()) return skin;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
-    moulds_[i].apply(world.field(), static_cast<int>(i), organ, skin.positions, skin.normals);
+    moulds_[i].apply(world.field(), static_cast<int>(i), organ, {}, skin);
+  return skin;
+}
+
+DrawnSkin JawMoulds::skin(const World& world, int organ, const CoarseMesh& drawn) const {
+  const Organ& shown = world.field().organs[static_cast<std::size_t>(organ)];
+  if (!shown.body->skin_radii().empty()) {
+    const DrawnSkin whole = skin(world, organ);
+    return {entries(whole.positions, drawn.kept), entries(whole.normals, drawn.kept)};
+  }
+  DrawnSkin skin;
+  for (const int point : drawn.kept) skin.positions.push_back(shown.body->skin_point(point, shown.state.x));
+  for (std::size_t i = 0; i < moulds_.size(); ++i)
+    moulds_[i].apply(world.field(), static_cast<int>(i), organ, drawn.kept, skin);
+  skin.normals = mean_normals(skin.positions, drawn.mesh.triangles);
   return skin;
 }
 

@@ -10,6 +10,7 @@
 
 #include "sim/field.h"
 #include "sim/world.h"
+#include "view/coarse_mesh.h"
 
 namespace calot {
 
@@ -40,6 +41,10 @@ class Solids {
   std::vector<Part> parts_;
 };
 
+struct DrawnSkin {
+  std::vector<Vec3> positions, normals;  ///< m; unit, outward
+};
+
 /// The mould of one tool. Each held point has its way to go; after the tool has let go it keeps a share of it that
 /// fades, and the lattice stays where the jaws were. A tool that takes hold again within mould_ease jumps to the new fold's.
 class JawMould {
@@ -48,10 +53,10 @@ class JawMould {
   void follow(const Field& field, int instrument, double dt);
   bool active() const { return weight_ > 0; }
 
-  /// Moves an organ's drawn skin. A point that would come nearer to a solid than the pad's clearance, or than it
-  /// already is, slides along it.
-  void apply(const Field& field, int instrument, int organ, std::vector<Vec3>& positions,
-             std::vector<Vec3>& normals) const;
+  /// Moves an organ's drawn skin, or of it the points that are named (one a position), and its normals where there are
+  /// some. A point that would come nearer to a solid than the pad's clearance, or than it already is, slides along it.
+  void apply(const Field& field, int instrument, int organ, const std::vector<int>& points,
+             DrawnSkin& skin) const;
 
  private:
   struct Held {
@@ -64,10 +69,6 @@ class JawMould {
   double weight_ = 0;              ///< 0 to 1, linear in time
 };
 
-struct DrawnSkin {
-  std::vector<Vec3> positions, normals;  ///< m; unit, outward
-};
-
 /// The moulds of a world's tools.
 class JawMoulds {
  public:
@@ -76,6 +77,8 @@ class JawMoulds {
   void follow(const World& world);
   /// An organ's skin as it is drawn. Some milliseconds a holding tool.
   DrawnSkin skin(const World& world, int organ) const;
+  /// The same for an organ that is drawn coarsely: only the points that were kept, a quarter of the time.
+  DrawnSkin skin(const World& world, int organ, const CoarseMesh& drawn) const;
 
  private:
   std::vector<JawMould> moulds_;  ///< one a tool

@@ -1,5 +1,6 @@
 #include "view/surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,14 @@ Vec3 area_normal(const std::vector<Vec3>& points, const Triangle& t) {
 }
 
 }  // namespace
+
+std::vector<Vec3> mean_normals(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> normals(points.size(), Vec3::Zero());
+  for (const Triangle& t : triangles)
+    for (const int corner : t) normals[corner] += area_normal(points, t);
+  for (Vec3& n : normals) n.normalize();
+  return normals;
+}
 
 SceneMesh sheet(Material material, int columns, int rows,
                 const std::function<Vec3(double u, double v)>& place) {
@@ -26,10 +35,7 @@ SceneMesh sheet(Material material, int columns, int rows,
       mesh.triangles.push_back({a, b, d});
       mesh.triangles.push_back({a, d, c});
     }
-  mesh.normals.assign(mesh.positions.size(), Vec3::Zero());
-  for (const Triangle& t : mesh.triangles)
-    for (const int corner : t) mesh.normals[corner] += area_normal(mesh.positions, t);
-  for (Vec3& n : mesh.normals) n.normalize();
+  mesh.normals = mean_normals(mesh.positions, mesh.triangles);
   mesh.rest_positions = mesh.positions;
   return mesh;
 }
@@ -49,6 +55,7 @@ void give_creased_normals(SceneMesh& mesh, double crease) {
     lengths.push_back(face.back().norm());
     for (const int corner : mesh.triangles[t]) around[corner].push_back(static_cast<int>(t));
   }
+  std::vector<std::vector<int>> parts(mesh.positions.size());  // of the split mesh, by point
   SceneMesh split;
   split.material = mesh.material;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -58,10 +65,16 @@ void give_creased_normals(SceneMesh& mesh, double crease) {
       Vec3 normal = Vec3::Zero();
       for (const int other : around[point])
         if (face[other].dot(face[t]) >= cosine * lengths[other] * lengths[t]) normal += face[other];
-      corners[k] = static_cast<int>(split.positions.size());
+      normal.normalize();
+      std::vector<int>& known = parts[point];
+      const auto same =
+          std::find_if(known.begin(), known.end(), [&](int part) { return split.normals[part] == normal; });
+      corners[k] = same != known.end() ? *same : static_cast<int>(split.positions.size());
+      if (same != known.end()) continue;
+      known.push_back(corners[k]);
       split.positions.push_back(mesh.positions[point]);
       split.rest_positions.push_back(mesh.rest_positions[point]);
-      split.normals.push_back(normal.normalized());
+      split.normals.push_back(normal);
     }
     split.triangles.push_back(corners);
   }

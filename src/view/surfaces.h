@@ -12,6 +12,9 @@ namespace calot {
 SceneMesh sheet(Material material, int columns, int rows,
                 const std::function<Vec3(double u, double v)>& place);
 
+/// Unit, one a point: of the triangles around it, by their areas.
+std::vector<Vec3> mean_normals(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
+
 /// For closed surfaces: turns the triangles outward where they face inward. Normals from the triangles,
 /// averaged over triangles that meet at less than `crease` (rad); points are split where they do not. Rest
 /// positions move along.

@@ -24,13 +24,12 @@ double share_of(std::size_t strand, int lobule, int which) {
 }
 
 /// A ball with dents, about the origin, as thick as 1.
-const SceneMesh& dented_ball() {
-  static const SceneMesh mesh = sheet(Material::fat, 10, 7, [](double u, double v) {
+SceneMesh dented_ball(int columns, int rows) {
+  return sheet(Material::fat, columns, rows, [](double u, double v) {
     const double a = 2 * std::numbers::pi * u, b = std::numbers::pi * v;
     const Vec3 out(std::sin(b) * std::cos(a), -std::sin(b) * std::sin(a), std::cos(b));
     return Vec3((1 + 0.12 * std::sin(3 * out.x() + 4 * out.y()) * std::cos(3 * out.z())) * out);
   });
-  return mesh;
 }
 
 /// A place on a strand, and which way the strand goes there.
@@ -59,7 +58,7 @@ LobulePlace on_stump(const StrandLine& line, bool first, double share, double le
 
 /// Stretched along the strand, as lobules are; the volume stays.
 void add_lobule(const LobulePlace& place, double radius, double burnt, std::size_t strand, int lobule,
-                SceneMesh& out) {
+                const SceneMesh& form, SceneMesh& out) {
   const Vec3 &along = place.along, side = along.unitOrthogonal();
   const double longer = 1.1 + 0.5 * share_of(strand, lobule, 0), turned = 6 * share_of(strand, lobule, 1);
   const double thick = radius * (0.75 + 0.5 * share_of(strand, lobule, 2));
@@ -73,7 +72,6 @@ void add_lobule(const LobulePlace& place, double radius, double burnt, std::size
   const Vec3 pattern =
       11e-3 * Vec3(static_cast<double>(strand % 17), lobule, static_cast<double>(strand % 5));
   const int first = static_cast<int>(out.positions.size());
-  const SceneMesh& form = dented_ball();
   for (std::size_t i = 0; i < form.positions.size(); ++i) {
     out.positions.emplace_back(place.at + off_line + shape * form.positions[i]);
     out.normals.emplace_back((normal_shape * form.normals[i]).normalized());
@@ -85,7 +83,7 @@ void add_lobule(const LobulePlace& place, double radius, double burnt, std::size
 }
 
 void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::size_t first_strand,
-                SceneMesh& out) {
+                const SceneMesh& form, SceneMesh& out) {
   const std::vector<StrandLine> lines = strand_lines(tissue, organs);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const StrandLine& line = lines[k];
@@ -103,20 +101,21 @@ void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::siz
       const LobulePlace place =
           torn ? on_stump(line, first, 2 * (first ? share : 1 - share), torn_part * law.taut)
                : on_whole(line, share);
-      add_lobule(place, (1 - shrinks * burnt) * radius, burnt, first_strand + k, i, out);
+      add_lobule(place, (1 - shrinks * burnt) * radius, burnt, first_strand + k, i, form, out);
     }
   }
 }
 
 }  // namespace
 
-SceneMesh tissue_mesh(const World& world) {
+SceneMesh tissue_mesh(const World& world, bool coarse) {
+  static const SceneMesh fine_form = dented_ball(10, 7), coarse_form = dented_ball(6, 3);
   SceneMesh out;
   out.material = Material::fat;
   const Field& field = world.field();
   std::size_t strands = 0;
   for (const Tissue& tissue : field.tissues) {
-    add_tissue(tissue, field.organs, strands, out);
+    add_tissue(tissue, field.organs, strands, coarse ? coarse_form : fine_form, out);
     strands += tissue.strands->strands().size();
   }
   return out;

@@ -7,7 +7,8 @@
 
 namespace calot {
 
-/// All tissue of a world as it is now; no triangles where there is none.
-SceneMesh tissue_mesh(const World& world);
+/// All tissue of a world as it is now; no triangles where there is none. Coarse: a quarter of the triangles a lobule, and
+/// for the rest the same.
+SceneMesh tissue_mesh(const World& world, bool coarse = false);
 
 }  // namespace calot

@@ -1,6 +1,7 @@
 #pragma once
 // What a window shows of a session that runs in another thread: plain data, the newest only.
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -35,9 +36,13 @@ struct LiveView {
 /// One thread puts, another takes; what was not taken is replaced.
 class LatestView {
  public:
+  std::function<void()> when_put;  ///< wakes who takes; to be set before anything is put
   void put(std::shared_ptr<const LiveView> view) {
-    const std::scoped_lock lock(mutex_);
-    view_ = std::move(view);
+    {
+      const std::scoped_lock lock(mutex_);
+      view_ = std::move(view);
+    }
+    if (when_put) when_put();
   }
   /// None where there is none since the last time.
   std::shared_ptr<const LiveView> take() {

@@ -382,6 +382,7 @@ void OperateWindow::set_result(const std::string& lines) {
 
 WindowEvents& OperateWindow::events() { return impl_->events; }
 void OperateWindow::go_on() { impl_->go_on(); }
+void OperateWindow::wake() { glfwPostEmptyEvent(); }
 void OperateWindow::close() { glfwSetWindowShouldClose(impl_->window, GLFW_TRUE); }
 
 Image OperateWindow::shown() const {
@@ -393,6 +394,8 @@ Image OperateWindow::shown() const {
 }
 
 bool OperateWindow::in_software() const { return impl_->in_software; }
+
+const DrawQuality& OperateWindow::quality() const { return impl_->renderer->quality(); }
 
 std::string OperateWindow::description() const { return impl_->renderer->description(); }
 

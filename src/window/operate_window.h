@@ -55,12 +55,15 @@ class OperateWindow {
   WindowEvents& events();
   /// As the menu's first button does.
   void go_on();
+  /// Ends a turn that waits for something to happen; from any thread.
+  static void wake();
   /// As who closes the window.
   void close();
   /// The window's picture as it is shown, without the panel.
   Image shown() const;
   std::string description() const;  ///< what draws
   bool in_software() const;         ///< a processor does, no graphics card
+  const DrawQuality& quality() const;
 
  private:
   struct Impl;

@@ -19,18 +19,18 @@ SceneDefinition standard() {
   return scene;
 }
 
-void frame(benchmark::State& state, const DrawQuality& quality) {
+void frame(benchmark::State& state, const DrawQuality& quality, SceneDetail detail) {
   const World world = World::create(standard()).value();
-  SceneBuilder builder(world);
+  SceneBuilder builder(world, detail);
   OffscreenRenderer renderer = OffscreenRenderer::create(960, 540, quality).value();
   for (auto _ : state)
     if (!renderer.render(builder.build(world))) return state.SkipWithError("no picture");
 }
-BENCHMARK_CAPTURE(frame, golden, golden_quality)
+BENCHMARK_CAPTURE(frame, golden, golden_quality, SceneDetail::full)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(frame, live, live_quality)
+BENCHMARK_CAPTURE(frame, live, live_quality, SceneDetail::coarse)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();

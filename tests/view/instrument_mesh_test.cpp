@@ -1,6 +1,8 @@
 #include "view/instrument_mesh.h"
 
 #include <algorithm>
+#include <array>
+#include <set>
 
 #include "base/rng.h"
 #include "collision/shapes.h"
@@ -60,6 +62,23 @@ TEST_P(InstrumentMesh, FacesTheWayItsTrianglesTurn) {
       const Vec3 turn = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
       for (const int corner : t) EXPECT_GE(turn.dot(mesh.normals[corner]), sliver);
     }
+}
+
+TEST_P(InstrumentMesh, SplitsPointsOnlyWhereNormalsDiffer) {
+  const InstrumentModel model = instrument_model(*instrument_type_called(GetParam()));
+  for (const InstrumentPart* part : {&model.shaft, &model.jaws[0], &model.jaws[1]}) {
+    std::set<std::array<double, 6>> known;
+    std::size_t points = 0;
+    for (const SceneMesh* mesh : {&part->steel, &part->insulation}) {
+      points += mesh->positions.size();
+      for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
+        const Vec3 &p = mesh->positions[i], &n = mesh->normals[i];
+        known.insert({p.x(), p.y(), p.z(), n.x(), n.y(), n.z()});
+      }
+    }
+    // Bodies that are turned close on themselves, and their first points lie on their last ones.
+    EXPECT_GE(static_cast<double>(known.size()), 0.85 * static_cast<double>(points));
+  }
 }
 
 TEST_P(InstrumentMesh, HasNoHoleButTheGraspersWindow) {

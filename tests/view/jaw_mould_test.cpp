@@ -89,6 +89,30 @@ TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
   }
 }
 
+TEST_P(JawMouldGrasp, ASkinOfFewerPointsIsMouldedAndKeepsOutOfTheInstrumentToo) {
+  test::FundusPath path(test::with_strong_jaws(test::scene_with(type)));
+  JawMoulds moulds(path.world);
+  path.driver.watch = [&](const StepReport&) { moulds.follow(path.world); };
+  ASSERT_TRUE(path.grasp() && path.driver.stay(12)) << path.driver.why();
+  SceneMesh fine;
+  fine.rest_positions = path.world.drawn_rest(0);
+  fine.triangles = path.world.drawn_triangles(0);
+  const CoarseMesh coarse = coarser(fine, 1, 0.25);
+  const DrawnSkin drawn = moulds.skin(path.world, 0, coarse);
+  const std::vector<Vec3> touched = entries(path.world.skin_positions(0), coarse.kept);
+  ASSERT_EQ(drawn.positions.size(), touched.size());
+  EXPECT_LT(touched.size(), fine.rest_positions.size() / 3);
+  EXPECT_GT(largest_way(drawn.positions, touched), 0.1e-3);
+  EXPECT_LT(largest_way(drawn.positions, touched), 0.5e-3 + window_bulge + pad_clearance);
+  const Solids solids(tools_only(tool_of(path.world)));
+  for (std::size_t p = 0; p < touched.size(); ++p) {
+    EXPECT_NEAR(drawn.normals[p].norm(), 1, 1e-12);
+    if (drawn.positions[p] == touched[p]) continue;
+    EXPECT_GE(solids.distance(drawn.positions[p]),
+              std::min(pad_clearance, solids.distance(touched[p])) - 2e-9);
+  }
+}
+
 TEST_P(JawMouldGrasp, KeepsOutOfTheInstrumentComesAndGoesWithoutAJumpAndLeavesNothingBehind) {
   test::FundusPath path(test::scene_with(type));
   JawMoulds moulds(path.world), told_twice(path.world);
