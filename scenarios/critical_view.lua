@@ -77,6 +77,7 @@ local function clumsy(t)
   t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
   clips.enter()
   clips.set_clips("common_duct", { 0.3 }, 36 * deg, 4.5 * mm)
+  t.applier:move_to({ 15 * mm, 110 * mm, -85 * mm }, { speed = 100 * mm / s }) -- over the omentum
   t.applier:fire()
   cuts.enter()
   t.blades:open(36 * deg)
@@ -206,6 +207,6 @@ return calot.exercise {
   },
 
   golden = {
-    at = { 0, 8.5 * s, 10.4 * s, 13.8 * s, 17.6 * s, 19.6 * s, 36.9 * s, 39.4 * s, 45.7 * s, 54.4 * s, 61.6 * s },
+    at = { 0, 8.5 * s, 10.4 * s, 13.8 * s, 17.6 * s, 19.6 * s, 36.9 * s, 39.4 * s, 45.7 * s, 54.46 * s, 61.6 * s },
   },
 }

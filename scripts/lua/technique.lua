@@ -63,7 +63,7 @@ end
 --- force that ends its way down; wanted(strand), if given, those that are taken; is_done(), if given, asked before each
 --- strand; keep_off, a place that current keeps off: beside it the heel comes down first, and the foot points away.
 function technique.take(t, hook, tissue, how)
-  local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.5 * mm, 1.5 * mm, -0.5 * mm }
+  local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, 1.5 * mm, -0.5 * mm }
   local wanted = how.wanted or function() return true end
   local missed = 0
   while missed < 9 and not (how.is_done and how.is_done()) do

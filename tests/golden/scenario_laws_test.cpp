@@ -79,6 +79,8 @@ TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
   EXPECT_EQ(played->session.end, SessionEnd::steps_done) << to_text(played->session.failure);
   EXPECT_TRUE(played->report.score.passed) << "its own demo is the expert's";
   EXPECT_GT(played->report.score.total, 95) << "by which its benchmarks are set";
+  for (const SessionEvent& event : played->session.progress.events())
+    EXPECT_FALSE(event_row(event.kind).error) << to_text(event.kind) << " at " << event.time << " s";
   EXPECT_EQ(watch.strongest > 1.0, GetParam().pulls) << "without traction the laws below say little";
   EXPECT_LT(watch.deepest, 0.1e-3);
   EXPECT_LT(watch.swelling, 1e-9);
