@@ -16,8 +16,6 @@ local ports = {
 }
 -- Where the fundus goes: towards the patient's right shoulder, over the liver.
 local up = { -0.33, 0.6, 0.73 }
--- Graspers' jaws are opened as far as a fold needs.
-local wide = 45 * deg
 local lower_part = 0.4 -- of the gallbladder's way: its lower third in this field, from where its bed begins
 
 -- Calot's own triangle, whose upper side is the cystic artery: there is the tissue.
@@ -79,7 +77,7 @@ local function clumsy(t)
   t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
   clips.enter()
   clips.set_clips("common_duct", { 0.3 }, 36 * deg, 4.5 * mm)
-  t.applier:move_to({ 15 * mm, 110 * mm, -85 * mm }, { speed = 100 * mm / s }) -- over the omentum
+  t.applier:move_to({ 15 * mm, 110 * mm, -85 * mm }, { speed = 100 * mm / s }) -- it will lie on the omentum, in view
   t.applier:fire()
   cuts.enter()
   t.blades:open(36 * deg)
@@ -126,7 +124,8 @@ return calot.exercise {
         blades = { type = "scissors", port = "epigastric", waits = true },
       },
       laparoscope = { port = "scope", angle = 30 * deg, look_at = "cystic_duct.start", distance = 78 * mm },
-      -- Hands that draw on tissue are slow: 50 steps a second change peak forces on organs by less than 1 %, the hook's by 8.
+      -- Hands that draw on tissue are slow: 25 steps a second change the graspers' peak forces by less than 1 % of
+      -- what 50 give, the hook's by 8 %.
       solver = { motion = "dynamic", rate = 25 },
     }
   end,
@@ -166,12 +165,10 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
-    t.fundus:open(wide)
     t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
     t.fundus:close()
     t.fundus:move_by({ -6.5 * mm, 12.3 * mm, 14.5 * mm }, { speed = 8 * mm / s })
     t:together(function()
-      t.left:open(wide)
       t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })
       t.left:close()
       t.left:move_by({ -16 * mm, -18 * mm, 5 * mm }, { speed = 8 * mm / s })
@@ -212,6 +209,8 @@ return calot.exercise {
   },
 
   golden = {
-    at = { 0, 12.4 * s, 13.72 * s, 17.84 * s, 21.16 * s, 24.04 * s, 39.72 * s, 42.24 * s, 48.52 * s, 57.24 * s, 64.44 * s },
+    at = {
+      0, 11.36 * s, 12.68 * s, 16.8 * s, 20.12 * s, 23 * s, 38.68 * s, 41.2 * s, 47.48 * s, 56.2 * s, 63.4 * s,
+    },
   },
 }

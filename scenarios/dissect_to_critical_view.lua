@@ -76,7 +76,7 @@ return calot.exercise {
         hook = { type = "l_hook", port = "epigastric", force_limit = 3 * N, power = 40 },
       },
       laparoscope = { port = "scope", angle = 30 * deg, look_at = "cystic_duct.middle", distance = 75 * mm },
-      solver = { motion = "dynamic" },
+      solver = { motion = "dynamic", rate = 25 }, -- as critical_view.lua
     }
   end,
 
@@ -109,7 +109,7 @@ return calot.exercise {
     t:together(function()
       t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })
       t.left:close()
-      t.left:move_by({ -14 * mm, -13 * mm, 3 * mm }, { speed = 15 * mm / s })
+      t.left:move_by({ -14 * mm, -13 * mm, 3 * mm }, { speed = 8 * mm / s })
     end, function()
       t.hook:rotate(180 * deg, { speed = 400 * deg / s }) -- its foot points to the patient's right
       t.hook:move_to({ -30 * mm, 120 * mm, -80 * mm }, { speed = 60 * mm / s })
@@ -140,5 +140,5 @@ return calot.exercise {
     pass = 80,
   },
 
-  golden = { at = { 3.6 * s, 12 * s, 24 * s, 28.2 * s } },
+  golden = { at = { 4.8 * s, 13.2 * s, 27.2 * s, 31.32 * s } },
 }

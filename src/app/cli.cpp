@@ -35,6 +35,7 @@ struct Program {
   std::function<ExitCode()> chosen;
 };
 
+/// Count: an int, or an optional one.
 template <class Count>
 void add_threads(CLI::App& command, Count& threads) {
   command
@@ -149,7 +150,7 @@ void add_operate(Program& program) {
   command
       .add_option(
           "--quality", operate.quality,
-          "of the picture: live or golden, as fine as golden images and three times as slow (default: live "
+          "of the picture: live or golden, as fine as golden images and five times as slow (default: live "
           "where no graphics card draws, else golden)")
       ->check(CLI::IsMember({"live", "golden"}));
   command.add_option("--size", operate.size, "size of the picture before it is scaled to the window, px")
@@ -159,9 +160,7 @@ void add_operate(Program& program) {
   add_report_options(command, operate);
   command.get_option("--threads")
       ->description(
-          "threads that share the work of a step, one less where the processor draws a window unless said; "
-          "results do not "
-          "depend on it");
+          "threads that share the work of a step; where the processor draws the window, one on two cores");
   command.footer(
       "Lines of input: pose T NAME pitch yaw insertion roll jaw [ACTION], tip T NAME x y z roll jaw "
       "[ACTION],\n"

@@ -15,7 +15,7 @@ namespace calot {
 
 /// Shared by the commands that play a session.
 struct SessionCommand {
-  std::optional<int> threads;  ///< none: as many as is usual
+  std::optional<int> threads;  ///< none: as many as is usual, or, beside a window drawn in software, as fit
   std::string output;          ///< folder
   bool json = false, no_render = false;
   std::string size = "960x540";      ///< "WxH", px

@@ -129,9 +129,9 @@ int threads_beside_pictures() {
 
 /// The library that draws in software takes as many threads as there are cores unless its environment says otherwise: it
 /// is left those that the steps do not take. To be said before other threads begin.
-void leave_cores_to_steps() {
+void leave_cores_to_steps(int threads) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  const std::string left = std::to_string(std::max(1, cores - threads_beside_pictures()));
+  const std::string left = std::to_string(std::max(1, cores - threads));
   setenv("LP_NUM_THREADS", left.c_str(), 0);
 }
 
@@ -241,7 +241,7 @@ ExitCode operate_command(const OperateCommand& command) {
   PlayRequest request;
   request.scenario = command.scenario;
   request.threads = command.threads.value_or(usual_threads());
-  if (!command.no_window) leave_cores_to_steps();
+  if (!command.no_window) leave_cores_to_steps(command.threads.value_or(threads_beside_pictures()));
   request.render = false;
   request.write = true;
   request.output = command.output;

@@ -42,6 +42,7 @@ void ViewMaker::look(const World& world, const Progress& progress) {
   view->hands.push_back({laparoscope_name, "", 0, 0, report.laparoscope.pose});
   view->pictures = options_.pictures;
   view->inputs = source_.take_unseen();
+  view->paused = source_.paused();
   latest_.put(std::move(view));
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -323,7 +322,7 @@ void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture.framebuffer);
   gl.ClearColor(0, 0, 0, 1);
   gl.Clear(GL_COLOR_BUFFER_BIT);
-  const int half = std::min(width / 2 + 1, static_cast<int>(std::ceil(radius)) + 1);
+  const int half = static_cast<int>(std::ceil(radius)) + 1;
   gl.Enable(GL_SCISSOR_TEST);
   gl.Scissor(width / 2 - half, 0, 2 * half + 1, height);
   full_screen(lens_program, picture, {resolved.colour, smooth_occlusion.colour, glow.colour});

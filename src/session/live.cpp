@@ -126,16 +126,17 @@ void LiveMailbox::close() {
 
 // ---- pictures
 
-void LivePictures::note_shown(const std::vector<double>& inputs) {
+void LivePictures::note_shown(const std::vector<double>& inputs, double paused) {
   const std::scoped_lock lock(mutex_);
   last_ = clock_.now();
-  if (shown_++ == 0) first_ = last_;
+  if (shown_++ == 0) begun_ = last_ - paused;
+  running_ = last_ - paused - begun_;
   for (const double at : inputs) waits_.push_back(last_ - at);
 }
 
 LivePictures::Figures LivePictures::figures() const {
   const std::scoped_lock lock(mutex_);
-  return {shown_, first_, last_, median(waits_), most(waits_)};
+  return {shown_, running_, median(waits_), most(waits_)};
 }
 
 // ---- the source
@@ -333,7 +334,7 @@ void LiveSource::apply(const LiveInput& input, double at) {
     figures_.longest_silence = std::max(figures_.longest_silence, at - *last_input_);
   }
   last_input_ = fresh_ = at;
-  if (options_.pictures) unseen_.push_back(at);
+  if (options_.pictures && !paused_) unseen_.push_back(at);
   said_silence_ = false;
   if (lost_at_) set_paused(false, "The input is back.");
 }

@@ -109,11 +109,12 @@ class LiveMailbox {
 class LivePictures {
  public:
   explicit LivePictures(LiveClock& clock = steady_clock()) : clock_(clock) {}
-  /// A state is seen now that is the first one to follow these inputs; each by when it came, s of the clock.
-  void note_shown(const std::vector<double>& inputs);
+  /// A state is seen now that is the first one to follow these inputs; each by when it came, s of the clock. Until then the
+  /// session had stood still for `paused` in all, s.
+  void note_shown(const std::vector<double>& inputs, double paused = 0);
   struct Figures {
     int shown = 0;
-    double first = 0, last = 0;             ///< s of the clock, when they were shown
+    double running = 0;                     ///< s, from the first to the last of them, pauses left out
     double wait_median = 0, wait_most = 0;  ///< s, from an input to the first picture that follows it
   };
   Figures figures() const;
@@ -122,7 +123,7 @@ class LivePictures {
   LiveClock& clock_;
   mutable std::mutex mutex_;
   int shown_ = 0;
-  double first_ = 0, last_ = 0;
+  double last_ = 0, begun_ = 0, running_ = 0;
   std::vector<double> waits_;
 };
 
@@ -177,9 +178,11 @@ class LiveSource : public InputSource {
   LiveFigures figures() const;
   /// Whether an instrument goes back into its port for another one: what is asked of it does not count.
   bool is_drawn_back(int instrument) const;
-  /// When the inputs came that the present state is the first to follow: those since it was asked last. s of the clock;
-  /// kept only where pictures are shown.
+  /// When the inputs came that the present state is the first to follow: those since it was asked last, but for those that
+  /// came while it stood still. s of the clock; kept only where pictures are shown.
   std::vector<double> take_unseen() { return std::exchange(unseen_, {}); }
+  /// How long it has stood still until now, s.
+  double paused() const { return figures_.paused; }
   bool wants_restart() const { return ended_by_ == "restart"; }
 
  private:

@@ -70,33 +70,33 @@ OrderedJson timing_json(const SessionResult& session, double start_to_first_fram
   return json;
 }
 
-/// As many a second as there were while time did not stand still.
-OrderedJson pictures_json(const LiveFigures& live) {
-  if (!live.pictures) return {};
-  const LivePictures::Figures& seen = *live.pictures;
-  const double time = seen.last - seen.first - live.paused;
-  return {{"shown", seen.shown},
-          {"a_second", time > 0 ? OrderedJson((seen.shown - 1) / time) : OrderedJson()},
-          {"input_to_picture_s", {{"median", seen.wait_median}, {"most", seen.wait_most}}}};
+OrderedJson pictures_json(const LivePictures::Figures& seen, bool stamped) {
+  const bool some = seen.running > 0;
+  OrderedJson json{{"shown", seen.shown},
+                   {"a_second", some ? OrderedJson((seen.shown - 1) / seen.running) : OrderedJson()}};
+  // By their stamps inputs come long before their time.
+  if (!stamped) json["input_to_picture_s"] = {{"median", seen.wait_median}, {"most", seen.wait_most}};
+  return json;
 }
 
 OrderedJson operated_json(const LiveFigures& live) {
-  return {{"mode", to_text(live.mode)},
-          {"pacing", live.stamped ? "stamped" : "real_time"},
-          {"ended_by", live.ended_by.empty() ? OrderedJson() : OrderedJson(live.ended_by)},
-          {"inputs", live.inputs},
-          {"refused_inputs", live.refused},
-          {"held_up_inputs", live.full},
-          {"following_steps", live.following_steps},
-          {"pauses", live.pauses},
-          {"paused_s", live.paused},
-          {"slowed_steps", live.slowed_steps},
-          {"slowed_s", live.slowed},
-          {"longest_step_s", live.longest_step},
-          {"longest_silence_s", live.longest_silence},
-          {"input_to_step_s", {{"median", live.wait_median}, {"most", live.wait_most}}},
-          {"input_to_state_s", {{"median", live.state_median}, {"most", live.state_most}}},
-          {"pictures", pictures_json(live)}};
+  OrderedJson json{{"mode", to_text(live.mode)},
+                   {"pacing", live.stamped ? "stamped" : "real_time"},
+                   {"ended_by", live.ended_by.empty() ? OrderedJson() : OrderedJson(live.ended_by)},
+                   {"inputs", live.inputs},
+                   {"refused_inputs", live.refused},
+                   {"held_up_inputs", live.full},
+                   {"following_steps", live.following_steps},
+                   {"pauses", live.pauses},
+                   {"paused_s", live.paused},
+                   {"slowed_steps", live.slowed_steps},
+                   {"slowed_s", live.slowed},
+                   {"longest_step_s", live.longest_step},
+                   {"longest_silence_s", live.longest_silence},
+                   {"input_to_step_s", {{"median", live.wait_median}, {"most", live.wait_most}}},
+                   {"input_to_state_s", {{"median", live.state_median}, {"most", live.state_most}}}};
+  if (live.pictures) json["pictures"] = pictures_json(*live.pictures, live.stamped);
+  return json;
 }
 
 }  // namespace

@@ -27,13 +27,10 @@ Material material_of(const OrganDefinition& organ) {
   return materials[shape.index()];
 }
 
-}  // namespace
-
-namespace {
-
-constexpr double coarse_error = 0.15e-3;  // m: a pixel of live quality sees 0.4 mm at 90 mm
-constexpr double coarse_share =
-    0.25;  // of a surface that bends: its triangles still are 1.3 mm long on a gallbladder
+// m: a pixel of live quality sees 0.4 mm at 90 mm.
+constexpr double coarse_error = 0.15e-3;
+// Of the triangles of a surface that bends: they still are 1.3 mm long on a gallbladder.
+constexpr double coarse_share = 0.25;
 
 void make_coarse(SceneMesh& mesh) {
   if (!mesh.triangles.empty()) mesh = coarser(mesh, coarse_error, 0).mesh;
@@ -60,22 +57,29 @@ SceneBuilder::SceneBuilder(const World& world, SceneDetail detail)
     const auto k = static_cast<std::size_t>(organ.record);
     if (k >= organs_.size()) organs_.resize(k + 1);
     SceneMesh mesh = organ_mesh(world, world.organ(organ.definition.name).value());
-    organs_[k] = coarse ? coarser(mesh, coarse_error, coarse_share) : CoarseMesh{std::move(mesh), {}};
+    // Of what is drawn around a line no point is a skin's, and there are few.
+    if (!coarse || !organ.body->skin_radii().empty()) {
+      organs_[k].mesh = std::move(mesh);
+      continue;
+    }
+    CoarseMesh fewer = coarser(mesh, coarse_error, coarse_share);
+    organs_[k] = {std::move(fewer.mesh), std::move(fewer.kept)};
   }
 }
 
 namespace {
 
-/// One a drawn point; none where nothing is burnt.
-std::vector<double> burnt_shares(const Organ& organ) {
+/// One a drawn point, or one of each of these (null: all); none where nothing is burnt.
+std::vector<double> burnt_shares(const Organ& organ, const std::vector<int>* points) {
   constexpr double wide = 1.6e-3;  // m, of a burn: the electrode's foot and what it heats around (d)
   if (organ.burns.empty()) return {};
-  const std::vector<Vec3>& rest = organ.body->drawn_rest();
+  const std::vector<Vec3>& all = organ.body->drawn_rest();
+  const std::vector<Vec3> rest = points == nullptr ? all : entries(all, *points);
   std::vector<double> shares(rest.size(), 0.0);
   for (const Burn& burn : organ.burns) {
     const double most = std::min(1.0, burn.energy / organ.definition.wall.burn_energy);
     for (std::size_t i = 0; i < rest.size(); ++i) {
-      const double squared = (rest[i] - rest[burn.point]).squaredNorm() / (wide * wide);
+      const double squared = (rest[i] - all[burn.point]).squaredNorm() / (wide * wide);
       shares[i] = std::min(1.0, shares[i] + most * std::exp(-squared));
     }
   }
@@ -124,18 +128,16 @@ Scene SceneBuilder::build(const World& world) const {
   for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
     const auto record = static_cast<std::size_t>(world.field().organs[i].record);
     // One that came since is laid out anew for each picture: a duct or a stone takes no time.
-    CoarseMesh drawn =
-        record < organs_.size() ? organs_[record] : CoarseMesh{organ_mesh(world, static_cast<int>(i)), {}};
     const int index = static_cast<int>(i);
-    DrawnSkin skin = drawn.kept.empty() ? moulds_.skin(world, index) : moulds_.skin(world, index, drawn);
+    OrganMesh drawn = record < organs_.size() ? organs_[record] : OrganMesh{organ_mesh(world, index), {}};
+    DrawnSkin skin = drawn.kept ? moulds_.skin(world, index, *drawn.kept, drawn.mesh.triangles)
+                                : moulds_.skin(world, index);
     drawn.mesh.positions = std::move(skin.positions);
     drawn.mesh.normals = std::move(skin.normals);
-    drawn.mesh.burnt = burnt_shares(world.field().organs[i]);
-    if (!drawn.kept.empty() && !drawn.mesh.burnt.empty())
-      drawn.mesh.burnt = entries(drawn.mesh.burnt, drawn.kept);
+    drawn.mesh.burnt = burnt_shares(world.field().organs[i], drawn.kept ? &*drawn.kept : nullptr);
     scene.meshes.push_back(std::move(drawn.mesh));
   }
-  if (SceneMesh tissue = tissue_mesh(world, detail_ == SceneDetail::coarse); !tissue.triangles.empty())
+  if (SceneMesh tissue = tissue_mesh(world, detail_); !tissue.triangles.empty())
     scene.meshes.push_back(std::move(tissue));
   if (SceneMesh leaf = leaf_mesh(world); !leaf.triangles.empty()) scene.meshes.push_back(std::move(leaf));
   for (SceneMesh& mesh : spill_meshes(world)) scene.meshes.push_back(std::move(mesh));

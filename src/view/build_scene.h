@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "render/scene.h"
 #include "sim/world.h"
 #include "view/coarse_mesh.h"
@@ -7,10 +10,6 @@
 #include "view/jaw_mould.h"
 
 namespace calot {
-
-/// How finely surfaces are laid out. Coarse ones are for pictures of live quality (render/offscreen.h): what they leave out
-/// is smaller than a pixel before the lens.
-enum class SceneDetail { full, coarse };
 
 /// What the laparoscope would see. Keeps what does not change from step to step; build one for a world.
 class SceneBuilder {
@@ -27,8 +26,13 @@ class SceneBuilder {
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
   /// All that does not move of an organ: material, rest positions, triangles, vessels.
   static SceneMesh organ_mesh(const World& world, int organ);
-  std::vector<CoarseMesh> organs_;  // the scene's; of full ones all points are kept, and none is named
-  std::vector<InstrumentModel> instruments_;  // the scene's
+  struct OrganMesh {
+    SceneMesh mesh;
+    std::optional<std::vector<int>> kept;  // of its skin's points; none: it has them all
+  };
+  // Of the scene's own.
+  std::vector<OrganMesh> organs_;
+  std::vector<InstrumentModel> instruments_;
   JawMoulds moulds_;
 };
 

@@ -49,8 +49,8 @@ struct InstrumentPart {
 struct InstrumentModel {
   InstrumentGeometry geometry;
   InstrumentPart shaft;  ///< in the hinge's frame
-  std::array<InstrumentPart, 2>
-      jaws;  ///< each in its jaw's frame (sim/instrument.h); empty where it has none
+  /// Each in its jaw's frame (sim/instrument.h); empty where it has none.
+  std::array<InstrumentPart, 2> jaws;
 };
 
 /// Insulated shaft and its steel end with a clevis and its pin.

@@ -1,7 +1,7 @@
 #pragma once
+// Instruments whose jaws are solid steel, as they are drawn. Nothing drawn lies outside instrument_shapes().
 
 #include "view/instrument_parts.h"
-// Instruments whose jaws are solid steel, as they are drawn. Nothing drawn lies outside instrument_shapes().
 
 namespace calot {
 

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "sim/grip.h"
-#include "skin/free_form.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -113,13 +112,14 @@ void JawMould::follow(const Field& field, int instrument, double dt) {
   if (weight_ == 0) held_.clear();
 }
 
-void JawMould::apply(const Field& field, int instrument, int organ, const std::vector<int>& points,
-                     DrawnSkin& skin) const {
-  std::vector<Vec3>& positions = skin.positions;
-  const int record = field.organs[organ].record;
-  const auto of_organ = [&](const Held& held) { return held.record == record; };
-  if (!active() || std::none_of(held_.begin(), held_.end(), of_organ)) return;
-  const InstrumentGeometry& g = field.tools[instrument].geometry;
+bool JawMould::holds(const Organ& organ) const {
+  return active() && std::any_of(held_.begin(), held_.end(),
+                                 [&](const Held& held) { return held.record == organ.record; });
+}
+
+std::optional<FreeForm> JawMould::fitted(const InstrumentGeometry& g, const Organ& organ,
+                                         const std::vector<int>* points,
+                                         const std::vector<Vec3>& positions) const {
   // Functions about 1 mm apart across the pads, so that the two sides of a fold move apart, and 2 mm along them.
   constexpr double around = 2.5e-3;  // m beyond the pads
   FreeForm::Lattice lattice;
@@ -130,34 +130,42 @@ void JawMould::apply(const Field& field, int instrument, int organ, const std::v
   FreeForm form(lattice);
   std::map<int, Vec3> ways;  // of skin points that are held
   for (const Held& held : held_)
-    if (of_organ(held)) ways[held.skin_point] = smooth(weight_) * held.way;
+    if (held.record == organ.record) ways[held.skin_point] = smooth(weight_) * held.way;
   std::vector<Vec3> from, to;
   const auto goes = [&](const Vec3& place, const Vec3& way) {
     if (!form.contains(place)) return;
     from.push_back(place);
     to.push_back(place + way);
   };
-  // The skin around what is held stays where it is.
   for (std::size_t p = 0; p < positions.size(); ++p) {
-    const auto held = ways.find(points.empty() ? static_cast<int>(p) : points[p]);
+    const auto held = ways.find(points == nullptr ? static_cast<int>(p) : (*points)[p]);
     goes(positions[p], held != ways.end() ? held->second : Vec3(Vec3::Zero()));
     if (held != ways.end()) ways.erase(held);
   }
-  // What is held is felt though it is not drawn.
-  const Organ& held_organ = field.organs[organ];
-  for (const auto& [point, way] : ways) goes(held_organ.body->skin_point(point, held_organ.state.x), way);
+  // Held points that are not drawn shape the mould too.
+  for (const auto& [point, way] : ways) goes(organ.body->skin_point(point, organ.state.x), way);
   // Neighbours on a fold come close to each other: without damping their small differences would be blown up.
   constexpr double damping = 0.06;
-  if (!form.manipulate(from, to, damping)) return;  // finite and paired: it does not fail
+  if (!form.manipulate(from, to, damping)) return std::nullopt;  // finite and paired: it does not fail
+  return form;
+}
+
+void JawMould::apply(const Field& field, int instrument, int organ, const std::vector<int>* points,
+                     DrawnSkin& skin) const {
+  const Organ& moulded = field.organs[organ];
+  if (!holds(moulded)) return;
+  const std::optional<FreeForm> form =
+      fitted(field.tools[instrument].geometry, moulded, points, skin.positions);
+  if (!form) return;
   const Solids solids(field);
-  for (std::size_t p = 0; p < positions.size(); ++p) {
-    const Vec3 start = positions[p];
-    if (!form.contains(start)) continue;
+  for (std::size_t p = 0; p < skin.positions.size(); ++p) {
+    const Vec3 start = skin.positions[p];
+    if (!form->contains(start)) continue;
     const double least = std::min(pad_clearance, solids.distance(start));
-    const std::optional<Vec3> place = solids.pushed_out(start + form.displacement(start), least);
+    const std::optional<Vec3> place = solids.pushed_out(start + form->displacement(start), least);
     if (!place) continue;
-    positions[p] = *place;
-    if (!skin.normals.empty()) skin.normals[p] = form.moved_normal(start, skin.normals[p]);
+    skin.positions[p] = *place;
+    if (!skin.normals.empty()) skin.normals[p] = form->moved_normal(start, skin.normals[p]);
   }
 }
 
@@ -176,22 +184,19 @@ DrawnSkin JawMoulds::skin(const World& world, int organ) const {
   // What is drawn around a line has no skin points to be moulded by.
   if (!world.field().organs[static_cast<std::size_t>(organ)].body->skin_radii().empty()) return skin;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
-    moulds_[i].apply(world.field(), static_cast<int>(i), organ, {}, skin);
+    moulds_[i].apply(world.field(), static_cast<int>(i), organ, nullptr, skin);
   return skin;
 }
 
-DrawnSkin JawMoulds::skin(const World& world, int organ, const CoarseMesh& drawn) const {
-  const Organ& shown = world.field().organs[static_cast<std::size_t>(organ)];
-  if (!shown.body->skin_radii().empty()) {
-    const DrawnSkin whole = skin(world, organ);
-    return {entries(whole.positions, drawn.kept), entries(whole.normals, drawn.kept)};
-  }
-  DrawnSkin skin;
-  for (const int point : drawn.kept) skin.positions.push_back(shown.body->skin_point(point, shown.state.x));
+DrawnSkin JawMoulds::skin(const World& world, int organ, const std::vector<int>& points,
+                          const std::vector<Triangle>& triangles) const {
+  const Organ& drawn = world.field().organs[static_cast<std::size_t>(organ)];
+  DrawnSkin out;
+  for (const int point : points) out.positions.push_back(drawn.body->skin_point(point, drawn.state.x));
   for (std::size_t i = 0; i < moulds_.size(); ++i)
-    moulds_[i].apply(world.field(), static_cast<int>(i), organ, drawn.kept, skin);
-  skin.normals = mean_normals(skin.positions, drawn.mesh.triangles);
-  return skin;
+    moulds_[i].apply(world.field(), static_cast<int>(i), organ, &points, out);
+  out.normals = mean_normals(out.positions, triangles);
+  return out;
 }
 
 }  // namespace calot

@@ -10,7 +10,7 @@
 
 #include "sim/field.h"
 #include "sim/world.h"
-#include "view/coarse_mesh.h"
+#include "skin/free_form.h"
 
 namespace calot {
 
@@ -53,9 +53,9 @@ class JawMould {
   void follow(const Field& field, int instrument, double dt);
   bool active() const { return weight_ > 0; }
 
-  /// Moves an organ's drawn skin, or of it the points that are named (one a position), and its normals where there are
-  /// some. A point that would come nearer to a solid than the pad's clearance, or than it already is, slides along it.
-  void apply(const Field& field, int instrument, int organ, const std::vector<int>& points,
+  /// Moves an organ's drawn skin, or of it these points (null: all), and its normals where there are some. A point that would
+  /// come nearer to a solid than the pad's clearance, or than it already is, slides along it.
+  void apply(const Field& field, int instrument, int organ, const std::vector<int>* points,
              DrawnSkin& skin) const;
 
  private:
@@ -63,6 +63,10 @@ class JawMould {
     int record = 0, skin_point = 0;  ///< the organ's
     Vec3 way = Vec3::Zero();         ///< m, patient's frame: from where it is held to where the mould has it
   };
+  bool holds(const Organ& organ) const;
+  /// The lattice that takes what is held of an organ to where its mould has it, and leaves the skin around as it is.
+  std::optional<FreeForm> fitted(const InstrumentGeometry& geometry, const Organ& organ,
+                                 const std::vector<int>* points, const std::vector<Vec3>& positions) const;
   std::vector<Held> held_;
   Pose hinge_ = Pose::Identity();  ///< of the tool while it held
   double jaw_ = 0;                 ///< rad, then
@@ -77,8 +81,10 @@ class JawMoulds {
   void follow(const World& world);
   /// An organ's skin as it is drawn. Some milliseconds a holding tool.
   DrawnSkin skin(const World& world, int organ) const;
-  /// The same for an organ that is drawn coarsely: only the points that were kept, a quarter of the time.
-  DrawnSkin skin(const World& world, int organ, const CoarseMesh& drawn) const;
+  /// The same of some of its points alone, whose triangles are these: a quarter of the time for a quarter of the points. For
+  /// organs whose skin is what is drawn.
+  DrawnSkin skin(const World& world, int organ, const std::vector<int>& points,
+                 const std::vector<Triangle>& triangles) const;
 
  private:
   std::vector<JawMould> moulds_;  ///< one a tool

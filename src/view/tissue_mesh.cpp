@@ -108,14 +108,15 @@ void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::siz
 
 }  // namespace
 
-SceneMesh tissue_mesh(const World& world, bool coarse) {
+SceneMesh tissue_mesh(const World& world, SceneDetail detail) {
   static const SceneMesh fine_form = dented_ball(10, 7), coarse_form = dented_ball(6, 3);
+  const SceneMesh& form = detail == SceneDetail::coarse ? coarse_form : fine_form;
   SceneMesh out;
   out.material = Material::fat;
   const Field& field = world.field();
   std::size_t strands = 0;
   for (const Tissue& tissue : field.tissues) {
-    add_tissue(tissue, field.organs, strands, coarse ? coarse_form : fine_form, out);
+    add_tissue(tissue, field.organs, strands, form, out);
     strands += tissue.strands->strands().size();
   }
   return out;

@@ -4,11 +4,12 @@
 
 #include "render/scene.h"
 #include "sim/world.h"
+#include "view/coarse_mesh.h"
 
 namespace calot {
 
 /// All tissue of a world as it is now; no triangles where there is none. Coarse: a quarter of the triangles a lobule, and
 /// for the rest the same.
-SceneMesh tissue_mesh(const World& world, bool coarse = false);
+SceneMesh tissue_mesh(const World& world, SceneDetail detail = SceneDetail::full);
 
 }  // namespace calot

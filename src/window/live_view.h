@@ -30,7 +30,10 @@ struct LiveView {
   std::string last_event;
   std::vector<HandView> hands;             ///< the laparoscope is the last
   std::shared_ptr<LivePictures> pictures;  ///< to be told when this one is shown; may be null
-  std::vector<double> inputs;              ///< with these, see LivePictures::note_shown
+  /// With these, see LivePictures::note_shown. A view that is replaced before it is taken would lose its inputs: none is made
+  /// unless LatestView::wanted().
+  std::vector<double> inputs;
+  double paused = 0;  ///< s
 };
 
 /// One thread puts, another takes; what was not taken is replaced.

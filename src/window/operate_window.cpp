@@ -337,7 +337,10 @@ Result<OperateWindow> OperateWindow::open(WindowOptions options, LiveMailbox& ma
 Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
   Impl& self = *impl_;
   glfwMakeContextCurrent(self.window);
-  glfwPollEvents();
+  if (newest)
+    glfwPollEvents();
+  else
+    glfwWaitEventsTimeout(idle_wait);
   if (glfwWindowShouldClose(self.window) == GLFW_TRUE) {
     self.send(LiveCommand::abandon);
     return false;
@@ -354,8 +357,6 @@ Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
         0.1 * (1 / std::max(1e-3, now - self.last_picture) - self.state.pictures_a_second);
     self.last_picture = now;
     self.take(std::move(newest));
-  } else {
-    glfwWaitEventsTimeout(idle_wait);
   }
   const bool clicks_on = self.events.click && self.state.menu && !ImGui::GetIO().WantCaptureMouse;
   const bool operates = self.hands && self.state.started && !self.state.menu && self.state.result.empty();
@@ -368,8 +369,9 @@ Result<bool> OperateWindow::turn(std::shared_ptr<const LiveView> newest) {
   self.disturbed = false;
   self.draw_frame();
   glfwSwapBuffers(self.window);
+  // The first view waits for who operates: time has not begun.
   if (is_new && self.view->pictures && self.view->time > 0)
-    self.view->pictures->note_shown(self.view->inputs);
+    self.view->pictures->note_shown(self.view->inputs, self.view->paused);
   return true;
 }
 

@@ -55,7 +55,7 @@ class OperateWindow {
   WindowEvents& events();
   /// As the menu's first button does.
   void go_on();
-  /// Ends a turn that waits for something to happen; from any thread.
+  /// Ends a turn that waits for something to happen; from any thread, while a window is open.
   static void wake();
   /// As who closes the window.
   void close();

@@ -30,18 +30,23 @@ BENCHMARK_CAPTURE(frame, golden, golden_quality, SceneDetail::full)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(frame, live_full, live_quality, SceneDetail::full)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(frame, live, live_quality, SceneDetail::coarse)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
 
 /// The part of a picture that the simulation's thread does: what it sees, as plain data.
-void scene(benchmark::State& state) {
+void scene(benchmark::State& state, SceneDetail detail) {
   const World world = World::create(standard()).value();
-  const SceneBuilder builder(world);
+  const SceneBuilder builder(world, detail);
   for (auto _ : state) benchmark::DoNotOptimize(builder.build(world));
 }
-BENCHMARK(scene)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(scene, full, SceneDetail::full)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(scene, coarse, SceneDetail::coarse)->Unit(benchmark::kMillisecond);
 
 void start_to_first_frame(benchmark::State& state) {
   for (auto _ : state) {

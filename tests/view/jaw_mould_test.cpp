@@ -5,6 +5,7 @@
 #include "sim/grip.h"
 #include "sim/rig.h"
 #include "sim/teeth.h"
+#include "view/coarse_mesh.h"
 
 namespace calot {
 namespace {
@@ -98,7 +99,7 @@ TEST_P(JawMouldGrasp, ASkinOfFewerPointsIsMouldedAndKeepsOutOfTheInstrumentToo) 
   fine.rest_positions = path.world.drawn_rest(0);
   fine.triangles = path.world.drawn_triangles(0);
   const CoarseMesh coarse = coarser(fine, 1, 0.25);
-  const DrawnSkin drawn = moulds.skin(path.world, 0, coarse);
+  const DrawnSkin drawn = moulds.skin(path.world, 0, coarse.kept, coarse.mesh.triangles);
   const std::vector<Vec3> touched = entries(path.world.skin_positions(0), coarse.kept);
   ASSERT_EQ(drawn.positions.size(), touched.size());
   EXPECT_LT(touched.size(), fine.rest_positions.size() / 3);
