@@ -153,6 +153,23 @@ TEST(Live, EveryInputWaitsForTheFirstPictureOfAStateThatFollowsIt) {
   EXPECT_NEAR(seen.wait_most, 0.03, 0.0021) << "from 0.05 to 0.08 s";
 }
 
+TEST(Live, APauseIsNoTimeInWhichPicturesAreShownAndWhatComesInItDoesNotWait) {
+  Rig rig;
+  rig.options.pictures = std::make_shared<LivePictures>(rig.clock);
+  rig.send_at(0.05, LiveCommand::pause);
+  rig.send_at(5, rig.input(1e-3));
+  rig.send_at(9.05, LiveCommand::resume);
+  rig.session.observer = [&](const World& world, const Progress&, bool) {
+    if (world.report().time > 0.01)
+      rig.options.pictures->note_shown(rig.source->take_unseen(), rig.source->paused());
+  };
+  rig.play(0.14);
+  const LivePictures::Figures seen = rig.source->figures().pictures.value();
+  EXPECT_EQ(seen.shown, 7);
+  EXPECT_NEAR(seen.running, 0.12, 0.0061) << "and 9 s of pause";
+  EXPECT_LT(seen.wait_most, 0.1);
+}
+
 TEST(Live, WhereNobodyShowsPicturesNoneAreCounted) {
   Rig rig;
   rig.send_at(0.05, rig.input(1e-3));

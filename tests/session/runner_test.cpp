@@ -343,6 +343,21 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   EXPECT_NEAR(json["events"].back()["duration_s"].get<double>(), 0.2, 1e-12);
 }
 
+TEST(Report, SaysHowManyPicturesWereShownASecondAndInRealTimeHowSoon) {
+  SessionReport report;
+  report.live.emplace();
+  const auto operated = [&] {
+    const std::string text = report_json(test::small_exercise(), SessionResult(), report);
+    return nlohmann::json::parse(text)["operated"];
+  };
+  EXPECT_FALSE(operated().contains("pictures")) << "there was no window";
+  report.live->pictures = {.shown = 31, .running = 2, .wait_median = 0.08, .wait_most = 0.3};
+  EXPECT_DOUBLE_EQ(operated()["pictures"]["a_second"].get<double>(), 15) << "30 followed the first in 2 s";
+  EXPECT_DOUBLE_EQ(operated()["pictures"]["input_to_picture_s"]["median"].get<double>(), 0.08);
+  report.live->stamped = true;
+  EXPECT_FALSE(operated()["pictures"].contains("input_to_picture_s"));
+}
+
 TEST(Report, TextThatIsNotUtf8IsReplacedNotRefused) {
   ExerciseDefinition exercise = test::small_exercise();
   exercise.title = "bad \xff byte";

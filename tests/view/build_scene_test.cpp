@@ -53,14 +53,18 @@ TEST(BuildScene, DrawsTheSkinThatTheWorldTouches) {
   EXPECT_NE(skin->vessels, nullptr);
 }
 
-TEST(BuildScene, DrawsPiecesAndNotWhatIsGone) {
+SceneDefinition with_duct() {
   SceneDefinition definition = sphere_scene();
   OrganDefinition duct;
   duct.name = "duct";
   duct.shape = TubeShape{.points = {Vec3(0, 0.1, -0.08), Vec3(0.04, 0.1, -0.08)}};
   duct.held = {{"first", "start", 5e-3, 1e6}, {"second", "end", 5e-3, 1e6}};
   definition.anatomy.organs.push_back(duct);
-  World world = make_world(definition);
+  return definition;
+}
+
+TEST(BuildScene, DrawsPiecesAndNotWhatIsGone) {
+  World world = make_world(with_duct());
   const SceneBuilder builder(world);
   const std::size_t before = builder.build(world).meshes.size();
   const auto drawn = [&](int organ) {
@@ -80,6 +84,23 @@ TEST(BuildScene, DrawsPiecesAndNotWhatIsGone) {
   EXPECT_EQ(drawn(0), 1);
   // The laparoscope still looks where the ball was, also one that is set up now.
   EXPECT_EQ(build_scene(world).meshes.size(), before - 1);
+}
+
+TEST(BuildScene, CoarseSkinsStayWithTheirTissueAndPiecesThatCameLaterAreDrawnWhole) {
+  World world = make_world(with_duct());
+  const SceneBuilder builder(world, SceneDetail::coarse);
+  ASSERT_TRUE(world.divide("duct", 0.5));
+  const Scene scene = builder.build(world);
+  const SceneMesh* ball = mesh_of(scene, Material::membrane);
+  ASSERT_NE(ball, nullptr);
+  const std::vector<Vec3> skin = world.skin_positions(0);
+  EXPECT_LT(ball->positions.size(), skin.size() / 2);
+  for (const Vec3& p : ball->positions) EXPECT_NE(std::find(skin.begin(), skin.end(), p), skin.end());
+  ASSERT_EQ(ball->rest_positions.size(), ball->positions.size());
+  for (const int piece : {1, 2})
+    EXPECT_TRUE(std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const SceneMesh& mesh) {
+      return mesh.positions == world.drawn(piece).positions;
+    })) << piece;
 }
 
 TEST(BuildScene, ASupportedOrganHasADrapeAndNoLiver) {
