@@ -416,7 +416,10 @@ StepInput LiveSource::follow(double dt) {
     });
     if (late_) catching_up_[i] = 1;
     Speed speed{most_tip_speed, most_turn_speed};
-    if (catching_up_[i]) speed = {late_tip_speed, late_turn_speed};
+    const bool in_tissue =
+        i < states_now_.size() && (states_now_[i].touching || !states_now_[i].holds.empty());
+    if (catching_up_[i])
+      speed = in_tissue ? Speed{late_tissue_speed, late_tissue_turn} : Speed{late_tip_speed, late_turn_speed};
     if (drawn_back) speed.tip = withdrawing_speed;
     const double share = share_within_speed(instruments_[i], pose, to, speed, dt);
     if (share >= 1) catching_up_[i] = 0;
@@ -471,10 +474,11 @@ std::vector<std::string> LiveSource::notes() const {
                     "fell {:.2f} s behind; no step was left out",
                     f.slowed_steps, f.slowed));
   if (f.following_steps > 0)
-    notes.push_back(
-        fmt::format("in {} steps an instrument went after a jump of its input, at {:g} m/s or {:g} rad/s, or "
-                    "{:g} m/s and {:g} rad/s after late steps",
-                    f.following_steps, most_tip_speed, most_turn_speed, late_tip_speed, late_turn_speed));
+    notes.push_back(fmt::format(
+        "in {} steps an instrument went after a jump of its input, at {:g} m/s or {:g} rad/s, or after late "
+        "steps at {:g} m/s and {:g} rad/s, in tissue {:g} and {:g}",
+        f.following_steps, most_tip_speed, most_turn_speed, late_tip_speed, late_turn_speed,
+        late_tissue_speed, late_tissue_turn));
   if (f.refused > 0)
     notes.push_back(fmt::format("{} lines of input were refused, and changed nothing", f.refused));
   if (f.full > 0)

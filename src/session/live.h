@@ -166,6 +166,8 @@ class LiveSource : public InputSource {
   /// And where a step has taken longer than it lasts, until it is where it is asked to be: the hand went on meanwhile, and its
   /// whole way in one step would be a blow, whose step takes longer still.
   static constexpr double late_tip_speed = 0.1, late_turn_speed = 3.0;
+  /// Of these one that touches or holds tissue: as a careful hand, which closes jaws in half a second.
+  static constexpr double late_tissue_speed = 0.02, late_tissue_turn = 1.6;
   /// m/s, of an instrument that is drawn back into its port for another one to come in.
   static constexpr double withdrawing_speed = 0.15;
 

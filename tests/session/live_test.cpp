@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "session/live_lines.h"
@@ -202,21 +203,43 @@ TEST(Live, AJumpIsGoneAfterAtAHandsSpeedAndSaid) {
 
 TEST(Live, WhatAHandDidWhileAStepTookTooLongIsGoneAfterSlowly) {
   Rig rig;
-  // The fourth step takes half a second; meanwhile the hand has gone on by 6 mm.
+  // The fourth step takes half a second; meanwhile the hand has gone on by 6 mm, outwards: it touches nothing.
   rig.session.observer = [&](const World& world, const Progress&, bool) {
     if (std::abs(world.report().time - 4 / steps_a_second) < 1e-9) rig.clock.pass(0.5);
   };
-  rig.send_at(0.3, rig.input(6e-3));
-  rig.send_at(0.75, rig.input(26e-3));
+  rig.send_at(0.3, rig.input(-6e-3));
+  rig.send_at(0.75, rig.input(-26e-3));
   const std::vector<double> found = insertions(rig.play(0.4));
   std::vector<double> ways;
   for (std::size_t i = 1; i < found.size(); ++i)
-    if (found[i] != found[i - 1]) ways.push_back(found[i] - found[i - 1]);
+    if (found[i] != found[i - 1]) ways.push_back(found[i - 1] - found[i]);
   const double late = LiveSource::late_tip_speed / steps_a_second,
                usual = LiveSource::most_tip_speed / steps_a_second;
   const auto is = [](double way) { return testing::DoubleNear(way, 1e-12); };
   EXPECT_THAT(ways, ElementsAre(is(late), is(late), is(late), is(usual)))
       << "in time again, it is quick again";
+}
+
+TEST(Live, InTissueItIsGoneAfterAsByACarefulHand) {
+  Rig rig;
+  double inserted = 0, touched_at = 0;
+  rig.session.observer = [&](const World& world, const Progress&, bool) {
+    if (touched_at > 0) return;
+    const bool touches = world.report().instruments[0].touching;
+    inserted += touches ? 4e-3 : 1e-3;
+    rig.mailbox.put(rig.input(inserted));
+    if (!touches) return;
+    touched_at = world.report().time;
+    rig.clock.pass(0.5);
+  };
+  const std::vector<double> found = insertions(rig.play(1.6));
+  ASSERT_GT(touched_at, 0) << "it never came to the ball";
+  const double careful = LiveSource::late_tissue_speed / steps_a_second;
+  std::vector<double> ways;
+  for (auto i = static_cast<std::size_t>(std::lround(touched_at * steps_a_second)); i + 1 < found.size(); ++i)
+    ways.push_back(found[i + 1] - found[i]);
+  ASSERT_GE(ways.size(), 3u);
+  EXPECT_NEAR(*std::max_element(ways.begin(), ways.end()), careful, 1e-12);
 }
 
 TEST(Live, TheLaparoscopeMovesAsAnInstrumentAndItsReplayGoesThroughTheSameStates) {
