@@ -20,7 +20,7 @@ struct DrawQuality {
   bool operator==(const DrawQuality&) const = default;
 };
 inline constexpr DrawQuality golden_quality{};
-/// For who operates without a graphics card: with SceneDetail::coarse (view/build_scene.h) a fifth of golden quality's time
+/// For who operates without a graphics card: with SceneDetail::coarse (view/coarse_mesh.h) a fifth of golden quality's time
 /// (tests/bench/frame_bench.cpp).
 inline constexpr DrawQuality live_quality{0, 0.6, 448};
 

@@ -128,10 +128,10 @@ void LiveMailbox::close() {
 
 void LivePictures::note_shown(const std::vector<double>& inputs, double paused) {
   const std::scoped_lock lock(mutex_);
-  last_ = clock_.now();
-  if (shown_++ == 0) begun_ = last_ - paused;
-  running_ = last_ - paused - begun_;
-  for (const double at : inputs) waits_.push_back(last_ - at);
+  const double now = clock_.now();
+  if (shown_++ == 0) begun_ = now - paused;
+  running_ = now - paused - begun_;
+  for (const double at : inputs) waits_.push_back(now - at);
 }
 
 LivePictures::Figures LivePictures::figures() const {

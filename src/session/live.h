@@ -123,7 +123,7 @@ class LivePictures {
   LiveClock& clock_;
   mutable std::mutex mutex_;
   int shown_ = 0;
-  double last_ = 0, begun_ = 0, running_ = 0;
+  double begun_ = 0, running_ = 0;
   std::vector<double> waits_;
 };
 

@@ -73,13 +73,13 @@ namespace {
 std::vector<double> burnt_shares(const Organ& organ, const std::vector<int>* points) {
   constexpr double wide = 1.6e-3;  // m, of a burn: the electrode's foot and what it heats around (d)
   if (organ.burns.empty()) return {};
-  const std::vector<Vec3>& all = organ.body->drawn_rest();
-  const std::vector<Vec3> rest = points == nullptr ? all : entries(all, *points);
-  std::vector<double> shares(rest.size(), 0.0);
+  const std::vector<Vec3>& rest = organ.body->drawn_rest();
+  std::vector<double> shares(points == nullptr ? rest.size() : points->size(), 0.0);
   for (const Burn& burn : organ.burns) {
     const double most = std::min(1.0, burn.energy / organ.definition.wall.burn_energy);
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      const double squared = (rest[i] - all[burn.point]).squaredNorm() / (wide * wide);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const Vec3& place = rest[points == nullptr ? i : static_cast<std::size_t>((*points)[i])];
+      const double squared = (place - rest[burn.point]).squaredNorm() / (wide * wide);
       shares[i] = std::min(1.0, shares[i] + most * std::exp(-squared));
     }
   }
@@ -126,9 +126,9 @@ Scene SceneBuilder::build(const World& world) const {
     for (SceneMesh& mesh : clip_meshes(organ)) scene.meshes.push_back(std::move(mesh));
   for (SceneMesh& mesh : fallen_clips(world.field())) scene.meshes.push_back(std::move(mesh));
   for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
+    const int index = static_cast<int>(i);
     const auto record = static_cast<std::size_t>(world.field().organs[i].record);
     // One that came since is laid out anew for each picture: a duct or a stone takes no time.
-    const int index = static_cast<int>(i);
     OrganMesh drawn = record < organs_.size() ? organs_[record] : OrganMesh{organ_mesh(world, index), {}};
     DrawnSkin skin = drawn.kept ? moulds_.skin(world, index, *drawn.kept, drawn.mesh.triangles)
                                 : moulds_.skin(world, index);
