@@ -423,7 +423,7 @@
 ---@field organ? string or tissue, that it happened to
 ---@field value? number as the kind says, in the unit that it says
 ---@field place? calot.point where, m
----@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped" what did it
+---@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped"|"turned" what did it
 ---@field text? string an injury's class; what was said at a time-out or a bail-out
 
 ---A step of a session, as a rule sees it.

@@ -53,25 +53,31 @@ local function nearest_strand(t, hook, tissue, wanted)
   local tip, best = hook:tip(), nil
   for _, strand in ipairs(t:strands(tissue)) do
     local far = length(minus(strand.middle, tip))
-    if wanted(strand) and (not best or far < best.far) then best = { at = strand.middle, far = far } end
+    if wanted(strand) and (not best or far < best.far) then
+      best = { far = far, middle = strand.middle, from = strand.from, to = strand.to }
+    end
   end
   return best
 end
 
 --- Strand by strand: the hook's foot comes down on the nearest one, and current flows until one has parted; else it
---- comes down nearer to its heel. `how`: port, where its shaft comes from; tries, of a tenth of a second; hardest, the
+--- comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and then on
+--- all three nearer to its heel. `how`: port, where its shaft comes from; tries, of a tenth of a second; hardest, the
 --- force that ends its way down; wanted(strand), if given, those that are taken; is_done(), if given, asked before each
---- strand; keep_off, a place that current keeps off: beside it the heel comes down first, and the foot points away.
+--- strand; keep_off, a place that current keeps off: beside it the heel comes down first, on the middle, and the foot
+--- points away.
 function technique.take(t, hook, tissue, how)
-  local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, 1.5 * mm, -0.5 * mm }
+  local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
   local wanted = how.wanted or function() return true end
   local missed = 0
   while missed < 9 and not (how.is_done and how.is_done()) do
     local strand = nearest_strand(t, hook, tissue, wanted)
     if not strand then return end
-    local back = unit(minus(how.port, strand.at))
-    local beside = how.keep_off and length(minus(strand.at, how.keep_off)) < 10 * mm
-    local aim = plus(strand.at, { (beside and by_heel or reach)[missed % 3 + 1], 0, 0 })
+    local beside = how.keep_off and length(minus(strand.middle, how.keep_off)) < 10 * mm
+    local ends = { strand.middle, strand.to, strand.from }
+    local at = beside and strand.middle or plus(strand.middle, minus(ends[missed % 3 + 1], strand.middle), 0.5)
+    local aim = plus(at, { beside and by_heel[missed % 3 + 1] or reach[missed // 3 + 1], 0, 0 })
+    local back = unit(minus(how.port, at))
     hook:move_to(plus(aim, back, 5 * mm), { speed = 80 * mm / s })
     local function lies_on_it()
       local contact = hook:contact()

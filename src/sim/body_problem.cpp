@@ -155,7 +155,7 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
     matrix.assign(body_.pattern());
     body_.add_hessian(x, matrix, assembly_);
   }
-  loads_.grip.add_hessian(body_.skin().stencils, matrix);
+  loads_.grip.add_hessian(body_.skin().stencils, x, matrix);
   loads_.friction.add_hessian(body_.skin(), x, matrix, workers());
   if (const LiquidMass* mass = liquid_mass())
     body_.liquid()->add_hessian(x, multipliers[0], mass->weight(multipliers.tail(LiquidMass::constraints)),

@@ -164,11 +164,11 @@ std::vector<Drawn> drawn_by(const Field& field, int instrument, const Organ& org
 
 /// N, on a tool, of the springs of its grip on an organ.
 Vec3 grip_pull(const Field& field, int instrument, const Organ& organ) {
-  const Links grip = grip_links(organ, field.tools, present_poses(field));
+  const GripSprings grip = grip_springs(organ, field.tools, present_poses(field));
   Vec3 pull = Vec3::Zero();
   for (std::size_t g = 0; g < organ.grips.size(); ++g)
     if (organ.grips[g].instrument == instrument)
-      pull += grip.stiffness[g] * (organ.body->skin_point(grip.row[g], organ.state.x) - grip.target[g]);
+      pull += grip.sample(g, organ.body->skin_point(grip.row[g], organ.state.x)).gradient;
   return pull;
 }
 

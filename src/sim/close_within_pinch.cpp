@@ -23,13 +23,17 @@ constexpr int most_trials = 24;
 class Trials {
  public:
   Trials(Field& field, Poses to, const std::function<Result<bool>(const Poses&)>& go,
-         std::vector<WorldEvent>& events)
+         std::vector<WorldEvent>& events, const std::vector<std::size_t>& pressing)
       : field_(field),
         to_(std::move(to)),
         go_(go),
         events_(events),
         start_(field_state(field)),
-        told_(events.size()) {}
+        told_(events.size()),
+        at_start_(field.tools.size(), 0.0) {
+    for (std::size_t i : pressing)
+      if (!pressed_at_start(i)) at_start_[i] = excess(i);
+  }
 
   /// By how much of the pinch the jaws press harder than that when the motion is over, the tool's at `jaw`. What cannot
   /// be followed presses without end.
@@ -49,6 +53,8 @@ class Trials {
     return pressed_apart(field_, static_cast<int>(tool)) / field_.tools[tool].definition.pinch_force - 1;
   }
   const Result<bool>& last() const { return last_; }
+  /// Before it, of jaws that tissue had not stopped.
+  double excess_at_start(std::size_t tool) const { return at_start_[tool]; }
   double jaw_at_start(std::size_t tool) const { return start_.tools[tool].pose.jaw; }
   bool pressed_at_start(std::size_t tool) const { return start_.tools[tool].pressing; }
 
@@ -59,6 +65,7 @@ class Trials {
   std::vector<WorldEvent>& events_;
   FieldState start_;
   std::size_t told_;
+  std::vector<double> at_start_;
   bool fresh_ = true;
   Result<bool> last_ = true;
 };
@@ -90,6 +97,20 @@ void find_pinch(Trials& trials, std::size_t tool, At tight, At loose) {
   trials.excess(tool, loose.jaw);
 }
 
+/// From jaws that press too hard, or not hard enough, towards `end`: by a little first, as what rests on tissue has
+/// little to make up for.
+void turn_to_pinch(Trials& trials, std::size_t tool, At here, double end) {
+  constexpr double shortest = grip_grid / 16;
+  for (double way = shortest; here.jaw != end; way *= 4) {
+    const double jaw = end > here.jaw ? std::min(here.jaw + way, end) : std::max(here.jaw - way, end);
+    const At next{jaw, trials.excess(tool, jaw)};
+    if (std::abs(next.excess) <= pinch_tolerance) return;
+    if ((next.excess > 0) != (here.excess > 0))
+      return next.excess > 0 ? find_pinch(trials, tool, next, here) : find_pinch(trials, tool, here, next);
+    here = next;
+  }
+}
+
 }  // namespace
 
 Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targets,
@@ -103,23 +124,27 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     if (has_teeth(tool) && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
   }
   if (pressing.empty()) return go(to);
-  Trials trials(field, to, go, events);
+  Trials trials(field, to, go, events, pressing);
   std::vector<std::size_t> stopped;
   for (std::size_t i : pressing) {
     if (!trials.last()) break;
-    const double from = trials.jaw_at_start(i);
-    const bool pressed = trials.pressed_at_start(i);
+    const double from = trials.jaw_at_start(i), opening = field.tools[i].geometry.jaw_opening;
     const At first{to[i].jaw, i == pressing.front() ? trials.excess(i, to[i].jaw) : trials.excess(i)};
-    if (first.excess > pinch_tolerance) {
-      // Jaws that were closing are let back as far as they have come, others give way to what pushes them open.
-      const double widest = pressed ? std::min(from + grip_grid, field.tools[i].geometry.jaw_opening) : from;
-      const At loose{widest, widest > first.jaw ? trials.excess(i, widest) : first.excess};
-      if (loose.excess < -pinch_tolerance) find_pinch(trials, i, first, loose);
-      stopped.push_back(i);
-    } else if (pressed && first.excess < -pinch_tolerance && targets[i].jaw < first.jaw) {
-      const double narrowest = std::max(targets[i].jaw, from - grip_grid);
-      const At tight{narrowest, trials.excess(i, narrowest)};
-      if (tight.excess > pinch_tolerance) find_pinch(trials, i, tight, first);
+    const bool tight = first.excess > pinch_tolerance;
+    if (tight) stopped.push_back(i);
+    if (!trials.pressed_at_start(i)) {
+      // Jaws that were closing are let back as far as they have come.
+      const At loose{from, trials.excess_at_start(i)};
+      if (!tight || first.jaw == from) continue;
+      if (loose.excess < -pinch_tolerance) {
+        find_pinch(trials, i, first, loose);
+      } else {
+        trials.excess(i, from);
+      }
+    } else if (tight) {
+      turn_to_pinch(trials, i, first, std::min(from + grip_grid, opening));
+    } else if (first.excess < -pinch_tolerance && targets[i].jaw < first.jaw) {
+      turn_to_pinch(trials, i, first, std::max(targets[i].jaw, from - grip_grid));
     }
   }
   for (std::size_t i : stopped) field.tools[i].pressing = true;

@@ -8,6 +8,7 @@
 #include "fem/links.h"
 #include "sim/body.h"
 #include "sim/friction_load.h"
+#include "sim/grip_springs.h"
 #include "sim/self_contact.h"
 
 namespace calot {
@@ -42,7 +43,7 @@ struct ContactLoads {
   std::vector<Shape> shapes;     ///< contact shapes: what they are in truth, inset
   std::vector<char> broad = {};  ///< one a shape, or none: whether it is felt by few points (broad_points)
   Barrier barrier = contact_barrier;
-  Links grip;  ///< rows of the skin's stencils
+  GripSprings grip;  ///< rows of the skin's stencils
   FrictionLoad friction;
   /// N/m, springs that hold the details at rest, one each; none: all are free.
   std::vector<double> detail_holds = {};

@@ -94,8 +94,8 @@ const EventRow& event_row(EventKind kind) { return event_rows()[static_cast<std:
 namespace {
 
 const std::vector<std::string>& cause_names() {
-  static const std::vector<std::string> names = {"",      "scissors",    "current", "clip",
-                                                 "pinch", "overstretch", "opened",  "slipped"};
+  static const std::vector<std::string> names = {
+      "", "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned"};
   return names;
 }
 

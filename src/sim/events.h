@@ -59,8 +59,8 @@ struct EventRow {
 };
 
 /// What did it.
-enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping };
-/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped"; of none empty.
+enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping, turning };
+/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned"; of none empty.
 std::string to_text(EventCause cause);
 std::optional<EventCause> event_cause_called(const std::string& name);
 /// But for none.

@@ -13,9 +13,6 @@ namespace {
 
 /// Two walls between the pads, squeezed to this share of their thickness.
 constexpr double fold_squeeze = 0.6;
-/// How far before a pad its teeth take hold, m (d).
-constexpr double pad_reach = 0.5e-3;
-
 bool faces_pad(const Vec3& local, const InstrumentGeometry& g, double range) {
   return local.x() < contact_inset && local.x() > -range && before_pad(local, g);
 }
@@ -82,6 +79,8 @@ void take_hold(Field& field, int instrument) {
   // Blades divide a tube, and a clip applier lets it be: neither has teeth.
   const bool teeth = instrument_row(tool.definition.type).jaws == JawUse::hold;
   for (Organ& organ : field.organs) {
+    // A wall that has slipped out bulges before the jaws that lost it; they do not catch it again until they have opened.
+    if (tool.lost && organ.body->skin_radii().empty()) continue;
     if (!feels(organ, instrument) || (!teeth && !organ.body->skin_radii().empty()) || !is_bitten(organ))
       continue;
     const std::vector<ClipBetween> clips = clips_between(field, instrument, organ);
@@ -197,9 +196,9 @@ bool fold_fills_jaws(const Field& field, int instrument) {
   return false;
 }
 
-Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
-                 const std::vector<InstrumentPose>& poses) {
-  Links links;
+GripSprings grip_springs(const Organ& organ, const std::vector<Tool>& tools,
+                         const std::vector<InstrumentPose>& poses) {
+  GripSprings springs;
   Pose jaw = Pose::Identity();
   const GripPoint* last = nullptr;  // those of one jaw follow each other
   for (const GripPoint& grip : organ.grips) {
@@ -207,11 +206,12 @@ Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
     if (!last || last->instrument != grip.instrument || last->jaw != grip.jaw)
       jaw = jaw_frame(tool.trocar, poses[grip.instrument], tool.geometry, grip.jaw);
     last = &grip;
-    links.row.push_back(grip.skin_point);
-    links.target.push_back(jaw * grip.local);
-    links.stiffness.push_back(grip.stiffness);
+    springs.row.push_back(grip.skin_point);
+    springs.target.push_back(jaw * grip.local);
+    springs.stiffness.push_back(grip.stiffness);
+    springs.pad.push_back(jaw.linear().col(0));
   }
-  return links;
+  return springs;
 }
 
 }  // namespace calot

@@ -10,10 +10,13 @@ namespace calot {
 /// each other and against the jaws, and stiffer ones would push it into them.
 inline constexpr double grip_stiffness = 4e4;
 
+/// How far before a pad its teeth take hold, m (d).
+inline constexpr double pad_reach = 0.5e-3;
+
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 
-/// Skin points that touch a pad of a closing tool are held by it from here on.
+/// Skin points that touch a pad of a closing tool are held by it from here on; not of a wall where it has lost one.
 void take_hold(Field& field, int instrument);
 
 /// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to:
@@ -40,8 +43,8 @@ std::string held_organ(const Field& field, int instrument);
 /// True while skin of one organ is held by both pads.
 bool both_pads_hold(const Field& field, int instrument);
 
-/// Springs of an organ's held points for the tools at `poses`.
-Links grip_links(const Organ& organ, const std::vector<Tool>& tools,
-                 const std::vector<InstrumentPose>& poses);
+/// What holds an organ's points to the tools at `poses`.
+GripSprings grip_springs(const Organ& organ, const std::vector<Tool>& tools,
+                         const std::vector<InstrumentPose>& poses);
 
 }  // namespace calot

@@ -49,12 +49,30 @@ auto held_by(int instrument) {
   return [instrument](const GripPoint& grip) { return grip.instrument == instrument; };
 }
 
-/// Moves what a tool holds along its pads by `way` (m, patient's frame) and lets go what leaves them.
-Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& budget,
+/// What a tool's pads hold is asked of them: a pull along them, or a couple about its shaft.
+struct Demand {
+  Vec3 towards = Vec3::Zero();  ///< unit: of the pull, or of the couple's axis; patient's frame
+  bool turns = false;           ///< it is a couple
+  double asked = 0, limit = 0;  ///< N or N m
+  double share() const { return asked > 0 ? asked / limit : 0; }
+};
+
+/// m: a fold that turns between the pads by an angle has come by that times this.
+constexpr double turning_lever = 1.2e-3;
+
+/// Where a point goes as what the pads hold gives way by `way` m, patient's frame.
+Vec3 given_way(const Tool& tool, const Demand& demand, double way, const Vec3& at) {
+  if (!demand.turns) return way * demand.towards;
+  const Vec3 hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).translation();
+  return way / turning_lever * demand.towards.cross(at - hinge);
+}
+
+/// Moves what a tool holds along its pads by `way` (m) and lets go what leaves them.
+Result<bool> slide(Field& field, int instrument, const Demand& demand, double way, const Budget& budget,
                    SolveStatistics& statistics) {
   const Tool& tool = field.tools[instrument];
-  const bool draws = hold_of_clips(field, instrument) < holding_limit(tool);
-  if (draws) draw_clips(field, instrument, way);
+  const bool draws = !demand.turns && hold_of_clips(field, instrument) < holding_limit(tool);
+  if (draws) draw_clips(field, instrument, way * demand.towards);
   const auto off_the_pads = [&](const GripPoint& grip) {
     return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
   };
@@ -63,7 +81,7 @@ Result<bool> slide(Field& field, int instrument, const Vec3& way, const Budget& 
     for (GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
       const Pose jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, grip.jaw);
-      Vec3 along = jaw.linear().transpose() * way;
+      Vec3 along = jaw.linear().transpose() * given_way(tool, demand, way, jaw * grip.local);
       along.x() = 0;  // never through the pad
       grip.local += along;
       leave |= off_the_pads(grip);
@@ -88,24 +106,75 @@ Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) 
   return faded;
 }
 
-Vec3 pad_pull(const Field& field, int instrument) {
+Result<bool> leave_pads(Field& field, int instrument, SolveStatistics& statistics) {
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
+  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
+                            jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  std::vector<GripPoint> off;
+  for (const Organ& organ : field.organs)
+    for (const GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      const Vec3 at = to_local[grip.jaw] * organ.body->skin_point(grip.skin_point, organ.state.x);
+      if (at.x() < grip.local.x() - pad_reach) off.push_back(grip);
+    }
+  if (off.empty()) return true;
+  const FieldState before = field_state(field);
+  const auto leaves = [&](const GripPoint& grip) {
+    return std::any_of(off.begin(), off.end(), [&](const GripPoint& one) {
+      return one.instrument == grip.instrument && one.jaw == grip.jaw && one.skin_point == grip.skin_point &&
+             one.local == grip.local;
+    });
+  };
+  const Result<bool> left = fade(field, instrument, leaves, 0.04, budget, statistics);
+  if (!left) restore(field, before);
+  return left;
+}
+
+PadLoad pad_load(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
-  Vec3 pull = Vec3::Zero();
+  const Pose hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry);
+  const Vec3 across = hinge.linear().col(0), shaft = hinge.linear().col(2);
+  PadLoad load;
+  const auto add = [&](const Vec3& at, const Vec3& force) {
+    load.pull += force - across * across.dot(force);
+    load.couple += shaft.dot((at - hinge.translation()).cross(force));
+  };
   for (const Organ& organ : field.organs) {
     if (grip_count(organ, instrument) == 0) continue;
     const ContactLoads now = contact_loads(field, organ, present_poses(field));
-    for (std::size_t g = 0; g < organ.grips.size(); ++g)
-      if (organ.grips[g].instrument == instrument)
-        pull += now.grip.stiffness[g] *
-                (organ.body->skin_point(now.grip.row[g], organ.state.x) - now.grip.target[g]);
+    for (std::size_t g = 0; g < organ.grips.size(); ++g) {
+      if (organ.grips[g].instrument != instrument) continue;
+      const Vec3 at = organ.body->skin_point(now.grip.row[g], organ.state.x);
+      add(at, now.grip.sample(g, at).gradient);
+    }
     const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
     for (const ContactForce& contact : contact_forces(touching))
       if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
-        pull += contact.on_shape;
+        add(contact.at, contact.on_shape);
   }
-  const Vec3 across = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(0);
-  return pull - across * across.dot(pull);
+  return load;
 }
+
+double couple_limit(const Tool& tool) { return tool.definition.pinch_force * tool.geometry.jaw_width / 2; }
+
+namespace {
+
+/// Of the pull and the couple that which comes nearer to what is held of it, or goes further beyond.
+Demand largest_demand(const Field& field, int instrument) {
+  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  const PadLoad load = pad_load(field, instrument);
+  // Clips, which the pads hold across, are drawn along by the pull alone.
+  const bool clips = hold_of_clips(field, instrument) < holding_limit(tool);
+  const Vec3 asked = clips ? load.pull : asked_of_friction(tool, load.pull);
+  const Demand pull{asked.normalized(), false, asked.norm(), holding_limit(field, instrument)};
+  const Vec3 shaft = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
+  const Demand couple{load.couple > 0 ? shaft : Vec3(-shaft), true, std::abs(load.couple),
+                      couple_limit(tool)};
+  return couple.share() > pull.share() ? couple : pull;
+}
+
+}  // namespace
 
 Vec3 asked_of_friction(const Tool& tool, const Vec3& pull) {
   const Mat3 hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear();
@@ -122,45 +191,38 @@ double holding_limit(const Field& field, int instrument) {
   return std::min(holding_limit(field.tools[instrument]), hold_of_clips(field, instrument));
 }
 
-Result<double> slip(Field& field, int instrument, SolveStatistics& statistics) {
+Result<Slipped> slip(Field& field, int instrument, SolveStatistics& statistics) {
   constexpr double above = 1.001, below = 0.95;  // of the limit
   // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
-  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
-  // Clips, which the pads hold across, are drawn along by the pull alone.
-  const auto asked = [&] {
-    const Vec3 pull = pad_pull(field, instrument);
-    return hold_of_clips(field, instrument) < holding_limit(tool) ? pull : asked_of_friction(tool, pull);
-  };
-  double limit = holding_limit(field, instrument);
-  Vec3 pull = asked();
-  const double at_start = pad_pull(field, instrument).norm();
-  if (pull.norm() <= above * limit) return 0.0;
+  Demand demand = largest_demand(field, instrument);
+  if (demand.share() <= above) return Slipped{};
+  const Slipped out{true, demand.turns, pad_load(field, instrument).pull.norm()};
   const FieldState start = field_state(field);
-  double way = shortest_way;
+  double way = demand.turns ? 0.5 * longest_way : shortest_way;
   while (!budget.spent()) {
     const FieldState before = field_state(field);
-    const Result<bool> slid = slide(field, instrument, way * pull.normalized(), budget, statistics);
+    const Result<bool> slid = slide(field, instrument, demand, way, budget, statistics);
     if (!slid) {
       restore(field, start);
       return slid.failure();
     }
-    const Vec3 now = asked();
-    limit = holding_limit(field, instrument);  // a clip that has come off holds no more
+    const Demand now = largest_demand(field, instrument);
     const bool lost = !both_pads_hold(field, instrument);
-    if (!lost && now.norm() < below * limit && way > shortest_way) {  // too far
+    const double rests = demand.turns ? turning_share : 1.0;
+    if (!lost && now.share() < below * rests && way > shortest_way) {  // too far
       restore(field, before);
       way = std::max(0.3 * way, shortest_way);
       continue;
     }
-    if (lost || now.norm() <= above * limit) return at_start;
+    if (lost || now.share() <= above * rests) return out;
     // By the secant; a fold that gives no more resistance is followed at a growing pace.
-    const double stiffness = (pull.norm() - now.norm()) / way, longest = std::min(2 * way, longest_way);
-    const double next = stiffness > 0 ? (now.norm() - limit) / stiffness : longest;
+    const double stiffness = (demand.share() - now.share()) / way, longest = std::min(2 * way, longest_way);
+    const double next = stiffness > 0 ? (now.share() - rests) / stiffness : longest;
     way = std::clamp(next, shortest_way, longest);
-    pull = now;
+    demand = now;
   }
   restore(field, start);
   return without_end(field, instrument, "the fold that slips through");

@@ -103,14 +103,17 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     const int index = static_cast<int>(i);
     const std::string organ = held_organ(field, index);
     if (organ.empty() || !tool.jaws_rest()) continue;
-    const Result<double> pull = slip(field, index, statistics);
-    if (!pull) return pull.failure();
-    if (pull.value() > 0 && !tool.slipping && !slipped_before[i])
-      events.push_back({EventKind::slip, 0, tool.definition.name, organ, pull.value()});
-    tool.slipping |= pull.value() > 0;
-    if (pull.value() > 0) let_clips_fall(field, index, events);
+    if (Result<bool> left = leave_pads(field, index, statistics); !left) return left.failure();
+    const Result<Slipped> slipped = slip(field, index, statistics);
+    if (!slipped) return slipped.failure();
+    const bool slid = slipped->slid;
+    if (slid && !tool.slipping && !slipped_before[i])
+      events.push_back({EventKind::slip, 0, tool.definition.name, organ, slipped->pull, std::nullopt,
+                        slipped->turned ? EventCause::turning : EventCause::none});
+    tool.slipping |= slid;
+    if (slid) let_clips_fall(field, index, events);
     // What one pad alone has bitten is held as far as that goes.
-    if (both_pads_hold(field, index) || (!tool.jaw_stopped && pull.value() == 0)) continue;
+    if (both_pads_hold(field, index) || (!tool.jaw_stopped && !slid)) continue;
     if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     tool.pressing = false;
     if (!std::exchange(tool.jaw_stopped, false)) continue;

@@ -25,7 +25,7 @@ class TearWatch {
 Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, std::vector<WorldEvent>& events,
                     SolveStatistics& statistics);
 
-/// Folds that are pulled harder than their pads hold slide; one that has left a pad is lost. `slipped_before`, one a
+/// Folds that are pulled or turned harder than their pads hold slide; one that has left a pad is lost. `slipped_before`, one a
 /// tool: it slid in the last step, too. Adds slip, release and clip_dropped. Fails (simulation) where a fold finds no
 /// rest.
 Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,

@@ -43,12 +43,13 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
     pressed.add(touch.point, contact_hessian(now, touch) * carried(*motions[touch.shape], touch.at));
     loaded = true;
   }
-  const Links target = grip_links(organ, field.tools, to);
+  const GripSprings target = grip_springs(organ, field.tools, to);
   for (std::size_t i = 0; i < target.row.size(); ++i) {
     const int tool = organ.grips[i].instrument;
     if (from[tool] == to[tool]) continue;
+    const Vec3 at = organ.body->skin_point(target.row[i], organ.state.x);
     spread(organ.body->skin().stencils, target.row[i],
-           target.stiffness[i] * (target.target[i] - now.grip.target[i]), load);
+           now.grip.sample(i, at).hessian * (target.target[i] - now.grip.target[i]), load);
     loaded = true;
   }
   // What rubs touches as well: it has been found loaded above.

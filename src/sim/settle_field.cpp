@@ -21,7 +21,7 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
     out.shapes.push_back(contact_shape(ground.shape));
     out.broad.push_back(ground.broad);
   }
-  out.grip = grip_links(organ, field.tools, poses);
+  out.grip = grip_springs(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
   if (const ShellBody* shell = shell_of(organ)) out.detail_holds = detail_holds(*shell, organ.state.shares);
   out.load = organ.state.fading_load;

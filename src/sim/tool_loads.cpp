@@ -73,8 +73,8 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const GripPoint& grip = organ.grips[g];
       const Vec3 at = organ.body->skin_point(grip.skin_point, organ.state.x);
-      sum.add(shapes_per_tool * grip.instrument + 1 + grip.jaw, at,
-              now.grip.stiffness[g] * (at - now.grip.target[g]), true, name);
+      sum.add(shapes_per_tool * grip.instrument + 1 + grip.jaw, at, now.grip.sample(g, at).gradient, true,
+              name);
     }
   }
   if (field.tissues.empty()) return sum.take();

@@ -142,10 +142,15 @@ struct Slope {
   }
   void hold(int organ, double stiffness) {
     Organ& of = field.organs[static_cast<std::size_t>(organ)];
-    const Pose frame = part_frame(field.tools[0], field.tools[0].pose, 1);
     of.grips.clear();
-    for (std::size_t row = 0; row < of.body->skin_rest().size(); row += 7)
-      of.grips.push_back({0, 0, static_cast<int>(row), frame.inverse() * of.body->skin_rest()[row], 0});
+    // Each jaw presses away from itself alone, both from the start, so that together they tie in every direction.
+    const Vec3 pressed(0.1e-3, 0, 0);
+    for (const int jaw : {0, 1}) {
+      const Pose frame = part_frame(field.tools[0], field.tools[0].pose, 1 + jaw);
+      for (std::size_t row = 0; row < of.body->skin_rest().size(); row += 7)
+        of.grips.push_back(
+            {0, jaw, static_cast<int>(row), frame.inverse() * of.body->skin_rest()[row] - pressed, 0});
+    }
     for (GripPoint& grip : of.grips) grip.stiffness = stiffness / static_cast<double>(of.grips.size());
   }
   bool settle() {
@@ -161,10 +166,10 @@ struct Slope {
   /// N, of all springs on the stone.
   Vec3 held() const {
     const Organ& of = field.organs[1];
-    const Links links = grip_links(of, field.tools, present_poses(field));
+    const GripSprings springs = grip_springs(of, field.tools, present_poses(field));
     Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < links.row.size(); ++i)
-      sum += links.stiffness[i] * (links.target[i] - of.body->skin_point(links.row[i], of.state.x));
+    for (std::size_t i = 0; i < springs.row.size(); ++i)
+      sum -= springs.sample(i, of.body->skin_point(springs.row[i], of.state.x)).gradient;
     return sum;
   }
 };

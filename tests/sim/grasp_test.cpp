@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "field_rig.h"
 #include "rig.h"
@@ -45,25 +46,24 @@ TEST(Grasp, GraspedSkinStaysWithTheJaw) {
   auto& [field, fundus, out] = grasped;
   const Organ& organ = field.organs[0];
   const auto in_the_jaws = [&] {
-    std::vector<Vec3> local;
+    std::map<int, Vec3> local;  // by skin point
     const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     for (const GripPoint& grip : organ.grips)
-      local.push_back(
+      local[grip.skin_point] =
           jaw_frame(field.tools[0].trocar, field.tools[0].pose, field.tools[0].geometry, grip.jaw).inverse() *
-          skin[grip.skin_point]);
+          skin[grip.skin_point];
     return local;
   };
-  const std::vector<Vec3> before = in_the_jaws();
+  const std::map<int, Vec3> before = in_the_jaws();
   ASSERT_GT(before.size(), 5u);
   const Vec3 across = out.unitOrthogonal();
   for (const Vec3& tip : {Vec3(fundus + 6e-3 * out), Vec3(fundus + 6e-3 * out + 5e-3 * across)}) {
     ASSERT_EQ(test::move_tip(field, tip, 0.0), "");
-    const std::vector<Vec3> now = in_the_jaws();
-    ASSERT_EQ(now.size(), before.size());
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      EXPECT_LT((now[i] - before[i]).tail<2>().norm(), 0.05e-3)
-          << "along the pads, which press it as it gives";
-    }
+    const std::map<int, Vec3> now = in_the_jaws();
+    EXPECT_GT(now.size(), 0.9 * static_cast<double>(before.size())) << "but for what is drawn off the pads";
+    for (const auto& [point, at] : now)
+      EXPECT_LT((at - before.at(point)).tail<2>().norm(), 0.07e-3)
+          << "along the pads, by what its springs give";
   }
 }
 

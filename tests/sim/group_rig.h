@@ -71,7 +71,7 @@ struct GroupRig {
   }
   /// A spring of `stiffness` (N/m) from a skin point to a place.
   void hold(int body, int row, const Vec3& at, double stiffness) {
-    Links& grip = bodies[body].loads.grip;
+    GripSprings& grip = bodies[body].loads.grip;
     grip.row.push_back(row);
     grip.target.push_back(at);
     grip.stiffness.push_back(stiffness);

@@ -30,6 +30,8 @@ struct HeldFold : test::FundusField {
   explicit HeldFold(int nodes = 61) : FundusField(scene_with(100, 0.8, nodes)) {
     EXPECT_EQ(grasp(), "") << "by jaws that are strong enough to close until it fills them";
     field.tools[0].definition.pinch_force = 0.5;
+    // What was wound up by jaws so strong turns between such weak ones.
+    EXPECT_EQ(reach(-4e-3, 0.0, 1), "");
     taken = field_state(field);
   }
   /// Out to `way` (m) beyond the fundus.
@@ -65,7 +67,7 @@ Pull pull(double pinch, double friction, int steps) {
     }
     out.largest = std::max(out.largest, -test::tool_force(fold.field).dot(fold.out));
     for (const WorldEvent& event : events.value()) {
-      if (event.kind != EventKind::slip) continue;
+      if (event.kind != EventKind::slip || event.cause == EventCause::turning) continue;
       if (out.slips++ == 0) out.first_slip = event.value;
     }
   }
@@ -100,7 +102,7 @@ TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
     int sliding = 0, held = grip_count(field.organs[0], 0);
     for (int k = 1; k <= 60 && field.tools[0].jaw_stopped; ++k) {
       ASSERT_EQ(grasped.reach((0.2 * k - 4) * 1e-3, 0.0, 1), "");
-      const double force = asked_of_friction(field.tools[0], pad_pull(field, 0)).norm();
+      const double force = asked_of_friction(field.tools[0], pad_load(field, 0).pull).norm();
       EXPECT_LE(force, 1.001 * limit) << nodes << " nodes: the friction cone is never left";
       const int before = std::exchange(held, grip_count(field.organs[0], 0));
       if (!field.tools[0].slipping || !field.tools[0].jaw_stopped) continue;
@@ -112,6 +114,68 @@ TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
   }
 }
 
+/// What is seen of a fold that its jaws turn about their shaft, in steps of 2 degrees.
+struct Turned {
+  double largest = 0, adhering = 0;  ///< N m of couple; N that a pad is drawn off by, summed over its points
+  double drawn_off = 0;              ///< m, of the point furthest off its pad
+  int slips = 0, releases = 0, grasps = 0;
+};
+
+Turned turned(HeldFold& fold, int degrees) {
+  Turned out;
+  InstrumentPose pose = fold.field.tools[0].pose;
+  for (int k = 0; k < degrees / 2; ++k) {
+    pose.roll += 2 * units::deg;
+    pose.jaw = 0;  // the hand goes on closing
+    SolveStatistics statistics;
+    const auto events = advance(fold.field, {pose}, statistics);
+    if (!events) {
+      ADD_FAILURE() << to_text(events.failure());
+      break;
+    }
+    for (const WorldEvent& event : events.value()) {
+      out.slips += event.kind == EventKind::slip;
+      out.releases += event.kind == EventKind::release;
+      out.grasps += event.kind == EventKind::grasp;
+    }
+    out.largest = std::max(out.largest, std::abs(pad_load(fold.field, 0).couple));
+    const Organ& organ = fold.field.organs[0];
+    const GripSprings springs = grip_springs(organ, fold.field.tools, present_poses(fold.field));
+    double adhering = 0;
+    for (std::size_t i = 0; i < springs.row.size(); ++i) {
+      const Vec3 at = organ.body->skin_point(springs.row[i], organ.state.x);
+      adhering -= std::min(0.0, springs.sample(i, at).gradient.dot(springs.pad[i]));
+      out.drawn_off = std::max(out.drawn_off, springs.pad[i].dot(springs.target[i] - at));
+    }
+    out.adhering = std::max(out.adhering, adhering);
+  }
+  return out;
+}
+
+TEST(Slip, NothingAdheresToThePadsAndWhatIsDrawnOffLeavesThem) {
+  CALOT_SLOW_WHEN_SANITIZED("a fold turned");
+  HeldFold& fold = held_fold(100);
+  const int held = grip_count(fold.field.organs[0], 0);
+  const Turned seen = turned(fold, 80);
+  EXPECT_LT(seen.adhering, 1e-9);
+  EXPECT_GT(seen.drawn_off, 0.05e-3) << "else nothing asks for it";
+  EXPECT_LT(seen.drawn_off, 1.01 * pad_reach);
+  EXPECT_LT(grip_count(fold.field.organs[0], 0), held);
+  EXPECT_TRUE(both_pads_hold(fold.field, 0));
+}
+
+TEST(Slip, AFoldTurnsBetweenThePadsBeyondTheirCoupleAndIsLostByAWholeTurn) {
+  CALOT_SLOW_WHEN_SANITIZED("a fold turned");
+  HeldFold& fold = held_fold(6.8);
+  const double limit = couple_limit(fold.field.tools[0]);
+  const Turned seen = turned(fold, 360);
+  EXPECT_GE(seen.slips, 1);
+  EXPECT_GT(seen.largest, 0.9 * limit) << "it is turned until they hold no more";
+  EXPECT_LT(seen.largest, 1.001 * limit);
+  EXPECT_EQ(seen.releases, 1);
+  EXPECT_EQ(seen.grasps, 0) << "closed jaws do not catch again what they lost";
+}
+
 TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
   CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   const std::size_t held = held_fold().field.organs[0].grips.size();
@@ -119,14 +183,15 @@ TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
     HeldFold& fold = held_fold();
     EXPECT_EQ(fold.pull(0.2e-3, steps), "");
     grips = fold.field.organs[0].grips;
-    return pad_pull(fold.field, 0).norm();
+    return pad_load(fold.field, 0).pull.norm();
   };
   // 4.2 mm at 30 mm/s: 7 steps at 50 Hz, 28 at 200 Hz.
   std::vector<GripPoint> a, b;
   const double fast = pulled(7, a), slow = pulled(28, b);
   EXPECT_LT(a.size(), held) << "it slips, and some of it leaves the pads";
-  // Slides stop between 95 and 100% of what the pads hold, some 20 N/m away from each other a fold's way.
-  constexpr double apart = 0.05e-3;
+  // Slides stop between 95 and 100% of what the pads hold, some 20 N/m away from each other a fold's way, and turns
+  // between two thirds and all of their couple.
+  constexpr double apart = 0.15e-3;
   const InstrumentGeometry& g = held_fold().field.tools[0].geometry;
   const auto same_or_at_the_edge = [&](const std::vector<GripPoint>& some,
                                        const std::vector<GripPoint>& others) {
@@ -150,7 +215,7 @@ TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
   EXPECT_GT(same_or_at_the_edge(a, b), 20);
   EXPECT_GT(same_or_at_the_edge(b, a), 20);
   const double limit = 2 * 0.5 * 0.8;
-  EXPECT_NEAR(fast / limit, slow / limit, 0.05);
+  EXPECT_NEAR(fast / limit, slow / limit, 0.15);
 }
 
 TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
@@ -166,7 +231,7 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
     SolveStatistics statistics;
     std::string why;
     if (slips) {
-      const Result<double> slipped = slip(field, 0, statistics);
+      const Result<Slipped> slipped = slip(field, 0, statistics);
       ASSERT_FALSE(slipped);
       why = to_text(slipped.failure());
     } else {
