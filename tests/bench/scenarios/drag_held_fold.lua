@@ -1,5 +1,5 @@
--- A cost to measure: a grasper holds a fold of the fundus and draws it to and fro at 5 mm/s, turns it by half a turn
--- in 2 s, or does nothing with it.
+-- A cost to measure: a grasper holds a fold of the fundus and draws it to and fro at 5 mm/s, turns it by a whole
+-- turn in 4 s, or does nothing with it.
 local calot = require "calot"
 local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
 
@@ -32,7 +32,7 @@ return calot.exercise {
   demo = function(t, p)
     t.left:approach("gallbladder.fundus", { speed = 40 * mm / s })
     t.left:close()
-    if p.motion == "turn" then t.left:rotate(180 * deg, { speed = 90 * deg / s }) end
+    if p.motion == "turn" then t.left:rotate(360 * deg, { speed = 90 * deg / s }) end
     if p.motion ~= "drag" then return end
     t.left:move_by({ 0, 2 * mm, 6 * mm }, { speed = 5 * mm / s })
     for _ = 1, 3 do
