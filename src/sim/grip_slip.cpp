@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "sim/clips.h"
 #include "sim/field_state.h"
@@ -160,8 +161,9 @@ double couple_limit(const Tool& tool) { return tool.definition.pinch_force * too
 
 namespace {
 
-/// Of the pull and the couple that which comes nearer to what is held of it, or goes further beyond.
-Demand largest_demand(const Field& field, int instrument) {
+/// Of the pull and the couple that which comes nearer to what is held of it, or goes further beyond. A fold that is
+/// `turning` is held by turning_share of the couple.
+Demand largest_demand(const Field& field, int instrument, bool turning) {
   const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
   const PadLoad load = pad_load(field, instrument);
   // Clips, which the pads hold across, are drawn along by the pull alone.
@@ -170,7 +172,7 @@ Demand largest_demand(const Field& field, int instrument) {
   const Demand pull{asked.normalized(), false, asked.norm(), holding_limit(field, instrument)};
   const Vec3 shaft = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
   const Demand couple{load.couple > 0 ? shaft : Vec3(-shaft), true, std::abs(load.couple),
-                      couple_limit(tool)};
+                      (turning ? turning_share : 1.0) * couple_limit(tool)};
   return couple.share() > pull.share() ? couple : pull;
 }
 
@@ -197,30 +199,31 @@ Result<Slipped> slip(Field& field, int instrument, SolveStatistics& statistics) 
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
-  Demand demand = largest_demand(field, instrument);
+  Demand demand = largest_demand(field, instrument, false);
   if (demand.share() <= above) return Slipped{};
   const Slipped out{true, demand.turns, pad_load(field, instrument).pull.norm()};
   const FieldState start = field_state(field);
   double way = demand.turns ? 0.5 * longest_way : shortest_way;
+  bool turning = false;
   while (!budget.spent()) {
+    if (demand.turns && !std::exchange(turning, true)) demand = largest_demand(field, instrument, true);
     const FieldState before = field_state(field);
     const Result<bool> slid = slide(field, instrument, demand, way, budget, statistics);
     if (!slid) {
       restore(field, start);
       return slid.failure();
     }
-    const Demand now = largest_demand(field, instrument);
+    const Demand now = largest_demand(field, instrument, turning);
     const bool lost = !both_pads_hold(field, instrument);
-    const double rests = demand.turns ? turning_share : 1.0;
-    if (!lost && now.share() < below * rests && way > shortest_way) {  // too far
+    if (!lost && now.share() < below && way > shortest_way) {  // too far
       restore(field, before);
       way = std::max(0.3 * way, shortest_way);
       continue;
     }
-    if (lost || now.share() <= above * rests) return out;
+    if (lost || now.share() <= above) return out;
     // By the secant; a fold that gives no more resistance is followed at a growing pace.
     const double stiffness = (demand.share() - now.share()) / way, longest = std::min(2 * way, longest_way);
-    const double next = stiffness > 0 ? (now.share() - rests) / stiffness : longest;
+    const double next = stiffness > 0 ? (now.share() - 1) / stiffness : longest;
     way = std::clamp(next, shortest_way, longest);
     demand = now;
   }
