@@ -24,9 +24,10 @@ struct Budget {
 };
 
 Failure without_end(const Field& field, int instrument, const std::string& what) {
-  return fail(FailureKind::simulation,
-              fmt::format("{} the jaws of '{}' finds no rest", what, field.tools[instrument].definition.name),
-              "raise the instrument's pinch_force or pad_friction, pull less far, or move in smaller steps");
+  return fail(
+      FailureKind::simulation,
+      fmt::format("{} the jaws of '{}' finds no rest", what, field.tools[instrument].definition.name),
+      "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
 }
 
 /// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
@@ -58,7 +59,7 @@ struct Demand {
   double share() const { return asked > 0 ? asked / limit : 0; }
 };
 
-/// m: a fold that turns between the pads by an angle has come by that times this.
+/// m, from the middle between the pads to a fold's walls: one that turns by an angle has come by that times this.
 constexpr double turning_lever = 1.2e-3;
 
 /// Where a point goes as what the pads hold gives way by `way` m, patient's frame.
@@ -72,7 +73,7 @@ Vec3 given_way(const Tool& tool, const Demand& demand, double way, const Vec3& a
 Result<bool> slide(Field& field, int instrument, const Demand& demand, double way, const Budget& budget,
                    SolveStatistics& statistics) {
   const Tool& tool = field.tools[instrument];
-  const bool draws = !demand.turns && hold_of_clips(field, instrument) < holding_limit(tool);
+  const bool draws = hold_of_clips(field, instrument) < holding_limit(tool);
   if (draws) draw_clips(field, instrument, way * demand.towards);
   const auto off_the_pads = [&](const GripPoint& grip) {
     return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
@@ -170,6 +171,11 @@ Demand largest_demand(const Field& field, int instrument, bool turning) {
   const bool clips = hold_of_clips(field, instrument) < holding_limit(tool);
   const Vec3 asked = clips ? load.pull : asked_of_friction(tool, load.pull);
   const Demand pull{asked.normalized(), false, asked.norm(), holding_limit(field, instrument)};
+  // A tube lies in the middle of both pads: it does not come out of a couple by turning about the shaft.
+  const bool tube = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+    return !organ.body->skin_radii().empty() && grip_count(organ, instrument) > 0;
+  });
+  if (clips || tube) return pull;
   const Vec3 shaft = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
   const Demand couple{load.couple > 0 ? shaft : Vec3(-shaft), true, std::abs(load.couple),
                       (turning ? turning_share : 1.0) * couple_limit(tool)};

@@ -104,7 +104,8 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     const std::string organ = held_organ(field, index);
     if (organ.empty() || !tool.jaws_rest()) continue;
     if (Result<bool> left = leave_pads(field, index, statistics); !left) return left.failure();
-    const Result<Slipped> slipped = slip(field, index, statistics);
+    const Result<Slipped> slipped =
+        held_organ(field, index).empty() ? Slipped{} : slip(field, index, statistics);
     if (!slipped) return slipped.failure();
     const bool slid = slipped->slid;
     if (slid && !tool.slipping && !slipped_before[i])

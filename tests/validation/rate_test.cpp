@@ -68,9 +68,10 @@ TEST(Validation, ShapeDoesNotDependOnTheRate) {
     // Jaws stop where the fold carries their pinch to 2 %, 0.14 N (pinch_tolerance); a fold that carries 6.8 N over some
     // 2 mm between open jaws and stopped ones does so within 0.02 to 0.04 mm, half of that each pad. What follows
     // repeats that, and beside a point that has left the wall moves by a tenth of a millimetre.
-    EXPECT_LT(apart, 0.1e-3) << rate;
-    EXPECT_LT(force, 2e-3) << rate;
-    EXPECT_NEAR(other.pressure, reference.pressure, 2e-3 * reference.pressure) << rate;
+    const bool same = other.grip_points == reference.grip_points;
+    EXPECT_LT(apart, same ? 20e-6 : 0.1e-3) << rate;
+    EXPECT_LT(force, same ? 1e-3 : 2e-3) << rate;
+    EXPECT_NEAR(other.pressure, reference.pressure, (same ? 1e-3 : 2e-3) * reference.pressure) << rate;
   }
 }
 
