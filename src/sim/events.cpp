@@ -11,8 +11,10 @@ const std::vector<EventRow>& event_rows() {
       {grasp, "grasp", "jaws close on a fold and hold it", "", true, true},
       {empty_grasp, "empty_grasp", "jaws close and hold nothing", "", true, false, true},
       {release, "release", "what was held is let go, by opening or because it slipped off", "", true, true},
-      {slip, "slip", "what is held begins to slide through the jaws; with the pull that does it", "force_N",
-       true, true, true},
+      {slip, "slip",
+       "what is held begins to slide through the jaws, or by the cause turned to turn in them; with its pull "
+       "then",
+       "force_N", true, true, true},
       {activation, "activation", "current begins to flow in an instrument; with the organ it touches", "",
        true, true},
       {overforce, "overforce", "the force on an instrument rises above its force_limit", "force_N", true,

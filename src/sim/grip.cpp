@@ -79,7 +79,7 @@ void take_hold(Field& field, int instrument) {
   // Blades divide a tube, and a clip applier lets it be: neither has teeth.
   const bool teeth = instrument_row(tool.definition.type).jaws == JawUse::hold;
   for (Organ& organ : field.organs) {
-    // A wall that has slipped out bulges before the jaws that lost it; they do not catch it again until they have opened.
+    // What has slipped out bulges before the jaws that lost it: they catch none again until they have opened.
     if (tool.lost && organ.body->skin_radii().empty()) continue;
     if (!feels(organ, instrument) || (!teeth && !organ.body->skin_radii().empty()) || !is_bitten(organ))
       continue;

@@ -1,5 +1,5 @@
 #pragma once
-// What jaws hold: skin points that keep their places on the pads until they slip or are let go.
+// What jaws hold: skin points that keep their places along the pads until they slip, are drawn off or let go.
 
 #include "sim/field.h"
 

@@ -14,7 +14,7 @@
 
 namespace calot {
 
-/// A skin point that a pad holds: it keeps its place in the jaw's frame until it slips or the jaw opens.
+/// A skin point that a pad holds: it keeps its place along the pad until it slips, is drawn off or the jaw opens.
 struct GripPoint {
   int instrument = 0, jaw = 0;
   int skin_point = 0;

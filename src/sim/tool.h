@@ -32,7 +32,7 @@ struct Tool {
   InstrumentPose pose;
   bool touched = false, over_limit = false;  ///< at the last step, for events
   bool jaw_stopped = false;                  ///< the jaws rest on what they hold
-  bool lost = false;  ///< what it held slid off; until the jaws open or hold again; for reports
+  bool lost = false;  ///< what it held slid off; until the jaws open or hold again, they take hold of no wall
   bool beside =
       false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
   InstrumentAction action = InstrumentAction::none;
