@@ -4,9 +4,10 @@
 //
 // Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
 // wall moves along), is cut where a skin point would come too near a shape or a node would move further than
-// a set share of its local edge, and ends in equilibrium; then folds slip that are pulled harder than they are
-// held. How the motion was cut into steps matters nowhere but to what slides, a little, as friction follows
-// the way in straight pieces; jaws take hold at fixed angles, and stop where tissue carries their pinch.
+// a set share of its local edge, and ends in equilibrium; then what is drawn off its pad is let go, and
+// folds slip that are pulled or turned harder than they are held. How the motion was cut into steps matters nowhere
+// but to what slides or leaves its pad, a little, as friction follows the way in straight pieces; jaws take hold at
+// fixed angles, and stop where tissue carries their pinch.
 //
 // Where masses count each part is a step of implicit Euler (inertia.h) in its share of the step's time, begins from the
 // first Newton step from where the organs are, and is cut in time too. What is solved again at the end of a part, as

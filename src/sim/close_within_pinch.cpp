@@ -133,9 +133,9 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     const bool tight = first.excess > pinch_tolerance;
     if (tight) stopped.push_back(i);
     if (!trials.pressed_at_start(i)) {
+      if (!tight) continue;
       // Jaws that were closing are let back as far as they have come.
       const At loose{from, trials.excess_at_start(i)};
-      if (!tight || first.jaw == from) continue;
       if (loose.excess < -pinch_tolerance) {
         find_pinch(trials, i, first, loose);
       } else {

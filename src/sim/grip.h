@@ -16,7 +16,7 @@ inline constexpr double pad_reach = 0.5e-3;
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 
-/// Skin points that touch a pad of a closing tool are held by it from here on; not of a wall where it has lost one.
+/// Skin points that touch a pad of a closing tool are held by it from here on; not of a wall after it has lost what it held.
 void take_hold(Field& field, int instrument);
 
 /// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to:

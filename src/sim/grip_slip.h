@@ -1,11 +1,11 @@
 #pragma once
-// How a grip gives way: opened by the jaws, or pulled through them.
+// How a grip gives way: opened by the jaws, drawn off their pads, pulled through them or turned between them.
 
 #include "sim/field.h"
 
 namespace calot {
 
-/// Newton iterations that a release or a slip may take: one that needs more is blocked, and says so within
+/// Newton iterations that a release, a slip or what leaves its pads may take, each: one that needs more is blocked, and says so within
 /// seconds.
 inline constexpr int hold_iterations = 1500;
 

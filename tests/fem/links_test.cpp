@@ -16,21 +16,15 @@ struct Rig {
 };
 
 Rig make_rig(Rng& rng) {
-  const TriMesh mesh = test::sphere(14);
-  const LoopSurface surface = LoopSurface::create(mesh).value();
-  StencilTable table = surface.tessellate(2).stencils;
-  const int size = 3 * surface.nodes();
-  const VecX x = to_coordinates(mesh.points) + test::random_coordinates(rng, size, 2e-3);
+  test::SkinOfSphere skin(rng);
   Links links;
-  std::vector<std::vector<int>> cliques;
-  for (int row : {0, 5, 20, 41}) {
-    links.row.push_back(row);
-    links.target.push_back(blend(table, table.value, row, x) + test::random_vector(rng, 3e-3));
+  links.row = {0, 5, 20, 41};
+  for (int row : links.row) {
+    links.target.push_back(skin.point(row) + test::random_vector(rng, 3e-3));
     links.stiffness.push_back(rng.uniform(100, 1000));
-    cliques.emplace_back(table.node.begin() + table.begin[row], table.node.begin() + table.begin[row + 1]);
   }
-  BlockMatrix matrix(surface.nodes(), cliques);
-  return {std::move(table), x, links, std::move(matrix)};
+  BlockMatrix matrix = skin.matrix(links.row);
+  return {std::move(skin.table), skin.x, links, std::move(matrix)};
 }
 
 VecX gradient_of(const Rig& rig, const VecX& x) {

@@ -330,6 +330,7 @@ TEST(Clips, StayWhereJawsSlideOverThem) {
   DrawnClip hands(0.5 * clip_hold);
   ASSERT_TRUE(hands.grasp());
   const double before = hands.stump().clips.at(0).at;
+  // The jaws rest on the clip a little open: friction holds what they press out, too.
   EXPECT_GT(hands.draw(4e-3), 0.38 * clip_hold);
   EXPECT_NEAR(hands.asked, 0.5 * clip_hold, 0.01 * clip_hold);
   EXPECT_EQ(hands.count(EventKind::clip_dropped), 0);

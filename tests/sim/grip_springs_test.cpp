@@ -17,24 +17,19 @@ struct Held {
 };
 
 Held held(Rng& rng, const std::vector<double>& into) {
-  const TriMesh mesh = test::sphere(14);
-  const LoopSurface surface = LoopSurface::create(mesh).value();
-  StencilTable table = surface.tessellate(2).stencils;
-  const VecX x = to_coordinates(mesh.points) + test::random_coordinates(rng, 3 * surface.nodes(), 2e-3);
+  test::SkinOfSphere skin(rng);
   GripSprings springs;
-  std::vector<std::vector<int>> cliques;
   for (std::size_t i = 0; i < into.size(); ++i) {
     const int row = 9 * static_cast<int>(i);
     const Vec3 pad = test::random_vector(rng, 1).normalized();
     const Vec3 along = 0.3e-3 * pad.unitOrthogonal();
     springs.row.push_back(row);
-    springs.target.push_back(blend(table, table.value, row, x) - into[i] * pad + along);
+    springs.target.push_back(skin.point(row) - into[i] * pad + along);
     springs.stiffness.push_back(rng.uniform(1e4, 4e4));
     springs.pad.push_back(pad);
-    cliques.emplace_back(table.node.begin() + table.begin[row], table.node.begin() + table.begin[row + 1]);
   }
-  BlockMatrix matrix(surface.nodes(), cliques);
-  return {std::move(table), x, springs, std::move(matrix)};
+  BlockMatrix matrix = skin.matrix(springs.row);
+  return {std::move(skin.table), skin.x, springs, std::move(matrix)};
 }
 
 VecX gradient_of(const Held& of, const VecX& x) {

@@ -6,6 +6,7 @@
 #include "geometry/shapes.h"
 #include "geometry/stencil.h"
 #include "skin/subdivision.h"
+#include "support/derivatives.h"
 #include "support/random.h"
 
 namespace calot::test {
@@ -60,5 +61,26 @@ inline Vec3 net_torque(const VecX& x, const VecX& f, const Vec3& centre) {
   for (int i = 0; i < f.size(); i += 3) sum += (x.segment<3>(i) - centre).cross(f.segment<3>(i));
   return sum;
 }
+
+/// Points of the skin of a sphere whose 14 nodes are shaken by up to 2 mm.
+struct SkinOfSphere {
+  StencilTable table;
+  VecX x;
+
+  explicit SkinOfSphere(Rng& rng) {
+    const TriMesh mesh = sphere(14);
+    const LoopSurface surface = LoopSurface::create(mesh).value();
+    table = surface.tessellate(2).stencils;
+    x = to_coordinates(mesh.points) + random_coordinates(rng, 3 * surface.nodes(), 2e-3);
+  }
+  Vec3 point(int row) const { return blend(table, table.value, row, x); }
+  /// With room for what couples the nodes of each of these rows.
+  BlockMatrix matrix(const std::vector<int>& rows) const {
+    std::vector<std::vector<int>> cliques;
+    for (int row : rows)
+      cliques.emplace_back(table.node.begin() + table.begin[row], table.node.begin() + table.begin[row + 1]);
+    return BlockMatrix(static_cast<int>(x.size() / 3), cliques);
+  }
+};
 
 }  // namespace calot::test
