@@ -4,6 +4,7 @@
 #include "app/play.h"
 #include "app/project.h"
 #include "app/terminal.h"
+#include "base/processor.h"
 #include "render/offscreen.h"
 #include "session/build_info.h"
 
@@ -17,10 +18,15 @@ struct Finding {
   std::string what, detail, remedy;
 };
 
+/// That this build runs here is sure; whether one for a newer instruction set would, is not.
 Finding processor() {
-  // The binary is already running, so what it was compiled for is there; a build for older machines says so.
   const Make make = this_make();
-  return {true, "processor", fmt::format("runs this build ({}, {})", make.instruction_set, make.toolchain),
+  const char* offers = processor_has_x86_64_v3() ? "offers x86-64-v3" : "does not offer x86-64-v3";
+  const char* faster = processor_has_x86_64_v3() && !built_for_x86_64_v3
+                           ? ": scripts/run builds a faster program, unless CALOT_ARCH says otherwise"
+                           : "";
+  return {true, "processor",
+          fmt::format("{}; this build uses {} ({}){}", offers, make.instruction_set, make.toolchain, faster),
           ""};
 }
 

@@ -4,21 +4,19 @@
 #include <cstdlib>
 
 #include "app/cli.h"
+#include "base/processor.h"
 
 namespace {
 
-/// Runs before any other initialiser, and uses nothing that an older processor lacks.
+/// Ends the process (7) where the processor lacks what this file was compiled for. Runs before any other initialiser,
+/// and uses nothing that an older processor lacks.
 __attribute__((constructor(101))) void check_processor() {
-#if defined(__AVX2__)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
-    return;
+  if (!built_for_x86_64_v3 || processor_has_x86_64_v3()) return;
   std::fputs(
       "This processor lacks the instruction set that calot was built for (x86-64-v3).\n"
-      "Next: CALOT_ARCH=x86-64 scripts/run\n",
+      "Next: scripts/run, which builds for the processor that it finds\n",
       stderr);
   std::_Exit(7);
-#endif
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "base/processor.h"
 #if __has_include(<sys/platform/x86.h>)
 #include <sys/platform/x86.h>
 #endif
@@ -25,10 +26,8 @@ std::string toolchain() {
 std::string instruction_set() {
 #if defined(__AVX512F__)
   return "x86-64-v4";
-#elif defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__)
-  return "x86-64-v3";
 #else
-  return "x86-64";
+  return built_for_x86_64_v3 ? "x86-64-v3" : "x86-64";
 #endif
 }
 

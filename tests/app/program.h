@@ -130,6 +130,14 @@ class ProgramTest : public ::testing::Test {
   }
 };
 
+/// Runs a line of shell in the test's folder; `$calot` is the program.
+inline int shell(const fs::path& folder, const std::string& line) {
+  const std::string words =
+      "cd '" + folder.string() + "' && calot='" + program_path() + "' && { " + line + " ; } 2>.stderr";
+  const int status = std::system(words.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 /// What every failure ends with.
 inline void expect_next_command(const Outcome& outcome) {
   const std::size_t line = outcome.err.rfind("Next: ");

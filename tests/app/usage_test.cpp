@@ -144,14 +144,6 @@ TEST_F(Usage, AnOutputFolderThatCannotBeIsAUsageErrorBeforeAnythingIsPlayed) {
   EXPECT_EQ(slurp(folder_ / "taken"), "a file\n");
 }
 
-/// Runs a line of shell in the test's folder; `$calot` is the program.
-int shell(const fs::path& folder, const std::string& line) {
-  const std::string words =
-      "cd '" + folder.string() + "' && calot='" + program_path() + "' && { " + line + " ; } 2>.stderr";
-  const int status = std::system(words.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 TEST_F(Usage, WhatCannotBePrintedIsAnError) {
   for (const char* command : {"--help", "check small.lua", "run small.lua --no-render --json"})
     EXPECT_EQ(shell(folder_, std::string("$calot ") + command + " >/dev/full"), 4) << command;
