@@ -11,7 +11,7 @@ namespace {
 /// Ends the process (7) where the processor lacks what this file was compiled for. Runs before any other initialiser,
 /// and uses nothing that an older processor lacks.
 __attribute__((constructor(101))) void check_processor() {
-  if (!built_for_x86_64_v3 || processor_has_x86_64_v3()) return;
+  if (!calot::built_for_x86_64_v3 || calot::processor_has_x86_64_v3()) return;
   std::fputs(
       "This processor lacks the instruction set that calot was built for (x86-64-v3).\n"
       "Next: scripts/run, which builds for the processor that it finds\n",
