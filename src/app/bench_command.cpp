@@ -41,6 +41,7 @@ std::optional<Failure> write_all(const Comparison& comparison, const std::string
 }  // namespace
 
 ExitCode bench_command(const BenchCommand& command) {
+  if (command.dry_run) return ExitCode::ok;
   const Result<std::filesystem::path> folder =
       make_folder(command.output.empty() ? "out/bench" : command.output);
   if (!folder) return print_failure(folder.failure(), "calot bench --help", command.json);

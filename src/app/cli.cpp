@@ -10,7 +10,7 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "base/suggest.h"
+#include "app/usage_error.h"
 #include "base/workers.h"
 #include "session/build_info.h"
 #include "session/json_fields.h"
@@ -32,8 +32,16 @@ struct Program {
   NewCommand fresh;
   GoldenCommand golden;
   BenchCommand bench;
+  DoctorCommand doctor;
   std::function<ExitCode()> chosen;
 };
+
+/// For those who test what is written about commands: no part of the help.
+template <class Command>
+void add_dry_run(CLI::App& command, Command& options) {
+  command.add_flag("--dry-run", options.dry_run, "check arguments and the files they name, and no more")
+      ->group("");
+}
 
 /// Count: an int, or an optional one.
 template <class Count>
@@ -104,6 +112,7 @@ void add_run(Program& program) {
   command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
   add_new_session_options(command, program.run);
   add_session_options(command, program.run);
+  add_dry_run(command, program.run);
   command.callback([&program] { program.chosen = [&program] { return run_command(program.run); }; });
 }
 
@@ -166,6 +175,7 @@ void add_operate(Program& program) {
       "[ACTION],\n"
       "pause, resume, restart, abandon, end, time_out [WORDS], bail_out [HOW]. Times in s, places in m, "
       "angles in rad.");
+  add_dry_run(command, operate);
   command.callback([&program] { program.chosen = [&program] { return operate_command(program.operate); }; });
 }
 
@@ -179,6 +189,7 @@ void add_replay(Program& program) {
                   "write report, frames and table there (default: nowhere)")
       ->type_name("DIR");
   add_session_options(command, program.replay);
+  add_dry_run(command, program.replay);
   command.callback([&program] { program.chosen = [&program] { return replay_command(program.replay); }; });
 }
 
@@ -212,6 +223,7 @@ void add_score(Program& program) {
   command.add_flag("--csv", score.csv, "print the scores as CSV, and nothing else, to stdout")
       ->excludes(json);
   add_fail_below(command, score.fail_below, "exit with 1 when any score is below this");
+  add_dry_run(command, score);
   command.callback([&program] { program.chosen = [&program] { return score_command(program.score); }; });
 }
 
@@ -242,6 +254,7 @@ void add_page(Program& program) {
       ->type_name("N")
       ->check(CLI::Range(1, most_threads))
       ->capture_default_str();
+  add_dry_run(command, page);
   command.callback([&program] { program.chosen = [&program] { return page_command(program.page); }; });
 }
 
@@ -259,6 +272,7 @@ void add_import(Program& program) {
       ->required();
   command.add_option("-o,--output", import.output, "folder for the recordings")->type_name("DIR")->required();
   command.add_flag("--json", import.json, "print what was done as JSON, and nothing else, to stdout");
+  add_dry_run(command, import);
   command.callback([&program] { program.chosen = [&program] { return import_command(program.import); }; });
 }
 
@@ -271,6 +285,7 @@ void add_check(Program& program) {
       "--build", program.check.build,
       "build the operating fields too: fill the organs, and try whether the demo's places are in reach");
   command.add_flag("--json", program.check.json, "print the findings as JSON, and nothing else, to stdout");
+  add_dry_run(command, program.check);
   command.callback([&program] { program.chosen = [&program] { return check_command(program.check); }; });
 }
 
@@ -280,12 +295,14 @@ void add_list(Program& program) {
   command.add_option("scenario", program.list.scenario,
                      "list what this one has, with its parameters and steps");
   command.add_flag("--json", program.list.json, "print the lists as JSON, and nothing else, to stdout");
+  add_dry_run(command, program.list);
   command.callback([&program] { program.chosen = [&program] { return list_command(program.list); }; });
 }
 
 void add_new(Program& program) {
   CLI::App& command = *program.app.add_subcommand("new", "write a commented exercise to start from");
   command.add_option("name", program.fresh.name, "its name, such as hold_tight")->required();
+  add_dry_run(command, program.fresh);
   command.callback([&program] { program.chosen = [&program] { return new_command(program.fresh); }; });
 }
 
@@ -299,6 +316,7 @@ void add_golden(Program& program) {
     command.add_option("--folder", program.golden.folder, "folder of the goldens (default: golden/)")
         ->type_name("DIR");
     add_threads(command, program.golden.threads);
+    add_dry_run(command, program.golden);
     command.callback(
         [&program, action] { program.chosen = [&program, action] { return action(program.golden); }; });
     return command;
@@ -323,27 +341,14 @@ void add_bench(Program& program) {
       ->type_name("DIR");
   command.add_flag("--json", program.bench.json, "print the figures as JSON, and nothing else, to stdout");
   command.add_flag("--quick", program.bench.quick, "one load and coarser meshes, a few seconds");
+  add_dry_run(command, program.bench);
   command.callback([&program] { program.chosen = [&program] { return bench_command(program.bench); }; });
 }
 
 void add_doctor(Program& program) {
   CLI::App& command = *program.app.add_subcommand("doctor", "check what this program needs on this machine");
-  command.callback([&program] { program.chosen = [] { return doctor_command(); }; });
-}
-
-/// CLI11's message, the nearest command to a mistyped one, and where help is.
-ExitCode explain(const Program& program, const CLI::ParseError& error, int argc, char** argv) {
-  std::vector<std::string> commands;
-  for (const CLI::App* command : program.app.get_subcommands({})) commands.push_back(command->get_name());
-  std::string next = "calot --help", hint;
-  if (argc > 1) {
-    const std::string word = argv[1];
-    if (std::find(commands.begin(), commands.end(), word) != commands.end())
-      next = "calot " + word + " --help";
-    else if (!closest_name(word, commands).empty())
-      hint = suggestion(word, commands);
-  }
-  return print_failure(fail(FailureKind::usage, error.what(), hint), next);
+  add_dry_run(command, program.doctor);
+  command.callback([&program] { program.chosen = [&program] { return doctor_command(program.doctor); }; });
 }
 
 /// The first argument that is not UTF-8, with its odd bytes escaped: it could be neither printed nor recorded.
@@ -386,8 +391,9 @@ int parse_and_run(int argc, char** argv) {
   try {
     program.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.app.exit(error);  // --help, --version
-    return static_cast<int>(explain(program, error, argc, argv));
+    const bool asked = error.get_exit_code() == 0;  // for help or the version
+    if (asked && unexpected_words(program.app).empty()) return program.app.exit(error);
+    return static_cast<int>(explain_usage_error(program.app, error));
   }
   if (!program.chosen) {
     print(program.app.help());

@@ -9,12 +9,19 @@
 #include <vector>
 
 #include "app/exit_code.h"
+#include "app/golden_select.h"
 #include "base/workers.h"
 
 namespace calot {
 
+/// Shared by all commands.
+struct AnyCommand {
+  bool dry_run =
+      false;  ///< fail as the command would on its arguments and the files that they name; else do nothing
+};
+
 /// Shared by the commands that play a session.
-struct SessionCommand {
+struct SessionCommand : AnyCommand {
   std::optional<int> threads;  ///< none: as many as is usual, or, beside a window drawn in software, as fit
   std::string output;          ///< folder
   bool json = false, no_render = false;
@@ -57,7 +64,7 @@ inline int usual_jobs() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, most_threads);
 }
 
-struct ScoreCommand {
+struct ScoreCommand : AnyCommand {
   std::string exercise;
   std::vector<std::string> recordings;  ///< files, or folders with all below them
   std::string benchmarks;               ///< a table's file; empty: the exercise's own
@@ -69,7 +76,7 @@ struct ScoreCommand {
 };
 ExitCode score_command(const ScoreCommand& command);
 
-struct PageCommand {
+struct PageCommand : AnyCommand {
   std::vector<std::string> recordings;  ///< files, or folders with all below them
   std::string scenario;                 ///< empty: the one named in the first recording
   std::string benchmarks;               ///< a table's file; empty: the exercise's own
@@ -80,7 +87,7 @@ struct PageCommand {
 };
 ExitCode page_command(const PageCommand& command);
 
-struct ImportCommand {
+struct ImportCommand : AnyCommand {
   std::string exercise, registration;  ///< files
   std::vector<std::string> files;      ///< of motion from elsewhere
   std::string output;                  ///< folder for the recordings
@@ -88,25 +95,25 @@ struct ImportCommand {
 };
 ExitCode import_command(const ImportCommand& command);
 
-struct CheckCommand {
+struct CheckCommand : AnyCommand {
   std::vector<std::string> scenarios;  ///< files, or folders with all below them
   bool build = false;                  ///< build the worlds too
   bool json = false;
 };
 ExitCode check_command(const CheckCommand& command);
 
-struct ListCommand {
+struct ListCommand : AnyCommand {
   std::string scenario;  ///< empty: what every scenario can name
   bool json = false;
 };
 ExitCode list_command(const ListCommand& command);
 
-struct NewCommand {
+struct NewCommand : AnyCommand {
   std::string name;
 };
 ExitCode new_command(const NewCommand& command);
 
-struct GoldenCommand {
+struct GoldenCommand : AnyCommand {
   std::vector<std::string> names;  ///< see app/golden_select.h
   std::string folder;              ///< of the goldens; empty: the project's golden/
   std::string output;              ///< report: the HTML file; test: the folder for what differs
@@ -115,16 +122,19 @@ struct GoldenCommand {
 };
 /// Where a golden command's pictures are stored.
 std::filesystem::path golden_folder(const GoldenCommand& command);
+/// What a dry run says of the scenarios and frames that the names mean.
+ExitCode golden_dry_run(const GoldenCommand& command, const std::vector<SelectedGolden>& selected);
 ExitCode golden_test_command(const GoldenCommand& command);
 ExitCode golden_accept_command(const GoldenCommand& command);
 ExitCode golden_report_command(const GoldenCommand& command);
 
-struct BenchCommand {
+struct BenchCommand : AnyCommand {
   std::string output;  ///< folder; empty: out/bench
   bool json = false, quick = false;
 };
 ExitCode bench_command(const BenchCommand& command);
 
-ExitCode doctor_command();
+struct DoctorCommand : AnyCommand {};
+ExitCode doctor_command(const DoctorCommand& command);
 
 }  // namespace calot

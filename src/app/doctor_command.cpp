@@ -90,7 +90,9 @@ Finding scenarios() {
 
 }  // namespace
 
-ExitCode doctor_command() {
+ExitCode doctor_command(const DoctorCommand& command) {
+  if (command.dry_run) return ExitCode::ok;
+  tell_borrowed_project();
   bool ok = true;
   for (const Finding& finding :
        {processor(), mathematics(), threads(), folder("scripts/lua", "Lua modules"),

@@ -96,6 +96,17 @@ std::optional<Failure> accept_scenario(const SelectedGolden& selected, const fs:
   return std::nullopt;
 }
 
+/// Pictures go into another project only where the command line names its folder.
+std::optional<Failure> check_goldens_place(const GoldenCommand& command) {
+  const std::optional<std::string> why = no_project_here();
+  if (!why || !command.folder.empty()) return std::nullopt;
+  return fail(FailureKind::usage,
+              fmt::format("no project here ({}): the pictures would go into {}", *why,
+                          golden_folder(command).string()),
+              "run it inside the project, which has scenarios/ and scripts/lua/: make scripts/lua where it "
+              "is missing");
+}
+
 ExitCode stopped(std::size_t accepted, const std::vector<SelectedGolden>& all, std::size_t from) {
   std::string names;
   for (std::size_t i = from; i < all.size(); ++i) names += (i > from ? " " : "") + shell_word(all[i].name);
@@ -113,11 +124,15 @@ ExitCode golden_accept_command(const GoldenCommand& command) {
     return print_failure(fail(FailureKind::usage, "name what to accept: a scenario, or scenario/frame"),
                          "calot golden test");
   }
+  if (const std::optional<Failure> wrong = check_goldens_place(command))
+    return print_failure(*wrong, "cd PROJECT, then: calot golden accept " + shell_word(command.names[0]));
+  tell_borrowed_project();
   const Result<std::vector<SelectedGolden>> selected = select_goldens(command.names);
   if (!selected) {
     print_failure(selected.failure(), "calot golden test");
     return ExitCode::nothing_selected;
   }
+  if (command.dry_run) return golden_dry_run(command, selected.value());
   const fs::path goldens = golden_folder(command);
   std::size_t accepted = 0;
   for (std::size_t i = 0; i < selected->size(); ++i) {

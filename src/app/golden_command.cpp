@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 /// What came of all selected scenarios, but for their frames, which went to a sink.
 struct Compared {
   ExitCode code = ExitCode::ok;   ///< ok: every scenario was played
-  std::optional<ExitCode> ended;  ///< nothing was selected; it has been said
+  std::optional<ExitCode> ended;  ///< nothing was to be played: it has been said why, or it was a dry run
   std::size_t frames = 0, failed = 0, unreadable = 0;
   std::vector<std::string> unplayed;  ///< scenarios that an interruption left out, wholly or in part
   OrderedJson failures = OrderedJson::array();
@@ -34,11 +34,16 @@ void note_failure(const SelectedGolden& scenario, const Failure& failure, Compar
 /// One scenario that cannot be played hides no other.
 Compared compare_selected(const GoldenCommand& command, const GoldenSink& sink) {
   Compared compared;
+  tell_borrowed_project();
   const std::atomic<bool>& stop = interrupt_flag();
   const Result<std::vector<SelectedGolden>> selected = select_goldens(command.names);
   if (!selected) {
     print_failure(selected.failure(), "calot golden test", command.json);
     compared.ended = ExitCode::nothing_selected;
+    return compared;
+  }
+  if (command.dry_run) {
+    compared.ended = golden_dry_run(command, selected.value());
     return compared;
   }
   const GoldenSink counted = [&](const GoldenResult& result) {
@@ -114,6 +119,11 @@ ExitCode stopped(const Compared& compared, const std::string& command, const std
 
 fs::path golden_folder(const GoldenCommand& command) {
   return command.folder.empty() ? project_folder() / "golden" : fs::path(command.folder);
+}
+
+ExitCode golden_dry_run(const GoldenCommand& command, const std::vector<SelectedGolden>& selected) {
+  const std::optional<Failure> wrong = check_selected(selected, golden_folder(command));
+  return wrong ? print_failure(*wrong, "calot golden test", command.json) : ExitCode::ok;
 }
 
 ExitCode golden_test_command(const GoldenCommand& command) {

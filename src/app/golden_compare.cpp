@@ -28,6 +28,14 @@ void find_golden(GoldenResult& result, const fs::path& folder) {
     result.judgement = {Verdict::unreadable, false, to_text(golden.failure()), {}};
 }
 
+/// The frames that a scenario declares, and those stored.
+std::set<std::string> known_frames(const ExerciseDefinition& exercise, const fs::path& folder) {
+  std::set<std::string> known;
+  for (const std::string& name : stored_frames(folder)) known.insert(name);
+  for (const GoldenFrame& frame : golden_frames(exercise)) known.insert(frame.name);
+  return known;
+}
+
 GoldenResult drawn_frame(const std::string& scenario, const Frame& frame, const fs::path& folder) {
   GoldenResult result{scenario, frame.name, {}, {}, make_golden(frame)};
   find_golden(result, folder);
@@ -67,6 +75,19 @@ std::vector<std::string> stored_frames(const fs::path& folder) {
   return names;
 }
 
+std::optional<Failure> check_selected(const std::vector<SelectedGolden>& selected, const fs::path& goldens) {
+  for (const SelectedGolden& scenario : selected) {
+    const Result<ExerciseDefinition> exercise = load_definition(scenario.file);
+    if (!exercise) return exercise.failure();
+    const std::set<std::string> known = known_frames(exercise.value(), goldens / scenario.name);
+    for (const std::string& frame : scenario.frames)
+      if (!known.contains(frame))
+        return fail(FailureKind::usage, fmt::format("{} has no frame {}", scenario.name, frame),
+                    fmt::format("frames: {}", fmt::join(known, ", ")));
+  }
+  return std::nullopt;
+}
+
 void use_stored_size(const fs::path& folder, PlayRequest& request) {
   for (const std::string& frame : stored_frames(folder)) {
     const Result<Golden> golden = read_golden(folder / frame);
@@ -86,9 +107,7 @@ ComparedScenario compare_scenario(const SelectedGolden& selected, const fs::path
     compared.failure = definition.failure();
     return compared;
   }
-  std::set<std::string> wanted;
-  for (const std::string& name : stored_frames(folder)) wanted.insert(name);
-  for (const GoldenFrame& frame : golden_frames(definition.value())) wanted.insert(frame.name);
+  std::set<std::string> wanted = known_frames(definition.value(), folder);
   std::erase_if(wanted, [&](const std::string& name) { return !selected.wants(name); });
   if (wanted.empty()) return compared;
 

@@ -14,6 +14,10 @@ namespace calot {
 /// Names of the frames that are stored in a scenario's folder of goldens, sorted.
 std::vector<std::string> stored_frames(const std::filesystem::path& folder);
 
+/// Fails as load_definition does, or (usage) where a selected frame is neither declared by its scenario nor stored.
+std::optional<Failure> check_selected(const std::vector<SelectedGolden>& selected,
+                                      const std::filesystem::path& goldens);
+
 /// Draws frames in the size that a scenario's goldens have.
 void use_stored_size(const std::filesystem::path& folder, PlayRequest& request);
 

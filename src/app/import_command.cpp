@@ -23,9 +23,9 @@ fs::path recording_path(const fs::path& folder, const fs::path& file) {
   return folder / (name.substr(0, name.find('.')) + ".jsonl");
 }
 
-Result<Imported> import_file(const std::string& file, const fs::path& folder,
+Result<Imported> import_file(const std::string& file, const ImportCommand& command,
                              const Registration& registration, const ExerciseDefinition& exercise) {
-  Imported imported{recording_path(folder, file), {}};
+  Imported imported{recording_path(command.output, file), {}};
   std::error_code error;
   if (fs::exists(imported.file, error))
     return fail(FailureKind::usage, fmt::format("{} is there already", imported.file.string()),
@@ -35,6 +35,7 @@ Result<Imported> import_file(const std::string& file, const fs::path& folder,
   Result<ImportedRecording> recording = to_recording(motion.value(), registration, exercise);
   if (!recording) return recording.failure();
   imported.value = std::move(recording).value();
+  if (command.dry_run) return imported;
   if (std::optional<Failure> unwritten = write_recording(imported.file.string(), imported.value.recording))
     return *unwritten;
   return imported;
@@ -69,23 +70,23 @@ ExitCode import_command(const ImportCommand& command) {
   if (!problems.empty())
     return print_failure({FailureKind::scenario, std::move(problems)},
                          "calot list " + shell_word(command.exercise), command.json);
-  const Result<fs::path> folder = make_folder(command.output);
+  const Result<fs::path> folder = command.dry_run ? fs::path(command.output) : make_folder(command.output);
   if (!folder) return print_failure(folder.failure(), "calot import --help", command.json);
   OrderedJson json = {
       {"schema", "calot.import/1"}, {"scenario", exercise->id}, {"files", OrderedJson::array()}};
   ExitCode code = ExitCode::ok;
   for (const std::string& file : command.files) {
-    const Result<Imported> imported =
-        import_file(file, folder.value(), registration.value(), exercise.value());
+    const Result<Imported> imported = import_file(file, command, registration.value(), exercise.value());
     json["files"].push_back(imported_json(file, imported));
     if (imported) {
-      if (!command.json) print_imported(file, imported.value());
+      if (!command.json && !command.dry_run) print_imported(file, imported.value());
       continue;
     }
     std::fflush(stdout);
     std::fprintf(stderr, "%s\n", to_text(imported.failure()).c_str());
     if (code == ExitCode::ok) code = exit_code(imported.failure().kind);
   }
+  if (command.dry_run && code == ExitCode::ok) return code;
   if (command.json) print(json_text(json));
   std::fflush(stdout);
   if (code == ExitCode::ok && !command.json)

@@ -139,6 +139,7 @@ ExitCode list_command(const ListCommand& command) {
     json["scenario"] = exercise->id;
     listings = of_scenario(exercise.value());
   }
+  if (command.dry_run) return ExitCode::ok;
   std::string text;
   for (const Listing& listing : listings) {
     json[listing.key] = listing.json;

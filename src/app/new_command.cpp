@@ -58,6 +58,7 @@ ExitCode new_command(const NewCommand& command) {
   }
   const Result<std::string> starter = read_text(project_part("assets/starter_exercise.lua"));
   if (!starter) return print_failure(starter.failure(), "calot doctor");
+  if (command.dry_run) return ExitCode::ok;
   const std::string text = replaced(starter.value(), "starter-exercise", id_for(stem));
   const Result<std::string> written = write_text(file, text);
   if (!written) return print_failure(written.failure(), "calot new --help");

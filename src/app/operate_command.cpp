@@ -101,6 +101,15 @@ std::string result_lines(const Result<Played>& played) {
   return fmt::format("{}\nWritten to {}", total, played->output.string());
 }
 
+/// What the chosen device file says, or the usual.
+Result<GamepadMap> gamepad_map(const OperateCommand& command) {
+  const std::string& file = command.device;
+  if (file.empty()) return GamepadMap();
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return fail(FailureKind::usage, fmt::format("cannot read {}", file), "give a device file");
+  return read_gamepad_map({std::istreambuf_iterator<char>(in), {}}, file);
+}
+
 Result<OperateWindow> open_window(const Operation& operation, LiveMailbox& mailbox) {
   WindowOptions options;
   options.title = operation.exercise.title;
@@ -110,14 +119,9 @@ Result<OperateWindow> open_window(const Operation& operation, LiveMailbox& mailb
   options.picture_height = operation.request.height;
   if (!operation.command.quality.empty())
     options.quality = operation.command.quality == "live" ? live_quality : golden_quality;
-  if (!operation.command.device.empty()) {
-    const std::string& file = operation.command.device;
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return fail(FailureKind::usage, fmt::format("cannot read {}", file), "give a device file");
-    Result<GamepadMap> map = read_gamepad_map({std::istreambuf_iterator<char>(in), {}}, file);
-    if (!map) return map.failure();
-    options.gamepad = map.value();
-  }
+  const Result<GamepadMap> map = gamepad_map(operation.command);
+  if (!map) return map.failure();
+  options.gamepad = map.value();
   return OperateWindow::open(std::move(options), mailbox);
 }
 
@@ -183,7 +187,13 @@ Result<std::unique_ptr<InputFeed>> open_feed(Operation& operation) {
     const auto lines = [&](const std::string& source) {
       return std::make_unique<LiveLines>(operation.instruments, source);
     };
-    return InputFeed::open(command.input.empty() ? "-" : command.input, lines, operation.mailbox);
+    Result<std::unique_ptr<InputFeed>> feed =
+        InputFeed::open(command.input.empty() ? "-" : command.input, lines, operation.mailbox);
+    if (feed && feed.value()->is_file() && !command.stamped)
+      return fail(FailureKind::usage,
+                  "a file holds all its lines at once: in real time only the last would count",
+                  "add --stamped, so that the lines' times count, or send them through a pipe or socket");
+    return feed;
   }
   const Result<std::shared_ptr<const Registration>> registration = live_registration(operation);
   if (!registration) return registration.failure();
@@ -193,6 +203,18 @@ Result<std::unique_ptr<InputFeed>> open_feed(Operation& operation) {
   return InputFeed::open("tcp:" + command.igtl, messages, operation.mailbox);
 }
 
+/// Checks the files that the command line names, and opens neither window nor socket.
+std::optional<Failure> check_files(Operation& operation) {
+  const OperateCommand& command = operation.command;
+  if (const Result<GamepadMap> map = gamepad_map(command); !map) return map.failure();
+  if (const auto registration = live_registration(operation); !registration) return registration.failure();
+  const std::string& input = command.input;
+  if (input.empty() || input == "-" || input.starts_with("unix:") || input.starts_with("tcp:"))
+    return std::nullopt;
+  const Result<std::unique_ptr<InputFeed>> feed = open_feed(operation);
+  return feed ? std::nullopt : std::optional<Failure>(feed.failure());
+}
+
 Result<Played> operate(PlayRequest& request, const OperateCommand& command) {
   const Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
   if (!script) return script.failure();
@@ -200,15 +222,15 @@ Result<Played> operate(PlayRequest& request, const OperateCommand& command) {
   if (exercise.scene.instruments.empty())
     return fail(FailureKind::usage, "this exercise has no instrument to move", "play it by `calot run`");
   Operation operation{request, command, exercise, live_instruments(exercise.scene), LiveMailbox(), {}};
+  if (command.dry_run) {
+    const std::optional<Failure> wrong = check_files(operation);
+    return wrong ? Result<Played>(*wrong) : Played();
+  }
   std::unique_ptr<InputFeed> feed;
   if (command.no_window || !command.input.empty() || !command.igtl.empty()) {
     Result<std::unique_ptr<InputFeed>> opened = open_feed(operation);
     if (!opened) return opened.failure();
     feed = std::move(opened).value();
-    if (feed->is_file() && !command.stamped)
-      return fail(FailureKind::usage,
-                  "a file holds all its lines at once: in real time only the last would count",
-                  "add --stamped, so that the lines' times count, or send them through a pipe or socket");
     if (!feed->heard_at().empty()) log_info("Waiting to be connected to at " + feed->heard_at());
   }
   return command.no_window ? attempts(operation) : operate_in_window(operation);
@@ -237,7 +259,7 @@ ExitCode print_devices(bool json) {
 }  // namespace
 
 ExitCode operate_command(const OperateCommand& command) {
-  if (command.devices) return print_devices(command.json);
+  if (command.devices) return command.dry_run ? ExitCode::ok : print_devices(command.json);
   PlayRequest request;
   request.scenario = command.scenario;
   request.threads = command.threads.value_or(usual_threads());
@@ -261,6 +283,7 @@ ExitCode operate_command(const OperateCommand& command) {
     return print_failure(played.failure(),
                          is_scenario ? "calot check --build " + file : "calot operate --help", command.json);
   }
+  if (command.dry_run) return ExitCode::ok;
   return conclude(played.value(), command,
                   {"calot operate " + file, "calot check --build " + file,
                    "calot replay " + shell_word((played->output / "recording.jsonl").string())});

@@ -228,6 +228,10 @@ ExitCode page_command(const PageCommand& command) {
                                      : "calot check " + shell_word(exercise.value().string()));
   const fs::path file = page_file(command, files, maker.exercise().id);
   if (const std::optional<Failure> wrong = check_page_file(file, files)) return print_failure(*wrong, help);
+  if (command.dry_run) {
+    const std::optional<Failure> wrong = first_unreadable(files);
+    return wrong ? print_failure(*wrong, help) : ExitCode::ok;
+  }
   if (const std::optional<Failure> failed = maker.run())
     return print_failure(*failed, fmt::format("calot page {}{}", shell_word(command.recordings[0]),
                                               command.recordings.size() > 1 ? " ..." : ""));

@@ -193,6 +193,7 @@ std::optional<Failure> make_report(Played& played) {
 
 Result<std::unique_ptr<ExerciseScript>> load_scenario(const PlayRequest& request) {
   if (std::optional<Failure> wrong = check_scenario_path(request.scenario.string())) return *wrong;
+  tell_half_project();
   LoadOptions options = project_options();
   options.params = request.params;
   options.seed = request.seed;
@@ -242,6 +243,7 @@ Result<Played> play(const PlayRequest& request) {
       return *wrong;
   }
   Played played;
+  if (request.dry_run) return played;
   played.rendered = request.render;
   std::optional<OffscreenRenderer> renderer;
   std::optional<FrameCapture> capture;

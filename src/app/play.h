@@ -30,7 +30,8 @@ struct PlayRequest {
   std::filesystem::path scenario;
   std::map<std::string, std::string> params;
   std::uint64_t seed = 1;
-  int threads = 1;  ///< that share the work of a step: no bit depends on it
+  int threads = 1;       ///< that share the work of a step: no bit depends on it
+  bool dry_run = false;  ///< read and check the scenario, and play nothing: what comes of it is then empty
   bool render = true, end_frame = true;
   bool golden_times = true;       ///< draw at those of the exercise
   int width = 960, height = 540;  ///< px

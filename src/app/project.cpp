@@ -7,23 +7,52 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
+#include <utility>
 
+#include "base/log.h"
 #include "base/suggest.h"
 
 namespace calot {
 namespace fs = std::filesystem;
 
-fs::path project_folder() {
+namespace {
+
+/// The nearest of the current folder and its parents that holds all of these folders.
+std::optional<fs::path> folder_with(std::initializer_list<const char*> parts) {
   std::error_code ignored;
   for (fs::path folder = fs::current_path(ignored); !folder.empty(); folder = folder.parent_path()) {
-    if (fs::is_directory(folder / "scenarios", ignored) &&
-        fs::is_directory(folder / "scripts" / "lua", ignored)) {
+    if (std::all_of(parts.begin(), parts.end(),
+                    [&](const char* part) { return fs::is_directory(folder / part, ignored); }))
       return folder;
-    }
     if (folder == folder.root_path()) break;
   }
-  return CALOT_SOURCE_DIR;
+  return std::nullopt;
+}
+
+std::optional<fs::path> own_project() { return folder_with({"scenarios", "scripts/lua"}); }
+
+}  // namespace
+
+fs::path project_folder() { return own_project().value_or(CALOT_SOURCE_DIR); }
+
+std::optional<std::string> no_project_here() {
+  if (own_project()) return std::nullopt;
+  const std::optional<fs::path> half = folder_with({"scenarios"});
+  return half ? fmt::format("no scripts/lua beside {}", (*half / "scenarios").string())
+              : "no folder with scenarios/ and scripts/lua, here or above";
+}
+
+void tell_borrowed_project() {
+  static bool told = false;
+  const std::optional<std::string> why = no_project_here();
+  if (why && !std::exchange(told, true))
+    log_info(fmt::format("No project here ({}): using that of {}.", *why, CALOT_SOURCE_DIR));
+}
+
+void tell_half_project() {
+  if (folder_with({"scenarios"})) tell_borrowed_project();
 }
 
 fs::path project_part(const std::string& name) {

@@ -14,6 +14,14 @@ namespace calot {
 /// folder that this program was built from.
 std::filesystem::path project_folder();
 
+/// Why the present folder lies in no project, so that project_folder() is another one; none where it lies in one.
+std::optional<std::string> no_project_here();
+
+/// Says once, on stderr, whose scenarios and goldens a command is about where the present folder lies in no project.
+void tell_borrowed_project();
+/// The same, but only where scenarios/ is here, so that whoever runs the command may believe that this is a project.
+void tell_half_project();
+
 /// A file or folder that every project has, such as "assets": the project's own, or the one that came with
 /// this program.
 std::filesystem::path project_part(const std::string& name);

@@ -26,6 +26,7 @@ ExitCode run_command(const RunCommand& command) {
   request.write = true;
   request.output = command.output;
   request.overwrite = command.overwrite;
+  request.dry_run = command.dry_run;
   const Result<Played> played = play(request);
   const std::string file = shell_word(command.scenario);
   if (!played) {
@@ -35,6 +36,7 @@ ExitCode run_command(const RunCommand& command) {
                                                                 : "calot check --build " + file;
     return print_failure(played.failure(), next, command.json);
   }
+  if (command.dry_run) return ExitCode::ok;
   return conclude(played.value(), command,
                   {"calot run " + file, "calot check --build " + file,
                    "calot replay " + shell_word((played->output / "recording.jsonl").string())});
@@ -58,8 +60,10 @@ ExitCode replay_command(const ReplayCommand& command) {
   request.at = command.at;
   request.write = !command.output.empty();
   request.output = command.output;
+  request.dry_run = command.dry_run;
   const Result<Played> played = play(request);
   if (!played) return print_failure(played.failure(), "calot replay --help", command.json);
+  if (command.dry_run) return ExitCode::ok;
   warn_of_differences(recording.value(), played->exercise, !command.scenario.empty());
   const std::string file = shell_word(request.scenario.string());
   const std::string again = "calot replay " + shell_word(command.recording);

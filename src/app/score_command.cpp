@@ -177,6 +177,10 @@ ExitCode score_command(const ScoreCommand& command) {
                          usage ? "calot score --help" : "calot check " + shell_word(command.exercise),
                          command.json);
   }
+  if (command.dry_run) {
+    const std::optional<Failure> wrong = first_unreadable(files);
+    return wrong ? print_failure(*wrong, "calot score --help", command.json) : ExitCode::ok;
+  }
   const ExerciseDefinition exercise = scorer->exercise();
   std::optional<OutputFolder> folder;
   if (!command.output.empty()) {

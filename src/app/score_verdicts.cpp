@@ -10,6 +10,7 @@
 #include "app/score_tables.h"
 #include "app/terminal.h"
 #include "base/log.h"
+#include "session/recording.h"
 
 namespace calot {
 
@@ -36,6 +37,12 @@ std::vector<std::string> recordings_of(const std::vector<std::string>& names) {
 Failure no_recordings(const std::vector<std::string>& names) {
   return fail(FailureKind::usage,
               fmt::format("there is no recording (.jsonl) below {}", fmt::join(names, ", ")));
+}
+
+std::optional<Failure> first_unreadable(const std::vector<std::string>& recordings) {
+  for (const std::string& file : recordings)
+    if (const Result<Recording> recording = read_recording(file); !recording) return recording.failure();
+  return std::nullopt;
 }
 
 void tell_why(const std::vector<OrderedJson>& entries) {

@@ -17,6 +17,9 @@ std::vector<std::string> recordings_of(const std::vector<std::string>& names);
 /// What to say where there are none.
 Failure no_recordings(const std::vector<std::string>& names);
 
+/// The failure of the first one that cannot be read.
+std::optional<Failure> first_unreadable(const std::vector<std::string>& recordings);
+
 /// Logs how many were simulated, for which reason.
 void tell_why(const std::vector<OrderedJson>& entries);
 
