@@ -12,6 +12,29 @@ namespace {
 
 class Usage : public ProgramTest {};
 
+std::vector<std::vector<std::string>> all_commands() {
+  return {{"run"},
+          {"operate"},
+          {"replay"},
+          {"score"},
+          {"page"},
+          {"import"},
+          {"check"},
+          {"list"},
+          {"new"},
+          {"golden"},
+          {"golden", "test"},
+          {"golden", "accept"},
+          {"golden", "report"},
+          {"bench"},
+          {"doctor"}};
+}
+
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
   const Outcome outcome = calot({});
   EXPECT_EQ(outcome.code, 0);
@@ -23,27 +46,44 @@ TEST_F(Usage, WithoutArgumentsItPrintsItsHelp) {
 }
 
 TEST_F(Usage, EveryCommandHasHelp) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"run"},
-                                                                                     {"operate"},
-                                                                                     {"replay"},
-                                                                                     {"score"},
-                                                                                     {"page"},
-                                                                                     {"import"},
-                                                                                     {"check"},
-                                                                                     {"list"},
-                                                                                     {"new"},
-                                                                                     {"golden"},
-                                                                                     {"golden", "test"},
-                                                                                     {"golden", "accept"},
-                                                                                     {"golden", "report"},
-                                                                                     {"bench"},
-                                                                                     {"doctor"}}) {
-    std::vector<std::string> arguments = words;
-    arguments.push_back("--help");
-    const Outcome outcome = calot(arguments);
+  for (const std::vector<std::string>& words : all_commands()) {
+    const Outcome outcome = calot(joined(words, {"--help"}));
     EXPECT_EQ(outcome.code, 0) << words.back();
     EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << words.back();
   }
+}
+
+TEST_F(Usage, AMisspeltOptionIsAUsageErrorEvenBesideHelp) {
+  for (const std::vector<std::string>& words : all_commands()) {
+    SCOPED_TRACE(words.back());
+    const Outcome outcome = calot(joined(words, {"--exma=3", "--help"}));
+    EXPECT_EQ(outcome.code, 4);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("--exma"), std::string::npos) << outcome.err;
+    expect_next_command(outcome);
+  }
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"operate", "--help", "--exma"},
+                                             {"--exma", "operate", "--help"},
+                                             {"golden", "--exma", "test", "--help"},
+                                             {"--exma", "--help"},
+                                             {"--version", "--exma"},
+                                             {"--exma", "--version"}})
+    EXPECT_EQ(calot(arguments).code, 4) << arguments.front();
+  EXPECT_NE(calot({"operate", "--exma", "--help"}).err.find("did you mean \"--exam\"?"), std::string::npos);
+}
+
+TEST_F(Usage, HelpBesideRightOptionsIsHelp) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--help"},
+                                             {"run", "small.lua", "--seed", "7", "--help"},
+                                             {"run", "--help", "-o", "-x"},  // -x is a folder here
+                                             {"operate", "--exam", "--help"},
+                                             {"golden", "test", "--json", "--help"}})
+    EXPECT_EQ(calot(arguments).code, 0) << arguments.front();
+  const Outcome outcome = calot({"--version"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_TRUE(outcome.out.starts_with("calot ")) << outcome.out;
 }
 
 TEST_F(Usage, WrongArgumentsAreUsageErrorsWithTheNextCommand) {
