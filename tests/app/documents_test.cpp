@@ -1,10 +1,13 @@
 // What the documents say: links lead somewhere, commands are those of the program, Lua is read, and paragraphs are short.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
 #include "app/markdown.h"
 #include "app/program.h"
@@ -40,7 +43,7 @@ bool is_exercise(const FencedBlock& block) {
 }
 
 bool is_table(const FencedBlock& block) {
-  return block.language == "lua" && block.text.find("\nreturn {") != std::string::npos;
+  return block.language == "lua" && ("\n" + block.text).find("\nreturn {") != std::string::npos;
 }
 
 /// The commands of a block's line, a pipe's one by one, without its comment.
@@ -58,8 +61,9 @@ class Documents : public ProgramTest {
  protected:
   void make_project() {
     const fs::path source = source_dir();
-    fs::copy(source / "scenarios", folder_ / "scenarios", fs::copy_options::recursive);
-    for (const char* part : {"scripts", "assets", "golden"})
+    for (const char* written : {"scenarios", "golden"})
+      fs::copy(source / written, folder_ / written, fs::copy_options::recursive);
+    for (const char* part : {"scripts", "assets"})
       fs::create_directory_symlink(source / part, folder_ / part);
     record();
     for (const Markdown& document : all_documents())
@@ -80,7 +84,7 @@ class Documents : public ProgramTest {
 
   /// A file that the document shows as a whole after naming it.
   void lay_down(const FencedBlock& block) const {
-    static const std::regex file(R"(`([\w/]+\.(lua|csv))`)");
+    static const std::regex file(R"(`((scenarios/)?\w+\.(lua|csv))`)");
     if (block.language != "text" && !is_table(block) && !is_exercise(block)) return;
     std::smatch named;
     if (std::regex_search(block.introduced, named, file)) spill(folder_ / named[1].str(), block.text);
@@ -105,8 +109,9 @@ class Documents : public ProgramTest {
     words.erase(words.begin());
     if (program.starts_with("scripts/")) return try_script(program, words);
     ASSERT_EQ(program, "build/release/calot") << "no program that a document may name";
-    if (words[0] ==
-        "new") {  // in earnest, so that the next command finds the file; another document may say it again
+    ASSERT_FALSE(words.empty());
+    if (words[0] == "new") {
+      // In earnest: the next command reads the file, and another document may say it again.
       fs::remove(folder_ / "scenarios" / (words.at(1) + ".lua"));
       real = true;
     }
@@ -131,12 +136,26 @@ class Documents : public ProgramTest {
     const std::string text = slurp(file);
     const std::string usage = text.substr(0, text.find("\n#\n"));
     ASSERT_NE(usage.find("# usage: " + script), std::string::npos);
+    static const std::regex option_names("--[a-z]+");
+    const std::set<std::string> known(std::sregex_token_iterator(usage.begin(), usage.end(), option_names),
+                                      {});
     for (const std::string& option : options) {
       const bool measures =
           option.starts_with("--benchmark_") && usage.find("Google Benchmark") != std::string::npos;
-      EXPECT_TRUE(measures || usage.find(option) != std::string::npos)
-          << option << " is no option of " << script;
+      EXPECT_TRUE(measures || known.contains(option)) << option << " is no option of " << script;
     }
+  }
+
+  /// Tries commands in the text that name a scenario: their other words are then files, too.
+  void try_spans() const {
+    for (const Markdown& document : all_documents())
+      for (const MarkdownLine& span : code_spans_of(document)) {
+        std::vector<std::string> words = words_of(span.text);
+        if (words.size() < 3 || words[0] != "calot" || !words[2].starts_with("scenarios/")) continue;
+        SCOPED_TRACE(place_of(document, span.number) + ": " + span.text);
+        words[0] = "build/release/calot";
+        try_command(words, false);
+      }
   }
 };
 
@@ -158,8 +177,9 @@ TEST_F(Documents, EveryLinkLeadsSomewhere) {
   EXPECT_GT(links, 50);
 }
 
-TEST_F(Documents, EveryCommandOfABlockIsOneOfTheProgram) {
+TEST_F(Documents, EveryCommandIsOneOfTheProgram) {
   make_project();
+  try_spans();
   try_blocks("sh", false);
   try_blocks("sh run", false);
 }
