@@ -268,7 +268,8 @@ std::string failure_text(const OrderedJson& entry) {
     const Problem plain{{problem["file"].get<std::string>(), problem["line"].get<int>(), {}},
                         problem["message"].get<std::string>(),
                         problem["hint"].get<std::string>()};
-    text += (text.empty() ? "" : "\n") + to_text(plain);
+    if (!text.empty()) text += '\n';
+    text += to_text(plain);
   }
   return text;
 }

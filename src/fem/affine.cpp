@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "geometry/decompose.h"
 #include "geometry/turn.h"
 
 namespace calot {
@@ -35,8 +35,8 @@ Result<AffineBody> AffineBody::create(const SolidMoments& solid, double stiffnes
   if (!(solid.volume > 0) || !solid.centroid.allFinite() || !solid.second.allFinite())
     return refuse(fmt::format("a rigid body has no volume ({} m^3)", solid.volume),
                   "close its mesh, its triangles facing outward, and give it a size above 0");
-  const Eigen::SelfAdjointEigenSolver<Mat3> widths(solid.second / solid.volume);
-  if (!(widths.eigenvalues()[0] > flattest * widths.eigenvalues()[2]))
+  const Principal widths = principal(solid.second / solid.volume);
+  if (!(widths.values[0] > flattest * widths.values[2]))
     return refuse("a rigid body is flat", "give it a thickness");
   AffineBody body;
   body.centroid_ = solid.centroid;
@@ -45,8 +45,11 @@ Result<AffineBody> AffineBody::create(const SolidMoments& solid, double stiffnes
   // Of these four equal masses the second moments are the body's: the products' sum is a third of 4.
   const double root = std::sqrt(3.0);
   const Nodes corners = regular_corners();
-  const Nodes places = root * widths.operatorSqrt() * corners;
-  body.slopes_ = 0.75 / root * widths.operatorInverseSqrt() * corners;
+  const Vec3 lengths = widths.values.cwiseSqrt();
+  const Mat3 square_root = widths.vectors * lengths.asDiagonal() * widths.vectors.transpose();
+  const Mat3 inverse_root = widths.vectors * lengths.cwiseInverse().asDiagonal() * widths.vectors.transpose();
+  const Nodes places = root * square_root * corners;
+  body.slopes_ = 0.75 / root * inverse_root * corners;
   for (int k = 0; k < nodes; ++k) body.rest_[k] = solid.centroid + places.col(k);
   return body;
 }
@@ -121,9 +124,7 @@ Pose AffineBody::pose(const Coordinates& x) const {
 
 double AffineBody::distortion(const Coordinates& x) const {
   const Mat3 a = deformation(x);
-  const Eigen::SelfAdjointEigenSolver<Mat3> strain(a.transpose() * a - Mat3::Identity(),
-                                                   Eigen::EigenvaluesOnly);
-  return 0.5 * strain.eigenvalues().cwiseAbs().maxCoeff();
+  return 0.5 * principal_values(a.transpose() * a - Mat3::Identity()).cwiseAbs().maxCoeff();
 }
 
 }  // namespace calot

@@ -1,9 +1,10 @@
 #include "fem/framed_solid.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
+
+#include "geometry/decompose.h"
 
 namespace calot {
 namespace {
@@ -32,8 +33,8 @@ Eigen::MatrixXd of_ways(const Eigen::MatrixXd& block, Eigen::Index force, Eigen:
 
 /// Of m with a determinant above 0.
 Mat3 polar_rotation(const Mat3& m) {
-  const Eigen::JacobiSVD<Mat3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  const Singular parts = singular(m);
+  return parts.left * parts.right.transpose();
 }
 
 /// Of a skew matrix, twice.

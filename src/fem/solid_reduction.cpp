@@ -1,7 +1,6 @@
 #include "fem/solid_reduction.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "numerics/modes.h"
@@ -81,8 +80,8 @@ class HeldPoints {
               tets[t].stiffness.block<3, 3>(3 * a, 3 * b);
     // Springs on what the nodes have of rigid motions: as these stay, they do nothing.
     const Matrix of_nodes = average_ * rigid_motions(points);
-    const Matrix felt = average_.transpose() * (Eigen::HouseholderQR<Matrix>(of_nodes).householderQ() *
-                                                Matrix::Identity(of_nodes.rows(), 6));
+    Matrix felt = average_.transpose() * of_nodes;
+    Matrix(of_nodes.transpose() * of_nodes).llt().matrixU().solveInPlace<Eigen::OnTheRight>(felt);
     whole += whole.diagonal().mean() / felt.squaredNorm() * 6 * felt * felt.transpose();
     factor_.compute(whole);
     by_nodes_ = factor_.solve(average_.transpose());
@@ -159,10 +158,10 @@ std::optional<Failure> find_modes(const SolidMesh& mesh, const std::vector<Vec3>
                                   const HeldPoints& held, const Matrix& recovered, ReducedSolid& out) {
   const Matrix loads = carried(mesh, points, rigid_motions(points));
   Matrix shapes = held.answer(loads);
-  const Mat6 stiffness = shapes.transpose() * loads,
+  const Matrix stiffness = shapes.transpose() * loads,
              inertia = shapes.transpose() * carried(mesh, points, shapes);
-  const std::optional<Modes6> found =
-      modes(Mat6(0.5 * (stiffness + stiffness.transpose())), Mat6(0.5 * (inertia + inertia.transpose())));
+  const std::optional<Modes> found =
+      modes(0.5 * (stiffness + stiffness.transpose()), 0.5 * (inertia + inertia.transpose()));
   if (!found)
     return fail(FailureKind::scenario, "the solid has no inside that moves", "cut it in more tetrahedra");
   shapes = (shapes * found->vectors).eval();

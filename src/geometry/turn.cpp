@@ -1,7 +1,8 @@
 #include "geometry/turn.h"
 
-#include <Eigen/SVD>
 #include <cmath>
+
+#include "geometry/decompose.h"
 
 namespace calot {
 
@@ -11,10 +12,9 @@ Mat3 best_turn(const Points3& from, const Points3& to) {
   Mat3 together = Mat3::Zero();
   for (Eigen::Index i = 0; i < from.cols(); ++i)
     together += (to.col(i) - to_middle) * (from.col(i) - from_middle).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(together, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;  // the least of the three
-  return u * svd.matrixV().transpose();
+  Singular parts = singular(together);
+  if ((parts.left * parts.right.transpose()).determinant() < 0) parts.left.col(2) *= -1;  // the least of the three
+  return parts.left * parts.right.transpose();
 }
 
 double spread_of(const Points3& points) {

@@ -8,23 +8,15 @@
 
 namespace calot {
 
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-
-struct Modes6 {
-  Eigen::Matrix<double, 6, 1> values;  ///< increasing
-  Mat6 vectors;                        ///< columns
-};
-
 struct Modes {
   VecX values;              ///< increasing
   Eigen::MatrixXd vectors;  ///< columns
 };
 
 /// K v = value v with |v| = 1; the lower triangle of `k` is read. None where the iteration does not converge.
-std::optional<Modes6> modes(const Mat6& k);
 std::optional<Modes> modes(const Eigen::MatrixXd& k);
 
 /// K v = value M v with v' M v = 1; both symmetric. None where M is not positive definite, or as above.
-std::optional<Modes6> modes(const Mat6& k, const Mat6& m);
+std::optional<Modes> modes(const Eigen::MatrixXd& k, const Eigen::MatrixXd& m);
 
 }  // namespace calot

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/suggest.h"
+#include "geometry/decompose.h"
 #include "session/registered_tool.h"
 #include "session/runner.h"
 #include "sim/tool.h"
@@ -143,8 +142,8 @@ class Importer {
       moment += across * sample.tip;
       ++lines;
     }
-    const Eigen::SelfAdjointEigenSolver<Mat3> spread(sum);
-    if (lines < 2 || spread.eigenvalues()[0] < least_spread * lines) {
+    const Principal spread = principal(sum);
+    if (lines < 2 || spread.values[0] < least_spread * lines) {
       problems_.push_back(
           {tool.place,
            fmt::format("{}: the place of its trocar cannot be found from {}", tool.name,
@@ -152,7 +151,7 @@ class Importer {
            "give port = { x, y, z } in the file's frame and unit"});
       return std::nullopt;
     }
-    const Vec3 port = sum.ldlt().solve(moment);
+    const Vec3 port = spread.vectors * (spread.vectors.transpose() * moment).cwiseQuotient(spread.values);
     double squares = 0;
     for (const ForeignSample& sample : samples)
       if (sample.along) squares += sample.along->cross(sample.tip - port).squaredNorm();

@@ -1,10 +1,10 @@
 #include "sim/joint.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <map>
 
 #include "fem/links.h"
+#include "numerics/modes.h"
 
 namespace calot {
 namespace {
@@ -44,6 +44,7 @@ PointsByDistance within(const PointsByDistance& points, double reach) {
 std::optional<CarriedPlace> weights_within(const Skin& skin, const Vec3& place,
                                            const PointsByDistance& points, double reach) {
   constexpr double exact = 1e-9;  // of the reach
+  constexpr double flat = 1e-10;  // of the points' largest second moment, what rounding leaves across a plane
   CarriedPlace out;
   std::vector<double> nearness;
   for (const auto& [distance, point] : points) {
@@ -57,11 +58,16 @@ std::optional<CarriedPlace> weights_within(const Skin& skin, const Vec3& place,
   for (Eigen::Index i = 0; i < count; ++i) places.col(i) << 1, (skin[out.points[i]] - place) / reach;
   const Eigen::Map<const VecX> near(nearness.data(), count);
   const Eigen::Matrix4d products = places * near.asDiagonal() * places.transpose();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
-  solver.setThreshold(1e-10);
-  solver.compute(products);
+  const std::optional<Modes> spread = modes(products);
+  if (!spread) return {};
+  // The least solution of products * x = wanted: points in one plane or on one line leave some of its modes without
+  // stiffness.
   const Eigen::Vector4d wanted = Eigen::Vector4d::UnitX();
-  const VecX weights = near.asDiagonal() * (places.transpose() * solver.solve(wanted));
+  Eigen::Vector4d solution = Eigen::Vector4d::Zero();
+  for (Eigen::Index k = 0; k < 4; ++k)
+    if (spread->values[k] > flat * spread->values[3])
+      solution += spread->vectors(0, k) / spread->values[k] * spread->vectors.col(k);
+  const VecX weights = near.asDiagonal() * (places.transpose() * solution);
   if (!((places * weights - wanted).norm() < exact)) return {};
   out.weights.assign(weights.data(), weights.data() + count);
   return out;

@@ -1,11 +1,11 @@
 #include "sim/solid_body.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/units.h"
+#include "geometry/decompose.h"
 #include "numerics/parts.h"
 #include "sim/loop_skin.h"
 
@@ -156,8 +156,7 @@ double SolidBody::max_stretch(const VecX& x) const {
   for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
     Mat3 mean = Mat3::Zero();
     for (int a = 0; a < 10; ++a) mean += points[mesh_.tets[t][a]] * slopes_[t].col(a).transpose();
-    const Eigen::SelfAdjointEigenSolver<Mat3> squared(mean.transpose() * mean, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, std::sqrt(squared.eigenvalues()[2]));
+    largest = std::max(largest, std::sqrt(principal_values(mean.transpose() * mean)[2]));
   }
   return largest;
 }

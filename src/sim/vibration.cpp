@@ -79,7 +79,7 @@ using Response = std::function<VecX(const VecX&)>;
 /// The smallest w^2 of K v = w^2 M v, in 1/s^2, by inverse iteration on a few vectors; `response` is K^-1 on the
 /// motions that keep the volume.
 Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mass, Eigen::Index size) {
-  constexpr int vectors = Mat6::RowsAtCompileTime, max_rounds = 300;
+  constexpr int vectors = 6, max_rounds = 300;
   constexpr double tolerance = 1e-8;
   Rng rng(1);
   Eigen::MatrixXd shapes(size, vectors);
@@ -95,8 +95,8 @@ Result<double> smallest_eigenvalue(const Response& response, const BodyMass& mas
     for (int k = 0; k < vectors; ++k) masses.col(k) = mass.multiply(next.col(k));
     // With K next = loads + a pressure that does no work on motions that keep the volume.
     const Eigen::MatrixXd stiffness = next.transpose() * loads, inertia = next.transpose() * masses;
-    const std::optional<Modes6> ritz =
-        modes(Mat6(0.5 * (stiffness + stiffness.transpose())), Mat6(0.5 * (inertia + inertia.transpose())));
+    const std::optional<Modes> ritz =
+        modes(0.5 * (stiffness + stiffness.transpose()), 0.5 * (inertia + inertia.transpose()));
     if (!ritz || !(ritz->values[0] > 0)) break;
     shapes = next * ritz->vectors;
     const double before = std::exchange(lowest, ritz->values[0]);
