@@ -1,5 +1,5 @@
 local calot = require "calot"
-local mm, s, kPa = calot.units.mm, calot.units.s, calot.units.kPa
+local mm, s, kPa, deg = calot.units.mm, calot.units.s, calot.units.kPa, calot.units.deg
 
 local neck, fundus, liver_side = { -50 * mm, 130 * mm, -110 * mm }, { -80 * mm, 100 * mm, -60 * mm }, { 0, 0.8, 0.6 }
 
@@ -46,18 +46,22 @@ return calot.exercise {
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
     t:step("push", "Push it up over the liver's edge", { limit = 15 * s })
-    t:wait(4 * s)
+    t:wait(5 * s)
   end,
 
   demo = function(t)
     t.left:approach("gallbladder.fundus", { speed = 60 * mm / s })
     t.left:close()
-    t.left:move_by({ 0, 30 * mm, 45 * mm }, { speed = 20 * mm / s })
+    -- Drawn that far the fold turns about the shaft. The hand turns with it, or it would turn between the pads (slip).
+    for _ = 1, 5 do
+      t.left:move_by({ 0, 6 * mm, 9 * mm }, { speed = 20 * mm / s })
+      t.left:rotate(18 * deg)
+    end
     t.left:wait(1 * s)
   end,
 
   score = calot.score.weighted {
     { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 250 }, weight = 1 },
   },
-  golden = { at = { 0, 4.5 * s } },
+  golden = { at = { 0, 6 * s } },
 }
