@@ -159,7 +159,7 @@ std::optional<Failure> find_modes(const SolidMesh& mesh, const std::vector<Vec3>
   const Matrix loads = carried(mesh, points, rigid_motions(points));
   Matrix shapes = held.answer(loads);
   const Matrix stiffness = shapes.transpose() * loads,
-             inertia = shapes.transpose() * carried(mesh, points, shapes);
+               inertia = shapes.transpose() * carried(mesh, points, shapes);
   const std::optional<Modes> found =
       modes(0.5 * (stiffness + stiffness.transpose()), 0.5 * (inertia + inertia.transpose()));
   if (!found)

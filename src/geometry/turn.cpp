@@ -13,7 +13,8 @@ Mat3 best_turn(const Points3& from, const Points3& to) {
   for (Eigen::Index i = 0; i < from.cols(); ++i)
     together += (to.col(i) - to_middle) * (from.col(i) - from_middle).transpose();
   Singular parts = singular(together);
-  if ((parts.left * parts.right.transpose()).determinant() < 0) parts.left.col(2) *= -1;  // the least of the three
+  if ((parts.left * parts.right.transpose()).determinant() < 0)
+    parts.left.col(2) *= -1;  // the least of the three
   return parts.left * parts.right.transpose();
 }
 

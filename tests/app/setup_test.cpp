@@ -12,7 +12,8 @@ class Setup : public ProgramTest {
   /// What it builds for in this environment ("NAME=value"), and what it says.
   std::pair<std::string, std::string> chosen(const std::string& environment) const {
     const std::string line = "env -u CALOT_ARCH " + environment + " bash -c 'set -euo pipefail; . \"" +
-                             source_dir() + "/scripts/setup\"; choose_architecture; echo \"$arch\"' >arch 2>said";
+                             source_dir() +
+                             "/scripts/setup\"; choose_architecture; echo \"$arch\"' >arch 2>said";
     EXPECT_EQ(shell(folder_, line), 0) << slurp(folder_ / "said");
     return {slurp(folder_ / "arch"), slurp(folder_ / "said")};
   }
