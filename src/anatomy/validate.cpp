@@ -332,8 +332,8 @@ void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
   for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
     const JointDefinition& joint = anatomy.joints[i];
     const std::string at = fmt::format("scene.anatomy.joints[{}]", i + 1);
-    const bool known = check.known(at + ".from", joint.from, places, "place on an organ") &
-                       check.known(at + ".to", joint.to, places, "place on an organ");
+    const bool from_known = check.known(at + ".from", joint.from, places, "place on an organ");
+    const bool known = check.known(at + ".to", joint.to, places, "place on an organ") && from_known;
     check_limits(check, at, "joint", joint);
     if (known && joint.from.substr(0, joint.from.find('.')) == joint.to.substr(0, joint.to.find('.')))
       check.problem(at + ".to", "an organ is tied to itself", "name a place on another organ");
@@ -352,8 +352,8 @@ void check_tissue(FieldCheck& check, const AnatomyDefinition& anatomy) {
     if (std::find(organs.begin(), organs.end(), tissue.name) != organs.end())
       check.problem(at + ".name", fmt::format("an organ is called \"{}\" too", tissue.name),
                     "give the tissue another name");
-    const bool known = check.known(at + ".from", tissue.from, organs, "organ") &
-                       check.known(at + ".to", tissue.to, organs, "organ");
+    const bool from_known = check.known(at + ".from", tissue.from, organs, "organ");
+    const bool known = check.known(at + ".to", tissue.to, organs, "organ") && from_known;
     check_limits(check, at, "tissue", tissue);
     if (known && tissue.from == tissue.to)
       check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");

@@ -111,10 +111,10 @@ NearestPoint nearest_point(const Vec3& p, std::span<const Vec3> corners) {
 // With f = 1/2 distance^2 and the weights s of the edges, which minimise it, the Hessian of the least value is
 // f_xx - f_xs f_ss^-1 f_sx, and distance * hessian(distance) = hessian(f) - gradient gradient'.
 Eigen::Matrix<double, 12, 12> flat_hessian(std::span<const Vec3> corners, const FlatSample& sample) {
-  using Columns = Eigen::Matrix<double, 12, 2>;
+  using EdgeColumns = Eigen::Matrix<double, 12, 2>;
   const Edges edges(corners);
   const Vec3 arm = sample.distance * sample.normal;
-  Columns mixed = Columns::Zero();  // f_xs
+  EdgeColumns mixed = EdgeColumns::Zero();  // f_xs
   for (int i = 0; i + 1 < static_cast<int>(corners.size()); ++i) {
     for (int k = 0; k < 4; ++k) mixed.col(i).segment<3>(3 * k) = -sample.weight[k] * edges.edge[i];
     mixed.col(i).segment<3>(3) += arm;

@@ -57,7 +57,7 @@ std::vector<WeighedNode> nodes_of(const std::array<StencilPoint, 4>& points) {
     for (std::size_t k = 0; k < 4; ++k)
       if (at[k] < end[k]) next = std::min(next, points[k].first_node + points[k].table->node[at[k]]);
     if (next == std::numeric_limits<int>::max()) return out;
-    WeighedNode& added = out.emplace_back(next, std::array<double, 4>{});
+    WeighedNode& added = out.emplace_back(WeighedNode{next, {}});
     for (std::size_t k = 0; k < 4; ++k)
       if (at[k] < end[k] && points[k].first_node + points[k].table->node[at[k]] == next)
         added.weight[k] = points[k].table->value[at[k]++];

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -65,12 +66,22 @@ bool is_sphere(int points, const std::vector<Triangle>& faces) {
   return static_cast<int>(faces.size()) == 2 * points - 4;
 }
 
+/// Rounding decides on which side of its own faces such a point would lie.
+bool any_coincide(std::span<const Vec3> points) {
+  const auto less = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::vector<Vec3> sorted(points.begin(), points.end());
+  std::sort(sorted.begin(), sorted.end(), less);
+  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
 }  // namespace
 
 Result<std::vector<Triangle>> sphere_hull(std::span<const Vec3> points) {
   const int n = static_cast<int>(points.size());
   std::vector<Triangle> faces;
-  if (n >= 4) faces = first_tetrahedron(points);
+  if (n >= 4 && !any_coincide(points)) faces = first_tetrahedron(points);
   if (!faces.empty()) {
     const int d = faces[1][1];
     for (int p = 3; p < n; ++p)

@@ -220,7 +220,7 @@ class SceneReader {
     for (const auto& [name, value] : map.fields) {
       const std::optional<Vec3> position = read_point(check_, value, "scene.ports." + name);
       if (!position) continue;
-      const auto same = [&](const PortDefinition& port) { return port.name == name; };
+      const auto same = [&own = name](const PortDefinition& port) { return port.name == own; };
       const auto known = std::find_if(ports.begin(), ports.end(), same);
       if (known == ports.end()) {
         ports.push_back({name, *position});

@@ -10,8 +10,8 @@
 namespace calot {
 namespace {
 
-constexpr double width = 400, height = 260, left = 46, right = 12, top = 10, bottom = 40;
-constexpr double inner_width = width - left - right, inner_height = height - top - bottom;
+constexpr double plot_width = 400, plot_height = 260, left = 46, right = 12, top = 10, bottom = 40;
+constexpr double inner_width = plot_width - left - right, inner_height = plot_height - top - bottom;
 constexpr std::size_t columns = 350, most_of_a_way = 4000, most_marks = 100;
 constexpr double least_way = 0.7;  // drawing units
 constexpr std::size_t colours = 5;
@@ -76,7 +76,7 @@ std::string grid(const PagePlot& plot, const Axes& axes) {
                        left + inner_width);
     out += svg_text(left - 5, axes.y_of(y) + 4, axes.y.text(y), "end");
   }
-  out += svg_text(left + inner_width / 2, height - 6, plot.x_label, "mid");
+  out += svg_text(left + inner_width / 2, plot_height - 6, plot.x_label, "mid");
   return out;
 }
 
@@ -155,7 +155,7 @@ std::string plot_html(const PageRecording& recording, std::size_t index) {
   const std::string id = fmt::format("{}plot-{}", recording.prefix, index + 1);
   std::string out = fmt::format("<figure id=\"{}\"><figcaption><b>{}</b><br>{}</figcaption>\n", id,
                                 escaped(plot.title), escaped(plot.y_label));
-  out += svg_begin(id, width, height, plot.title, description(recording, plot));
+  out += svg_begin(id, plot_width, plot_height, plot.title, description(recording, plot));
   out += grid(plot, axes);
   if (!plot.is_path) out += moments(recording, axes);
   for (const PageLevel& level : plot.levels)

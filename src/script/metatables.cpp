@@ -9,13 +9,13 @@ namespace calot {
 namespace {
 
 constexpr const char* metatables_key = "calot.metatables";
-constexpr lua_Integer own = 1;  // where a hidden metatable keeps the script's
+constexpr lua_Integer own_key = 1;  // where a hidden metatable keeps the script's
 
 /// Pushes the metatable that the script gave; false, and nothing pushed, for a value without one or with one of
 /// the simulator's.
 bool push_own(lua_State* L, int index) {
   if (lua_type(L, index) != LUA_TTABLE || lua_getmetatable(L, index) == 0) return false;
-  const bool found = lua_rawgeti(L, -1, own) == LUA_TTABLE;
+  const bool found = lua_rawgeti(L, -1, own_key) == LUA_TTABLE;
   lua_remove(L, -2);
   if (!found) lua_pop(L, 1);
   return found;
@@ -132,7 +132,7 @@ void push_new_hidden(lua_State* L, int index) {
                              {"__eq", equal},           {"__len", length},         {nullptr, nullptr}};
   luaL_setfuncs(L, others, 0);
   lua_pushvalue(L, index);
-  lua_rawseti(L, -2, own);
+  lua_rawseti(L, -2, own_key);
 }
 
 /// One for each metatable: classes have many objects. The list lets go of those that nothing uses any more,

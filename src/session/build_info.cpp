@@ -9,6 +9,9 @@
 #include "base/hash.h"
 #include "base/processor.h"
 #if __has_include(<sys/platform/x86.h>)
+#if !defined(_Bool)
+#define _Bool bool  // the header is C
+#endif
 #include <sys/platform/x86.h>
 #endif
 
@@ -17,7 +20,7 @@ namespace {
 
 std::string toolchain() {
 #if defined(__clang__)
-  return "Clang " __clang_version__;
+  return fmt::format("Clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
 #else
   return "GNU " __VERSION__;
 #endif

@@ -56,7 +56,7 @@ class BodyProblem : public ConstrainedEnergy {
   double moved(const VecX& x) const;
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;
-  Workers* workers() const;
+  Workers* workers() const override;
   /// Does all `work`, which must be noexcept, and finds what touches at x, for which no memory is shared: what touches is
   /// known then.
   template <class... Work>

@@ -6,6 +6,7 @@
 
 #include "base/suggest.h"
 #include "geometry/tri_mesh.h"
+#include "sim/between_jaws.h"
 #include "sim/join_bodies.h"
 #include "sim/rod_body.h"
 #include "sim/self_contact.h"

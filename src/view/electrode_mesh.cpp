@@ -11,7 +11,7 @@ namespace {
 using std::numbers::pi;
 constexpr double channel_radius = 0.75e-3, channel_depth = 2.5e-3;  // m (d)
 constexpr double strip = 0.7e-3;                                    // m across, between the poles (d)
-constexpr int arc = 10;                                             // points of a round end's profile
+constexpr int arc_points = 10;                                      // points of a round end's profile
 
 /// Half a section of the rounded end at `share` of its radius: (radius, height) from the neck to the channel's rim.
 std::vector<Vec2> end_profile(const InstrumentGeometry& g, double share, double rim) {
@@ -20,12 +20,12 @@ std::vector<Vec2> end_profile(const InstrumentGeometry& g, double share, double 
   const double front = g.jaw_length - g.electrode_radius;
   const double first = std::asin(g.neck_radius / g.electrode_radius), last = std::asin(rim / r);
   std::vector<Vec2> profile;
-  for (int k = 0; k <= arc; ++k) {
-    const double a = first + (pi / 2 - first) * k / arc;
+  for (int k = 0; k <= arc_points; ++k) {
+    const double a = first + (pi / 2 - first) * k / arc_points;
     profile.push_back({r * std::sin(a), back - r * std::cos(a)});
   }
-  for (int k = 0; k <= arc; ++k) {
-    const double a = pi / 2 + (last - pi / 2) * k / arc;
+  for (int k = 0; k <= arc_points; ++k) {
+    const double a = pi / 2 + (last - pi / 2) * k / arc_points;
     profile.push_back({r * std::sin(a), front + r * std::cos(a)});
   }
   return profile;

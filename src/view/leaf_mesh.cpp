@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/between_jaws.h"
 #include "sim/field.h"
 #include "sim/skin_place.h"
 #include "view/surfaces.h"

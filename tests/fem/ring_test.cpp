@@ -37,10 +37,10 @@ struct Pressed {
 
   /// Before it lies on flats: 0 < c < 1. The quarter is pi / 2 long.
   static Pressed by_curvature(double c) {
-    const auto quarter = [&](double load, bool height) {
+    const auto quarter = [&](double pressed_by, bool height) {
       return integral([&](double u) {  // t = pi/2 u^2: no root is left at the end
         const double t = 0.5 * pi * u * u;
-        return pi * u * (height ? std::sin(t) : 1) / std::sqrt(c + load * std::sin(t));
+        return pi * u * (height ? std::sin(t) : 1) / std::sqrt(c + pressed_by * std::sin(t));
       });
     };
     double low = 0, high = 10;

@@ -45,13 +45,12 @@ TEST(Grasp, GraspedSkinStaysWithTheJaw) {
   ASSERT_EQ(grasped.grasp(), "");
   auto& [field, fundus, out] = grasped;
   const Organ& organ = field.organs[0];
-  const auto in_the_jaws = [&] {
+  const auto in_the_jaws = [&organ, &tool = field.tools[0]] {
     std::map<int, Vec3> local;  // by skin point
     const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     for (const GripPoint& grip : organ.grips)
       local[grip.skin_point] =
-          jaw_frame(field.tools[0].trocar, field.tools[0].pose, field.tools[0].geometry, grip.jaw).inverse() *
-          skin[grip.skin_point];
+          jaw_frame(tool.trocar, tool.pose, tool.geometry, grip.jaw).inverse() * skin[grip.skin_point];
     return local;
   };
   const std::map<int, Vec3> before = in_the_jaws();
