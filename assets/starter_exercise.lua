@@ -8,7 +8,7 @@ local calot = require "calot"
 local mm, N, s, deg = calot.units.mm, calot.units.N, calot.units.s, calot.units.deg
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "starter-exercise",
   title = "Grasp the fundus and lift it",
   time_limit = 60 * s, -- the session ends then at the latest

@@ -11,7 +11,7 @@ local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
 local ports = { applier = { -10 * mm, 120 * mm, -5 * mm }, blades = { 0, 0, 0 } }
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "clip-and-divide",
   title = "Clip and divide the cystic duct",
   time_limit = 60 * s,
@@ -56,6 +56,7 @@ return calot.exercise {
       hint = "each all across it, with the tips of its legs in view beyond, and room to cut between",
     })
     t:wait_until(function() return t:divided(p.structure) or #t:clips(p.structure) == 3 end)
+    if t:divided(p.structure) then t:missed("it was divided before") end
     t:step("divide", "Divide it between the clips", {
       limit = 30 * s,
       hint = "first a time-out: say what is about to be divided, and what was seen of it",

@@ -21,12 +21,23 @@ local lower_part = 0.4 -- of the gallbladder's way: its lower third in this fiel
 -- Calot's own triangle, whose upper side is the cystic artery: there is the tissue.
 local function view(t) return t:critical_view { hilum = "cystic_artery.start", lower_part = lower_part } end
 
-local function divide(t, tube, title)
+-- Waits for what a step asks for. Once the duct is divided it is too late for that.
+local function before_the_cut(t, achieved)
+  t:wait_until(function() return achieved() or t:divided("cystic_duct") end)
+  if not achieved() then t:missed("the duct was divided before") end
+end
+
+-- `leaks`: whether bile or blood runs already; it is looked at then, and the operation is over.
+local function divide(t, tube, title, leaks)
   t:step("divide_" .. tube, title, {
     limit = 30 * s,
     hint = "two clips on the patient's side, one on the specimen's, all across it with their tips in view; then a "
       .. "time-out, and a cut between",
   })
+  if leaks then
+    t:wait(2 * s)
+    return t:missed("what was divided before leaks")
+  end
   if t:wait_until(function() return t:divided(tube) end) then
     t:note(tube .. "_patient_clips", technique.shut(t, tube .. ".patient"))
     t:note(tube .. "_specimen_clips", technique.shut(t, tube .. ".specimen"))
@@ -90,7 +101,7 @@ local function clumsy(t)
 end
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "critical-view",
   title = "From exposure to the divided duct and artery",
   time_limit = 180 * s,
@@ -150,17 +161,16 @@ return calot.exercise {
       limit = 40 * s,
       hint = "lay the hook on a strand, let current flow until it parts, and go to the next; keep off the ducts",
     })
-    t:wait_until(function() return t:torn("artery_fat") == 1 or t:divided("cystic_duct") end)
+    before_the_cut(t, function() return t:torn("artery_fat") == 1 end)
     t:step("plate", "Take the gallbladder's lower part off the cystic plate", {
       limit = 40 * s,
       hint = "where the lowest lobules of fat join gallbladder and liver, from the triangle's side",
     })
-    t:wait_until(function() return t:divided("cystic_duct") or view(t).plate.points > 0 end)
+    before_the_cut(t, function() return not t:divided("cystic_duct") and view(t).plate.points > 0 end)
     t:wait(0.5 * s)
     t:note("critical_view_points", t:divided("cystic_duct") and 0 or view(t).points)
     divide(t, "cystic_duct", "Clip and divide the cystic duct")
-    if t:lost("bile") + t:lost("blood") > 0 then return t:wait(2 * s) end -- what runs is looked at, and it is over
-    divide(t, "cystic_artery", "Clip and divide the cystic artery")
+    divide(t, "cystic_artery", "Clip and divide the cystic artery", t:lost("bile") + t:lost("blood") > 0)
     t:wait(0.6 * s)
   end,
 

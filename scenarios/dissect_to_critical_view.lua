@@ -26,22 +26,26 @@ local function note(t, when)
   t:note("free_structures" .. when, now.structures.free)
 end
 
--- The view, or the way out where it cannot be had: current that divides little of what it flows through says so.
-local function judge_view(run)
-  local away = run:times("bail_out")
+-- Bailing out is right where the tissue does not yield: current divides little of what it flows through.
+local function judge_bail_out(run)
   local area, time = run.metrics["hook.divided_mm2"], run.metrics["hook.activation_time_s"]
-  if #away > 0 then
-    local yields = time < 2 * s or area > 2 * time
-    local felt = string.format("%.1f s of current divided %.1f mm2", time, area)
-    return yields and 0 or 1, felt .. (yields and ": it yields, there was no need to bail out" or
-      ": it does not yield, and to bail out was right"), away
+  local right = time >= 2 * s and area <= 2 * time
+  local felt = string.format("%.1f s of current divided %.1f mm2", time, area)
+  return right, felt .. (right and ": it does not yield" or ": it yields, or was not tried"), run:times("bail_out")
+end
+
+-- The view, or the way out where it cannot be had.
+local function judge_view(run)
+  if run:count("bail_out") > 0 then
+    local right, felt, away = judge_bail_out(run)
+    return right and 1 or 0, felt, away
   end
   local points = run.notes.critical_view or 0
   return math.min(1, points / 5), string.format("%d of 6 points, of which 5 are satisfactory", points)
 end
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "dissect-to-critical-view",
   title = "Dissect to the critical view of safety",
   time_limit = 120 * s,
@@ -135,7 +139,7 @@ return calot.exercise {
     { calot.score.benchmark { metric = "hook.peak_force_N", novice = 3, expert = 1.5 }, weight = 0.15 },
     { calot.score.penalty { event = "dry_activation", each = 0.25 }, weight = 0.15 },
     critical = { "overforce", "perforation" },
-    bail_out_completes = true,
+    bail_out = judge_bail_out,
     cap = 40,
     pass = 80,
   },

@@ -17,10 +17,13 @@ local slack = 5 * mmHg
 -- Jaws are opened as far as the fold needs.
 local wide = 45 * deg
 
+local function seen_mm2(t) return t:seen_area(technique.triangle(t)) / mm ^ 2 end
+local function angle_deg(t) return technique.angle_of_ducts(t) / deg end
+
 local function is_tense(p) return p.field == "hydrops" end
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "exposure",
   title = "Expose Calot's triangle",
   time_limit = 60 * s,
@@ -88,13 +91,21 @@ return calot.exercise {
     })
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
-    t:step("expose", "Draw it so that the triangle between the ducts is seen", {
-      limit = 10 * s,
-      hint = "to the patient's right and down: the cystic duct should stand across the common duct, not along it",
+    t:step("expose", "Draw it so that the triangle between the ducts is seen, and keep it there", {
+      limit = 15 * s,
+      hint = "to the patient's right and down: the cystic duct should stand across the common duct, not along it; when "
+        .. "you have it, hold still for 4 s",
     })
-    t:wait(5.5 * s)
-    t:note("triangle_seen_mm2", t:seen_area(technique.triangle(t)) / mm ^ 2, "mm2")
-    t:note("angle_of_ducts_deg", technique.angle_of_ducts(t) / deg, "degrees")
+    local taken, seen, angle = t:place("gallbladder.infundibulum"), seen_mm2(t), angle_deg(t)
+    local drawn = t:hold("drawn", function()
+      local way = technique.minus(t:place("gallbladder.infundibulum"), taken)
+      return t.fundus:holds("gallbladder") and t.left:holds("gallbladder") and technique.length(way) > 8 * mm
+    end, 4 * s)
+    if not drawn then return end
+    t:note("triangle_seen_mm2", seen_mm2(t), "mm2")
+    t:note("triangle_gained_mm2", seen_mm2(t) - seen, "mm2")
+    t:note("angle_of_ducts_deg", angle_deg(t), "degrees")
+    t:note("angle_gained_deg", angle_deg(t) - angle, "degrees")
   end,
 
   demo = function(t, p)
@@ -110,8 +121,9 @@ return calot.exercise {
   end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "note.triangle_seen_mm2", novice = 60, expert = 120 }, weight = 0.4 },
-    { calot.score.benchmark { metric = "note.angle_of_ducts_deg", novice = 90, expert = 120 }, weight = 0.3 },
+    -- Gained since the pouch was taken: an untouched field shows more of the triangle than a lifted one.
+    { calot.score.benchmark { metric = "note.triangle_gained_mm2", novice = 0, expert = 60 }, weight = 0.4 },
+    { calot.score.benchmark { metric = "note.angle_gained_deg", novice = 5, expert = 35 }, weight = 0.3 },
     { calot.score.benchmark { metric = "left.peak_force_N", novice = 5, expert = 3 }, weight = 0.2 },
     { calot.score.penalty { event = "slip", each = 0.5 }, weight = 0.1 },
     critical = { "overforce" },

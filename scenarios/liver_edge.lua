@@ -1,10 +1,13 @@
 local calot = require "calot"
+local technique = require "technique"
 local mm, s, kPa, deg = calot.units.mm, calot.units.s, calot.units.kPa, calot.units.deg
 
 local neck, fundus, liver_side = { -50 * mm, 130 * mm, -110 * mm }, { -80 * mm, 100 * mm, -60 * mm }, { 0, 0.8, 0.6 }
 
+local up = { 0, 0.55, 0.83 }
+
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "liver-edge",
   title = "A gallbladder pushed over the liver's edge",
   time_limit = 30 * s,
@@ -45,8 +48,12 @@ return calot.exercise {
     t:step("grasp", "Take the gallbladder by its fundus", { limit = 15 * s })
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
-    t:step("push", "Push it up over the liver's edge", { limit = 15 * s })
-    t:wait(5 * s)
+    t:step("push", "Push it up over the liver's edge and keep it there for 2 s", { limit = 15 * s })
+    local hung = t:place("gallbladder.fundus")
+    t:hold("up", function()
+      local way = technique.minus(t:place("gallbladder.fundus"), hung)
+      return t.left:holds("gallbladder") and technique.dot(way, up) > 30 * mm
+    end, 2 * s)
   end,
 
   demo = function(t)
@@ -61,7 +68,8 @@ return calot.exercise {
   end,
 
   score = calot.score.weighted {
-    { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 250 }, weight = 1 },
+    { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 250 }, weight = 0.7 },
+    { calot.score.penalty { event = "slip", each = 0.5 }, weight = 0.3 },
   },
   golden = { at = { 0, 6 * s } },
 }

@@ -6,7 +6,7 @@ local anatomy = require "anatomy"
 local mm, s = calot.units.mm, calot.units.s
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "operating-field",
   title = "The operating field at rest",
   time_limit = 10 * s,
@@ -40,8 +40,4 @@ return calot.exercise {
   end,
 
   demo = function(t) t.left:wait(1 * s) end,
-
-  score = calot.score.weighted {
-    { calot.score.penalty { event = "tear", each = 1 }, weight = 1 },
-  },
 }

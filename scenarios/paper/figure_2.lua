@@ -6,7 +6,7 @@ local calot = require "calot"
 local mm, s, N, kPa = calot.units.mm, calot.units.s, calot.units.N, calot.units.kPa
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "paper-figure-2",
   title = "The paper's sphere, pulled by a grasper and pushed by an electrode",
   time_limit = 60 * s,
@@ -58,11 +58,6 @@ return calot.exercise {
     )
     t:wait(3 * s)
   end,
-
-  score = calot.score.weighted {
-    { calot.score.benchmark { metric = "left.peak_force_N", novice = 6, expert = 3 }, weight = 0.5 },
-    { calot.score.penalty { event = "overforce", each = 0.5 }, weight = 0.5 },
-  },
 
   golden = { at = { 3.6 * s, 8 * s } },
 }

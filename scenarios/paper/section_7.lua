@@ -10,7 +10,7 @@ local neck, fundus = { -58 * mm, 112 * mm, -109 * mm }, { -108 * mm, 78 * mm, -1
 local junction = { -26 * mm, 126 * mm, -112 * mm }
 
 return calot.exercise {
-  api = 1,
+  api = 2,
   id = "paper-section-7",
   title = "A gallbladder lifted off its ground, held by its duct",
   time_limit = 30 * s,
@@ -95,8 +95,5 @@ return calot.exercise {
     t.left:wait(2 * s)
   end,
 
-  score = calot.score.weighted {
-    { calot.score.benchmark { metric = "left.path_length_mm", novice = 900, expert = 350 }, weight = 1 },
-  },
   golden = { at = { 0, 5.5 * s, 9 * s, 17 * s } },
 }

@@ -8,7 +8,7 @@
 
 ---An exercise: what a scenario returns.
 ---@class calot.exercise
----@field api number version of this interface: 1
+---@field api number version of this interface: 2. In 1 parts of the score earn whether their steps were done or not, and any bail-out may complete; 1 to 2
 ---@field id string short name: small letters, digits and hyphens
 ---@field title string one line for people
 ---@field time_limit? number the session ends then at the latest; default 120 * s; 1 to 3600 s
@@ -16,7 +16,7 @@
 ---@field scene fun(p: table<string, any>): calot.scene returns the operating field
 ---@field steps fun(t: calot.Steps, p: table<string, any>) the operation's steps, a coroutine
 ---@field demo? fun(t: calot.Demo, p: table<string, any>) an expert's instrument path, a coroutine
----@field score calot.weighted|fun(p: table<string, any>): calot.weighted what counts: calot.score.weighted { ... }, or function(p) that returns it
+---@field score? calot.weighted|fun(p: table<string, any>): calot.weighted what counts: calot.score.weighted { ... }, or function(p) that returns it; left out: a scene that trains nothing, and has no score
 ---@field golden? calot.golden when pictures are compared
 
 ---Something that can be chosen when the exercise is started (--param name=value).
@@ -33,7 +33,8 @@
 ---@field critical? string[] events that cap the total and fail the exercise
 ---@field gates? calot.gate[] conditions that cap the total and fail the exercise
 ---@field cap? number the total's largest value after a critical event, or behind a gate; default 40; 0 to 100 points
----@field bail_out_completes? boolean true: who bails out may pass without the steps that are left; default false
+---@field bail_out? fun(run: calot.Run): boolean, string, number[]? says whether bailing out was right, and why: then the steps that are left need not be done; left out: it never is
+---@field bail_out_completes? boolean api 1: true: who bails out, at any time, may pass without the steps that are left; default false
 ---@field pass? number the total from which on the exercise is passed; default 80; 0 to 100 points
 ---@field [integer] calot.part
 
@@ -41,6 +42,7 @@
 ---@class calot.part
 ---@field weight number its share of the total; 0 to 1
 ---@field name? string its name in the report; default the metric or the event
+---@field steps? string[] the steps that it judges: it earns by the share of them that was done; left out: all
 ---@field [integer] calot.benchmark|calot.penalty|calot.procedure|calot.time_score|calot.critical_view|calot.rule
 
 ---A metric between a novice's value (no points) and an expert's (all points).
@@ -51,7 +53,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.
@@ -82,14 +84,14 @@
 ---Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came too early, a metric beyond a value. A metric that was never measured is beyond.
 ---@class calot.gate
 ---@field reason string one sentence for the trainee
----@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" this happened
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" this happened
 ---@field organ? string to this organ or tissue, or a piece of it
----@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" and this had not happened before
+---@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" and this had not happened before
 ---@field after_organ? string to this organ or tissue, or a piece of it
 ---@field metric? string this metric is beyond a value
 ---@field below? number below this
 ---@field above? number above this
----@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" an event that excuses it, such as bail_out
+---@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" an event that excuses it, such as bail_out
 ---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
 ---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
@@ -416,7 +418,7 @@
 
 ---An event of a session, as a rule sees it.
 ---@class calot.event
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" its kind
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" its kind
 ---@field time number when, s
 ---@field step string the step that ran
 ---@field instrument? string whose it is
@@ -429,7 +431,7 @@
 ---A step of a session, as a rule sees it.
 ---@class calot.step
 ---@field name string its name
----@field outcome "done"|"timeout"|"bail_out"|"aborted" how it ended
+---@field outcome "done"|"timeout"|"missed"|"bail_out"|"aborted" how it ended
 ---@field started number when it began, s
 ---@field ended number when it ended, s
 
@@ -553,6 +555,10 @@ local Steps = {}
 ---@param options? calot.step_options a limit in time, a hint
 function Steps:step(name, title, options) end
 
+---Ends the running step as missed: what it asks for can no longer be done. Nothing happens where its limit has ended it.
+---@param why string in a few words, for people
+function Steps:missed(why) end
+
 ---Waits until the predicate has held for a duration in all; metric <step>.<name>.time_in_s. Returns whether it did before the step's limit.
 ---@param name string short name, for the metric: letters, digits and _
 ---@param predicate fun(): boolean asked after every simulated step
@@ -597,10 +603,14 @@ function Steps:tie(joint) end
 function Steps:untie(organ, other) end
 
 ---How many events of a kind there have been, such as time_out; those of this step come before it.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number
 function Steps:count(event, organ) end
+
+---What has happened so far, as the rules of a score see it.
+---@return calot.event[]
+function Steps:events() end
 
 ---The t of demo = function(t, p): moves the instruments.
 ---@class calot.Demo: calot.Session
@@ -758,13 +768,13 @@ function DemoInstrument:wait(duration) end
 local Run = {}
 
 ---How many events of a kind there were.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return integer
 function Run:count(event, organ) end
 
 ---When there were events of a kind, s, ascending.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number[]
 function Run:times(event, organ) end

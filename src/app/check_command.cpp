@@ -76,6 +76,23 @@ Checked check(const Named& named, bool with_world) {
   return checked;
 }
 
+/// What an author should think about; none of it is wrong.
+std::vector<std::string> remarks(const ExerciseDefinition& exercise) {
+  std::vector<std::string> lines;
+  if (exercise.score.parts.empty()) return lines;
+  for (const std::string& step : exercise.waited_steps)
+    lines.push_back(fmt::format(
+        "step \"{}\" asks no condition: who waits has done it (t:wait_until or t:hold, of what is "
+        "achieved)",
+        step));
+  if (exercise.api == 1)
+    lines.emplace_back(
+        "api = 1: parts of the score earn points whether their steps were done or not. Write api = 2; "
+        "where a part judges some steps only, give it steps = { ... }; and instead of "
+        "bail_out_completes = true write bail_out = function(run) return true, \"why\" end");
+  return lines;
+}
+
 OrderedJson checked_json(const Checked& checked) {
   OrderedJson json = {{"file", checked.file}, {"ok", checked.ok()}};
   if (checked.module) json["module"] = true;
@@ -86,6 +103,7 @@ OrderedJson checked_json(const Checked& checked) {
     json["steps"] = exercise.step_names;
     json["metrics"] = metric_names(exercise);
     json["rest"] = checked.rest;
+    json["remarks"] = remarks(exercise);
   }
   json["problems"] = problems_json(checked.failure);
   return json;
@@ -135,6 +153,8 @@ ExitCode check_command(const CheckCommand& command) {
       if (!command.json) print(fmt::format("{}  {}: {}", green("ok"), file.file, what));
       for (const std::string& line : checked.rest)
         if (!command.json) print("    " + line);
+      if (checked.exercise && !command.json)
+        for (const std::string& line : remarks(*checked.exercise)) print("    " + line);
       std::fflush(stdout);
       continue;
     }

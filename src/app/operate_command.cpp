@@ -95,9 +95,10 @@ Result<Played> attempts(Operation& operation) {
 std::string result_lines(const Result<Played>& played) {
   if (!played) return to_text(played.failure());
   const Score& score = played->report.score;
-  const std::string total = played->report.aborted ? "No score: the session did not come to its end."
-                                                   : fmt::format("{:.1f} of 100 points: {}", score.total,
-                                                                 score.passed ? "passed" : "not passed");
+  const std::string total = played->report.has_total()
+                                ? fmt::format("{:.1f} of 100 points: {}", score.total, verdict(score))
+                            : played->report.aborted ? "No score: the session did not come to its end."
+                                                     : "No score: this exercise has none.";
   return fmt::format("{}\nWritten to {}", total, played->output.string());
 }
 

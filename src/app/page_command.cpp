@@ -12,6 +12,7 @@
 #include "app/terminal.h"
 #include "lua/read_benchmarks.h"
 #include "page/page.h"
+#include "session/scoring.h"
 
 namespace calot {
 namespace {
@@ -162,14 +163,26 @@ PageRow row_of(const ClassScores& scores, const Answer& answer, const std::strin
     row.problem = failure_text(entry);
     return row;
   }
-  row.whole = entry["whole"].get<bool>();
+  row.finished = is_finished(entry);
   row.passed = entry["score"]["passed"].get<bool>();
-  row.total = entry["score"]["total"].get<double>();
+  row.unsafe = entry["score"]["outcome"] == to_text(AttemptOutcome::unsafe);
+  if (has_total(entry)) row.total = entry["score"]["total"].get<double>();
+  row.steps = steps_text(entry);
   row.stopped_at = entry["stopped_at_s"].get<double>();
   row.errors = answer.errors;
   if (const OrderedJson* parts = parts_of(scores, entry))
     for (const OrderedJson& part : *parts) row.points.emplace_back(part["points"].get<double>());
   return row;
+}
+
+/// Those of a class; attempts of one trainee stay in their order.
+void sort_by_outcome(std::vector<PageRow>& rows, const std::vector<Answer>& answers) {
+  std::vector<std::pair<std::size_t, PageRow>> ranked;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    ranked.emplace_back(outcome_rank(answers[i].entry), std::move(rows[i]));
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = std::move(ranked[i].second);
 }
 
 std::string page_text(const PageCommand& command, const ClassScores& scores,
@@ -193,6 +206,7 @@ std::string page_text(const PageCommand& command, const ClassScores& scores,
     page.rows.push_back(row_of(scores, answers[i], prefix_of(i, answers.size())));
     if (!answers[i].section.empty()) sections.push_back(answers[i].section);
   }
+  if (page.of_a_class) sort_by_outcome(page.rows, answers);
   return page_html(page, sections);
 }
 

@@ -114,8 +114,10 @@ PagePart part_of(const OrderedJson& json, const PageRecording& page) {
 
 void add_score(const OrderedJson& entry, PageRecording& page) {
   const OrderedJson& score = entry["score"];
-  page.score.total = score["total"].get<double>();
-  page.score.uncapped = score["uncapped_total"].get<double>();
+  if (has_total(entry)) {
+    page.score.total = score["total"].get<double>();
+    page.score.uncapped = score["uncapped_total"].get<double>();
+  }
   page.pass_mark = score["pass_mark"].get<double>();
   page.passed = score["passed"].get<bool>();
   page.verdict = verdict_text(entry);
@@ -156,7 +158,7 @@ void add_warnings(const OrderedJson& entry, const Watched& watched, PageRecordin
   if (!entry["whole"].get<bool>())
     page.warnings.push_back(
         fmt::format("The session did not come to its end ({}): what follows ends at {}, is scored "
-                    "up to there, and counts as not passed.",
+                    "up to there, and not finished.",
                     entry["end"].get<std::string>(), seconds(page.stopped_at)));
   if (entry["why"].is_string())
     page.warnings.push_back("Scored by playing it again: " + entry["why"].get<std::string>() + ".");

@@ -177,6 +177,7 @@ std::optional<Failure> make_report(Played& played) {
   Result<Score> scored = score(played.exercise, session.metrics, session.progress);
   if (!scored) return scored.failure();
   played.report.score = std::move(scored).value();
+  if (played.report.aborted) cut_short(played.report.score, session.end == SessionEnd::failed);
   played.json = report_json(played.exercise, session, played.report);
   if (played.output.empty()) return std::nullopt;
   if (const std::string plot = force_plot(played.exercise.scene, session.traces); !plot.empty()) {

@@ -14,7 +14,7 @@
 namespace calot {
 namespace {
 
-constexpr const char* entry_version = "calot.scores/1";
+constexpr const char* entry_version = "calot.scores/2";
 
 /// Adds a file's bytes; false where it cannot be read.
 bool add_file(Hash& hash, const std::string& path) {
@@ -40,10 +40,9 @@ std::optional<Failure> add_measured(const ExerciseDefinition& exercise,
   Result<Score> scored = score(exercise, metrics, progress);
   if (!scored) return scored.failure();
   Score total = std::move(scored).value();
-  const bool whole = entry["whole"].get<bool>();
-  total.passed = total.passed && whole;
+  if (!entry["whole"].get<bool>()) cut_short(total, entry["end"] == to_text(SessionEnd::failed));
   entry["params"] = exercise.params;
-  entry["score"] = score_json(exercise, total, false);
+  entry["score"] = score_json(exercise, total, total.outcome != AttemptOutcome::not_judged);
   entry["metrics"] = metrics;
   entry["steps"] = steps_json(progress);
   entry["notes"] = notes;
@@ -94,6 +93,9 @@ Result<RecordingScorer> RecordingScorer::create(ScoreRequest request) {
   Result<Exercise> standard = scorer.load({}, PlayRequest().seed);
   if (!standard) return standard.failure();
   scorer.standard_ = std::move(standard).value();
+  if (scorer.standard_.definition.score.parts.empty())
+    return fail(FailureKind::usage, "this exercise has no score: it trains nothing",
+                "name another one, or give it a score", {scorer.request_.exercise.string(), 0, {}});
   if (!scorer.request_.keyed) return scorer;
   Hash hash;
   hash.add(std::string_view(entry_version));

@@ -29,13 +29,13 @@ struct ScoreRequest {
   std::optional<ScoreWatcher> watcher;
 };
 
-/// Scores recordings of one exercise. An entry of calot.scores/1 is an object of
+/// Scores recordings of one exercise. An entry of calot.scores/2 is an object of
 ///   file         as it was named
 ///   failure      a list of problems where there is no score, with the exit_code of their kind; then nothing follows
 ///   from         "recording" or "simulation"; why: why it was simulated, else null
 ///   verified     with `verify`: true, false, or null where nothing can be said; differences: in words, what differs
 ///   end          how the session ended, "cut" where the recording has no end
-///   whole        it came to its end; else it is scored up to stopped_at_s, and not passed
+///   whole        it came to its end; else it is scored up to stopped_at_s, and unfinished or unsafe
 ///   stopped_at_s
 ///   params       of the exercise, as it was played
 ///   score, metrics, steps, notes   as in calot.report/1

@@ -8,6 +8,7 @@
 
 #include "app/terminal.h"
 #include "session/csv.h"
+#include "session/scoring.h"
 
 namespace calot {
 namespace {
@@ -17,11 +18,21 @@ bool is_whole(const OrderedJson& entry) { return is_scored(entry) && entry["whol
 bool has_passed(const OrderedJson& entry) { return is_scored(entry) && entry["score"]["passed"].get<bool>(); }
 double total_of(const OrderedJson& entry) { return entry["score"]["total"].get<double>(); }
 
-/// The totals of those that came to their end, ascending.
-std::vector<double> whole_totals(const ClassScores& scores) {
+/// By outcome; within one in the order in which they were given.
+std::vector<const OrderedJson*> by_outcome(const ClassScores& scores) {
+  std::vector<const OrderedJson*> sorted;
+  for (const OrderedJson& entry : scores.entries) sorted.push_back(&entry);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const OrderedJson* a, const OrderedJson* b) {
+    return outcome_rank(*a) < outcome_rank(*b);
+  });
+  return sorted;
+}
+
+/// The totals of those that were finished, ascending.
+std::vector<double> finished_totals(const ClassScores& scores) {
   std::vector<double> totals;
   for (const OrderedJson& entry : scores.entries)
-    if (is_whole(entry)) totals.push_back(total_of(entry));
+    if (is_finished(entry)) totals.push_back(total_of(entry));
   std::sort(totals.begin(), totals.end());
   return totals;
 }
@@ -39,7 +50,7 @@ std::vector<double> mean_points(const ClassScores& scores) {
     std::vector<double> points;
     for (const OrderedJson& entry : scores.entries) {
       const OrderedJson* parts = parts_of(scores, entry);
-      if (parts != nullptr && is_whole(entry)) points.push_back((*parts)[i]["points"].get<double>());
+      if (parts != nullptr && is_finished(entry)) points.push_back((*parts)[i]["points"].get<double>());
     }
     means.push_back(points.empty() ? std::numeric_limits<double>::quiet_NaN() : mean_of(points));
   }
@@ -73,8 +84,14 @@ OrderedJson class_json(const ClassScores& scores) {
   OrderedJson json = {{"recordings", scores.entries.size()},
                       {"scored", count(is_scored)},
                       {"whole", count(is_whole)},
+                      {"finished", count(is_finished)},
                       {"passed", count(has_passed)}};
-  json["total"] = totals_json(whole_totals(scores));
+  for (const AttemptOutcome outcome : all_outcomes())
+    json["outcomes"][to_text(outcome)] =
+        std::count_if(scores.entries.begin(), scores.entries.end(), [&](const OrderedJson& entry) {
+          return is_scored(entry) && entry["score"]["outcome"] == to_text(outcome);
+        });
+  json["total"] = totals_json(finished_totals(scores));
   json["parts"] = OrderedJson::array();
   const std::vector<double> means = mean_points(scores);
   for (std::size_t i = 0; i < means.size(); ++i) {
@@ -118,7 +135,8 @@ std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson&
   std::vector<std::string> fields;
   for (const char* key : {"file", "from", "end", "whole", "stopped_at_s"})
     fields.push_back(csv_value(entry[key]));
-  for (const char* key : {"total", "passed", "completed"}) fields.push_back(csv_value(score[key]));
+  for (const char* key : {"outcome", "verdict", "total", "passed", "completed", "steps_done", "steps"})
+    fields.push_back(csv_value(score[key]));
   fields.push_back(csv_field(critical));
   fields.push_back(csv_field(reasons));
   const OrderedJson* parts = parts_of(scores, entry);
@@ -132,29 +150,33 @@ std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson&
 }
 
 std::string class_verdict(const OrderedJson& entry) {
-  return has_passed(entry) && is_whole(entry) ? green(verdict_text(entry)) : red(verdict_text(entry));
+  return has_passed(entry) ? green(verdict_text(entry)) : red(verdict_text(entry));
 }
 
 std::string one_decimal(double value) { return fmt::format("{:.1f}", value); }
 
+std::vector<std::string> class_row(const ClassScores& scores, const OrderedJson& entry) {
+  std::vector<std::string> row{entry["file"].get<std::string>()};
+  row.push_back(has_total(entry) ? one_decimal(total_of(entry)) : "");
+  row.push_back(is_scored(entry) ? steps_text(entry) : "");
+  const OrderedJson* parts = parts_of(scores, entry);
+  for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
+    row.push_back(parts != nullptr ? one_decimal((*parts)[i]["points"].get<double>()) : "");
+  row.push_back(class_verdict(entry));  // last: colours have a width for the table, and none on the screen
+  return row;
+}
+
 std::string class_table(const ClassScores& scores) {
-  std::vector<std::vector<std::string>> rows{{"recording", "score"}};
+  std::vector<std::vector<std::string>> rows{{"recording", "score", "steps"}};
   for (const ScorePart& part : scores.exercise.score.parts)
     rows[0].push_back(fmt::format("{} ({:.0f})", part.name, 100 * part.weight));
-  const std::string alignment = "lr" + std::string(scores.exercise.score.parts.size(), 'r') + 'l';
+  const std::string alignment = "lrr" + std::string(scores.exercise.score.parts.size(), 'r') + 'l';
   rows[0].emplace_back("verdict");
-  for (const OrderedJson& entry : scores.entries) {
-    std::vector<std::string> row{entry["file"].get<std::string>()};
-    row.push_back(is_scored(entry) ? one_decimal(total_of(entry)) : "");
-    const OrderedJson* parts = parts_of(scores, entry);
-    for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
-      row.push_back(parts != nullptr ? one_decimal((*parts)[i]["points"].get<double>()) : "");
-    row.push_back(class_verdict(entry));  // last: colours have a width for the table, and none on the screen
-    rows.push_back(std::move(row));
-  }
-  const std::vector<double> totals = whole_totals(scores);
+  for (const OrderedJson* entry : by_outcome(scores)) rows.push_back(class_row(scores, *entry));
+  const std::vector<double> totals = finished_totals(scores);
   if (totals.size() > 1) {
-    rows.push_back({"mean", one_decimal(mean_of(totals))});
+    rows.push_back({fmt::format("mean of {} finished, of {} attempts", totals.size(), scores.entries.size()),
+                    one_decimal(mean_of(totals)), ""});
     for (const double points : mean_points(scores))
       rows.back().push_back(std::isnan(points) ? "" : one_decimal(points));
     rows.back().emplace_back();
@@ -199,21 +221,36 @@ const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry)
   return same ? &parts : nullptr;
 }
 
+bool has_total(const OrderedJson& entry) { return is_scored(entry) && !entry["score"]["total"].is_null(); }
+
+std::string steps_text(const OrderedJson& entry) {
+  return fmt::format("{}/{}", entry["score"]["steps_done"].get<std::size_t>(),
+                     entry["score"]["steps"].get<std::size_t>());
+}
+
+bool is_finished(const OrderedJson& entry) {
+  return has_total(entry) && entry["score"]["completed"].get<bool>();
+}
+
+std::size_t outcome_rank(const OrderedJson& entry) {
+  const std::vector<AttemptOutcome>& outcomes = all_outcomes();
+  std::size_t rank = 0;
+  while (is_scored(entry) && rank < outcomes.size() && entry["score"]["outcome"] != to_text(outcomes[rank]))
+    ++rank;
+  return is_scored(entry) ? rank : outcomes.size();
+}
+
 std::string verdict_text(const OrderedJson& entry) {
   if (!is_scored(entry)) return "no score";
+  std::string text = entry["score"]["verdict"].get<std::string>();
   if (!is_whole(entry))
-    return fmt::format("{} at {:.2f} s", entry["end"].get<std::string>(),
-                       entry["stopped_at_s"].get<double>());
-  if (has_passed(entry)) return "passed";
-  const OrderedJson& score = entry["score"];
-  if (!score["critical"].empty()) return "critical: " + score["critical"][0]["event"].get<std::string>();
-  if (!score["gates"].empty() && score["gates"][0]["fails"].get<bool>())
-    return "failed: " + score["gates"][0]["reason"].get<std::string>();
-  return score["completed"].get<bool>() ? "not passed" : "steps missing";
+    text += fmt::format(" ({} at {:.2f} s)", entry["end"].get<std::string>(),
+                        entry["stopped_at_s"].get<double>());
+  return text;
 }
 
 std::string scores_json(const ClassScores& scores) {
-  OrderedJson json = {{"schema", "calot.scores/1"},
+  OrderedJson json = {{"schema", "calot.scores/2"},
                       {"scenario", scores.exercise.id},
                       {"title", scores.exercise.title},
                       {"file", scores.exercise.file},
@@ -225,8 +262,9 @@ std::string scores_json(const ClassScores& scores) {
 }
 
 std::string scores_csv(const ClassScores& scores) {
-  std::vector<std::string> head{"file",  "from",   "end",       "whole",    "stopped_at_s",
-                                "total", "passed", "completed", "critical", "gates"};
+  std::vector<std::string> head{"file",       "from",    "end",      "whole",  "stopped_at_s",
+                                "outcome",    "verdict", "total",    "passed", "completed",
+                                "steps_done", "steps",   "critical", "gates"};
   for (const ScorePart& part : scores.exercise.score.parts) {
     head.push_back(csv_field(part.name + " points"));
     head.push_back(csv_field(part.name + " measured"));
@@ -236,13 +274,13 @@ std::string scores_csv(const ClassScores& scores) {
   for (const std::string& name : metrics) head.push_back(csv_field(name));
   head.emplace_back("failure");
   std::string text = csv_row(head);
-  for (const OrderedJson& entry : scores.entries) {
+  for (const OrderedJson* entry : by_outcome(scores)) {
     std::vector<std::string> fields(head.size());
-    if (is_scored(entry)) {
-      fields = csv_entry(scores, entry, metrics);
+    if (is_scored(*entry)) {
+      fields = csv_entry(scores, *entry, metrics);
     } else {
-      fields.front() = csv_value(entry["file"]);
-      fields.back() = csv_field(failure_text(entry));
+      fields.front() = csv_value((*entry)["file"]);
+      fields.back() = csv_field(failure_text(*entry));
     }
     text += csv_row(fields);
   }
@@ -259,6 +297,7 @@ std::string scores_text(const ClassScores& scores) {
                         scores.benchmarks->version, scores.benchmarks->calibration);
   else
     text += "Benchmarks are design values, uncalibrated.\n";
+  if (scores.exercise.api == 1) text += fmt::format("{}\n", api_1_remark);
   return text;
 }
 

@@ -15,20 +15,33 @@ struct ClassScores {
   const std::vector<OrderedJson>& entries;  ///< in the order in which they are shown
 };
 
-/// One object of schema calot.scores/1, with a line end: exercise, benchmarks, recordings (the entries) and class: how
-/// many there are, were scored, came to their end and passed; of the totals of those that came to their end, mean,
-/// median, standard deviation (of a sample), least and most; and each part's mean points.
+/// One object of schema calot.scores/2, with a line end: exercise, benchmarks, recordings (the entries) and class: how
+/// many there are, were scored, came to their end, were finished and passed, and had each outcome; of the totals of those
+/// that were finished, mean, median, standard deviation (of a sample), least and most; and each part's mean points.
 std::string scores_json(const ClassScores& scores);
 
-/// RFC 4180, a row a recording: file, from, end, whole, stopped_at_s, total, passed, completed, critical, gates with their reasons, each part's
-/// points, what was measured and the reason, all metrics, failure. What is not known is empty.
+/// RFC 4180, a row a recording, by outcome: file, from, end, whole, stopped_at_s, outcome, verdict, total, passed,
+/// completed, steps_done, steps, critical, gates with their reasons, each part's points, what was measured and the
+/// reason, all metrics, failure. What is not known is empty.
 std::string scores_csv(const ClassScores& scores);
 
-/// A table; of a single recording its parts, explained.
+/// A table by outcome, what has no total last; of a single recording its parts, explained.
 std::string scores_text(const ClassScores& scores);
 
 /// The score's parts, in the order of the exercise's; null of an entry without, or with others (other parameters).
 const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry);
+
+/// Not of one without a score, nor where the simulation failed.
+bool has_total(const OrderedJson& entry);
+
+/// Steps done, of those that there are, of an entry that was scored: "3/5".
+std::string steps_text(const OrderedJson& entry);
+
+/// Whether all steps were done, or left by a bail-out that was right: only such totals are averaged.
+bool is_finished(const OrderedJson& entry);
+
+/// The place of an entry's outcome in tables: 0 for passed ones, more than all others for one without a score.
+std::size_t outcome_rank(const OrderedJson& entry);
 
 /// "passed", or why not, of an entry that may have failed.
 std::string verdict_text(const OrderedJson& entry);

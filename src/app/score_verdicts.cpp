@@ -69,14 +69,18 @@ ExitCode judge(const std::vector<OrderedJson>& entries, const std::string& exerc
       if (!failed) failed = static_cast<ExitCode>(entry["exit_code"].get<int>());
       continue;
     }
-    const double total = entry["score"]["total"].get<double>();
+    const OrderedJson& total = entry["score"]["total"];
     if (!entry["whole"].get<bool>())
       tell(entry,
            fmt::format("it did not come to its end ({}): scored up to {:.3f} s",
                        entry["end"].get<std::string>(), entry["stopped_at_s"].get<double>()),
            "calot replay {1} --scenario {0}");
-    else if (fail_below && total < *fail_below)
-      tell(entry, fmt::format("the score, {:.1f}, is below {:g}", total, *fail_below), "calot score {0} {1}");
+    else if (fail_below && (total.is_null() || total.get<double>() < *fail_below))
+      tell(entry,
+           total.is_null()
+               ? fmt::format("there is no score to be {:g} or more", *fail_below)
+               : fmt::format("the score, {:.1f}, is below {:g}", total.get<double>(), *fail_below),
+           "calot score {0} {1}");
     if (entry["verified"] == false)
       for (const OrderedJson& difference : entry["differences"])
         tell(entry, difference.get<std::string>(), "calot replay {1} --scenario {0}");

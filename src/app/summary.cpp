@@ -76,11 +76,15 @@ std::string score_text(const Score& score) {
   return table(rows, "rrlll");
 }
 
-std::string verdict(const Score& score) {
-  if (score.passed) return green("passed");
-  if (const TrippedGate* gate = failing_gate(score))
-    return red("failed: " + (gate->critical ? "critical event " + to_text(*gate->critical) : gate->reason));
-  return red(score.completed ? "not passed" : "not passed: not every step was done");
+std::string total_text(const Played& played) {
+  const Score& score = played.report.score;
+  if (played.report.has_total())
+    return fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
+                       score.passed() ? green(verdict(score)) : red(verdict(score)),
+                       played.exercise.score.pass);
+  return fmt::format(
+      "\n{} none: {}\n", bold("Score"),
+      played.report.aborted ? "the session did not come to its end" : "this exercise has no score");
 }
 
 }  // namespace
@@ -96,15 +100,13 @@ std::string summary(const Played& played) {
   text += fmt::format("\n{}\n{}", bold("Metrics"), metrics_text(session.metrics));
   if (!session.rest.empty())
     text += fmt::format("\n{}\n  {}\n", bold("At rest"), fmt::join(session.rest, "\n  "));
-  text += played.report.aborted
-              ? fmt::format("\n{} none: the session did not come to its end\n", bold("Score"))
-              : fmt::format("\n{} {:.1f} of 100, {} (pass mark {:.0f})\n", bold("Score"), score.total,
-                            verdict(score), played.exercise.score.pass);
+  text += total_text(played);
   for (const TrippedGate& gate : score.gates)
     text += fmt::format("  {} ({}{}{}): the total is capped at {:.0f}\n", gate.reason, gate.explanation,
                         gate.times.empty() ? "" : " ", times_text(gate.times), gate.cap);
-  if (!played.report.aborted) text += score_text(score);
-  text += "  Benchmarks are design values, uncalibrated.\n";
+  if (played.report.has_total())
+    text += score_text(score) + "  Benchmarks are design values, uncalibrated.\n";
+  if (played.report.has_total() && played.exercise.api == 1) text += fmt::format("  {}\n", api_1_remark);
   text += fmt::format("\nState hash {}, {:.2f} x real time\n",
                       hex(session.state_hashes.empty() ? 0 : session.state_hashes.back()),
                       real_time_factor(session));

@@ -27,7 +27,10 @@ KeyTable exercise_table() {
   using Exercise = ExerciseDefinition;
   return keys_of<Exercise>(
       "exercise", "An exercise: what a scenario returns.",
-      {required(count("api", &Exercise::api, 1, 1, "", "version of this interface: 1")),
+      {required(count(
+           "api", &Exercise::api, 1, newest_api, "",
+           "version of this interface: 2. In 1 parts of the score earn whether their steps were done or "
+           "not, and any bail-out may complete")),
        required(text("id", &Exercise::id, "short name: small letters, digits and hyphens")),
        required(text("title", &Exercise::title, "one line for people")),
        number("time_limit", &Exercise::time_limit, quantity::time, 1 * s, 3600 * s, "",
@@ -39,8 +42,10 @@ KeyTable exercise_table() {
                          "the operation's steps, a coroutine")),
        function("demo", "fun(t: calot.Demo, p: table<string, any>)",
                 "an expert's instrument path, a coroutine"),
-       required(made_table("score", "weighted",
-                           "what counts: calot.score.weighted { ... }, or function(p) that returns it")),
+       made_table("score", "weighted",
+                  "what counts: calot.score.weighted { ... }, or function(p) that returns it; left out: a "
+                  "scene that "
+                  "trains nothing, and has no score"),
        table("golden", "golden", "when pictures are compared")});
 }
 
@@ -48,21 +53,26 @@ std::vector<KeyTable> score_tables() {
   using Score = ScoreDefinition;
   using Gate = GateDefinition;
   Key part = bound(text("name", "the metric or the event", "its name in the report"), &ScorePart::name);
-  KeyTable weighted =
-      keys_of<Score>("weighted", "Parts of the score; their weights sum to 1, the total is 0 to 100.",
-                     {list("critical", "text", "events that cap the total and fail the exercise"),
-                      list("gates", "gate", "conditions that cap the total and fail the exercise"),
-                      number("cap", &Score::cap, quantity::points, 0, 100, "",
-                             "the total's largest value after a critical event, or behind a gate"),
-                      flag("bail_out_completes", &Score::bail_out_completes,
-                           "true: who bails out may pass without the steps that are left"),
-                      number("pass", &Score::pass, quantity::points, 0, 100, "",
-                             "the total from which on the exercise is passed")});
+  KeyTable weighted = keys_of<Score>(
+      "weighted", "Parts of the score; their weights sum to 1, the total is 0 to 100.",
+      {list("critical", "text", "events that cap the total and fail the exercise"),
+       list("gates", "gate", "conditions that cap the total and fail the exercise"),
+       number("cap", &Score::cap, quantity::points, 0, 100, "",
+              "the total's largest value after a critical event, or behind a gate"),
+       function("bail_out", "fun(run: calot.Run): boolean, string, number[]?",
+                "says whether bailing out was right, and why: then the steps that are left need not "
+                "be done; left out: it never is"),
+       flag("bail_out_completes", &Score::bail_out_completes,
+            "api 1: true: who bails out, at any time, may pass without the steps that are left"),
+       number("pass", &Score::pass, quantity::points, 0, 100, "",
+              "the total from which on the exercise is passed")});
   weighted.items = "part";
   KeyTable weight = keys_of<ScorePart>(
       "part", "A part of the score: { calot.score.benchmark { ... }, weight = 0.5 }.",
       {required(number("weight", &ScorePart::weight, quantity::number, 0, 1, "", "its share of the total")),
-       part});
+       part,
+       list("steps", "text",
+            "the steps that it judges: it earns by the share of them that was done; left out: all")});
   weight.items = "benchmark|penalty|procedure|time_score|critical_view|rule";
   Key view = bound(text("metric", "\"note.critical_view_points\"", "the metric that holds its points"),
                    &ScorePart::metric);

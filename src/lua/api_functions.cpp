@@ -176,6 +176,13 @@ std::vector<ApiFunction> session_functions() {
         table("options", "step_options", "a limit in time, a hint")},
        ""},
       {"Steps",
+       "missed",
+       "Ends the running step as missed: what it asks for can no longer be done. Nothing happens where its "
+       "limit has "
+       "ended it.",
+       {required(text("why", "", "in a few words, for people"))},
+       ""},
+      {"Steps",
        "hold",
        "Waits until the predicate has held for a duration in all; metric <step>.<name>.time_in_s. Returns "
        "whether it "
@@ -232,6 +239,7 @@ std::vector<ApiFunction> session_functions() {
        {required(choice("event", event_names(), "", "the kind of event")),
         text("organ", "", "only those of this organ or tissue, or a piece of it")},
        "number"},
+      {"Steps", "events", "What has happened so far, as the rules of a score see it.", {}, "calot.event[]"},
       {"Demo",
        "time_out",
        "A time-out: the act of stopping to say what is seen. The event time_out has the words as its text.",

@@ -130,12 +130,13 @@ KeyTable event_table() {
 
 /// Of its run.steps.
 KeyTable step_table() {
-  return {"step",
-          "A step of a session, as a rule sees it.",
-          {required(text("name", "", "its name")),
-           required(choice("outcome", {"done", "timeout", "bail_out", "aborted"}, "", "how it ended")),
-           required(number("started", quantity::time, 0, 0, "", "when it began, s")),
-           required(number("ended", quantity::time, 0, 0, "", "when it ended, s"))}};
+  return {
+      "step",
+      "A step of a session, as a rule sees it.",
+      {required(text("name", "", "its name")),
+       required(choice("outcome", {"done", "timeout", "missed", "bail_out", "aborted"}, "", "how it ended")),
+       required(number("started", quantity::time, 0, 0, "", "when it began, s")),
+       required(number("ended", quantity::time, 0, 0, "", "when it ended, s"))}};
 }
 
 /// Of what t:clips() returns each.

@@ -58,9 +58,8 @@ class Loader {
   /// Whether the file runs and returns something that is no exercise.
   bool is_module();
   /// Asks the rules of the score in a fresh state: nothing that was played or asked before has touched it.
-  Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition& exercise,
-                                        const std::map<std::string, double>& metrics,
-                                        const Progress& progress);
+  Result<RuleAnswers> judge(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
+                            const Progress& progress);
 
  private:
   Result<Value> run_chunk(Sandbox& sandbox);
@@ -111,9 +110,8 @@ bool is_exercise(const Value& root) {
 class LuaRules final : public ScoreRules {
  public:
   LuaRules(fs::path path, LoadOptions options) : path_(std::move(path)), options_(std::move(options)) {}
-  Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition& exercise,
-                                        const std::map<std::string, double>& metrics,
-                                        const Progress& progress) const override {
+  Result<RuleAnswers> judge(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
+                            const Progress& progress) const override {
     return Loader(path_, options_).judge(exercise, metrics, progress);
   }
 
@@ -235,7 +233,7 @@ std::optional<Failure> Loader::call_score(Script& script, FieldCheck& check) {
   if (script.table.score == 0) return std::nullopt;
   Value score;
   std::optional<Failure> failure = call(script, script.table.score, "score", score);
-  if (!failure) script.table.definition.score = read_score(check, score);
+  if (!failure) script.table.definition.score = read_score(check, score, script.table.definition.api);
   return failure;
 }
 
@@ -261,6 +259,7 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
       definition.step_names = declared->steps;
       definition.hold_names = declared->holds;
       definition.note_names = declared->notes;
+      definition.waited_steps = declared->waited;
       definition.later_organs = declared->later;
       // Steps that were not reached have metrics nobody knows of: say nothing about them.
       if (declared->complete) check_score(check, definition);
@@ -280,9 +279,13 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
 std::optional<Failure> Loader::try_rules(const Script& script, const ExerciseDefinition& definition) {
   const std::vector<std::string> names = metric_names(definition);
   const RuleRun nothing{definition, {}, Progress(), script.table.parameters, &names};
-  for (const ScorePart& part : definition.score.parts) {
-    if (part.kind != ScorePartKind::rule || part.rule == 0) continue;
-    const std::optional<Failure> failure = try_rule(*script.sandbox, part.rule, nothing);
+  std::vector<std::pair<int, bool>> rules;  // and whether it answers true or false
+  for (const ScorePart& part : definition.score.parts)
+    if (part.kind == ScorePartKind::rule) rules.emplace_back(part.rule, false);
+  rules.emplace_back(definition.score.bail_out, true);
+  for (const auto& [rule, yes_no] : rules) {
+    if (rule == 0) continue;
+    const std::optional<Failure> failure = try_rule(*script.sandbox, rule, nothing, yes_no);
     if (failure && failure->kind != FailureKind::scenario) return failure;
     if (failure) collect(*failure);
   }
@@ -371,16 +374,18 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   for (ScorePart& part : definition.score.parts) {
     part.place.file = path_.string();
     part.place.line = map_.line_of(part.place.path);
-    if (part.kind == ScorePartKind::rule && !definition.score.rules)
-      definition.score.rules = std::make_shared<LuaRules>(path_, options_);
   }
+  const ScoreDefinition& score = definition.score;
+  if (score.bail_out != 0 || std::any_of(score.parts.begin(), score.parts.end(), [](const ScorePart& part) {
+        return part.kind == ScorePartKind::rule;
+      }))
+    definition.score.rules = std::make_shared<LuaRules>(path_, options_);
   return std::unique_ptr<ExerciseScript>(
       std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition), std::move(map_)));
 }
 
-Result<std::vector<RuleAnswer>> Loader::judge(const ExerciseDefinition& exercise,
-                                              const std::map<std::string, double>& metrics,
-                                              const Progress& progress) {
+Result<RuleAnswers> Loader::judge(const ExerciseDefinition& exercise,
+                                  const std::map<std::string, double>& metrics, const Progress& progress) {
   Result<std::string> text = Sandbox::read_text(path_);
   if (!text) return text.failure();
   text_ = std::move(text).value();
@@ -393,12 +398,20 @@ Result<std::vector<RuleAnswer>> Loader::judge(const ExerciseDefinition& exercise
     return fail(FailureKind::usage, "the scenario has changed since it was read: its rules are not asked",
                 "play or score it again", {path_.string(), 0, {}});
   const RuleRun run{exercise, metrics, progress, script->table.parameters, nullptr};
-  std::vector<RuleAnswer> answers;
+  RuleAnswers answers;
   for (const ScorePart& part : script->table.definition.score.parts) {
     if (part.kind != ScorePartKind::rule) continue;
     Result<RuleAnswer> answer = ask_rule(*script->sandbox, part.rule, run);
     if (!answer) return answer.failure();
-    answers.push_back(std::move(answer).value());
+    answers.parts.push_back(std::move(answer).value());
+  }
+  const bool bailed_out =
+      std::any_of(progress.events().begin(), progress.events().end(),
+                  [](const WorldEvent& event) { return event.kind == EventKind::bail_out; });
+  if (const int rule = script->table.definition.score.bail_out; rule != 0 && bailed_out) {
+    Result<RuleAnswer> answer = ask_rule(*script->sandbox, rule, run, true);
+    if (!answer) return answer.failure();
+    answers.bail_out = std::move(answer).value();
   }
   return answers;
 }

@@ -421,6 +421,20 @@ int count(lua_State* L) {
   return 1;
 }
 
+int missed(lua_State* L) {
+  StepsScript& steps = steps_of(L, "missed");
+  const Arguments arguments(L, steps, "Steps", "missed");
+  if (arguments.good()) steps.missed(L, arguments.text("why"));
+  return 0;
+}
+
+int events(lua_State* L) {
+  StepsScript& steps = steps_of(L, "events");
+  const Arguments arguments(L, steps, "Steps", "events");
+  push_events(L, steps.events(L));
+  return 1;
+}
+
 int hold(lua_State* L) {
   StepsScript& steps = steps_of(L, "hold");
   const Arguments arguments(L, steps, "Steps", "hold");
@@ -492,6 +506,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Session", "critical_view", guarded<critical_view>},
                           {"Session", "strands", guarded<strands>},
                           {"Steps", "step", guarded<step>},
+                          {"Steps", "missed", guarded<missed>},
                           {"Steps", "hold", guarded<hold>},
                           {"Steps", "note", guarded<note>},
                           {"Steps", "divide", guarded<divide>},
@@ -501,6 +516,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Steps", "tie", guarded<tie>},
                           {"Steps", "untie", guarded<untie>},
                           {"Steps", "count", guarded<count>},
+                          {"Steps", "events", guarded<events>},
                           {"Run", "count", guarded<count_events_of_run>},
                           {"Run", "times", guarded<times_of_events_of_run>},
                           {"Instrument", "holds", guarded<holds>},

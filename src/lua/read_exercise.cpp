@@ -27,7 +27,7 @@ std::string kind_of(const Value& value) {
 
 class ScoreReader {
  public:
-  ScoreReader(FieldCheck& check, const Value& value) : check_(check), value_(value) {}
+  ScoreReader(FieldCheck& check, const Value& value, int api) : check_(check), value_(value), api_(api) {}
 
   ScoreDefinition read() {
     ScoreDefinition score;
@@ -39,6 +39,10 @@ class ScoreReader {
     const TableReader reader(check_, &value_, "score", api_table("weighted"));
     reader.read(score);
     score.critical = read_events(reader, "critical");
+    if (const Value* judge = reader.take("bail_out")) score.bail_out = judge->function;
+    expect_api("score.bail_out_completes", reader.has("bail_out_completes"), 1,
+               "write bail_out = function(run) return true, \"why that was right\" end");
+    expect_api("score.bail_out", reader.has("bail_out"), 2, "write api = 2, or bail_out_completes = true");
     if (const Value* gates = reader.take("gates"))
       for (std::size_t i = 0; i < gates->items.size(); ++i)
         score.gates.push_back(read_gate(gates->items[i], indexed("score.gates", i)));
@@ -117,6 +121,12 @@ class ScoreReader {
       return false;
     }
     reader.read(part);
+    if (kind != "procedure") part.steps = read_steps(reader);
+    if (kind == "procedure" && reader.has("steps"))
+      check_.problem(path + ".steps", "a procedure names its steps itself",
+                     "write calot.score.procedure { steps = ... }");
+    expect_api(path + ".steps", reader.has("steps"), 2,
+               "write api = 2: parts then earn by the steps that were done");
     if (reader.has("name") && part.name.empty())
       check_.problem(path + ".name", "the part's name is empty", "give it one, or leave it out");
     return true;
@@ -149,12 +159,23 @@ class ScoreReader {
     part.name = "procedure";
     part.minor = read_events(reader, "minor");
     part.major = read_events(reader, "major");
+    part.steps = read_steps(reader);
+  }
+
+  std::vector<std::string> read_steps(const TableReader& reader) {
+    std::vector<std::string> names;
     const Value* steps = reader.take("steps");
     for (std::size_t i = 0; steps != nullptr && i < steps->items.size(); ++i) {
       if (!steps->items[i].is(Value::Kind::text))
         check_.problem(indexed(reader.path_of("steps"), i), "this must be a step's name", "as t:step has it");
-      part.steps.push_back(steps->items[i].text);
+      names.push_back(steps->items[i].text);
     }
+    return names;
+  }
+
+  /// A key that only one version knows.
+  void expect_api(const std::string& path, bool given, int api, const char* hint) {
+    if (given && api_ != api) check_.problem(path, fmt::format("this belongs to api = {}", api), hint);
   }
 
   void read_time(ScorePart& part, const Value& value, const std::string& path) {
@@ -200,6 +221,7 @@ class ScoreReader {
 
   FieldCheck& check_;
   const Value& value_;
+  int api_;
   bool all_weighted_ = true;
 };
 
@@ -258,7 +280,7 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
   for (const ParameterDefinition& parameter : definition.parameters)
     definition.params[parameter.name] = parameter.value;
   const Value* score = reader.take("score");
-  if (score != nullptr && score->function == 0) definition.score = read_score(check, *score);
+  if (score != nullptr && score->function == 0) definition.score = read_score(check, *score, definition.api);
   definition.golden = read_golden(check, reader.take("golden"), definition.time_limit);
   const auto reference = [&](const char* key) {
     const Value* value = reader.take(key);
@@ -271,7 +293,9 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
   return result;
 }
 
-ScoreDefinition read_score(FieldCheck& check, const Value& score) { return ScoreReader(check, score).read(); }
+ScoreDefinition read_score(FieldCheck& check, const Value& score, int api) {
+  return ScoreReader(check, score, api).read();
+}
 
 void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
   const std::vector<std::string> names = metric_names(exercise), organs = organ_names(exercise);
@@ -283,8 +307,9 @@ void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
   };
   for (const ScorePart& part : exercise.score.parts) {
     check_metric(part.place.path + "[1].metric", part.metric);
+    const std::string own = part.kind == ScorePartKind::procedure ? "[1].steps" : ".steps";
     for (std::size_t i = 0; i < part.steps.size(); ++i)
-      check.known(indexed(part.place.path + "[1].steps", i), part.steps[i], exercise.step_names, "step");
+      check.known(indexed(part.place.path + own, i), part.steps[i], exercise.step_names, "step");
   }
   for (const GateDefinition& gate : exercise.score.gates) {
     check_metric(gate.place.path + ".metric", gate.metric);

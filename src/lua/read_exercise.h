@@ -25,8 +25,8 @@ struct ExerciseTable {
 ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
                             const std::map<std::string, std::string>& chosen);
 
-/// Reads what the score's function returned.
-ScoreDefinition read_score(FieldCheck& check, const Value& score);
+/// Reads what the score's function returned, for an exercise of that api.
+ScoreDefinition read_score(FieldCheck& check, const Value& score, int api);
 
 /// Checks the score's metrics, steps and organs against those that the scene and the declared steps and holds have.
 void check_score(FieldCheck& check, const ExerciseDefinition& exercise);

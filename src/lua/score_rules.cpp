@@ -76,13 +76,12 @@ void push_step(lua_State* L, const StepRecord& step) {
 }
 
 template <class T>
-void set_list(lua_State* L, const char* key, const std::vector<T>& list, void (*push)(lua_State*, const T&)) {
+void push_list(lua_State* L, const std::vector<T>& list, void (*push)(lua_State*, const T&)) {
   lua_createtable(L, static_cast<int>(list.size()), 0);
   for (std::size_t i = 0; i < list.size(); ++i) {
     push(L, list[i]);
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
-  lua_setfield(L, -2, key);
 }
 
 /// Of a metric that was not measured. Upvalue 1: those there may be, as keys.
@@ -140,8 +139,10 @@ int missing_member(lua_State* L) {
 
 void push_run(lua_State* L, const RuleRun& run) {
   lua_newtable(L);
-  set_list(L, "events", run.progress.events(), push_event);
-  set_list(L, "steps", run.progress.steps(), push_step);
+  push_list(L, run.progress.events(), push_event);
+  lua_setfield(L, -2, "events");
+  push_list(L, run.progress.steps(), push_step);
+  lua_setfield(L, -2, "steps");
   set_metrics(L, run);
   set_notes(L, run.progress);
   push_parameters(L, run.parameters);
@@ -197,7 +198,8 @@ Place place_of_rule(Sandbox& sandbox, int rule) {
 }
 
 struct RawAnswer {
-  bool is_number = false, is_text = false, has_times = false;
+  bool yes_no = false;  ///< the share is to be true or false
+  bool is_share = false, is_text = false;
   std::string share_kind, times_problem;
   RuleAnswer answer;
 };
@@ -224,13 +226,14 @@ void read_times(lua_State* L, RawAnswer& raw) {
 /// All that is wrong with the kinds of what was returned; of the values too where these count.
 std::vector<Problem> problems_of(const RawAnswer& raw, const Place& place, bool values_count) {
   std::vector<Problem> problems;
-  constexpr const char* hint =
-      "return a share of 0 to 1, a reason in a sentence, and the times behind it or nothing";
+  const std::string hint =
+      fmt::format("return {}, a reason in a sentence, and the times behind it or nothing",
+                  raw.yes_no ? "true or false" : "a share of 0 to 1");
   const auto add = [&](const std::string& what) {
     problems.push_back({place, "the rule returns " + what, hint});
   };
-  if (!raw.is_number)
-    add(fmt::format("no share but {}", raw.share_kind));
+  if (!raw.is_share)
+    add(fmt::format("no {} but {}", raw.yes_no ? "true or false" : "share", raw.share_kind));
   else if (values_count && !(raw.answer.share >= 0 && raw.answer.share <= 1))
     add(fmt::format("the share {:g}, which is not within 0 and 1", raw.answer.share));
   if (!raw.is_text || raw.answer.reason.empty()) add("no reason");
@@ -246,15 +249,17 @@ std::optional<Failure> call_rule(Sandbox& sandbox, int rule, const RuleRun& run,
     push_run(L, run);
     lua_call(L, 1, 3);
     read_times(L, raw);
-    raw.is_number = lua_type(L, -3) == LUA_TNUMBER;
+    raw.is_share = lua_type(L, -3) == (raw.yes_no ? LUA_TBOOLEAN : LUA_TNUMBER);
     raw.share_kind = luaL_typename(L, -3);
     raw.is_text = lua_type(L, -2) == LUA_TSTRING;
-    if (raw.is_number) raw.answer.share = lua_tonumber(L, -3);
+    if (raw.is_share) raw.answer.share = raw.yes_no ? lua_toboolean(L, -3) : lua_tonumber(L, -3);
     if (raw.is_text) raw.answer.reason = lua_tostring(L, -2);
   });
 }
 
 }  // namespace
+
+void push_events(lua_State* L, const std::vector<SessionEvent>& events) { push_list(L, events, push_event); }
 
 int count_events_of_run(lua_State* L) {
   lua_Integer count = 0;
@@ -274,8 +279,9 @@ int times_of_events_of_run(lua_State* L) {
   return 1;
 }
 
-Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run) {
+Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run, bool yes_no) {
   RawAnswer raw;
+  raw.yes_no = yes_no;
   if (std::optional<Failure> failure = call_rule(sandbox, rule, run, raw)) return *failure;
   std::vector<Problem> problems = problems_of(raw, place_of_rule(sandbox, rule), true);
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
@@ -284,8 +290,9 @@ Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run) {
   return raw.answer;
 }
 
-std::optional<Failure> try_rule(Sandbox& sandbox, int rule, const RuleRun& nothing) {
+std::optional<Failure> try_rule(Sandbox& sandbox, int rule, const RuleRun& nothing, bool yes_no) {
   RawAnswer raw;
+  raw.yes_no = yes_no;
   std::optional<Failure> failure = call_rule(sandbox, rule, nothing, raw);
   const bool mistake = take_mistake(sandbox.state());
   if (failure && (mistake || failure->kind != FailureKind::scenario)) return failure;

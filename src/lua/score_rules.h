@@ -26,11 +26,15 @@ inline constexpr std::size_t longest_reason = 500;  ///< bytes
 
 /// `rule` is a registry reference. Fails (scenario, at the author's line) for what the function raises, and for an
 /// answer that is no share of 0 to 1, a reason, and times or none; resource where a limit is reached.
-Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run);
+/// `yes_no`: the share is true or false.
+Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run, bool yes_no = false);
 
 /// What is certainly wrong with a rule, found by asking it of a session without events and metrics: names that do not
 /// exist, an answer of the wrong kind. What it raises itself may be because nothing happened.
-std::optional<Failure> try_rule(Sandbox& sandbox, int rule, const RuleRun& nothing);
+std::optional<Failure> try_rule(Sandbox& sandbox, int rule, const RuleRun& nothing, bool yes_no = false);
+
+/// Pushes a list of them, as run.events has it.
+void push_events(lua_State* L, const std::vector<SessionEvent>& events);
 
 // Methods of the run that a rule is given: run:count(event, organ), run:times(event, organ).
 int count_events_of_run(lua_State* L);

@@ -176,6 +176,7 @@ int StepsScript::wait(lua_State* L, double duration) {
 int StepsScript::wait_until(lua_State* L, int predicate) {
   if (!may_wait(L, "wait_until")) return 0;
   if (checking()) {
+    std::erase(declared_.waited, current_);
     ask_dry(L, predicate);
     return dry_wait(L, std::nullopt);
   }
@@ -205,6 +206,7 @@ void StepsScript::step(lua_State* L, const std::string& name, const std::string&
   if (contains(declared_.steps, name))
     return complain(L, fmt::format("there is a step \"{}\" already", name), "give each step its own name");
   declared_.steps.push_back(name);
+  declared_.waited.push_back(name);
   current_ = name;
   if (checking()) return;
   timed_out_ = false;
@@ -248,6 +250,21 @@ int StepsScript::count(lua_State* L, const std::string& event, const std::string
   const std::vector<SessionEvent>& events = progress_->events();
   return static_cast<int>(std::count_if(
       events.begin(), events.end(), [&](const SessionEvent& one) { return is_event(one, event, organ); }));
+}
+
+void StepsScript::missed(lua_State* L, const std::string& why) {
+  if (!may_wait(L, "missed") || checking()) return;
+  world(L);  // raises what is wrong outside of steps
+  progress_->end_step(now_, "missed", why);
+}
+
+std::vector<SessionEvent> StepsScript::events(lua_State* L) {
+  if (checking()) {
+    stand_in();
+    return {};
+  }
+  world(L);
+  return progress_->events();
 }
 
 bool StepsScript::may_change(lua_State* L, const char* method) {
@@ -332,6 +349,7 @@ int StepsScript::hold(lua_State* L, const std::string& name, int predicate, doub
   const std::string full = current_ + "." + name;
   if (!current_.empty() && !contains(declared_.holds, full)) declared_.holds.push_back(full);
   if (checking()) {
+    std::erase(declared_.waited, current_);
     ask_dry(L, predicate);
     return dry_wait(L, std::nullopt);
   }

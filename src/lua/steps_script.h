@@ -17,6 +17,7 @@ class StepsScript final : public ScriptSession {
   /// What a dry run found. `complete`: the function ran to its end.
   struct Declared {
     std::vector<std::string> steps, holds, notes;  ///< holds are "step.hold"; notes those of numbers
+    std::vector<std::string> waited;               ///< steps that ask no condition: time alone ends them
     std::vector<OrganDefinition> later;            ///< organs that may come: pieces of others too
     bool complete = false;
   };
@@ -30,6 +31,9 @@ class StepsScript final : public ScriptSession {
   void try_step() { step_tried_ = true; }
   void step(lua_State* L, const std::string& name, const std::string& title, double limit,
             const std::string& hint);
+  void missed(lua_State* L, const std::string& why);
+  /// So far; in a dry run none.
+  std::vector<SessionEvent> events(lua_State* L);
   void note(lua_State* L, const std::string& name, const Value& value, const std::string& unit);
   /// Events of a kind so far, of an organ or a piece of it unless that is empty; in a dry run a stand-in.
   int count(lua_State* L, const std::string& event, const std::string& organ);

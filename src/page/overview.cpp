@@ -22,8 +22,7 @@ std::optional<ClassTotals> summary_of(std::vector<double> values) {
 std::optional<ClassTotals> part_summary(const Page& page, std::size_t part) {
   std::vector<double> points;
   for (const PageRow& row : page.rows)
-    if (row.problem.empty() && row.whole && part < row.points.size() && row.points[part])
-      points.push_back(*row.points[part]);
+    if (row.finished && part < row.points.size() && row.points[part]) points.push_back(*row.points[part]);
   return summary_of(std::move(points));
 }
 
@@ -34,12 +33,13 @@ HtmlTable::Row row_html(const Page& page, const PageRow& row, std::size_t number
     out.cells.push_back(escaped(row.name));
     out.cells.emplace_back();
     out.cells.push_back(verdict_html(row.verdict, false) + "<br>" + escaped(row.problem));
-    out.cells.insert(out.cells.end(), page.parts.size() + 2, "");
+    out.cells.insert(out.cells.end(), page.parts.size() + 3, "");
     return out;
   }
   out.cells.push_back(fmt::format("<a href=\"#{}recording\">{}</a>", row.prefix, escaped(row.name)));
-  out.cells.push_back("<b>" + points_text(row.total) + "</b>");
+  out.cells.push_back(row.total ? "<b>" + points_text(*row.total) + "</b>" : "");
   out.cells.push_back(verdict_html(row.verdict, row.passed));
+  out.cells.push_back(row.steps);
   for (std::size_t i = 0; i < page.parts.size(); ++i)
     out.cells.push_back(i < row.points.size() && row.points[i] ? points_text(*row.points[i]) : "");
   out.cells.push_back(fmt::format("{}", row.errors));
@@ -54,7 +54,7 @@ bool add_summaries(const Page& page, HtmlTable& table) {
   const std::pair<const char*, double ClassTotals::*> kinds[] = {
       {"best", &ClassTotals::best}, {"median", &ClassTotals::median}, {"worst", &ClassTotals::worst}};
   for (const auto& [name, member] : kinds) {
-    HtmlTable::Row row{" class=\"sum\"", {name, "", points_text(*totals.*member), ""}};
+    HtmlTable::Row row{" class=\"sum\"", {name, "", points_text(*totals.*member), "", ""}};
     for (std::size_t i = 0; i < page.parts.size(); ++i) {
       const std::optional<ClassTotals> part = part_summary(page, i);
       row.cells.push_back(part ? points_text(*part.*member) : "");
@@ -69,10 +69,13 @@ std::string counts(const Page& page) {
   const auto count = [&](auto is) { return std::count_if(page.rows.begin(), page.rows.end(), is); };
   const auto passed = count([](const PageRow& row) { return row.passed; });
   const auto failed = count([](const PageRow& row) { return !row.problem.empty(); });
-  const auto cut = count([](const PageRow& row) { return row.problem.empty() && !row.whole; });
+  const auto unfinished =
+      count([](const PageRow& row) { return row.problem.empty() && !row.finished && !row.unsafe; });
+  const auto unsafe = count([](const PageRow& row) { return row.unsafe; });
   std::string text =
       fmt::format("{} of {} passed; the pass mark is {:g}.", passed, page.rows.size(), page.pass_mark);
-  if (cut > 0) text += fmt::format(" {} did not come to the end: scored up to there, and not passed.", cut);
+  if (unfinished > 0) text += fmt::format(" {} unfinished.", unfinished);
+  if (unsafe > 0) text += fmt::format(" {} unsafe.", unsafe);
   if (failed > 0) text += fmt::format(" {} could not be scored.", failed);
   return text;
 }
@@ -82,7 +85,7 @@ std::string counts(const Page& page) {
 std::optional<ClassTotals> class_totals(const Page& page) {
   std::vector<double> totals;
   for (const PageRow& row : page.rows)
-    if (row.problem.empty() && row.whole) totals.push_back(row.total);
+    if (row.finished && row.total) totals.push_back(*row.total);
   return summary_of(std::move(totals));
 }
 
@@ -94,10 +97,10 @@ std::string verdict_html(const std::string& verdict, bool passed) {
 std::string overview_html(const Page& page) {
   if (page.rows.size() == 1) return {};
   HtmlTable table;
-  table.caption = page.of_a_class ? "Recordings of the class, as they were named"
+  table.caption = page.of_a_class ? "Recordings of the class, by outcome"
                                   : "Attempts of one trainee, in the order in which they were named";
-  table.heads = {page.of_a_class ? "no." : "attempt", "recording", "score", "verdict"};
-  table.numbers = "rlrl";
+  table.heads = {page.of_a_class ? "no." : "attempt", "recording", "score", "verdict", "steps"};
+  table.numbers = "rlrlr";
   for (const PageFact& part : page.parts) {
     table.heads.push_back(fmt::format("{} (of {})", part.name, part.value));
     table.numbers += 'r';
@@ -106,10 +109,13 @@ std::string overview_html(const Page& page) {
   table.numbers += "rr";
   std::size_t number = 0;
   for (const PageRow& row : page.rows) table.rows.push_back(row_html(page, row, ++number));
-  const char* about =
+  const std::optional<ClassTotals> totals = class_totals(page);
+  const std::string about =
       add_summaries(page, table)
-          ? "<p class=\"soft\">Best, median and worst are of the recordings that came to their end, "
-            "column by column.</p>"
+          ? fmt::format(
+                "<p class=\"soft\">Best, median and worst are of the {} finished of {} recordings, column by "
+                "column: every step done, or left by a bail-out that was right.</p>",
+                totals->count, page.rows.size())
           : "";
   return fmt::format("<section aria-labelledby=\"overview\"><h2 id=\"overview\">Overview</h2><p>{}</p>\n",
                      counts(page)) +

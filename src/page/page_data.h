@@ -104,8 +104,10 @@ struct PageRecording {
 struct PageRow {
   std::string prefix, name, verdict;
   std::string problem;  ///< why it has no score; then nothing follows
-  bool whole = false, passed = false;
-  double total = 0, stopped_at = 0;           ///< points, s
+  bool finished = false, passed = false, unsafe = false;
+  std::optional<double> total;                ///< points; none where the simulation failed
+  std::string steps;                          ///< done, of how many: "3/5"
+  double stopped_at = 0;                      ///< s
   std::vector<std::optional<double>> points;  ///< by part; none of a part that it does not have
   std::size_t errors = 0;
 };

@@ -14,7 +14,7 @@ class TotalsChart {
  public:
   explicit TotalsChart(const Page& page) : page_(page) {
     for (std::size_t i = 0; i < page.rows.size(); ++i)
-      if (page.rows[i].problem.empty()) scored_.push_back({&page.rows[i], i + 1});
+      if (page.rows[i].total) scored_.push_back({&page.rows[i], i + 1});
     if (scored_.size() > most_on_a_phone) width_ = 900;
   }
 
@@ -29,8 +29,9 @@ class TotalsChart {
                "<div class=\"wide{2}\" role=\"region\" tabindex=\"0\" aria-label=\"{1}\">\n",
                narrow ? " class=\"narrow\"" : "", title, narrow ? "" : " drawing") +
            svg_begin("totals", width_, height, title, description(), true) + levels() + way() + marks() +
-           "</svg></div><p class=\"soft\">Discs passed, rings did not; dashed rings were cut, and have the "
-           "score up to there.</p></figure>\n";
+           "</svg></div><p class=\"soft\">Discs passed, rings were finished and did not; dashed rings were "
+           "not "
+           "finished: beside them stand the steps done. A cross was unsafe.</p></figure>\n";
   }
 
  private:
@@ -50,7 +51,7 @@ class TotalsChart {
 
   std::string description() const {
     std::string text = fmt::format("{} recordings, pass mark {:g}:", scored_.size(), page_.pass_mark);
-    for (const Scored& each : scored_) text += fmt::format(" {} {:.1f};", each.row->name, each.row->total);
+    for (const Scored& each : scored_) text += fmt::format(" {} {:.1f};", each.row->name, *each.row->total);
     return text;
   }
 
@@ -72,28 +73,37 @@ class TotalsChart {
                           "mid");
   }
 
-  /// From attempt to attempt; what was cut is none to compare.
+  /// From attempt to attempt; what was not finished is none to compare.
   std::string way() const {
     if (page_.of_a_class) return {};
     std::string d;
     for (std::size_t i = 0; i < scored_.size(); ++i)
-      if (scored_[i].row->whole)
-        d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? "M" : "L", x_of(i), y_of(scored_[i].row->total));
+      if (scored_[i].row->finished)
+        d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? "M" : "L", x_of(i), y_of(*scored_[i].row->total));
     return fmt::format("<path d=\"{}\" class=\"curve c0\"/>", d);
   }
 
-  /// A disc where it was passed, a ring where not, a dashed one of what was cut: no colour is needed to tell.
+  /// No colour is needed to tell the marks apart.
+  static std::string mark(const PageRow& row, double x, double y) {
+    if (row.unsafe)
+      return fmt::format("<path d=\"M{0:.1f} {1:.1f}l10 10M{0:.1f} {2:.1f}l10 -10\" class=\"cross\"/>", x - 5,
+                         y - 5, y + 5);
+    const char* shape = row.passed ? "disc" : row.finished ? "ring" : "ring cut";
+    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"6\" class=\"{}\"/>", x, y, shape);
+  }
+
   std::string marks() const {
     std::string out;
     for (std::size_t i = 0; i < scored_.size(); ++i) {
       const PageRow& row = *scored_[i].row;
-      const char* shape = row.passed ? "disc" : row.whole ? "ring" : "ring cut";
+      const double x = x_of(i), y = y_of(*row.total);
       out += fmt::format(
-          "<a href=\"#{0}recording\" aria-label=\"{1}: {2:.1f}, {3}\"><title>{1}: {2:.1f}, {3}</title>"
-          "<circle cx=\"{4:.1f}\" cy=\"{5:.1f}\" r=\"6\" class=\"{6}\"/></a>\n",
-          row.prefix, escaped(row.name), row.total, escaped(row.verdict), x_of(i), y_of(row.total), shape);
-      if (scored_.size() <= most_labels)
-        out += svg_text(x_of(i), top + inner_height + 16, fmt::format("{}", scored_[i].number), "mid");
+          "<a href=\"#{0}recording\" aria-label=\"{1}: {2:.1f}, {3}\"><title>{1}: {2:.1f}, "
+          "{3}</title>{4}</a>\n",
+          row.prefix, escaped(row.name), *row.total, escaped(row.verdict), mark(row, x, y));
+      if (scored_.size() > most_labels) continue;
+      if (!row.finished) out += svg_text(x + 9, y + 4, row.steps, "");
+      out += svg_text(x, top + inner_height + 16, fmt::format("{}", scored_[i].number), "mid");
     }
     return out;
   }

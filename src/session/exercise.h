@@ -16,11 +16,16 @@
 
 namespace calot {
 
+/// Version of what an exercise may say and how it is scored. 1: parts earn whether steps were done or not, and every
+/// bail-out completes where the score has bail_out_completes.
+inline constexpr int newest_api = 2;
+
 enum class ScorePartKind { benchmark, penalty, procedure, time, critical_view, rule };
 /// "benchmark", "penalty", ...: what the function of calot.score is called that makes it.
 const std::vector<std::string>& score_part_kinds();
 
-/// What the parts earn, 0 to 1, with n events of a kind:
+/// The share of their weight that parts earn, 0 to 1, with n events of a kind; from api 2 on times the share of their
+/// steps that were done (but for procedure, which counts them itself):
 /// benchmark: clamp((novice - measured) / (novice - expert), 0, 1), so expert < novice where lower is better.
 /// penalty: 1 - each n, not below 0.
 /// procedure: steps done / steps - (minor_costs n of minor + major_costs n of major) / 100, not below 0.
@@ -34,7 +39,7 @@ struct ScorePart {
   double novice = 0, expert = 1;
   EventKind event = EventKind::contact;  ///< penalty
   double each = 0.25;
-  std::vector<std::string> steps;            ///< procedure; empty: all
+  std::vector<std::string> steps;            ///< that it judges; empty: all
   std::vector<EventKind> minor, major;       ///< procedure
   double minor_costs = 2, major_costs = 10;  ///< points of 100
   double reference = 60, limit = 300;        ///< s: time
@@ -67,9 +72,10 @@ struct ScoreDefinition {
   std::vector<ScorePart> parts;     ///< weights sum to 1
   std::vector<EventKind> critical;  ///< each a gate: it caps the total at `cap` and fails the exercise
   std::vector<GateDefinition> gates;
-  double cap = 40, pass = 80;               ///< points of 100
-  bool bail_out_completes = false;          ///< who bails out need not have done the steps that are left
-  std::shared_ptr<const ScoreRules> rules;  ///< where a part is a rule
+  double cap = 40, pass = 80;       ///< points of 100
+  bool bail_out_completes = false;  ///< api 1: who bails out need not have done the steps that are left
+  int bail_out = 0;  ///< api 2: the rule that says whether that was right, as ScorePart::rule; 0: never
+  std::shared_ptr<const ScoreRules> rules;  ///< where a part is a rule, or bail_out
 };
 
 struct GoldenDefinition {
@@ -88,7 +94,7 @@ struct ParameterDefinition {
 };
 
 struct ExerciseDefinition {
-  int api = 1;
+  int api = newest_api;
   std::string id, title;
   double time_limit = 120;  ///< s
   std::uint64_t seed = 1;
@@ -97,6 +103,7 @@ struct ExerciseDefinition {
   GoldenDefinition golden;
   /// Steps, holds and noted numbers of the script, found by running it dry: metrics are named after them.
   std::vector<std::string> step_names, hold_names, note_names;  ///< hold_names are "step.hold"
+  std::vector<std::string> waited_steps;                        ///< steps that nothing but time ends
   /// What the script may bring into the field, pieces of divided ducts too, likewise.
   std::vector<OrganDefinition> later_organs;
   std::string file;                             ///< the scenario's path
@@ -112,15 +119,21 @@ struct RuleAnswer {
   std::vector<double> times;  ///< s, behind it, ascending
 };
 
+struct RuleAnswers {
+  std::vector<RuleAnswer> parts;  ///< one for each part that is a rule, in their order
+  std::optional<RuleAnswer>
+      bail_out;  ///< share 1: it was right, 0: it was not; where there is a rule of it, and one
+};
+
 /// The author's own rules: they see what was measured, and no world.
 class ScoreRules {
  public:
   virtual ~ScoreRules() = default;
-  /// One for each part that is a rule, in the parts' order: the same however often it is asked. Fails (scenario, at the
-  /// author's line; resource) where one cannot be had; usage where the scenario has changed since it was read.
-  virtual Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition& exercise,
-                                                const std::map<std::string, double>& metrics,
-                                                const Progress& progress) const = 0;
+  /// The same however often it is asked. Fails (scenario, at the author's line; resource) where an answer cannot be had;
+  /// usage where the scenario has changed since it was read.
+  virtual Result<RuleAnswers> judge(const ExerciseDefinition& exercise,
+                                    const std::map<std::string, double>& metrics,
+                                    const Progress& progress) const = 0;
 };
 
 /// Where inputs come from: a scenario's demo, a recording, live devices (session/live.h).

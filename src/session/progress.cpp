@@ -19,12 +19,13 @@ void Progress::begin_step(double time, const std::string& name, const std::strin
   steps_.push_back(std::move(step));
 }
 
-void Progress::end_step(double time, const std::string& outcome) {
+void Progress::end_step(double time, const std::string& outcome, const std::string& why) {
   if (running() == nullptr) return;
   StepRecord& step = steps_.back();
-  if (outcome == "done" || outcome == "timeout") {
+  if (const std::optional<EventKind> kind = event_called("step_" + outcome)) {
     WorldEvent event;
-    event.kind = outcome == "done" ? EventKind::step_done : EventKind::step_timeout;
+    event.kind = *kind;
+    event.text = why;
     event.time = time;
     event.value = time - step.started;
     add_event(event);  // while the step still runs, so that the event carries its name

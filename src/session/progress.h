@@ -15,10 +15,10 @@ struct StepRecord {
   std::string hint;                 ///< how it is done, for who practises; in no report
   double limit = 0;                 ///< s, 0: none
   double started = 0, ended = -1;   ///< s; ended < 0 while it runs
-  std::string outcome = "running";  ///< running, done, timeout, aborted
+  std::string outcome = "running";  ///< running, done, timeout, missed, bail_out, aborted
 };
 
-/// A world event, or step_done / step_timeout (value: the step's duration, s), with the step it fell into.
+/// A world event, or step_done / step_timeout / step_missed (value: the step's duration, s), with the step it fell into.
 struct SessionEvent : WorldEvent {
   std::string step;  ///< empty before the first step
 };
@@ -45,8 +45,9 @@ class Progress {
   /// Ends the running step as done, if any, and starts the next.
   void begin_step(double time, const std::string& name, const std::string& title, double limit,
                   const std::string& hint = {});
-  /// Ends the running step, if any ("done", "timeout" or "aborted"), and raises step_done or step_timeout.
-  void end_step(double time, const std::string& outcome);
+  /// Ends the running step, if any, and raises step_done, step_timeout or step_missed (with `why`) where the outcome is
+  /// that.
+  void end_step(double time, const std::string& outcome, const std::string& why = {});
   /// The running step, or null.
   const StepRecord* running() const;
   void add_event(const WorldEvent& event);

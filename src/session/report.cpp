@@ -101,13 +101,21 @@ OrderedJson operated_json(const LiveFigures& live) {
 
 }  // namespace
 
-OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted) {
-  OrderedJson json = {{"total", aborted ? OrderedJson() : OrderedJson(score.total)},
+OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool has_total) {
+  OrderedJson json = {{"total", has_total ? OrderedJson(score.total) : OrderedJson()},
                       {"out_of", 100},
-                      {"passed", score.passed && !aborted},
+                      {"outcome", to_text(score.outcome)},
+                      {"verdict", verdict(score)},
+                      {"passed", score.passed()},
                       {"pass_mark", exercise.score.pass},
                       {"completed", score.completed},
-                      {"uncapped_total", aborted ? OrderedJson() : OrderedJson(score.uncapped)}};
+                      {"steps_done", score.steps_done},
+                      {"steps", score.steps},
+                      {"missing_steps", score.missing},
+                      {"uncapped_total", has_total ? OrderedJson(score.uncapped) : OrderedJson()},
+                      {"api", exercise.api}};
+  if (score.bail_out)
+    json["bail_out"] = {{"right", score.bail_out->share > 0}, {"reason", score.bail_out->reason}};
   json["critical"] = OrderedJson::array();
   json["gates"] = OrderedJson::array();
   for (const TrippedGate& gate : score.gates) {
@@ -129,6 +137,7 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
     entry["benchmark"] = benchmark_json(part.definition);
     entry["points"] = part.points;
     entry["weight"] = part.definition.weight;
+    entry["share_of_steps_done"] = part.done;
     entry["event_times_s"] = part.times;
     entry["explanation"] = part.explanation;
     json["parts"].push_back(std::move(entry));
@@ -178,7 +187,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
   json["motion_processing"] = {{"version", MotionProcessing::version},
                                {"rate_Hz", MotionProcessing::rate},
                                {"cut_off_Hz", MotionProcessing::cut_off}};
-  json["score"] = score_json(exercise, report.score, report.aborted);
+  json["score"] = score_json(exercise, report.score, report.has_total());
   json["state_hash"] = hex(session.state_hashes.empty() ? 0 : session.state_hashes.back());
   const Make make = this_make();
   json["build"] = {{"toolchain", make.toolchain},

@@ -14,14 +14,16 @@ namespace calot {
 
 struct SessionReport {
   Score score;
-  bool aborted = false;                ///< the session was cut: its parts are kept, but it has no total
+  bool aborted = false;  ///< the session was cut: its parts are kept, but it has no total
+  /// Whether there is a total: it came to its end, and the exercise has a score.
+  bool has_total() const { return !aborted && !score.parts.empty(); }
   double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn
   std::optional<LiveFigures> live;     ///< of a session that was operated
 };
 
-/// Total, verdict, the gates that were tripped (of these, critical events once more) and parts, each with its reason;
-/// `aborted` as in the report.
-OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool aborted);
+/// Total (null unless `has_total`), outcome, steps, the gates that were tripped (of these, critical events once more) and
+/// parts, each with its reason.
+OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, bool has_total);
 
 /// Pretty-printed, keys in a fixed order, with a final line end.
 std::string report_json(const ExerciseDefinition& exercise, const SessionResult& session,

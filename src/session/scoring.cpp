@@ -1,6 +1,7 @@
 #include "session/scoring.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -95,31 +96,64 @@ double count_of(const Progress& progress, const std::vector<EventKind>& kinds, s
   return sum;
 }
 
+const StepRecord* record_of(const Progress& progress, const std::string& step) {
+  const auto found = std::find_if(progress.steps().begin(), progress.steps().end(),
+                                  [&](const StepRecord& one) { return one.name == step; });
+  return found != progress.steps().end() ? &*found : nullptr;
+}
+
 bool is_done(const Progress& progress, const std::string& step) {
-  return std::any_of(progress.steps().begin(), progress.steps().end(),
-                     [&](const StepRecord& one) { return one.name == step && one.outcome == "done"; });
+  const StepRecord* record = record_of(progress, step);
+  return record != nullptr && record->outcome == "done";
+}
+
+/// Whether a bail-out took the step's place: it ended it, or came before it.
+bool is_left(const Progress& progress, const std::string& step) {
+  const StepRecord* record = record_of(progress, step);
+  return record == nullptr || record->outcome == "bail_out";
+}
+
+/// Of the steps that a part judges.
+struct StepCount {
+  std::size_t counted = 0, done = 0;
+  std::vector<std::string> missing;
+
+  /// Done of those counted; `of_none` where there are none.
+  double share(double of_none) const {
+    return counted == 0 ? of_none : static_cast<double>(done) / static_cast<double>(counted);
+  }
+  std::string text() const {
+    return fmt::format("{} of {} steps done{}", done, counted,
+                       missing.empty() ? "" : fmt::format(" (not {})", fmt::join(missing, ", ")));
+  }
+};
+
+/// Those that a right bail-out left out do not count.
+StepCount count_steps(const ScorePart& part, const std::vector<std::string>& all_steps,
+                      const Progress& progress, bool right_bail_out) {
+  StepCount count;
+  for (const std::string& step : part.steps.empty() ? all_steps : part.steps) {
+    if (right_bail_out && is_left(progress, step)) continue;
+    ++count.counted;
+    if (is_done(progress, step))
+      ++count.done;
+    else
+      count.missing.push_back(step);
+  }
+  return count;
 }
 
 ScoredPart score_procedure(const ScorePart& part, const std::vector<std::string>& all_steps,
-                           const Progress& progress) {
+                           const Progress& progress, bool right_bail_out) {
   ScoredPart scored;
   scored.definition = part;
-  const std::vector<std::string>& steps = part.steps.empty() ? all_steps : part.steps;
-  std::string missing, minor, major;
-  int done = 0;
-  for (const std::string& step : steps) {
-    if (is_done(progress, step))
-      ++done;
-    else
-      missing += (missing.empty() ? "" : ", ") + step;
-  }
+  std::string minor, major;
+  const StepCount steps = count_steps(part, all_steps, progress, right_bail_out);
   const double costs = part.minor_costs * count_of(progress, part.minor, scored.times, minor) +
                        part.major_costs * count_of(progress, part.major, scored.times, major);
-  const double earned = steps.empty() ? 0 : static_cast<double>(done) / static_cast<double>(steps.size());
-  scored.fraction = std::max(0.0, earned - costs / 100);
+  scored.fraction = std::max(0.0, steps.share(right_bail_out ? 1 : 0) - costs / 100);
   scored.measured = 100 * scored.fraction;
-  scored.explanation = fmt::format("{} of {} steps done{}", done, steps.size(),
-                                   missing.empty() ? "" : " (not " + missing + ")");
+  scored.explanation = steps.text();
   scored.explanation +=
       minor.empty() && major.empty() ? ", no errors" : fmt::format(", less {:.4g} points", costs);
   if (!minor.empty()) scored.explanation += fmt::format("; minor, {:.4g} each: {}", part.minor_costs, minor);
@@ -266,11 +300,53 @@ std::vector<TrippedGate> tripped_gates(const ScoreDefinition& score,
   return gates;
 }
 
-bool is_completed(const ExerciseDefinition& exercise, const Progress& progress) {
-  const auto bails = [](const WorldEvent& event) { return event.kind == EventKind::bail_out; };
-  return all_steps_done(exercise, progress) ||
-         (exercise.score.bail_out_completes &&
-          std::any_of(progress.events().begin(), progress.events().end(), bails));
+/// Those that the exercise is known to have, and those that a session reached besides.
+std::vector<std::string> all_steps(const ExerciseDefinition& exercise, const Progress& progress) {
+  std::vector<std::string> names = exercise.step_names;
+  for (const StepRecord& step : progress.steps())
+    if (std::find(names.begin(), names.end(), step.name) == names.end()) names.push_back(step.name);
+  return names;
+}
+
+bool bailed_out(const Progress& progress) {
+  return std::any_of(progress.events().begin(), progress.events().end(),
+                     [](const WorldEvent& event) { return event.kind == EventKind::bail_out; });
+}
+
+/// Whether the steps that a bail-out left may be missing.
+bool bail_out_is_right(const ExerciseDefinition& exercise, const Score& score, const Progress& progress) {
+  if (!bailed_out(progress)) return false;
+  return exercise.api == 1 ? exercise.score.bail_out_completes : score.bail_out && score.bail_out->share > 0;
+}
+
+AttemptOutcome outcome_of(const ExerciseDefinition& exercise, const Score& score, bool right_bail_out) {
+  if (exercise.score.parts.empty()) return AttemptOutcome::not_judged;
+  if (failing_gate(score) != nullptr) return AttemptOutcome::unsafe;
+  if (!score.completed) return AttemptOutcome::unfinished;
+  // A total that misses the pass mark by rounding alone has reached it.
+  if (score.total < exercise.score.pass - 100 * rounding) return AttemptOutcome::below_mark;
+  return right_bail_out ? AttemptOutcome::right_bail_out : AttemptOutcome::passed;
+}
+
+ScoredPart score_part(const ExerciseDefinition& exercise, const ScorePart& part,
+                      const std::map<std::string, double>& metrics, const Progress& progress,
+                      bool right_bail_out, const RuleAnswer* answer) {
+  switch (part.kind) {
+    case ScorePartKind::benchmark:
+      return score_benchmark(part, metrics, progress);
+    case ScorePartKind::penalty:
+      return score_penalty(part, progress);
+    case ScorePartKind::procedure:
+      return score_procedure(part, all_steps(exercise, progress), progress,
+                             right_bail_out && exercise.api > 1);
+    case ScorePartKind::time:
+      return score_time(part, metrics, progress);
+    case ScorePartKind::critical_view:
+      return score_critical_view(part, metrics, progress);
+    case ScorePartKind::rule:
+      return score_rule(part, *answer);
+  }
+  return {};
 }
 
 }  // namespace
@@ -285,49 +361,98 @@ const TrippedGate* failing_gate(const Score& score) {
   return !score.gates.empty() && score.gates.front().fails ? &score.gates.front() : nullptr;
 }
 
+std::string to_text(AttemptOutcome outcome) {
+  switch (outcome) {
+    case AttemptOutcome::passed:
+      return "passed";
+    case AttemptOutcome::right_bail_out:
+      return "right_bail_out";
+    case AttemptOutcome::below_mark:
+      return "below_mark";
+    case AttemptOutcome::unfinished:
+      return "unfinished";
+    case AttemptOutcome::unsafe:
+      return "unsafe";
+    case AttemptOutcome::not_judged:
+      break;
+  }
+  return "not_judged";
+}
+
+std::string words_of(AttemptOutcome outcome) {
+  switch (outcome) {
+    case AttemptOutcome::right_bail_out:
+      return "right bail-out";
+    case AttemptOutcome::below_mark:
+      return "below the mark";
+    case AttemptOutcome::not_judged:
+      return "not judged";
+    default:
+      return to_text(outcome);
+  }
+}
+
+const std::vector<AttemptOutcome>& all_outcomes() {
+  using enum AttemptOutcome;
+  static const std::vector<AttemptOutcome> outcomes = {passed,     right_bail_out, below_mark,
+                                                       unfinished, unsafe,         not_judged};
+  return outcomes;
+}
+
+std::string verdict(const Score& score) {
+  std::string text = words_of(score.outcome);
+  if (score.outcome == AttemptOutcome::unsafe) {
+    const TrippedGate& gate = *failing_gate(score);
+    return text + ": " + (gate.critical ? "critical event " + to_text(*gate.critical) : gate.reason);
+  }
+  if (score.outcome != AttemptOutcome::unfinished) return text;
+  if (score.bail_out && score.bail_out->share == 0)
+    return text + ": bailing out was not right: " + score.bail_out->reason;
+  return score.missing.empty() ? text : fmt::format("{}: not {}", text, fmt::join(score.missing, ", "));
+}
+
+void cut_short(Score& score, bool simulation_failed) {
+  score.completed = false;
+  if (score.outcome == AttemptOutcome::not_judged) return;
+  score.outcome = simulation_failed                ? AttemptOutcome::not_judged
+                  : failing_gate(score) != nullptr ? AttemptOutcome::unsafe
+                                                   : AttemptOutcome::unfinished;
+}
+
 Result<Score> score(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
                     const Progress& progress) {
-  std::vector<RuleAnswer> answers;
+  Score result;
+  RuleAnswers answers;
   if (exercise.score.rules) {
-    Result<std::vector<RuleAnswer>> judged = exercise.score.rules->judge(exercise, metrics, progress);
+    Result<RuleAnswers> judged = exercise.score.rules->judge(exercise, metrics, progress);
     if (!judged) return judged.failure();
     answers = std::move(judged).value();
+    result.bail_out = answers.bail_out;
   }
-  Score result;
+  const bool right_bail_out = bail_out_is_right(exercise, result, progress);
+  const std::vector<std::string> all = all_steps(exercise, progress);
   std::size_t rules = 0;
   for (const ScorePart& part : exercise.score.parts) {
-    ScoredPart scored;
-    switch (part.kind) {
-      case ScorePartKind::benchmark:
-        scored = score_benchmark(part, metrics, progress);
-        break;
-      case ScorePartKind::penalty:
-        scored = score_penalty(part, progress);
-        break;
-      case ScorePartKind::procedure:
-        scored = score_procedure(part, exercise.step_names, progress);
-        break;
-      case ScorePartKind::time:
-        scored = score_time(part, metrics, progress);
-        break;
-      case ScorePartKind::critical_view:
-        scored = score_critical_view(part, metrics, progress);
-        break;
-      case ScorePartKind::rule:
-        scored = score_rule(part, answers.at(rules++));
-        break;
+    const RuleAnswer* answer = part.kind == ScorePartKind::rule ? &answers.parts.at(rules++) : nullptr;
+    ScoredPart scored = score_part(exercise, part, metrics, progress, right_bail_out, answer);
+    if (exercise.api > 1 && part.kind != ScorePartKind::procedure) {
+      const StepCount steps = count_steps(part, all, progress, right_bail_out);
+      scored.done = steps.share(1);
+      if (!steps.missing.empty()) scored.explanation += "; " + steps.text();
     }
-    scored.points = 100 * part.weight * scored.fraction;
+    scored.points = 100 * part.weight * scored.fraction * scored.done;
     result.uncapped += scored.points;
     result.parts.push_back(std::move(scored));
   }
   result.total = result.uncapped;
   result.gates = tripped_gates(exercise.score, metrics, progress);
   for (const TrippedGate& gate : result.gates) result.total = std::min(result.total, gate.cap);
-  result.completed = is_completed(exercise, progress);
-  // A total that misses the pass mark by rounding alone has reached it.
-  result.passed = result.completed && failing_gate(result) == nullptr &&
-                  result.total >= exercise.score.pass - 100 * rounding;
+  const StepCount steps = count_steps({}, all, progress, right_bail_out);
+  result.steps = all.size();
+  result.steps_done = steps.done;
+  result.missing = steps.missing;
+  result.completed = all_steps_done(exercise, progress) || right_bail_out;
+  result.outcome = outcome_of(exercise, result, right_bail_out);
   return result;
 }
 

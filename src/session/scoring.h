@@ -13,12 +13,33 @@
 
 namespace calot {
 
+/// What a reader of scores by the old arithmetic has to know.
+inline constexpr const char* api_1_remark =
+    "Scored by api = 1: parts earn points whether their steps were done or not.";
+
+/// What an attempt was. In the order in which tables show them, the best first.
+enum class AttemptOutcome {
+  passed,          ///< every step done, no gate that fails, the pass mark reached
+  right_bail_out,  ///< the same, but that a bail-out that the exercise judges right took the place of the steps left
+  below_mark,  ///< the pass mark was missed
+  unfinished,  ///< steps are missing, and no right bail-out
+  unsafe,      ///< a gate that fails the exercise, however much was done
+  not_judged   ///< the simulation failed, or the exercise has no score: there is no total
+};
+
+/// "passed", "right_bail_out", "below_mark", ...
+std::string to_text(AttemptOutcome outcome);
+/// "passed", "right bail-out", "below the mark", ...
+std::string words_of(AttemptOutcome outcome);
+const std::vector<AttemptOutcome>& all_outcomes();
+
 struct ScoredPart {
   ScorePart definition;
   /// The metric's value, or the number of events. No value: never measured, which earns 0 points.
   std::optional<double> measured;
-  double fraction = 0;        ///< earned, 0 to 1
-  double points = 0;          ///< 100 * weight * fraction
+  double fraction = 0;        ///< earned of what was done, 0 to 1
+  double done = 1;            ///< share of its steps that were done; 1 of procedure and before api 2
+  double points = 0;          ///< 100 * weight * fraction * done
   std::vector<double> times;  ///< s, of the events that this part is about, ascending
   std::string explanation;    ///< one sentence
 };
@@ -40,12 +61,25 @@ struct Score {
   std::vector<ScoredPart> parts;
   std::vector<TrippedGate> gates;  ///< those that fail the exercise first
   bool completed =
-      false;            ///< every declared step ended as done, or the operation by a bail-out that completes
-  bool passed = false;  ///< completed, no gate that fails, total >= pass
+      false;  ///< every declared step ended as done, or the operation by a bail-out that was right
+  std::size_t steps = 0, steps_done = 0;  ///< that there are; done
+  std::vector<std::string>
+      missing;  ///< steps that should have been done and were not, in the exercise's order
+  std::optional<RuleAnswer> bail_out;  ///< what the exercise's rule says of it
+  AttemptOutcome outcome = AttemptOutcome::unfinished;
+  bool passed() const {
+    return outcome == AttemptOutcome::passed || outcome == AttemptOutcome::right_bail_out;
+  }
 };
 
 /// The first gate that fails the exercise; null: none.
 const TrippedGate* failing_gate(const Score& score);
+
+/// What an instructor reads: the outcome, and what it follows from: the gate, the missing steps, the wrong bail-out.
+std::string verdict(const Score& score);
+
+/// Of a session that did not come to its end: unsafe, or unfinished, or not judged where the simulation failed.
+void cut_short(Score& score, bool simulation_failed);
 
 /// Fails as ScoreRules::judge does.
 Result<Score> score(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,

@@ -87,6 +87,8 @@ const std::vector<EventRow>& event_rows() {
       {step_done, "step_done", "a step of the exercise ends as done", "duration_s", false, false},
       {step_timeout, "step_timeout", "a step of the exercise reaches its limit", "duration_s", false, false,
        true},
+      {step_missed, "step_missed", "a step of the exercise can no longer be done; its text says why",
+       "duration_s", false, false, true},
   };
   return rows;
 }

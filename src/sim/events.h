@@ -46,6 +46,7 @@ enum class EventKind {
   clash,
   step_done,
   step_timeout,
+  step_missed,
 };
 
 struct EventRow {
@@ -73,7 +74,7 @@ std::string to_text(EventKind kind);
 std::optional<EventKind> event_called(const std::string& name);
 std::vector<std::string> event_names();
 inline bool ends_a_step(EventKind kind) {
-  return kind == EventKind::step_done || kind == EventKind::step_timeout;
+  return kind == EventKind::step_done || kind == EventKind::step_timeout || kind == EventKind::step_missed;
 }
 
 struct WorldEvent {

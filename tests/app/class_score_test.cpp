@@ -74,7 +74,7 @@ TEST_F(ScoredClass, TwoHundredRecordingsScoreTheSameWhateverTheNumberOfProcesses
   EXPECT_NE(one.err.find("class/020.jsonl: it did not come to its end (cut)"), std::string::npos) << one.err;
   expect_next_command(one);
   const Json json = Json::parse(one.out);
-  EXPECT_EQ(json["schema"], "calot.scores/1");
+  EXPECT_EQ(json["schema"], "calot.scores/2");
   ASSERT_EQ(json["recordings"].size(), 200u);
   for (std::size_t i = 0; i < 200; ++i)
     EXPECT_EQ(json["recordings"][i]["file"], fmt::format("class/{:03}.jsonl", i));
@@ -254,11 +254,12 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
   const std::size_t end = csv.out.find("\r\n");
   const std::string head = csv.out.substr(0, end), row = csv.out.substr(end + 2);
   EXPECT_TRUE(
-      head.starts_with("file,from,end,whole,stopped_at_s,total,passed,completed,critical,gates,"
+      head.starts_with("file,from,end,whole,stopped_at_s,outcome,verdict,total,passed,completed,steps_done,"
+                       "steps,critical,gates,"
                        "left.path_length_mm points,left.path_length_mm measured,left.path_length_mm reason,"
                        "empty_grasp points,"))
       << head;
-  EXPECT_TRUE(row.starts_with("out/recording.jsonl,recording,done,true,0.2,")) << row;
+  EXPECT_TRUE(row.starts_with("out/recording.jsonl,recording,done,true,0.2,passed,passed,")) << row;
   const auto fields = [](const std::string& line) {
     bool quoted = false;
     return 1 + std::count_if(line.begin(), line.end(), [&](char c) {

@@ -84,7 +84,7 @@ TEST_F(PageOfSmall, GoesToTheCutAndListsWhatIsBadAsScoreDoes) {
   expect_next_command(made);
   const std::string html = slurp(folder_ / "p.html");
   EXPECT_THAT(html, HasSubstr("The session did not come to its end (cut)"));
-  EXPECT_THAT(html, HasSubstr("1 did not come to the end"));
+  EXPECT_THAT(html, HasSubstr("1 unfinished"));
   EXPECT_THAT(html, HasSubstr("cannot read missing.jsonl"));
   EXPECT_THAT(html, HasSubstr("the recording is of other"));
   EXPECT_THAT(html, HasSubstr("id=\"r2-recording\""));

@@ -152,7 +152,7 @@ TEST(OperationErrors, EachMistakeOfTheDivisionIsAnEventCostsPointsAndIsSeen) {
     ASSERT_TRUE(clumsy.sights[i]) << name;
     EXPECT_GT(visible_pixels(*clumsy.sights[i]), plain_to_see) << name;
   }
-  EXPECT_FALSE(clumsy.played->report.score.passed);
+  EXPECT_FALSE(clumsy.played->report.score.passed());
   EXPECT_LE(clumsy.played->report.score.total, 40) << "the cap of what hurts a patient";
 }
 
@@ -165,7 +165,7 @@ TEST(OperationErrors, AnArteryThatIsCutUnclippedBleedsAndIsSeenToDoSo) {
   EXPECT_TRUE(clumsy.costs(EventKind::cut_unclipped));
   ASSERT_TRUE(clumsy.sights[0]);
   EXPECT_GT(visible_pixels(*clumsy.sights[0]), plain_to_see);
-  EXPECT_FALSE(clumsy.played->report.score.passed);
+  EXPECT_FALSE(clumsy.played->report.score.passed());
 }
 
 TEST(OperationErrors, WhoBailsOutOfAFrozenTrianglePasses) {
@@ -174,7 +174,7 @@ TEST(OperationErrors, WhoBailsOutOfAFrozenTrianglePasses) {
   ASSERT_TRUE(wise.played) << wise.failure;
   EXPECT_EQ(wise.count(EventKind::bail_out), 1);
   EXPECT_EQ(wise.count(EventKind::divided), 0) << "tissue that gives way is no reason to bail out";
-  EXPECT_TRUE(wise.played->report.score.passed);
+  EXPECT_TRUE(wise.played->report.score.passed());
   EXPECT_GT(wise.played->report.score.total, 99);
 }
 
@@ -183,7 +183,7 @@ TEST(OperationErrors, TheExpertsHandDoesNotReachTheCriticalViewInAFrozenTriangle
   const Playback stubborn("dissect_to_critical_view.lua", {{"field", "frozen"}});
   ASSERT_TRUE(stubborn.played) << stubborn.failure;
   EXPECT_LT(stubborn.played->session.metrics.at("note.critical_view"), 5);
-  EXPECT_FALSE(stubborn.played->report.score.passed);
+  EXPECT_FALSE(stubborn.played->report.score.passed());
 }
 
 TEST(OperationErrors, WhoBailsOutOfTissueThatGivesWayDoesNotPass) {
@@ -191,7 +191,7 @@ TEST(OperationErrors, WhoBailsOutOfTissueThatGivesWayDoesNotPass) {
   const Playback timid("dissect_to_critical_view.lua", {{"demo", "bail_out"}});
   ASSERT_TRUE(timid.played) << timid.failure;
   EXPECT_GT(timid.count(EventKind::divided), 0);
-  EXPECT_FALSE(timid.played->report.score.passed);
+  EXPECT_FALSE(timid.played->report.score.passed());
 }
 
 }  // namespace calot

@@ -332,8 +332,8 @@ std::vector<Mistake> mistakes() {
        "t.left:move_until", "points nowhere", "{ 0, 0, -1 }"},
       {"AnotherInterface",
        with_head("calot = { units = calot.units, score = calot.score, anatomy = calot.anatomy,\n"
-                 "exercise = function(e) e.api = 2 return require('calot').exercise(e) end }"),
-       "api = 1", "api = 2 is not available", "write api = 1"},
+                 "exercise = function(e) e.api = 3 return require('calot').exercise(e) end }"),
+       "api = 1", "3 is not a sensible api", "give 1 to 2"},
       {"HoldAfterAStepThatIsRefused", with_steps("\nt:step('a b', 'A') t:hold('c', function() end, 1 * s)"),
        "t:step", "not a name", "letters"},
       {"MovingTwoWays",
@@ -515,9 +515,8 @@ TEST(AuthorErrors, ChecksOfValuesThatOnlyAWorldKnowsAreNone) {
 TEST(AuthorErrors, OfAnotherVersionOfTheInterfaceAreClear) {
   ScenarioText text;
   std::string other = text.text();
-  other.replace(other.find("api = 1"), 7, "api = 2");
-  EXPECT_THAT(to_text(failure_of(other)),
-              ::testing::HasSubstr("api: api = 2 is not available (write api = 1)"));
+  other.replace(other.find("api = 1"), 7, "api = 3");
+  EXPECT_THAT(to_text(failure_of(other)), ::testing::HasSubstr("api: 3 is not a sensible api (give 1 to 2)"));
 }
 
 TEST(AuthorErrors, OfTextsThatAreTooDeepOrTooLargeNameALine) {
@@ -662,7 +661,7 @@ TEST(AuthorErrors, OfAFileThatReturnsNoExercise) {
 
 TEST(AuthorErrors, OfAnEmptyExerciseNameEveryKeyItNeeds) {
   const Failure failure = failure_of("return require('calot').exercise {}");
-  for (const char* key : {"api", "id", "title", "scene", "steps", "score"})
+  for (const char* key : {"api", "id", "title", "scene", "steps"})
     EXPECT_THAT(to_text(failure), ::testing::HasSubstr(fmt::format("\"{}\" is missing", key)));
 }
 

@@ -55,10 +55,10 @@ inline PageRecording made_up(const std::string& prefix, std::size_t samples, std
   return r;
 }
 
-inline PageRow row(const std::string& prefix, double total, bool passed = false, bool whole = true) {
+inline PageRow row(const std::string& prefix, double total, bool passed = false, bool finished = true) {
   PageRow r;
   r.prefix = prefix, r.name = "name of " + prefix, r.verdict = passed ? "passed" : "not passed";
-  r.whole = whole, r.passed = passed, r.total = total, r.points = {total / 2, total / 2};
+  r.finished = finished, r.passed = passed, r.total = total, r.points = {total / 2, total / 2};
   return r;
 }
 

@@ -157,7 +157,7 @@ TEST(ThePage, HasTextThatStandsOutInLightAndDark) {
     }
 }
 
-TEST(Overview, HasBestMedianAndWorstOfWhatCameToItsEnd) {
+TEST(Overview, HasBestMedianAndWorstOfWhatWasFinished) {
   Page page = page_of({row("r1-", 40), row("r2-", 90, true), row("r3-", 99, false, false), row("r4-", 60)});
   const std::optional<ClassTotals> totals = class_totals(page);
   ASSERT_TRUE(totals);
@@ -166,7 +166,8 @@ TEST(Overview, HasBestMedianAndWorstOfWhatCameToItsEnd) {
   EXPECT_EQ(totals->worst, 40);
   const std::string html = overview_html(page);
   EXPECT_THAT(html, HasSubstr("1 of 4 passed"));
-  EXPECT_THAT(html, HasSubstr("1 did not come to the end"));
+  EXPECT_THAT(html, HasSubstr("1 unfinished"));
+  EXPECT_THAT(html, HasSubstr("3 finished of 4 recordings"));
   EXPECT_EQ(overview_html(page_of({row("", 40)})), "") << "a single one has its section";
 }
 
@@ -182,6 +183,18 @@ TEST(Overview, JoinsAttemptsInTheirOrderAndAClassNotAtAll) {
   EXPECT_THAT(side_by_side, Not(HasSubstr("Learning curve")));
   EXPECT_THAT(side_by_side, Not(HasSubstr("class=\"curve")));
   EXPECT_THAT(side_by_side, HasSubstr(">median<"));
+}
+
+TEST(Overview, MarksUnfinishedAttemptsWithTheirStepsAndUnsafeOnesWithACross) {
+  Page page = page_of({row("r1-", 90, true), row("r2-", 30, false, false), row("r3-", 20, false, false)});
+  page.rows[1].steps = "2/5";
+  page.rows[2].unsafe = true;
+  const std::string curve = overview_html(page);
+  EXPECT_EQ(all(curve, "(class=\"disc\")").size(), 1u);
+  EXPECT_EQ(all(curve, "(class=\"ring cut\")").size(), 1u);
+  EXPECT_EQ(all(curve, "(class=\"cross\")").size(), 1u);
+  EXPECT_THAT(curve, HasSubstr(">2/5</text>"));
+  EXPECT_THAT(curve, HasSubstr("1 unfinished. 1 unsafe."));
 }
 
 TEST(Html, Base64IsThatOfItsStandard) {  // RFC 4648, section 10

@@ -116,13 +116,13 @@ TEST(Scoring, APenaltyNeverCostsMoreThanItsPart) {
 
 TEST(Scoring, ACriticalEventCapsTheTotalAndFailsTheExercise) {
   const std::map<std::string, double> perfect{{"hold.band.time_in_s", 20}, {"left.path_length_mm", 100}};
-  EXPECT_TRUE(scored(exercise(), perfect, finished()).passed);
+  EXPECT_TRUE(scored(exercise(), perfect, finished()).passed());
   Progress progress = finished();
   progress.add_event(event(EventKind::overstretch, 3.5, ""));
   const Score result = scored(exercise(), perfect, progress);
   EXPECT_EQ(result.total, 40);
   EXPECT_EQ(result.uncapped, 100);
-  EXPECT_FALSE(result.passed);
+  EXPECT_FALSE(result.passed());
   ASSERT_EQ(result.gates.size(), 1u);
   EXPECT_EQ(result.gates[0].critical, EventKind::overstretch);
   EXPECT_EQ(result.gates[0].times, (std::vector<double>{3.5}));
@@ -137,14 +137,15 @@ TEST(Scoring, ALowTotalIsNotRaisedToTheCap) {
 
 TEST(Scoring, PassingTakesEveryDeclaredStepAndThePassMark) {
   const std::map<std::string, double> perfect{{"hold.band.time_in_s", 20}, {"left.path_length_mm", 100}};
-  EXPECT_FALSE(scored(exercise(), perfect, Progress()).passed) << "no step was done";
+  EXPECT_FALSE(scored(exercise(), perfect, Progress()).passed()) << "no step was done";
   Progress late;
   late.begin_step(0, "only", "", 1);
   late.end_step(1, "timeout");
-  EXPECT_FALSE(scored(exercise(), perfect, late).passed);
+  EXPECT_FALSE(scored(exercise(), perfect, late).passed());
   EXPECT_FALSE(scored(exercise(), {{"hold.band.time_in_s", 20}}, finished()).total < 80);
-  EXPECT_TRUE(scored(exercise(), {{"hold.band.time_in_s", 20}}, finished()).passed) << "80 is the pass mark";
-  EXPECT_FALSE(scored(exercise(), {{"hold.band.time_in_s", 17}}, finished()).passed);
+  EXPECT_TRUE(scored(exercise(), {{"hold.band.time_in_s", 20}}, finished()).passed())
+      << "80 is the pass mark";
+  EXPECT_FALSE(scored(exercise(), {{"hold.band.time_in_s", 17}}, finished()).passed());
 }
 
 TEST(Scoring, AForcePartPointsAtTheTimesOfItsOwnInstrumentsOverforce) {
@@ -187,12 +188,12 @@ TEST(Gates, AnEventCapsTheTotalForTheReasonThatTheAuthorGives) {
   gate.cap = 25;
   Progress progress = finished();
   progress.add_event(on_organ(EventKind::cut, 2, "cystic_duct"));
-  EXPECT_TRUE(scored(gated(gate), perfect_metrics, progress).passed) << "of another organ";
+  EXPECT_TRUE(scored(gated(gate), perfect_metrics, progress).passed()) << "of another organ";
   progress.add_event(on_organ(EventKind::cut, 3, "common_duct.patient"));
   const Score result = scored(gated(gate), perfect_metrics, progress);
   EXPECT_EQ(result.total, 25);
   EXPECT_EQ(result.uncapped, 100);
-  EXPECT_FALSE(result.passed);
+  EXPECT_FALSE(result.passed());
   ASSERT_NE(failing_gate(result), nullptr);
   EXPECT_EQ(failing_gate(result)->reason, "because");
   EXPECT_EQ(failing_gate(result)->explanation, "1 x cut of common_duct");
@@ -206,7 +207,7 @@ TEST(Gates, AnActBeforeTheOneThatShouldComeFirstIsFoundInTheOrderOfEvents) {
   Progress right = finished(), wrong = finished();
   right.add_event(on_organ(EventKind::clip, 2, "duct"));
   right.add_event(on_organ(EventKind::cut, 2, "duct"));
-  EXPECT_TRUE(scored(gated(gate), perfect_metrics, right).passed) << "in one step, but in this order";
+  EXPECT_TRUE(scored(gated(gate), perfect_metrics, right).passed()) << "in one step, but in this order";
   wrong.add_event(on_organ(EventKind::clip, 1, "artery"));
   wrong.add_event(on_organ(EventKind::cut, 2, "duct"));
   wrong.add_event(on_organ(EventKind::clip, 3, "duct"));
@@ -225,7 +226,7 @@ TEST(Gates, AMetricBeyondItsValueOrNeverMeasuredCountsWithItsEventUnlessThatIsEx
   gate.unless = "bail_out";
   std::map<std::string, double> metrics = perfect_metrics;
   Progress progress = finished();
-  EXPECT_TRUE(scored(gated(gate), metrics, progress).passed) << "nothing was cut";
+  EXPECT_TRUE(scored(gated(gate), metrics, progress).passed()) << "nothing was cut";
   progress.add_event(on_organ(EventKind::cut, 2, "duct"));
   EXPECT_EQ(scored(gated(gate), metrics, progress).gates.at(0).explanation,
             "1 x cut; note.critical_view_points was never measured");
@@ -233,14 +234,14 @@ TEST(Gates, AMetricBeyondItsValueOrNeverMeasuredCountsWithItsEventUnlessThatIsEx
   EXPECT_EQ(scored(gated(gate), metrics, progress).gates.at(0).explanation,
             "1 x cut; note.critical_view_points = 4, below 5");
   metrics[gate.metric] = 5;
-  EXPECT_TRUE(scored(gated(gate), metrics, progress).passed) << "5 is not below 5";
+  EXPECT_TRUE(scored(gated(gate), metrics, progress).passed()) << "5 is not below 5";
   metrics[gate.metric] = 4;
   progress.add_event(event(EventKind::bail_out, 3, ""));
-  EXPECT_TRUE(scored(gated(gate), metrics, progress).passed);
+  EXPECT_TRUE(scored(gated(gate), metrics, progress).passed());
   gate = {};
   gate.metric = "left.path_length_mm";
   gate.above = 90;
-  EXPECT_FALSE(scored(gated(gate), perfect_metrics, finished()).passed);
+  EXPECT_FALSE(scored(gated(gate), perfect_metrics, finished()).passed());
 }
 
 TEST(Gates, ThatOnlyCapDoNotFailAndComeLast) {
@@ -252,7 +253,7 @@ TEST(Gates, ThatOnlyCapDoNotFailAndComeLast) {
   progress.add_event(event(EventKind::slip, 1));
   Score result = scored(definition, perfect_metrics, progress);
   EXPECT_EQ(result.total, 85);
-  EXPECT_TRUE(result.passed);
+  EXPECT_TRUE(result.passed());
   definition.score.gates.push_back(gate_on("cut"));
   progress.add_event(on_organ(EventKind::cut, 2, "duct"));
   result = scored(definition, perfect_metrics, progress);
@@ -269,6 +270,15 @@ ScoredPart part_of(const ScorePart& part, const std::map<std::string, double>& m
   definition.step_names = {"clip", "divide"};
   definition.score.parts = {part};
   return scored(definition, metrics, progress).parts.at(0);
+}
+
+/// Of part_of's exercise.
+Progress both_done() {
+  Progress progress;
+  progress.begin_step(0, "clip", "", 0);
+  progress.begin_step(4, "divide", "", 0);
+  progress.end_step(5, "done");
+  return progress;
 }
 
 TEST(Scoring, AProcedureEarnsItsStepsLessErrorsByTheirSeverity) {
@@ -307,7 +317,7 @@ TEST(Scoring, TimeIsLengthenedByErrorsBetweenTheLimitAndTheReference) {
   part.limit = 300;
   part.errors = {EventKind::clip_dropped};
   part.each_s = 20;
-  Progress progress;
+  Progress progress = both_done();
   EXPECT_DOUBLE_EQ(part_of(part, {{"total.time_s", 120}}, progress).fraction, 180.0 / 240);
   EXPECT_EQ(part_of(part, {{"total.time_s", 50}}, progress).fraction, 1);
   EXPECT_EQ(part_of(part, {{"total.time_s", 300}}, progress).fraction, 0);
@@ -320,7 +330,7 @@ TEST(Scoring, TheCriticalViewEarnsItsPointsAndSaysWhetherItIsOne) {
   ScorePart part;
   part.kind = ScorePartKind::critical_view;
   part.metric = "note.critical_view_points";
-  Progress progress;
+  Progress progress = both_done();
   progress.add_note({7, "", "critical_view_points", 5.0, ""});
   const ScoredPart five = part_of(part, progress.metrics(), progress);
   EXPECT_DOUBLE_EQ(five.fraction, 5.0 / 6);
@@ -333,14 +343,14 @@ TEST(Scoring, TheCriticalViewEarnsItsPointsAndSaysWhetherItIsOne) {
 /// Rules as an author's script answers them.
 class FixedRules : public ScoreRules {
  public:
-  explicit FixedRules(Result<std::vector<RuleAnswer>> answer) : answer_(std::move(answer)) {}
-  Result<std::vector<RuleAnswer>> judge(const ExerciseDefinition&, const std::map<std::string, double>&,
-                                        const Progress&) const override {
+  explicit FixedRules(Result<RuleAnswers> answer) : answer_(std::move(answer)) {}
+  Result<RuleAnswers> judge(const ExerciseDefinition&, const std::map<std::string, double>&,
+                            const Progress&) const override {
     return answer_;
   }
 
  private:
-  Result<std::vector<RuleAnswer>> answer_;
+  Result<RuleAnswers> answer_;
 };
 
 TEST(Scoring, RulesGiveTheirPartsShareReasonAndTimesInTheirOrder) {
@@ -350,7 +360,7 @@ TEST(Scoring, RulesGiveTheirPartsShareReasonAndTimesInTheirOrder) {
   rule.weight = 0.5;
   definition.score.parts = {rule, benchmark("left.path_length_mm", 400, 120, 0), rule};
   definition.score.rules =
-      std::make_shared<FixedRules>(std::vector<RuleAnswer>{{0.25, "first", {1, 2}}, {1, "second", {}}});
+      std::make_shared<FixedRules>(RuleAnswers{{{0.25, "first", {1, 2}}, {1, "second", {}}}, {}});
   const Score result = scored(definition, {}, finished());
   EXPECT_EQ(result.total, 62.5);
   EXPECT_EQ(result.parts[0].explanation, "first");
@@ -360,16 +370,104 @@ TEST(Scoring, RulesGiveTheirPartsShareReasonAndTimesInTheirOrder) {
   EXPECT_FALSE(score(definition, {}, finished()));
 }
 
-TEST(Scoring, ABailOutCompletesOnlyWhereTheAuthorSaysSo) {
+TEST(Scoring, InApi1ABailOutCompletesWhereTheAuthorSaysSo) {
   ExerciseDefinition definition = exercise();
+  definition.api = 1;
   Progress progress;
   progress.begin_step(0, "only", "", 0);
   progress.add_event(event(EventKind::bail_out, 3, ""));
   progress.end_step(3, "bail_out");
-  EXPECT_FALSE(scored(definition, perfect_metrics, progress).passed);
+  EXPECT_FALSE(scored(definition, perfect_metrics, progress).passed());
   definition.score.bail_out_completes = true;
-  EXPECT_TRUE(scored(definition, perfect_metrics, progress).passed);
-  EXPECT_FALSE(scored(definition, perfect_metrics, Progress()).passed) << "nobody bailed out";
+  EXPECT_TRUE(scored(definition, perfect_metrics, progress).passed());
+  EXPECT_FALSE(scored(definition, perfect_metrics, Progress()).passed()) << "nobody bailed out";
+}
+
+/// Three steps, of which the second was running when a bail-out ended the session.
+struct BailedOut {
+  ExerciseDefinition definition = exercise();
+  Progress progress;
+
+  explicit BailedOut(bool right) {
+    definition.step_names = {"first", "second", "third"};
+    RuleAnswers answers;
+    answers.bail_out = RuleAnswer{right ? 1.0 : 0.0, "so it is", {}};
+    definition.score.rules = std::make_shared<FixedRules>(std::move(answers));
+    progress.begin_step(0, "first", "", 0);
+    progress.begin_step(2, "second", "", 0);
+    progress.add_event(event(EventKind::bail_out, 3, ""));
+    progress.end_step(3, "bail_out");
+  }
+};
+
+TEST(Scoring, StepsThatARightBailOutLeftOutDoNotCount) {
+  const BailedOut right(true);
+  const Score result = scored(right.definition, perfect_metrics, right.progress);
+  EXPECT_EQ(result.total, 100);
+  EXPECT_EQ(result.outcome, AttemptOutcome::right_bail_out);
+  EXPECT_TRUE(result.missing.empty());
+  EXPECT_EQ(scored(right.definition, {}, right.progress).outcome, AttemptOutcome::below_mark)
+      << "30 points of no error";
+}
+
+TEST(Scoring, AWrongBailOutLeavesTheExerciseUnfinishedAndSaysWhy) {
+  const BailedOut wrong(false);
+  const Score result = scored(wrong.definition, perfect_metrics, wrong.progress);
+  EXPECT_NEAR(result.total, 100.0 / 3, 1e-12);
+  EXPECT_EQ(result.outcome, AttemptOutcome::unfinished);
+  EXPECT_EQ(result.missing, (std::vector<std::string>{"second", "third"}));
+  EXPECT_THAT(verdict(result), ::testing::HasSubstr("so it is"));
+}
+
+TEST(Scoring, PartsEarnByTheShareOfTheirStepsThatWereDone) {
+  ExerciseDefinition definition = exercise();
+  definition.step_names = {"first", "second", "third", "fourth"};
+  definition.score.parts[1].steps = {"first", "third"};
+  definition.score.parts[2].steps = {"second"};
+  Progress progress;
+  progress.begin_step(0, "first", "", 0);
+  progress.begin_step(1, "second", "", 0);
+  progress.end_step(2, "timeout");
+  progress.begin_step(2, "third", "", 0);
+  progress.end_step(3, "missed", "it was too late");
+  const Score result = scored(definition, perfect_metrics, progress);
+  EXPECT_EQ(result.parts[0].done, 0.25) << "of all";
+  EXPECT_EQ(result.parts[1].done, 0.5);
+  EXPECT_EQ(result.parts[2].done, 0);
+  EXPECT_NEAR(result.total, 100 * (0.5 / 4 + 0.2 / 2), 1e-12);
+  EXPECT_THAT(result.parts[1].explanation, ::testing::HasSubstr("1 of 2 steps done (not third)"));
+  EXPECT_EQ(result.outcome, AttemptOutcome::unfinished);
+  definition.api = 1;
+  EXPECT_EQ(scored(definition, perfect_metrics, progress).total, 100)
+      << "as it was: whether steps were done or not";
+}
+
+TEST(Scoring, UnsafeIsUnsafeHoweverLittleWasDone) {
+  Progress progress;
+  progress.begin_step(0, "only", "", 0);
+  progress.add_event(event(EventKind::overstretch, 1));
+  Score result = scored(exercise(), perfect_metrics, progress);
+  EXPECT_EQ(result.outcome, AttemptOutcome::unsafe);
+  cut_short(result, false);
+  EXPECT_EQ(result.outcome, AttemptOutcome::unsafe);
+  EXPECT_GT(AttemptOutcome::unsafe, AttemptOutcome::unfinished) << "it stands below whoever was safe";
+}
+
+TEST(Scoring, ASessionThatWasCutIsUnfinishedAndOneWhoseSimulationFailedIsNotJudged) {
+  Score cut = scored(exercise(), perfect_metrics, finished());
+  ASSERT_EQ(cut.outcome, AttemptOutcome::passed);
+  cut_short(cut, false);
+  EXPECT_EQ(cut.outcome, AttemptOutcome::unfinished);
+  EXPECT_FALSE(cut.completed);
+  Score failed = scored(exercise(), perfect_metrics, finished());
+  cut_short(failed, true);
+  EXPECT_EQ(failed.outcome, AttemptOutcome::not_judged);
+}
+
+TEST(Scoring, AnExerciseWithoutAScoreIsNotJudged) {
+  ExerciseDefinition definition = exercise();
+  definition.score = {};
+  EXPECT_EQ(scored(definition, {}, finished()).outcome, AttemptOutcome::not_judged);
 }
 
 }  // namespace
