@@ -175,7 +175,8 @@ std::string class_table(const ClassScores& scores) {
   for (const OrderedJson* entry : by_outcome(scores)) rows.push_back(class_row(scores, *entry));
   const std::vector<double> totals = finished_totals(scores);
   if (totals.size() > 1) {
-    rows.push_back({fmt::format("mean of {} finished, of {} attempts", totals.size(), scores.entries.size()),
+    rows.push_back({fmt::format("mean of {} finished, of {} attempts", totals.size(),
+                                std::count_if(scores.entries.begin(), scores.entries.end(), is_scored)),
                     one_decimal(mean_of(totals)), ""});
     for (const double points : mean_points(scores))
       rows.back().push_back(std::isnan(points) ? "" : one_decimal(points));

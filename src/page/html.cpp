@@ -65,6 +65,9 @@ std::string html(const HtmlTable& table) {
   const auto of_numbers = [&](std::size_t column) {
     return column < table.numbers.size() && table.numbers[column] == 'r' ? " class=\"n\"" : "";
   };
+  const auto label_of = [&](std::size_t column) {
+    return table.labelled ? fmt::format(" data-label=\"{}\"", escaped(table.heads[column])) : std::string();
+  };
   std::string out = fmt::format(
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" "
       "aria-label=\"{0}\"><table><caption><span>{0}</span></caption>"
@@ -77,7 +80,7 @@ std::string html(const HtmlTable& table) {
     out += fmt::format("<tr{}>", row.attributes);
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       out += i == 0 ? fmt::format("<th scope=\"row\"{}>{}</th>", of_numbers(i), row.cells[i])
-                    : fmt::format("<td{}>{}</td>", of_numbers(i), row.cells[i]);
+                    : fmt::format("<td{}{}>{}</td>", of_numbers(i), label_of(i), row.cells[i]);
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";

@@ -27,6 +27,7 @@ struct HtmlTable {
   std::vector<std::string> heads;  ///< text
   std::string numbers;             ///< 'r' for a column of numbers, else 'l'
   std::vector<Row> rows;
+  bool labelled = false;  ///< cells name their column, for screens on which a row is a card
 };
 std::string html(const HtmlTable& table);
 

@@ -32,7 +32,7 @@ HtmlTable::Row row_html(const Page& page, const PageRow& row, std::size_t number
   if (!row.problem.empty()) {
     out.cells.push_back(escaped(row.name));
     out.cells.emplace_back();
-    out.cells.push_back(verdict_html(row.verdict, false) + "<br>" + escaped(row.problem));
+    out.cells.push_back(verdict_html(row.verdict, false));
     out.cells.insert(out.cells.end(), page.parts.size() + 3, "");
     return out;
   }
@@ -63,6 +63,15 @@ bool add_summaries(const Page& page, HtmlTable& table) {
     table.rows.push_back(std::move(row));
   }
   return true;
+}
+
+/// Why some have no score; nothing where all have one.
+std::string problems(const Page& page) {
+  std::string items;
+  for (const PageRow& row : page.rows)
+    if (!row.problem.empty())
+      items += fmt::format("<li><b>{}</b>: {}</li>\n", escaped(row.name), escaped(row.problem));
+  return items.empty() ? "" : "<h3>Not scored</h3><ul class=\"path\">\n" + items + "</ul>\n";
 }
 
 std::string counts(const Page& page) {
@@ -107,6 +116,7 @@ std::string overview_html(const Page& page) {
   }
   for (const char* head : {"errors", "time"}) table.heads.emplace_back(head);
   table.numbers += "rr";
+  table.labelled = true;
   std::size_t number = 0;
   for (const PageRow& row : page.rows) table.rows.push_back(row_html(page, row, ++number));
   const std::optional<ClassTotals> totals = class_totals(page);
@@ -119,7 +129,8 @@ std::string overview_html(const Page& page) {
           : "";
   return fmt::format("<section aria-labelledby=\"overview\"><h2 id=\"overview\">Overview</h2><p>{}</p>\n",
                      counts(page)) +
-         totals_html(page) + "<div class=\"overview\">" + html(table) + "</div>" + about + "</section>\n";
+         totals_html(page) + "<div class=\"overview\">" + html(table) + "</div>" + about + problems(page) +
+         "</section>\n";
 }
 
 }  // namespace calot

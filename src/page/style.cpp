@@ -41,7 +41,8 @@ caption{text-align:left;color:var(--soft);font-size:.9rem;padding:.2rem 0}
 th,td{text-align:left;padding:.3rem .7rem;border-bottom:1px solid var(--line);vertical-align:top;font-weight:400}
 thead th{font-weight:600}th:first-child,td:first-child{padding-left:.4rem}.n{text-align:right}
 td a,td.n,th.n[scope=row]{white-space:nowrap}
-.overview thead th{max-width:9rem;vertical-align:bottom}.overview th:nth-child(n+6){min-width:7rem}.overview td:nth-child(4){min-width:11rem;max-width:24rem;overflow-wrap:anywhere}
+.overview thead th{max-width:9rem;vertical-align:bottom}.overview th:nth-child(n+6){min-width:4rem}.overview th,.overview td{padding:.3rem .38rem}
+.overview td:nth-child(4){min-width:9rem;max-width:24rem;overflow-wrap:anywhere}
 .sum td,.sum th{background:var(--card)}
 tr:target,figure:target{background:var(--mark)}
 figure:target{box-shadow:0 0 0 6px var(--mark)}
@@ -64,6 +65,11 @@ svg .mid{text-anchor:middle}svg .end{text-anchor:end}
 a:target .mark,a:target .error-mark{stroke:var(--link);stroke-width:4}
 .disc{fill:var(--c0);stroke:var(--c0);stroke-width:2}.ring{fill:var(--bg);stroke:var(--c1);stroke-width:2.5}
 .ring.cut{stroke-dasharray:3 2}.cross{stroke:var(--c1);stroke-width:3}.narrow{max-width:34rem}caption>span{display:block;max-width:calc(100vw - 3rem)}
+@media (max-width:48rem){.overview thead{display:none}.overview table,.overview tbody,.overview tr{display:block}
+.overview tr{border-top:2px solid var(--line);padding:.4rem 0}.overview caption,.overview th[scope=row]{display:block;text-align:left}
+.overview td{display:flex;justify-content:space-between;gap:1rem;border:0;min-width:0!important;max-width:none!important;text-align:right}
+.overview td::before{content:attr(data-label);color:var(--soft);text-align:left;overflow-wrap:anywhere}.overview td:empty{display:none}
+}
 @media print{nav,.skip{display:none}body{max-width:none;padding:0}.wide{overflow:visible}}
 )";
 }

@@ -102,7 +102,7 @@ class TotalsChart {
           "{3}</title>{4}</a>\n",
           row.prefix, escaped(row.name), *row.total, escaped(row.verdict), mark(row, x, y));
       if (scored_.size() > most_labels) continue;
-      if (!row.finished) out += svg_text(x + 9, y + 4, row.steps, "");
+      if (!row.finished) out += svg_text(x + 9, y - 6, row.steps, "");
       out += svg_text(x, top + inner_height + 16, fmt::format("{}", scored_[i].number), "mid");
     }
     return out;

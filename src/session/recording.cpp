@@ -150,6 +150,28 @@ Measured parse_measured(const Json& json, std::vector<std::string>& problems) {
   return measured;
 }
 
+/// What was measured later than the steps last, or of another time than they take.
+std::vector<std::string> disagreements(const Recording& recording) {
+  const double last = recording.steps.empty() ? 0 : recording.steps.back().time;
+  const double slack =
+      1 / recording.header.rate + time_slack;  // a step that could not be followed is not measured
+  std::vector<std::string> found;
+  const auto expect_within = [&](const std::string& what, double time) {
+    if (found.empty() && !(time <= last + time_slack))
+      found.push_back(fmt::format("{} is of {:.6g} s, and the steps end at {:.6g} s", what, time, last));
+  };
+  const Measured& measured = *recording.measured;
+  const auto total = measured.metrics.find("total.time_s");
+  if (total != measured.metrics.end() && !(std::abs(total->second - last) <= slack))
+    found.push_back(
+        fmt::format("total.time_s is {:.6g}, and the steps end at {:.6g} s", total->second, last));
+  for (const StepRecord& step : measured.progress.steps()) expect_within("step " + step.name, step.ended);
+  for (const SessionEvent& event : measured.progress.events()) expect_within(to_text(event.kind), event.time);
+  for (const Note& note : measured.progress.notes()) expect_within("note " + note.name, note.time);
+  for (std::string& text : found) text.insert(0, "what was measured is not of these steps: ");
+  return found;
+}
+
 std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
                       std::vector<std::string>& problems) {
   JsonFields fields(json, problems);
@@ -158,9 +180,8 @@ std::string parse_end(const Json& json, std::size_t steps, const Hash& before,
   if (problems.empty() && declared != steps)
     problems.push_back(fmt::format("{} steps were recorded, {} are here", declared, steps));
   if (fields.has("checksum") && fields.hash("checksum") != before.value() && problems.empty())
-    problems.push_back(
-        fmt::format("the lines before this one are not those that were recorded: their checksum is {}",
-                    hex(before.value())));
+    problems.emplace_back(
+        "the lines before this one are not those that were recorded: their checksum is another");
   fields.expect_no_others();
   const SessionEnd ends[] = {SessionEnd::steps_done,  SessionEnd::time_limit, SessionEnd::source_ended,
                              SessionEnd::interrupted, SessionEnd::failed,     SessionEnd::bailed_out};
@@ -190,6 +211,8 @@ class Reader {
     if (problems_.empty() && line_ == 0) add_problem("this is not a recording: it is empty");
     keep_first(problems_);
     if (recording_.end.empty()) recording_.measured.reset();  // no checksum vouches for it
+    if (problems_.empty() && recording_.measured)
+      for (std::string& problem : disagreements(recording_)) add_problem(std::move(problem));
     if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
     return std::move(recording_);
   }

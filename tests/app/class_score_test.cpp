@@ -106,6 +106,22 @@ TEST_F(ScoredClass, WhatARecordingHoldsIsWhatItsSimulationMeasures) {
   EXPECT_EQ(outcome_.code, 4) << "the checksum no longer fits";
 }
 
+TEST_F(ScoredClass, MeasuresWithoutTheirStepsAreRefusedAndNoMessageHelpsToForgeThem) {
+  const std::size_t head = text_.find('\n') + 1, measured = text_.find("{\"measured\""),
+                    end = text_.find("{\"end\"");
+  ASSERT_TRUE(measured != std::string::npos && end != std::string::npos);
+  const std::string steps = "\"steps\":" + std::to_string(std::count(text_.begin(), text_.end(), '\n') - 3);
+  const std::string forged = replaced(text_.substr(0, head) + text_.substr(measured), steps, "\"steps\":0");
+  entry(sealed(forged));
+  EXPECT_EQ(outcome_.code, 4);
+  EXPECT_THAT(outcome_.err,
+              ::testing::HasSubstr("what was measured is not of these steps: total.time_s is 0.2"));
+  entry(forged);
+  EXPECT_THAT(outcome_.err, ::testing::HasSubstr("their checksum is another"));
+  const std::string right = sealed(forged), seal = right.substr(right.rfind("checksum") + 11, 16);
+  EXPECT_THAT(outcome_.err + outcome_.out, ::testing::Not(::testing::HasSubstr(seal)));
+}
+
 TEST_F(ScoredClass, ARecordingCutAnywhereIsScoredUpToThereAndSaysSo) {
   const Json whole = entry(text_);
   const std::size_t measured = text_.find("{\"measured\""), header = text_.find('\n') + 1;

@@ -265,6 +265,37 @@ TEST_F(Documents, EveryBlockIsOfAKindThatIsTested) {
     }
 }
 
+TEST_F(Documents, TheWorkedExampleIsWhatTheProgramScoresAndAddsUp) {
+  make_project();
+  const Outcome run =
+      calot({"run", "scenarios/clip_and_divide.lua", "--param", "demo=clumsy", "--no-render", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json scored = Json::parse(run.out)["score"];
+  const std::regex row(R"(^\| `([\w.]+)` \|.*\| ([\d.]+) x ([\d.]+) x ([\d.]+) \| ([\d.]+) \|$)");
+  std::size_t part = 0;
+  double sum = 0, printed_sum = -1;
+  for (const MarkdownLine& line : read_markdown(fs::path(source_dir()) / "scenarios" / "SCORING.md").prose) {
+    std::smatch found;
+    if (line.text.starts_with("| **sum**"))
+      printed_sum = std::stod(line.text.substr(line.text.rfind("**", line.text.size() - 5) + 2));
+    if (!std::regex_match(line.text, found, row)) continue;
+    ASSERT_LT(part, scored["parts"].size());
+    const Json& of_program = scored["parts"][part++];
+    const double points = std::stod(found[5]);
+    EXPECT_EQ(of_program["name"], found[1].str());
+    EXPECT_EQ(of_program["weight"], std::stod(found[2]));
+    EXPECT_EQ(of_program["share_of_steps_done"], std::stod(found[4]));
+    EXPECT_NEAR(100 * std::stod(found[2]) * std::stod(found[3]) * std::stod(found[4]), points, 0.01)
+        << line.text;
+    EXPECT_NEAR(of_program["points"].get<double>(), points, 0.01) << line.text;
+    sum += points;
+  }
+  EXPECT_EQ(part, scored["parts"].size());
+  EXPECT_NEAR(printed_sum, sum, 1e-9);
+  EXPECT_NEAR(scored["total"].get<double>(), sum, 0.01);
+  EXPECT_EQ(scored["outcome"], "unsafe");
+}
+
 TEST_F(Documents, TheFirstPageIsShort) {
   const std::string text = slurp(fs::path(source_dir()) / "README.md");
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150);

@@ -137,7 +137,7 @@ Measured small_measured() {
 
 TEST_F(RecordingFile, WhatWasMeasuredIsReadBackAsTheSameBits) {
   Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
-  for (const RecordedStep& step : random_steps(3)) ASSERT_TRUE(writer->write(step));
+  for (const RecordedStep& step : random_steps(100)) ASSERT_TRUE(writer->write(step));  // 2 s
   const Measured measured = small_measured();
   ASSERT_TRUE(writer->write(measured) && writer->finish("done"));
   const Result<Recording> recording = read_recording(path_);
@@ -147,7 +147,16 @@ TEST_F(RecordingFile, WhatWasMeasuredIsReadBackAsTheSameBits) {
   EXPECT_EQ(recording->measured->metrics, measured.metrics);
   EXPECT_EQ(recording->measured->progress.running()->name, "next");
   EXPECT_EQ(recording->measured->progress.events()[0].time, 0.1 + 0.2);
-  EXPECT_EQ(recording->steps.size(), 3u);
+  EXPECT_EQ(recording->steps.size(), 100u);
+}
+
+TEST_F(RecordingFile, WhatWasMeasuredAfterItsStepsIsRefused) {
+  Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
+  for (const RecordedStep& step : random_steps(99)) ASSERT_TRUE(writer->write(step));
+  ASSERT_TRUE(writer->write(small_measured()) && writer->finish("done"));
+  EXPECT_NE(complaint().find("not of these steps: step only is of 2 s, and the steps end at 1.98 s"),
+            std::string::npos)
+      << complaint();
 }
 
 TEST_F(RecordingFile, WhatWasMeasuredCountsOnlyInAWholeRecordingAndOnlyBehindItsSteps) {
@@ -445,7 +454,9 @@ TEST_F(RecordingFile, EventsKeepPlaceCauseAndText) {
   measured.progress.add_event(event);
   measured.progress.add_event({EventKind::slip, 5, "left", "", 2.5});
   Result<RecordingWriter> writer = RecordingWriter::create(path_, header());
-  ASSERT_TRUE(writer && writer->write(measured) && writer->finish("done"));
+  ASSERT_TRUE(writer);
+  for (const RecordedStep& step : random_steps(250)) ASSERT_TRUE(writer->write(step));  // 5 s
+  ASSERT_TRUE(writer->write(measured) && writer->finish("done"));
   const Result<Recording> recording = read_recording(path_);
   ASSERT_TRUE(recording) << to_text(recording.failure());
   const std::vector<SessionEvent>& events = recording->measured->progress.events();
