@@ -80,6 +80,9 @@ Checked check(const Named& named, bool with_world) {
 std::vector<std::string> remarks(const ExerciseDefinition& exercise) {
   std::vector<std::string> lines;
   if (exercise.score.parts.empty()) return lines;
+  if (exercise.step_names.empty() && exercise.api > 1)
+    lines.emplace_back(
+        "there is no t:step: parts earn by the steps that were done, and here nothing is asked");
   for (const std::string& step : exercise.waited_steps)
     lines.push_back(fmt::format(
         "step \"{}\" asks no condition: who waits has done it (t:wait_until or t:hold, of what is "

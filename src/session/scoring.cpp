@@ -118,9 +118,9 @@ struct StepCount {
   std::size_t counted = 0, done = 0;
   std::vector<std::string> missing;
 
-  /// Done of those counted; `of_none` where there are none.
-  double share(double of_none) const {
-    return counted == 0 ? of_none : static_cast<double>(done) / static_cast<double>(counted);
+  /// Done of those counted. Where there are none, a right bail-out left them all out, or nobody asked for anything.
+  double share(bool right_bail_out) const {
+    return counted == 0 ? (right_bail_out ? 1 : 0) : static_cast<double>(done) / static_cast<double>(counted);
   }
   std::string text() const {
     return fmt::format("{} of {} steps done{}", done, counted,
@@ -151,7 +151,7 @@ ScoredPart score_procedure(const ScorePart& part, const std::vector<std::string>
   const StepCount steps = count_steps(part, all_steps, progress, right_bail_out);
   const double costs = part.minor_costs * count_of(progress, part.minor, scored.times, minor) +
                        part.major_costs * count_of(progress, part.major, scored.times, major);
-  scored.fraction = std::max(0.0, steps.share(right_bail_out ? 1 : 0) - costs / 100);
+  scored.fraction = std::max(0.0, steps.share(right_bail_out) - costs / 100);
   scored.measured = 100 * scored.fraction;
   scored.explanation = steps.text();
   scored.explanation +=
@@ -437,7 +437,7 @@ Result<Score> score(const ExerciseDefinition& exercise, const std::map<std::stri
     ScoredPart scored = score_part(exercise, part, metrics, progress, right_bail_out, answer);
     if (exercise.api > 1 && part.kind != ScorePartKind::procedure) {
       const StepCount steps = count_steps(part, all, progress, right_bail_out);
-      scored.done = steps.share(1);
+      scored.done = steps.share(right_bail_out);
       if (!steps.missing.empty()) scored.explanation += "; " + steps.text();
     }
     scored.points = 100 * part.weight * scored.fraction * scored.done;

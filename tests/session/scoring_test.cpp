@@ -442,6 +442,14 @@ TEST(Scoring, PartsEarnByTheShareOfTheirStepsThatWereDone) {
       << "as it was: whether steps were done or not";
 }
 
+TEST(Scoring, WhereNoStepIsAskedForNothingIsEarned) {
+  ExerciseDefinition definition = exercise();
+  definition.step_names.clear();
+  EXPECT_EQ(scored(definition, perfect_metrics, Progress()).total, 0);
+  EXPECT_EQ(scored(definition, perfect_metrics, finished()).total, 100)
+      << "a step that was not known before counts";
+}
+
 TEST(Scoring, UnsafeIsUnsafeHoweverLittleWasDone) {
   Progress progress;
   progress.begin_step(0, "only", "", 0);
