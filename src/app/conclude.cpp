@@ -76,14 +76,13 @@ ExitCode conclude(const Played& played, const SessionCommand& command, const Con
     note_missing_frames(played, command.at);
   if (played.session.end == SessionEnd::failed) return conclude_failed(played.session.failure, conclusion);
   if (played.session.end == SessionEnd::interrupted) return conclude_interrupted(played, conclusion);
-  if (command.fail_below && !played.report.has_total()) {
-    std::fprintf(stderr, "There is no score to be %g or more.\nNext: %s\n", *command.fail_below,
-                 conclusion.again.c_str());
-    return ExitCode::mismatch;
-  }
-  if (command.fail_below && played.report.score.total < *command.fail_below) {
-    std::fprintf(stderr, "The score, %.1f, is below %g.\nNext: %s\n", played.report.score.total,
-                 *command.fail_below, conclusion.again.c_str());
+  const bool has_total = played.report.has_total();
+  if (command.fail_below && (!has_total || played.report.score.total < *command.fail_below)) {
+    const std::string why =
+        has_total
+            ? fmt::format("The score, {:.1f}, is below {:g}.", played.report.score.total, *command.fail_below)
+            : fmt::format("There is no score to be {:g} or more.", *command.fail_below);
+    std::fprintf(stderr, "%s\nNext: %s\n", why.c_str(), conclusion.again.c_str());
     return ExitCode::mismatch;
   }
   return ExitCode::ok;

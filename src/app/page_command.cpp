@@ -175,16 +175,6 @@ PageRow row_of(const ClassScores& scores, const Answer& answer, const std::strin
   return row;
 }
 
-/// Those of a class; attempts of one trainee stay in their order.
-void sort_by_outcome(std::vector<PageRow>& rows, const std::vector<Answer>& answers) {
-  std::vector<std::pair<std::size_t, PageRow>> ranked;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    ranked.emplace_back(outcome_rank(answers[i].entry), std::move(rows[i]));
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = std::move(ranked[i].second);
-}
-
 std::string page_text(const PageCommand& command, const ClassScores& scores,
                       const std::vector<Answer>& answers) {
   Page page;
@@ -202,11 +192,12 @@ std::string page_text(const PageCommand& command, const ClassScores& scores,
   for (const ScorePart& part : scores.exercise.score.parts)
     page.parts.push_back({part.name, fmt::format("{:.1f}", 100 * part.weight)});
   std::vector<std::string> sections;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
+  for (const Answer& answer : answers)
+    if (!answer.section.empty()) sections.push_back(answer.section);
+  std::vector<std::size_t> order = by_outcome(scores.entries);
+  if (!page.of_a_class) std::sort(order.begin(), order.end());  // attempts of one trainee stay in their order
+  for (const std::size_t i : order)
     page.rows.push_back(row_of(scores, answers[i], prefix_of(i, answers.size())));
-    if (!answers[i].section.empty()) sections.push_back(answers[i].section);
-  }
-  if (page.of_a_class) sort_by_outcome(page.rows, answers);
   return page_html(page, sections);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "app/terminal.h"
@@ -18,14 +19,12 @@ bool is_whole(const OrderedJson& entry) { return is_scored(entry) && entry["whol
 bool has_passed(const OrderedJson& entry) { return is_scored(entry) && entry["score"]["passed"].get<bool>(); }
 double total_of(const OrderedJson& entry) { return entry["score"]["total"].get<double>(); }
 
-/// By outcome; within one in the order in which they were given.
-std::vector<const OrderedJson*> by_outcome(const ClassScores& scores) {
-  std::vector<const OrderedJson*> sorted;
-  for (const OrderedJson& entry : scores.entries) sorted.push_back(&entry);
-  std::stable_sort(sorted.begin(), sorted.end(), [](const OrderedJson* a, const OrderedJson* b) {
-    return outcome_rank(*a) < outcome_rank(*b);
-  });
-  return sorted;
+/// The place of an entry's outcome in tables: more than all others for one without a score.
+std::size_t outcome_rank(const OrderedJson& entry) {
+  const std::vector<OutcomeRow>& rows = outcome_rows();
+  if (!is_scored(entry)) return rows.size();
+  const auto is = [&](const OutcomeRow& row) { return entry["score"]["outcome"] == row.name; };
+  return static_cast<std::size_t>(std::find_if(rows.begin(), rows.end(), is) - rows.begin());
 }
 
 /// The totals of those that were finished, ascending.
@@ -86,11 +85,10 @@ OrderedJson class_json(const ClassScores& scores) {
                       {"whole", count(is_whole)},
                       {"finished", count(is_finished)},
                       {"passed", count(has_passed)}};
-  for (const AttemptOutcome outcome : all_outcomes())
-    json["outcomes"][to_text(outcome)] =
-        std::count_if(scores.entries.begin(), scores.entries.end(), [&](const OrderedJson& entry) {
-          return is_scored(entry) && entry["score"]["outcome"] == to_text(outcome);
-        });
+  for (std::size_t rank = 0; rank < outcome_rows().size(); ++rank)
+    json["outcomes"][outcome_rows()[rank].name] =
+        std::count_if(scores.entries.begin(), scores.entries.end(),
+                      [&](const OrderedJson& entry) { return outcome_rank(entry) == rank; });
   json["total"] = totals_json(finished_totals(scores));
   json["parts"] = OrderedJson::array();
   const std::vector<double> means = mean_points(scores);
@@ -172,7 +170,7 @@ std::string class_table(const ClassScores& scores) {
     rows[0].push_back(fmt::format("{} ({:.0f})", part.name, 100 * part.weight));
   const std::string alignment = "lrr" + std::string(scores.exercise.score.parts.size(), 'r') + 'l';
   rows[0].emplace_back("verdict");
-  for (const OrderedJson* entry : by_outcome(scores)) rows.push_back(class_row(scores, *entry));
+  for (const std::size_t i : by_outcome(scores.entries)) rows.push_back(class_row(scores, scores.entries[i]));
   const std::vector<double> totals = finished_totals(scores);
   if (totals.size() > 1) {
     rows.push_back({fmt::format("mean of {} finished, of {} attempts", totals.size(),
@@ -233,12 +231,13 @@ bool is_finished(const OrderedJson& entry) {
   return has_total(entry) && entry["score"]["completed"].get<bool>();
 }
 
-std::size_t outcome_rank(const OrderedJson& entry) {
-  const std::vector<AttemptOutcome>& outcomes = all_outcomes();
-  std::size_t rank = 0;
-  while (is_scored(entry) && rank < outcomes.size() && entry["score"]["outcome"] != to_text(outcomes[rank]))
-    ++rank;
-  return is_scored(entry) ? rank : outcomes.size();
+std::vector<std::size_t> by_outcome(const std::vector<OrderedJson>& entries) {
+  std::vector<std::size_t> order(entries.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return outcome_rank(entries[a]) < outcome_rank(entries[b]);
+  });
+  return order;
 }
 
 std::string verdict_text(const OrderedJson& entry) {
@@ -275,13 +274,14 @@ std::string scores_csv(const ClassScores& scores) {
   for (const std::string& name : metrics) head.push_back(csv_field(name));
   head.emplace_back("failure");
   std::string text = csv_row(head);
-  for (const OrderedJson* entry : by_outcome(scores)) {
+  for (const std::size_t i : by_outcome(scores.entries)) {
+    const OrderedJson& entry = scores.entries[i];
     std::vector<std::string> fields(head.size());
-    if (is_scored(*entry)) {
-      fields = csv_entry(scores, *entry, metrics);
+    if (is_scored(entry)) {
+      fields = csv_entry(scores, entry, metrics);
     } else {
-      fields.front() = csv_value((*entry)["file"]);
-      fields.back() = csv_field(failure_text(*entry));
+      fields.front() = csv_value(entry["file"]);
+      fields.back() = csv_field(failure_text(entry));
     }
     text += csv_row(fields);
   }

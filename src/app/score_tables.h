@@ -40,8 +40,8 @@ std::string steps_text(const OrderedJson& entry);
 /// Whether all steps were done, or left by a bail-out that was right: only such totals are averaged.
 bool is_finished(const OrderedJson& entry);
 
-/// The place of an entry's outcome in tables: 0 for passed ones, more than all others for one without a score.
-std::size_t outcome_rank(const OrderedJson& entry);
+/// Indices of the entries by outcome, those without a score last; within an outcome in the order in which they are given.
+std::vector<std::size_t> by_outcome(const std::vector<OrderedJson>& entries);
 
 /// "passed", or why not, of an entry that may have failed.
 std::string verdict_text(const OrderedJson& entry);

@@ -405,10 +405,7 @@ Result<RuleAnswers> Loader::judge(const ExerciseDefinition& exercise,
     if (!answer) return answer.failure();
     answers.parts.push_back(std::move(answer).value());
   }
-  const bool bailed_out =
-      std::any_of(progress.events().begin(), progress.events().end(),
-                  [](const WorldEvent& event) { return event.kind == EventKind::bail_out; });
-  if (const int rule = script->table.definition.score.bail_out; rule != 0 && bailed_out) {
+  if (const int rule = script->table.definition.score.bail_out; rule != 0 && progress.bailed_out()) {
     Result<RuleAnswer> answer = ask_rule(*script->sandbox, rule, run, true);
     if (!answer) return answer.failure();
     answers.bail_out = std::move(answer).value();

@@ -164,6 +164,18 @@ int StepsScript::dry_wait(lua_State* L, std::optional<double> duration) {
   return 1;
 }
 
+/// What a wait for a predicate returns without waiting: in a dry run, and once the step's limit has passed.
+std::optional<int> StepsScript::answered_at_once(lua_State* L, int predicate) {
+  if (checking()) {
+    std::erase(declared_.waited, current_);
+    ask_dry(L, predicate);
+    return dry_wait(L, std::nullopt);
+  }
+  if (!timed_out_) return std::nullopt;
+  lua_pushboolean(L, 0);
+  return 1;
+}
+
 int StepsScript::wait(lua_State* L, double duration) {
   if (!may_wait(L, "wait")) return 0;
   if (checking()) return dry_wait(L, duration);
@@ -175,15 +187,7 @@ int StepsScript::wait(lua_State* L, double duration) {
 
 int StepsScript::wait_until(lua_State* L, int predicate) {
   if (!may_wait(L, "wait_until")) return 0;
-  if (checking()) {
-    std::erase(declared_.waited, current_);
-    ask_dry(L, predicate);
-    return dry_wait(L, std::nullopt);
-  }
-  if (timed_out_) {
-    lua_pushboolean(L, 0);
-    return 1;
-  }
+  if (const std::optional<int> results = answered_at_once(L, predicate)) return *results;
   Wait wait;
   wait.kind = Wait::Kind::condition;
   wait.predicate = predicate;
@@ -348,15 +352,7 @@ int StepsScript::hold(lua_State* L, const std::string& name, int predicate, doub
   }
   const std::string full = current_ + "." + name;
   if (!current_.empty() && !contains(declared_.holds, full)) declared_.holds.push_back(full);
-  if (checking()) {
-    std::erase(declared_.waited, current_);
-    ask_dry(L, predicate);
-    return dry_wait(L, std::nullopt);
-  }
-  if (timed_out_) {
-    lua_pushboolean(L, 0);
-    return 1;
-  }
+  if (const std::optional<int> results = answered_at_once(L, predicate)) return *results;
   Wait wait;
   wait.kind = Wait::Kind::hold;
   wait.predicate = predicate;

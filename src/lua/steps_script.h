@@ -66,6 +66,7 @@ class StepsScript final : public ScriptSession {
   bool is_name(lua_State* L, const std::string& what, const std::string& name);
   int suspend(lua_State* L, Wait wait);
   int dry_wait(lua_State* L, std::optional<double> duration);
+  std::optional<int> answered_at_once(lua_State* L, int predicate);
   /// Whether who is in the world may change: not while a predicate is asked, and not without one.
   bool may_change(lua_State* L, const char* method);
   void bring_later(const OrganDefinition& organ);

@@ -1,5 +1,7 @@
 #include "session/progress.h"
 
+#include <algorithm>
+
 namespace calot {
 
 bool is_event(const WorldEvent& event, const std::string& kind, const std::string& organ) {
@@ -41,6 +43,11 @@ const StepRecord* Progress::running() const {
 void Progress::add_event(const WorldEvent& event) {
   const StepRecord* step = running();
   events_.push_back({event, step != nullptr ? step->name : std::string()});
+}
+
+bool Progress::bailed_out() const {
+  return std::any_of(events_.begin(), events_.end(),
+                     [](const SessionEvent& event) { return event.kind == EventKind::bail_out; });
 }
 
 void Progress::add_note(Note note) {

@@ -56,6 +56,8 @@ class Progress {
   void add_note(Note note);
   const std::vector<StepRecord>& steps() const { return steps_; }
   const std::vector<SessionEvent>& events() const { return events_; }
+  /// Whether who operated ended the operation otherwise than planned.
+  bool bailed_out() const;
   const std::map<std::string, double>& metrics() const { return metrics_; }
   const std::vector<Note>& notes() const { return notes_; }
 

@@ -119,8 +119,9 @@ struct StepCount {
   std::vector<std::string> missing;
 
   /// Done of those counted. Where there are none, a right bail-out left them all out, or nobody asked for anything.
-  double share(bool right_bail_out) const {
-    return counted == 0 ? (right_bail_out ? 1 : 0) : static_cast<double>(done) / static_cast<double>(counted);
+  double share(bool steps_were_left) const {
+    return counted == 0 ? (steps_were_left ? 1 : 0)
+                        : static_cast<double>(done) / static_cast<double>(counted);
   }
   std::string text() const {
     return fmt::format("{} of {} steps done{}", done, counted,
@@ -143,15 +144,14 @@ StepCount count_steps(const ScorePart& part, const std::vector<std::string>& all
   return count;
 }
 
-ScoredPart score_procedure(const ScorePart& part, const std::vector<std::string>& all_steps,
-                           const Progress& progress, bool right_bail_out) {
+ScoredPart score_procedure(const ScorePart& part, const StepCount& steps, bool steps_were_left,
+                           const Progress& progress) {
   ScoredPart scored;
   scored.definition = part;
   std::string minor, major;
-  const StepCount steps = count_steps(part, all_steps, progress, right_bail_out);
   const double costs = part.minor_costs * count_of(progress, part.minor, scored.times, minor) +
                        part.major_costs * count_of(progress, part.major, scored.times, major);
-  scored.fraction = std::max(0.0, steps.share(right_bail_out) - costs / 100);
+  scored.fraction = std::max(0.0, steps.share(steps_were_left) - costs / 100);
   scored.measured = 100 * scored.fraction;
   scored.explanation = steps.text();
   scored.explanation +=
@@ -221,17 +221,6 @@ ScoredPart score_penalty(const ScorePart& part, const Progress& progress) {
       count == 0 ? fmt::format("no {}", to_text(part.event))
                  : fmt::format("{:.0f} x {}, {:.4g} of the part each", count, to_text(part.event), part.each);
   return scored;
-}
-
-bool all_steps_done(const ExerciseDefinition& exercise, const Progress& progress) {
-  for (const StepRecord& step : progress.steps()) {
-    if (step.outcome != "done") return false;
-  }
-  for (const std::string& name : exercise.step_names) {
-    const auto reached = [&](const StepRecord& step) { return step.name == name; };
-    if (std::none_of(progress.steps().begin(), progress.steps().end(), reached)) return false;
-  }
-  return true;
 }
 
 /// The times at which its event came too soon, or at all; nothing where it has no event.
@@ -308,14 +297,9 @@ std::vector<std::string> all_steps(const ExerciseDefinition& exercise, const Pro
   return names;
 }
 
-bool bailed_out(const Progress& progress) {
-  return std::any_of(progress.events().begin(), progress.events().end(),
-                     [](const WorldEvent& event) { return event.kind == EventKind::bail_out; });
-}
-
 /// Whether the steps that a bail-out left may be missing.
 bool bail_out_is_right(const ExerciseDefinition& exercise, const Score& score, const Progress& progress) {
-  if (!bailed_out(progress)) return false;
+  if (!progress.bailed_out()) return false;
   return exercise.api == 1 ? exercise.score.bail_out_completes : score.bail_out && score.bail_out->share > 0;
 }
 
@@ -328,17 +312,17 @@ AttemptOutcome outcome_of(const ExerciseDefinition& exercise, const Score& score
   return right_bail_out ? AttemptOutcome::right_bail_out : AttemptOutcome::passed;
 }
 
-ScoredPart score_part(const ExerciseDefinition& exercise, const ScorePart& part,
-                      const std::map<std::string, double>& metrics, const Progress& progress,
-                      bool right_bail_out, const RuleAnswer* answer) {
+/// What it earns of what was done; a procedure looks at `steps`, its own.
+ScoredPart score_part(const ScorePart& part, const std::map<std::string, double>& metrics,
+                      const Progress& progress, const StepCount& steps, bool steps_were_left,
+                      const RuleAnswer* answer) {
   switch (part.kind) {
     case ScorePartKind::benchmark:
       return score_benchmark(part, metrics, progress);
     case ScorePartKind::penalty:
       return score_penalty(part, progress);
     case ScorePartKind::procedure:
-      return score_procedure(part, all_steps(exercise, progress), progress,
-                             right_bail_out && exercise.api > 1);
+      return score_procedure(part, steps, steps_were_left, progress);
     case ScorePartKind::time:
       return score_time(part, metrics, progress);
     case ScorePartKind::critical_view:
@@ -361,46 +345,23 @@ const TrippedGate* failing_gate(const Score& score) {
   return !score.gates.empty() && score.gates.front().fails ? &score.gates.front() : nullptr;
 }
 
-std::string to_text(AttemptOutcome outcome) {
-  switch (outcome) {
-    case AttemptOutcome::passed:
-      return "passed";
-    case AttemptOutcome::right_bail_out:
-      return "right_bail_out";
-    case AttemptOutcome::below_mark:
-      return "below_mark";
-    case AttemptOutcome::unfinished:
-      return "unfinished";
-    case AttemptOutcome::unsafe:
-      return "unsafe";
-    case AttemptOutcome::not_judged:
-      break;
-  }
-  return "not_judged";
-}
-
-std::string words_of(AttemptOutcome outcome) {
-  switch (outcome) {
-    case AttemptOutcome::right_bail_out:
-      return "right bail-out";
-    case AttemptOutcome::below_mark:
-      return "below the mark";
-    case AttemptOutcome::not_judged:
-      return "not judged";
-    default:
-      return to_text(outcome);
-  }
-}
-
-const std::vector<AttemptOutcome>& all_outcomes() {
+const std::vector<OutcomeRow>& outcome_rows() {
   using enum AttemptOutcome;
-  static const std::vector<AttemptOutcome> outcomes = {passed,     right_bail_out, below_mark,
-                                                       unfinished, unsafe,         not_judged};
-  return outcomes;
+  static const std::vector<OutcomeRow> rows = {
+      {passed, "passed", "passed"},
+      {right_bail_out, "right_bail_out", "right bail-out"},
+      {below_mark, "below_mark", "below the mark"},
+      {unfinished, "unfinished", "unfinished"},
+      {unsafe, "unsafe", "unsafe"},
+      {not_judged, "not_judged", "not judged"},
+  };
+  return rows;
 }
+
+std::string to_text(AttemptOutcome outcome) { return outcome_rows()[static_cast<std::size_t>(outcome)].name; }
 
 std::string verdict(const Score& score) {
-  std::string text = words_of(score.outcome);
+  const std::string text = outcome_rows()[static_cast<std::size_t>(score.outcome)].words;
   if (score.outcome == AttemptOutcome::unsafe) {
     const TrippedGate& gate = *failing_gate(score);
     return text + ": " + (gate.critical ? "critical event " + to_text(*gate.critical) : gate.reason);
@@ -429,15 +390,16 @@ Result<Score> score(const ExerciseDefinition& exercise, const std::map<std::stri
     answers = std::move(judged).value();
     result.bail_out = answers.bail_out;
   }
-  const bool right_bail_out = bail_out_is_right(exercise, result, progress);
+  const bool right_bail_out = bail_out_is_right(exercise, result, progress), bound = exercise.api > 1;
   const std::vector<std::string> all = all_steps(exercise, progress);
   std::size_t rules = 0;
   for (const ScorePart& part : exercise.score.parts) {
+    const bool steps_were_left = bound && right_bail_out;
+    const StepCount steps = count_steps(part, all, progress, steps_were_left);
     const RuleAnswer* answer = part.kind == ScorePartKind::rule ? &answers.parts.at(rules++) : nullptr;
-    ScoredPart scored = score_part(exercise, part, metrics, progress, right_bail_out, answer);
-    if (exercise.api > 1 && part.kind != ScorePartKind::procedure) {
-      const StepCount steps = count_steps(part, all, progress, right_bail_out);
-      scored.done = steps.share(right_bail_out);
+    ScoredPart scored = score_part(part, metrics, progress, steps, steps_were_left, answer);
+    if (bound && part.kind != ScorePartKind::procedure) {
+      scored.done = steps.share(steps_were_left);
       if (!steps.missing.empty()) scored.explanation += "; " + steps.text();
     }
     scored.points = 100 * part.weight * scored.fraction * scored.done;
@@ -451,7 +413,7 @@ Result<Score> score(const ExerciseDefinition& exercise, const std::map<std::stri
   result.steps = all.size();
   result.steps_done = steps.done;
   result.missing = steps.missing;
-  result.completed = all_steps_done(exercise, progress) || right_bail_out;
+  result.completed = steps.missing.empty() || right_bail_out;
   result.outcome = outcome_of(exercise, result, right_bail_out);
   return result;
 }

@@ -27,11 +27,16 @@ enum class AttemptOutcome {
   not_judged   ///< the simulation failed, or the exercise has no score: there is no total
 };
 
-/// "passed", "right_bail_out", "below_mark", ...
+struct OutcomeRow {
+  AttemptOutcome outcome;
+  const char* name;   ///< "right_bail_out"
+  const char* words;  ///< "right bail-out"
+};
+
+/// In the order of the outcomes.
+const std::vector<OutcomeRow>& outcome_rows();
+/// Its name.
 std::string to_text(AttemptOutcome outcome);
-/// "passed", "right bail-out", "below the mark", ...
-std::string words_of(AttemptOutcome outcome);
-const std::vector<AttemptOutcome>& all_outcomes();
 
 struct ScoredPart {
   ScorePart definition;

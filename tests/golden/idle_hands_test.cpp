@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "app/play.h"
-#include "session/metrics.h"
 #include "session/scoring.h"
 #include "support/long_run.h"
 #include "support/paths.h"
@@ -25,12 +24,10 @@ class Waving final : public InputSource {
     StepInput input;
     const double t = world.report().time + dt;
     for (std::size_t i = 0; i < first_.size(); ++i) {
-      InstrumentPose pose = first_[i];
-      input.instruments.push_back(pose);
+      InstrumentPose& pose = input.instruments.emplace_back(first_[i]);
       if (world.report().instruments[i].waits) continue;
       pose.pitch += angle_ * std::sin(2 * t);
       pose.yaw += angle_ * (std::cos(3 * t) - 1);
-      input.instruments.back() = pose;
     }
     return std::optional(input);
   }
