@@ -39,7 +39,9 @@ return calot.exercise {
     t:step("grasp", "Grasp the fundus", { limit = 30 * s })
     t:wait_until(function() return t.left:holds("gallbladder") end)
 
-    t:step("hold", "Lift it and hold 1.5 to 3 N for 10 s", { limit = 40 * s })
+    t:step("hold", "Lift it and hold 1.5 to 3 N for 10 s", {
+      limit = 40 * s, force_on = "left", least = least, most = most,
+    })
     t:hold("band", function()
       local force = t.left:force("jaws")
       return t.left:holds("gallbladder") and force > least and force < most

@@ -103,6 +103,9 @@
 ---@class calot.step_options
 ---@field limit? number after it the step ends as timed out; 0.1 to 3600 s
 ---@field hint? string how it is done, shown to who practises and not in an exam
+---@field force_on? string the instrument on whose jaws the step asks for a force from `least` to `most`: a page shows the band in its plot
+---@field least? number of that force; 0 to 1000 N
+---@field most? number of that force; 0 to 1000 N
 
 ---Options of t:critical_view.
 ---@class calot.critical_view_options
@@ -217,7 +220,7 @@
 ---@field type? "atraumatic_grasper"|"bipolar_electrode"|"semm_forceps"|"maryland_dissector"|"l_hook"|"scissors"|"clip_applier"|"aspiration_needle" which instrument: atraumatic_grasper has long fenestrated jaws with teeth; bipolar_electrode (with channel) has no jaws and only pushes; semm_forceps has short broad flat jaws; maryland_dissector has slim curved jaws; l_hook is a wire that ends in a foot to one side, and has no jaws; scissors has blades; clip_applier has a shaft of 10 mm and sets clips; aspiration_needle is a needle of 14 gauge that draws out what a hollow organ holds, and has no jaws; default "atraumatic_grasper"
 ---@field port string the port it goes through
 ---@field waits? boolean true: it waits outside while another instrument is in its port, until it is exchanged for that; default false
----@field force_limit? number force on it above which the event overforce is raised; default 8 * N; 0.05 to 100 N
+---@field force_limit? number force on its jaws, or on what its shaft ends in, above which the event overforce is raised; default 8 * N; 0.05 to 100 N
 ---@field hand_force? number force at the tip up to which its hand holds it where it is commanded to be; beyond, it gives way; default 20 * N; 0.05 to 100 N
 ---@field port_friction? number friction of the seal of its port on the shaft that slides through, which its hand feels; 0.25 to 3 N; default 0.5 * N; 0 to 10 N
 ---@field pinch_force? number force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips; jaws only; default 6.8 * N; 0.05 to 100 N

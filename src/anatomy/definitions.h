@@ -305,7 +305,8 @@ struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
   InstrumentType type = InstrumentType::atraumatic_grasper;
   std::string port;
-  double force_limit = 8.0;  ///< N at the tip; above it `overforce` is raised (d)
+  double force_limit =
+      8.0;  ///< N on the jaws, or on what the shaft ends in; above it `overforce` is raised (d)
   double pinch_force = 6.8;  ///< N, each jaw on the fold it holds: what surgeons apply (c)
   double pad_friction =
       0.8;  ///< Coulomb's, each serrated pad on the wall: 3 N of pinch hold a pull of 5 N (c)

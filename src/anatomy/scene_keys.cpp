@@ -112,7 +112,8 @@ std::vector<KeyTable> field_tables() {
                "of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; "
                "uncalibrated"),
            flag("covered", &TissueDefinition::covered,
-                "true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is torn")}),
+                "true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is "
+                "torn")}),
       keys_of<GroundDefinition>(
           "ground", "A shape that stays and is touched.",
           {text("name", &GroundDefinition::name, "its name, unique"),
@@ -142,8 +143,10 @@ std::vector<KeyTable> field_tables() {
            flag("waits", &Instrument::waits,
                 "true: it waits outside while another instrument is in its port, until it is exchanged for "
                 "that"),
-           number("force_limit", &Instrument::force_limit, quantity::force, 0.05, 100,
-                  "a limit of force on tissue", "force on it above which the event overforce is raised"),
+           number(
+               "force_limit", &Instrument::force_limit, quantity::force, 0.05, 100,
+               "a limit of force on tissue",
+               "force on its jaws, or on what its shaft ends in, above which the event overforce is raised"),
            number("hand_force", &Instrument::hand_force, quantity::force, 0.05, 100,
                   "a force that a hand holds against",
                   "force at the tip up to which its hand holds it where it is commanded to be; beyond, it "
@@ -152,11 +155,11 @@ std::vector<KeyTable> field_tables() {
                   "a friction of a port's seal",
                   "friction of the seal of its port on the shaft that slides through, which its hand feels; "
                   "0.25 to 3 N"),
-           jaws_only(
-               number("pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
-                      "a force that a hand gives a jaw",
-                      "force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a "
-                      "hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips")),
+           jaws_only(number(
+               "pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
+               "a force that a hand gives a jaw",
+               "force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a "
+               "hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips")),
            jaws_only(number("pad_friction", &Instrument::pad_friction, quantity::number, 0.01, 5,
                             "a coefficient of friction",
                             "coefficient of friction of a pad; " + semm + " for semm_forceps")),

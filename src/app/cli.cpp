@@ -18,6 +18,9 @@
 namespace calot {
 namespace {
 
+constexpr const char* names_doc =
+    "a register, CSV with the columns trainee and name: names are shown, and never kept";
+
 /// Commands as CLI11 fills them in, and the one that was chosen.
 struct Program {
   CLI::App app{"Calot, a scriptable simulator of laparoscopic cholecystectomy"};
@@ -152,6 +155,8 @@ void add_operate(Program& program) {
       command.add_flag("--practice")->description("show hints; may be paused and begun again (default)");
   command.add_flag("--exam", operate.exam, "no hints, no pause; scored as it stands when it is given up")
       ->excludes(practice);
+  command.add_option("--trainee", operate.trainee, "who operates: a pseudonym, recorded with the session")
+      ->type_name("ID");
   command.add_option("--device", operate.device, "a file that says what a gamepad does: see --devices")
       ->type_name("FILE");
   command.add_flag("--devices", operate.devices,
@@ -205,6 +210,7 @@ void add_score(Program& program) {
       .add_option("--benchmarks", score.benchmarks,
                   "a Lua table of novice's and expert's figures, used instead of the exercise's own")
       ->type_name("FILE");
+  command.add_option("--names", score.names, names_doc)->type_name("FILE");
   command.add_option("-j,--jobs", score.jobs, "recordings scored at once; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, most_threads))
@@ -247,6 +253,7 @@ void add_page(Program& program) {
       .add_option("--benchmarks", page.benchmarks,
                   "a Lua table of novice's and expert's figures, used instead of the exercise's own")
       ->type_name("FILE");
+  command.add_option("--names", page.names, names_doc)->type_name("FILE");
   command.add_flag(
       "--no-pictures", page.no_pictures,
       "draw no pictures; what a recording holds is then not played again, and forces are not shown");

@@ -53,6 +53,7 @@ struct OperateCommand : SessionCommand {
   std::string igtl;   ///< where OpenIGTLink comes from instead, see app/sockets.h
   std::string registration;  ///< file that says how its tools lie in the field; empty: as the field itself
   std::string device;        ///< file that says what a gamepad does; empty: the usual
+  std::string trainee;       ///< a pseudonym; empty: not said
   std::string quality;       ///< of the picture, "live" or "golden"; empty: as what draws allows
   bool exam = false, stamped = false, no_window = false;
   bool devices = false;  ///< list them, and no more
@@ -68,6 +69,7 @@ struct ScoreCommand : AnyCommand {
   std::string exercise;
   std::vector<std::string> recordings;  ///< files, or folders with all below them
   std::string benchmarks;               ///< a table's file; empty: the exercise's own
+  std::string names;                    ///< a register's file (name_register.h); empty: none
   std::string output;                   ///< folder of results; empty: nowhere
   int jobs = usual_jobs();              ///< processes
   bool json = false, csv = false;
@@ -80,6 +82,7 @@ struct PageCommand : AnyCommand {
   std::vector<std::string> recordings;  ///< files, or folders with all below them
   std::string scenario;                 ///< empty: the one named in the first recording
   std::string benchmarks;               ///< a table's file; empty: the exercise's own
+  std::string names;                    ///< a register's file (name_register.h); empty: none
   std::string output;       ///< the HTML file; empty: beside the recording, or <exercise's id>.html
   int jobs = usual_jobs();  ///< processes
   bool no_pictures = false;

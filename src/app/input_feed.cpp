@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -18,6 +19,14 @@ constexpr const char* network_prefix = "tcp:";
 constexpr int again_after = 1000;  // ms, between two tries to connect
 
 std::string reason() { return std::strerror(errno); }
+
+/// Whether there is anything among them that can be used.
+bool say_something(const std::vector<LiveEvent>& events) {
+  return std::any_of(events.begin(), events.end(), [](const LiveEvent& event) {
+    return std::holds_alternative<LiveInput>(event) || std::holds_alternative<LiveCommand>(event) ||
+           std::holds_alternative<SessionAct>(event);
+  });
+}
 
 }  // namespace
 
@@ -124,6 +133,7 @@ void InputFeed::serve(int file, bool may_return) {
   std::array<char, 1 << 14> bytes;
   std::vector<LiveEvent> events;
   std::string end = "has ended without saying `end`";
+  bool spoke = false;
   for (bool goes_on = true; goes_on && wait_for(file);) {
     const ssize_t size = read(file, bytes.data(), bytes.size());
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) continue;
@@ -132,7 +142,13 @@ void InputFeed::serve(int file, bool may_return) {
     if (size > 0) decoder->add({bytes.data(), static_cast<std::size_t>(size)}, events);
     if (decoder->broken()) end = "sends what cannot be read, and is left";
     goes_on = size > 0 && !decoder->broken();
-    if (!goes_on && !decoder->ended()) events.emplace_back(LiveLoss{name_ + " " + end, may_return});
+    spoke = spoke || say_something(events);
+    // Who has sent nothing that can be used, as a port scan, is nobody whose leaving counts.
+    if (!goes_on && may_return && !spoke)
+      events.emplace_back(
+          LiveRemark{"A sender came to " + name_ + " and left; it sent nothing that can be used."});
+    else if (!goes_on && !decoder->ended())
+      events.emplace_back(LiveLoss{name_ + " " + end, may_return});
     for (LiveEvent& event : events)
       if (!mailbox_.put(std::move(event))) return;
     events.clear();

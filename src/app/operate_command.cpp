@@ -54,6 +54,12 @@ LiveOptions live_options(const OperateCommand& command) {
   return options;
 }
 
+/// What moves the instruments.
+std::string source_of(const OperateCommand& command) {
+  if (!command.igtl.empty()) return "openigtlink";
+  return command.no_window || !command.input.empty() ? "lines" : "window";
+}
+
 /// What an attempt is made with.
 struct Operation {
   PlayRequest& request;
@@ -77,6 +83,10 @@ Result<Played> attempts(Operation& operation) {
         operation.latest, source,
         {operation.exercise.time_limit, options.mode, operation.detail, options.pictures, attempt});
     request.live = &source;
+    request.attempt = {.source = source_of(operation.command),
+                       .mode = to_text(options.mode),
+                       .trainee = operation.command.trainee,
+                       .number = attempt + 1};
     request.on_state = [&](const World& world, const Progress& progress) {
       teller.look(world, progress);
       if (!operation.command.no_window) view.look(world, progress);
@@ -273,6 +283,7 @@ ExitCode operate_command(const OperateCommand& command) {
   if (command.seed) request.seed = *command.seed;
   std::optional<Failure> wrong = read_size(command.size, request);
   if (!wrong) wrong = read_params(command.params, request);
+  if (!wrong && !command.trainee.empty()) wrong = check_pseudonym(command.trainee);
   if (!wrong && command.scenario.empty())
     wrong = fail(FailureKind::usage, "which exercise?", "name a scenario's .lua file");
   if (wrong) return print_failure(*wrong, "calot operate --help", command.json);

@@ -35,7 +35,7 @@ void ViewMaker::look(const World& world, const Progress& progress) {
   const std::vector<InstrumentDefinition>& definitions = world.scene().instruments;
   for (std::size_t i = 0; i < definitions.size(); ++i) {
     const InstrumentState& state = report.instruments[i];
-    view->hands.push_back({definitions[i].name, state.holds, state.tip_force.norm(),
+    view->hands.push_back({definitions[i].name, state.holds, state.load_on(ToolPart::jaws).force.norm(),
                            definitions[i].force_limit, state.pose, state.waits,
                            source_.is_drawn_back(static_cast<int>(i))});
   }

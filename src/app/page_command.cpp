@@ -71,11 +71,14 @@ class PageMaker {
 
   /// Fails as RecordingScorer does.
   std::optional<Failure> prepare(ScoreRequest request) {
-    request.watcher = ScoreWatcher{
-        [this](const ExerciseDefinition& exercise, PlayRequest& play) { begin(exercise, play); },
-        [this](const Recording& recording, const Played& played) {
-          watched_ = Watched{played, std::move(*moments_), compare_states(recording, played.session).message};
-        }};
+    request.watcher =
+        ScoreWatcher{[this](const ExerciseDefinition& exercise, PlayRequest& play) { begin(exercise, play); },
+                     [this](const Recording& recording, const Played& played) {
+                       const StateComparison states = compare_states(recording, played.session);
+                       watched_ = Watched{played, std::move(*moments_), states.message, {}};
+                       if (states.message.empty())
+                         watched_->otherwise = measured_otherwise(recording, played.session);
+                     }};
     if (command_.no_pictures)
       request.watcher->held = [this](const Recording& recording, const ExerciseDefinition& exercise) {
         watched_ = held_by(recording, exercise);
@@ -121,7 +124,7 @@ class PageMaker {
   std::string answer(std::size_t k) {
     OrderedJson json = {{"entry", scorer_->score(files_[k])}};
     const OrderedJson& entry = json["entry"];
-    if (!entry.contains("failure")) {
+    if (is_scored(entry)) {
       const PageRecording page = page_recording(entry, *watched_, prefix_of(k, files_.size()));
       json["section"] = recording_html(page);
       json["errors"] = std::count_if(page.events.begin(), page.events.end(),
@@ -153,16 +156,19 @@ class PageMaker {
   std::optional<Watched> watched_;      ///< the recording that was played last
 };
 
-PageRow row_of(const ClassScores& scores, const Answer& answer, const std::string& prefix) {
-  const OrderedJson& entry = answer.entry;
+PageRow row_of(const ClassScores& scores, const Answer& answer, std::size_t index) {
+  const OrderedJson& entry = scores.entries[index];
   PageRow row;
-  row.prefix = prefix;
+  row.prefix = prefix_of(index, scores.entries.size());
   row.name = recording_name(entry["file"].get<std::string>());
   row.verdict = verdict_text(entry);
-  if (entry.contains("failure")) {
+  if (!is_scored(entry)) {
     row.problem = failure_text(entry);
     return row;
   }
+  if (entry["trainee"].is_string())
+    row.trainee = with_name(entry["trainee"].get<std::string>(), scores.names);
+  row.began = began_text(entry);
   row.finished = is_finished(entry);
   row.passed = entry["score"]["passed"].get<bool>();
   row.unsafe = entry["score"]["outcome"] == to_text(AttemptOutcome::unsafe);
@@ -170,9 +176,37 @@ PageRow row_of(const ClassScores& scores, const Answer& answer, const std::strin
   row.steps = steps_text(entry);
   row.stopped_at = entry["stopped_at_s"].get<double>();
   row.errors = answer.errors;
-  if (const OrderedJson* parts = parts_of(scores, entry))
-    for (const OrderedJson& part : *parts) row.points.emplace_back(part["points"].get<double>());
+  for (const OrderedJson& part : entry["score"]["parts"])
+    row.points.emplace_back(part["points"].get<double>());
   return row;
+}
+
+/// Attempts of one trainee by when they began, where all say so, else in the order in which they are named.
+void put_in_order(const std::vector<OrderedJson>& entries, std::vector<std::size_t>& members) {
+  std::sort(members.begin(), members.end());
+  const auto began = [&](std::size_t i) {
+    return entries[i]["began"].is_string() ? entries[i]["began"].get<std::string>() : "";
+  };
+  if (std::none_of(members.begin(), members.end(), [&](std::size_t i) { return began(i).empty(); }))
+    std::stable_sort(members.begin(), members.end(),
+                     [&](std::size_t a, std::size_t b) { return began(a) < began(b); });
+}
+
+std::vector<PageGroup> groups_of(const ClassScores& scores, const std::vector<Answer>& answers,
+                                 bool of_a_class) {
+  std::vector<PageGroup> groups;
+  const std::vector<ScoreGroup> all = score_groups(scores.entries);
+  for (ScoreGroup group : all) {
+    PageGroup& shown = groups.emplace_back();
+    shown.title = group_title(group, all);
+    shown.pass_mark = group.pass_mark;
+    for (const OrderedJson& part : group.parts)
+      shown.parts.push_back({part["name"].get<std::string>(), part["title"].get<std::string>(),
+                             fmt::format("{:.1f}", 100 * part["weight"].get<double>())});
+    if (!of_a_class) put_in_order(scores.entries, group.members);
+    for (const std::size_t i : group.members) shown.rows.push_back(row_of(scores, answers[i], i));
+  }
+  return groups;
 }
 
 std::string page_text(const PageCommand& command, const ClassScores& scores,
@@ -182,22 +216,19 @@ std::string page_text(const PageCommand& command, const ClassScores& scores,
   page.scenario = scores.exercise.id;
   page.file = portable_path(scores.exercise.file);
   page.of_a_class = command.of_a_class;
-  page.pass_mark = scores.exercise.score.pass;
   page.benchmarks = "the exercise's own, which are design values";
   page.calibration = "uncalibrated";
   if (scores.benchmarks) {
     page.benchmarks = fmt::format("{}, version {}", scores.benchmarks->name, scores.benchmarks->version);
     page.calibration = scores.benchmarks->calibration;
   }
-  for (const ScorePart& part : scores.exercise.score.parts)
-    page.parts.push_back({part.name, fmt::format("{:.1f}", 100 * part.weight)});
+  page.groups = groups_of(scores, answers, command.of_a_class);
   std::vector<std::string> sections;
-  for (const Answer& answer : answers)
-    if (!answer.section.empty()) sections.push_back(answer.section);
-  std::vector<std::size_t> order = by_outcome(scores.entries);
-  if (!page.of_a_class) std::sort(order.begin(), order.end());  // attempts of one trainee stay in their order
-  for (const std::size_t i : order)
-    page.rows.push_back(row_of(scores, answers[i], prefix_of(i, answers.size())));
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    if (is_scored(scores.entries[i]))
+      sections.push_back(answers[i].section);
+    else
+      page.not_counted.push_back(row_of(scores, answers[i], i));
   return page_html(page, sections);
 }
 
@@ -225,6 +256,8 @@ ExitCode page_command(const PageCommand& command) {
   if (!exercise) return print_failure(exercise.failure(), help);
   Result<ScoreRequest> request = read_page_request(command, exercise.value());
   if (!request) return print_failure(request.failure(), help);
+  const Result<NameRegister> names = names_of(command.names);
+  if (!names) return print_failure(names.failure(), help);
   const std::optional<BenchmarkTable> benchmarks = request->benchmarks;
   PageMaker maker(command, files);
   if (const std::optional<Failure> wrong = maker.prepare(std::move(request).value()))
@@ -243,11 +276,12 @@ ExitCode page_command(const PageCommand& command) {
 
   std::vector<OrderedJson> entries;
   for (const Answer& answer : maker.answers()) entries.push_back(answer.entry);
+  mark_copies(entries);
   const bool any = std::any_of(entries.begin(), entries.end(),
                                [](const OrderedJson& entry) { return !entry.contains("failure"); });
   if (any) {
-    const Result<std::string> written =
-        write_text(file, page_text(command, {maker.exercise(), benchmarks, entries}, maker.answers()));
+    const Result<std::string> written = write_text(
+        file, page_text(command, {maker.exercise(), benchmarks, entries, names.value()}, maker.answers()));
     if (!written) return print_failure(written.failure(), help);
     print("Written to " + file.string());
   }

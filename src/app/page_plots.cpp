@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 
 #include "base/units.h"
+#include "session/metrics.h"
 
 namespace calot {
 namespace {
@@ -14,24 +16,50 @@ using PerSample = std::function<double(const InstrumentSample&)>;
 
 constexpr const char* time_label = "time, s";
 
-/// Those of the instruments up to `most`, N.
-std::vector<PageLevel> force_limits(const SceneDefinition& scene, double most) {
+/// Those of the instruments that are not far above the curves.
+void add_limits(const SceneDefinition& scene, PagePlot& plot) {
+  double most = 0;
+  for (const PageCurve& curve : plot.curves)
+    for (const auto& point : curve.points) most = std::max(most, point[1]);
   std::map<double, std::string> names;
   for (const InstrumentDefinition& instrument : scene.instruments) {
     std::string& all = names[instrument.force_limit];
     all += (all.empty() ? "" : ", ") + instrument.name;
   }
-  std::vector<PageLevel> levels;
   for (const auto& [limit, who] : names)
-    if (limit < most) levels.push_back({"force limit of " + who, limit});
-  return levels;
+    if (limit < 3 * most) plot.levels.push_back({"force limit of " + who, limit});
+}
+
+/// A plot's quantity, and the metric of it that a score may judge.
+struct ForceKind {
+  const char* title;
+  const char* metric;
+  PerSample force;
+};
+
+/// What the score expects of an expert and of a novice, where they are told apart by this metric.
+void add_benchmarks(const ExerciseDefinition& exercise, const char* metric, PagePlot& plot) {
+  for (const ScorePart& part : exercise.score.parts) {
+    if (part.kind != ScorePartKind::benchmark || !part.metric.ends_with(std::string(".") + metric)) continue;
+    plot.levels.push_back({"full marks for " + metric_title(part.metric), part.expert});
+    plot.levels.push_back({"no marks for " + metric_title(part.metric), part.novice});
+  }
+}
+
+void add_bands(const Progress& progress, double end, PagePlot& plot) {
+  for (const StepRecord& step : progress.steps())
+    if (step.band)
+      plot.bands.push_back({fmt::format("asked for in {}, on {}", step.name, step.band->instrument),
+                            step.band->least, step.band->most, step.started,
+                            step.ended < 0 ? end : step.ended});
 }
 
 /// None where it is never above zero.
-void add_force(const char* title, const SceneDefinition& scene, const Traces& traces, const PerSample& force,
-               bool with_limits, std::vector<PagePlot>& plots) {
+bool add_force(const ForceKind& kind, const ExerciseDefinition& exercise, const Traces& traces,
+               std::vector<PagePlot>& plots) {
+  const SceneDefinition& scene = exercise.scene;
   PagePlot plot;
-  plot.title = title;
+  plot.title = kind.title;
   plot.x_label = time_label;
   plot.y_label = "force, N";
   double most = 0;
@@ -39,13 +67,14 @@ void add_force(const char* title, const SceneDefinition& scene, const Traces& tr
     PageCurve& curve = plot.curves.emplace_back();
     curve.name = scene.instruments[i].name;
     for (std::size_t k = 0; k < traces.time.size(); ++k) {
-      curve.points.push_back({traces.time[k], force(traces.instruments[i][k])});
+      curve.points.push_back({traces.time[k], kind.force(traces.instruments[i][k])});
       most = std::max(most, curve.points.back()[1]);
     }
   }
-  if (!(most > 0)) return;
-  if (with_limits) plot.levels = force_limits(scene, 3 * most);
+  if (!(most > 0)) return false;
+  add_benchmarks(exercise, kind.metric, plot);
   plots.push_back(std::move(plot));
+  return true;
 }
 
 void add_way(const char* title, const char* across, const char* up, int x, int y,
@@ -87,19 +116,23 @@ void add_organs(const char* title, const char* label, const Traces& traces,
 
 }  // namespace
 
-std::vector<PagePlot> page_plots(const SceneDefinition& scene, const Traces& traces) {
+std::vector<PagePlot> page_plots(const ExerciseDefinition& exercise, const Progress& progress,
+                                 const Traces& traces) {
+  const SceneDefinition& scene = exercise.scene;
   std::vector<PagePlot> plots;
-  add_force(
-      "Force on the tip", scene, traces, [](const InstrumentSample& s) { return s.tip_force; }, true, plots);
-  add_force(
-      "Force on the jaws", scene, traces, [](const InstrumentSample& s) { return s.jaws_force; }, false,
-      plots);
-  add_force(
-      "Force on the shaft", scene, traces, [](const InstrumentSample& s) { return s.shaft_force; }, false,
-      plots);
-  add_force(
-      "Force felt at the handle", scene, traces, [](const InstrumentSample& s) { return s.handle_force; },
-      false, plots);
+  const ForceKind jaws{"Force on the jaws", "peak_jaws_force_N",
+                       [](const InstrumentSample& s) { return s.jaws_force; }};
+  if (add_force(jaws, exercise, traces, plots)) {
+    PagePlot& plot = plots.back();
+    add_bands(progress, traces.time.back(), plot);
+    add_limits(scene, plot);
+  }
+  const ForceKind others[] = {
+      {"Force on the shaft", "peak_shaft_force_N", [](const InstrumentSample& s) { return s.shaft_force; }},
+      {"Force on the whole instrument", "peak_force_N", [](const InstrumentSample& s) { return s.force; }},
+      {"Force felt at the handle", "peak_handle_force_N",
+       [](const InstrumentSample& s) { return s.handle_force; }}};
+  for (const ForceKind& kind : others) add_force(kind, exercise, traces, plots);
   add_way("Way of the tip, from the front", "to the patient's left, mm", "towards the head, mm", 0, 1, scene,
           traces, plots);
   add_way("Way of the tip, from the feet", "to the patient's left, mm", "out of the abdomen, mm", 0, 2, scene,

@@ -8,7 +8,9 @@
 
 namespace calot {
 
-/// Forces on the instruments, ways of their tips, stretch of the walls: what there is of them.
-std::vector<PagePlot> page_plots(const SceneDefinition& scene, const Traces& traces);
+/// Forces on the instruments, ways of their tips, stretch of the walls: what there is of them; in the plots of forces on the
+/// jaws what the steps asked for and the figures by which the score judges.
+std::vector<PagePlot> page_plots(const ExerciseDefinition& exercise, const Progress& progress,
+                                 const Traces& traces);
 
 }  // namespace calot

@@ -15,6 +15,8 @@
 namespace calot {
 namespace {
 
+constexpr std::size_t most_differences = 5;  // between what a recording says and its replay
+
 /// "force 5.2 N" of 5.2 and "force_N".
 std::string value_text(const SessionEvent& event) {
   const std::string key = event_row(event.kind).value;
@@ -88,6 +90,7 @@ PagePart part_of(const OrderedJson& json, const PageRecording& page) {
   part.points = json["points"].get<double>();
   if (json["measured"].is_number()) part.measured = json["measured"].get<double>();
   const OrderedJson& benchmark = json["benchmark"];
+  part.title = json["title"].get<std::string>();
   part.calibration = benchmark["calibration"].get<std::string>();
   if (benchmark.contains("event")) {
     const auto event = benchmark["event"].get<std::string>();
@@ -163,6 +166,9 @@ void add_warnings(const OrderedJson& entry, const Watched& watched, PageRecordin
   if (entry["why"].is_string())
     page.warnings.push_back("Scored by playing it again: " + entry["why"].get<std::string>() + ".");
   if (session.end == SessionEnd::failed) page.warnings.push_back(to_text(session.failure));
+  for (std::size_t i = 0; i < std::min(watched.otherwise.size(), most_differences); ++i)
+    page.warnings.push_back("What the recording says was measured is not what its replay measures: " +
+                            watched.otherwise[i] + ".");
   if (!watched.differs.empty())
     page.warnings.push_back(
         watched.differs + " Timeline, pictures and curves are of the replay" +
@@ -186,10 +192,23 @@ void add_facts(const OrderedJson& entry, const Watched& watched, PageRecording& 
   for (const OrderedJson& note : entry["notes"]) page.notes.push_back(note.get<std::string>());
 }
 
+void add_attempt(const OrderedJson& entry, PageRecording& page) {
+  const std::pair<const char*, const char*> rows[] = {
+      {"trainee", "trainee"},  {"mode", "mode"},       {"attempt", "attempt of its sitting"},
+      {"began", "began, UTC"}, {"machine", "machine"}, {"source", "moved by"},
+      {"session", "session"}};
+  for (const auto& [key, words] : rows)
+    if (const OrderedJson& value = entry[key]; !value.is_null())
+      page.attempt.push_back({words, value.is_string() ? value.get<std::string>() : value.dump()});
+  page.attempt.push_back({"measured by version", entry["measures"].dump()});
+  page.attempt.push_back({"scored by version", entry["score"]["scoring"].dump()});
+  page.attempt.push_back({"score", entry["score"]["digest"].get<std::string>()});
+}
+
 }  // namespace
 
 Watched held_by(const Recording& recording, const ExerciseDefinition& exercise) {
-  Watched watched{{}, PageMoments(error_kinds(exercise)), {}, false};
+  Watched watched{{}, PageMoments(error_kinds(exercise)), {}, {}, false};
   watched.played.exercise = exercise;
   watched.played.session.progress = recording.measured->progress;
   Traces& traces = watched.played.session.traces;
@@ -218,8 +237,10 @@ PageRecording page_recording(const OrderedJson& entry, const Watched& watched, c
   page.pictures_left_out = watched.moments.left_out;
   page.drawn = watched.played.rendered;
   page.simulated = watched.simulated;
-  page.plots = page_plots(watched.played.exercise.scene, watched.played.session.traces);
+  page.plots =
+      page_plots(watched.played.exercise, watched.played.session.progress, watched.played.session.traces);
   add_facts(entry, watched, page);
+  add_attempt(entry, page);
   return page;
 }
 

@@ -15,6 +15,8 @@ struct Watched {
   Played played;
   PageMoments moments;
   std::string differs;  ///< where the replay's states part from the recording's, and why that may be
+  /// Where the states are the same and what they measure is not what the recording says: in words.
+  std::vector<std::string> otherwise;
   bool simulated = true;
 };
 /// What a recording that is scored from what it holds says without being simulated: forces are not known.

@@ -93,7 +93,7 @@ Result<fs::path> choose_folder(const PlayRequest& request, const ExerciseDefinit
 }
 
 Result<Outputs> open_outputs(const PlayRequest& request, const ExerciseDefinition& exercise,
-                             const World& world) {
+                             const World& world, const Attempt& attempt) {
   Outputs outputs;
   if (!request.write) return outputs;
   const Result<fs::path> path = choose_folder(request, exercise);
@@ -101,9 +101,7 @@ Result<Outputs> open_outputs(const PlayRequest& request, const ExerciseDefinitio
   Result<OutputFolder> folder = OutputFolder::claim(path.value());
   if (!folder) return folder.failure();
   folder->clear();  // a session that is killed leaves no older report beside its recording
-  RecordingHeader header = recording_header(exercise, world, portable_path(request.scenario));
-  if (request.live != nullptr) header.mode = to_text(request.live->figures().mode);
-  if (request.replay != nullptr) header.mode = request.replay->header.mode;
+  const RecordingHeader header = recording_header(exercise, world, portable_path(request.scenario), attempt);
   Result<RecordingWriter> recording =
       RecordingWriter::create((path.value() / "recording.jsonl").string(), header);
   if (!recording) return recording.failure();
@@ -256,7 +254,9 @@ Result<Played> play(const PlayRequest& request) {
   }
   Result<World> world = World::create(exercise.scene, &interrupt_flag(), request.threads, kept_results());
   if (!world) return script.value()->located(world.failure());
-  Result<Outputs> outputs = open_outputs(request, exercise, world.value());
+  played.report.attempt =
+      request.replay != nullptr ? request.replay->header.attempt : begin_attempt(request.attempt);
+  Result<Outputs> outputs = open_outputs(request, exercise, world.value(), played.report.attempt);
   if (!outputs) return outputs.failure();
   if (outputs->folder) played.output = outputs->folder->path();
 

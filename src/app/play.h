@@ -43,6 +43,8 @@ struct PlayRequest {
   bool show_progress = true;  ///< on a terminal
   const Recording* replay = nullptr;  ///< play these inputs instead of the scenario's demo
   LiveSource* live = nullptr;         ///< let these hands move the instruments instead
+  /// Who operates, and by what; the session, its time and its machine are play's to name. A replay keeps its recording's.
+  Attempt attempt = {.source = "demo"};
   /// Called at rest and after each step.
   std::function<void(const World&, const Progress&)> on_state;
   /// Called with the scene of each golden frame, before it is drawn.

@@ -76,7 +76,12 @@ class ClassScorer {
     return unwritten_;
   }
 
-  const std::vector<OrderedJson>& entries() const { return entries_; }
+  /// Copies are marked.
+  std::vector<OrderedJson> entries() const {
+    std::vector<OrderedJson> entries = entries_;
+    mark_copies(entries);
+    return entries;
+  }
   int taken() const { return taken_; }
 
  private:
@@ -138,8 +143,10 @@ Result<ScoreRequest> read_request(const ScoreCommand& command) {
   return request;
 }
 
-std::optional<Failure> write_scores(const fs::path& folder, const ClassScores& scores) {
+/// Without names: what is kept has none.
+std::optional<Failure> write_scores(const fs::path& folder, ClassScores scores) {
   if (folder.empty()) return std::nullopt;
+  scores.names.clear();
   for (const auto& [name, text] :
        {std::pair{"scores.json", scores_json(scores)}, {"scores.csv", scores_csv(scores)}}) {
     const Result<std::string> written = write_text(folder / name, text);
@@ -169,6 +176,8 @@ ExitCode score_command(const ScoreCommand& command) {
   }
   Result<ScoreRequest> request = read_request(command);
   if (!request) return print_failure(request.failure(), "calot score --help", command.json);
+  const Result<NameRegister> names = names_of(command.names);
+  if (!names) return print_failure(names.failure(), "calot score --help", command.json);
   const std::optional<BenchmarkTable> benchmarks = request->benchmarks;
   Result<RecordingScorer> scorer = RecordingScorer::create(std::move(request).value());
   if (!scorer) {
@@ -190,7 +199,8 @@ ExitCode score_command(const ScoreCommand& command) {
   }
   ClassScorer run(command, std::move(scorer).value(), std::move(files));
   std::optional<Failure> failure = run.run();
-  const ClassScores scores{exercise, benchmarks, run.entries()};
+  const std::vector<OrderedJson> entries = run.entries();
+  const ClassScores scores{exercise, benchmarks, entries, names.value()};
   if (!failure) failure = write_scores(command.output, scores);
   if (failure) return print_failure(*failure, again, command.json);
   if (run.taken() > 0)

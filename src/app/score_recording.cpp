@@ -9,12 +9,13 @@
 #include "app/play.h"
 #include "app/replay_checks.h"
 #include "base/hash.h"
+#include "session/metrics.h"
 #include "session/progress_json.h"
 
 namespace calot {
 namespace {
 
-constexpr const char* entry_version = "calot.scores/2";
+constexpr const char* entry_version = "calot.scores/3";
 
 /// Adds a file's bytes; false where it cannot be read.
 bool add_file(Hash& hash, const std::string& path) {
@@ -34,6 +35,18 @@ std::string end_of(const Recording& recording, const SessionResult& session) {
   return came_to_its_end(recording.end) ? to_text(session.end) : recording.end;
 }
 
+/// Who, when, by what, and by which rules it was recorded.
+void add_attempt(const RecordingHeader& header, const std::string& file, OrderedJson& entry) {
+  for (const char* key : {"session", "source", "mode", "trainee", "attempt", "began", "machine"})
+    entry[key] = nullptr;
+  write_attempt(header.attempt, entry);
+  Hash text;
+  if (entry["session"].is_null() && add_file(text, file)) entry["session"] = "text " + hex(text.value());
+  entry["recorded"] = {
+      {"schema", header.version}, {"measures", header.measures}, {"scoring", header.scoring}};
+  entry["measures"] = measures_version;
+}
+
 std::optional<Failure> add_measured(const ExerciseDefinition& exercise,
                                     const std::map<std::string, double>& metrics, const Progress& progress,
                                     const std::vector<std::string>& notes, OrderedJson& entry) {
@@ -49,9 +62,24 @@ std::optional<Failure> add_measured(const ExerciseDefinition& exercise,
   return std::nullopt;
 }
 
-/// What a simulation measured otherwise than the recording says.
-std::vector<std::string> differences(const Measured& held, const SessionResult& session) {
+void verify(const Recording& recording, const SessionResult& session, OrderedJson& entry) {
+  const StateComparison states = compare_states(recording, session);
   std::vector<std::string> found;
+  if (!states.message.empty()) found.push_back(states.message);
+  const bool same_bits = states.differs || states.message.empty();
+  if (same_bits)
+    for (std::string& difference : measured_otherwise(recording, session))
+      found.push_back(std::move(difference));
+  if (same_bits && (recording.header.state_hash || recording.measured)) entry["verified"] = found.empty();
+  entry["differences"] = found;
+}
+
+}  // namespace
+
+std::vector<std::string> measured_otherwise(const Recording& recording, const SessionResult& session) {
+  std::vector<std::string> found;
+  if (!recording.measured || recording.header.measures != measures_version) return found;
+  const Measured& held = *recording.measured;
   for (const auto& [name, value] : held.metrics) {
     const auto simulated = session.metrics.find(name);
     if (simulated == session.metrics.end())
@@ -67,20 +95,6 @@ std::vector<std::string> differences(const Measured& held, const SessionResult& 
   if (notes_json(held.progress) != notes_json(session.progress)) found.emplace_back("what was noted differs");
   return found;
 }
-
-void verify(const Recording& recording, const SessionResult& session, OrderedJson& entry) {
-  const StateComparison states = compare_states(recording, session);
-  std::vector<std::string> found;
-  if (!states.message.empty()) found.push_back(states.message);
-  const bool same_bits = states.differs || states.message.empty();
-  if (recording.measured && same_bits)
-    for (std::string& difference : differences(*recording.measured, session))
-      found.push_back(std::move(difference));
-  if (same_bits && (recording.header.state_hash || recording.measured)) entry["verified"] = found.empty();
-  entry["differences"] = found;
-}
-
-}  // namespace
 
 OrderedJson failed_entry(const std::string& file, const Failure& failure) {
   return {{"file", file},
@@ -161,6 +175,9 @@ Result<const RecordingScorer::Exercise*> RecordingScorer::exercise_of(const Reco
 
 std::optional<Failure> RecordingScorer::add_score(const Recording& recording, OrderedJson& entry) {
   constexpr const char* hint = "name the exercise that it was made with";
+  if (recording.steps.empty())
+    return fail(FailureKind::usage, "this recording has no step: its session ended before it began",
+                "leave it out, or record the session anew");
   // Another exercise may not know its parameters.
   if (recording.header.scenario != standard_.definition.id)
     return check_replay(recording, standard_.definition, hint);
@@ -168,6 +185,7 @@ std::optional<Failure> RecordingScorer::add_score(const Recording& recording, Or
   if (!found) return found.failure();
   const Exercise& exercise = *found.value();
   if (std::optional<Failure> wrong = check_replay(recording, exercise.definition, hint)) return wrong;
+  add_attempt(recording.header, entry["file"].get<std::string>(), entry);
   const std::optional<std::string> why = why_simulate(recording, exercise);
   entry["from"] = why ? "simulation" : "recording";
   entry["why"] = why ? OrderedJson(*why) : OrderedJson();
@@ -197,8 +215,11 @@ std::optional<std::string> RecordingScorer::why_simulate(const Recording& record
   if (request_.verify) return "--replay";
   if (recording.end.empty()) return "the recording was cut";
   if (!recording.measured) return "the recording does not hold what was measured";
-  if (recording.measured->exercise_hash != exercise.hash)
+  if (recording.header.exercise_hash != exercise.hash)
     return "the exercise has changed since it was recorded";
+  if (recording.header.measures != measures_version)
+    return fmt::format("measured by version {}, and this program measures by version {}",
+                       recording.header.measures, measures_version);
   return std::nullopt;
 }
 

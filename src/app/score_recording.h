@@ -29,9 +29,13 @@ struct ScoreRequest {
   std::optional<ScoreWatcher> watcher;
 };
 
-/// Scores recordings of one exercise. An entry of calot.scores/2 is an object of
+/// Scores recordings of one exercise. An entry of calot.scores/3 is an object of
 ///   file         as it was named
 ///   failure      a list of problems where there is no score, with the exit_code of their kind; then nothing follows
+///   session      of the recording; of one that names none, a hash of its text
+///   source, mode, trainee, attempt, began, machine   as in session/attempt.h; null where it is not known
+///   recorded     the versions by which the recording was written: schema, measures and scoring; 0 where it does not say
+///   measures     the version by which the metrics below were measured
 ///   from         "recording" or "simulation"; why: why it was simulated, else null
 ///   verified     with `verify`: true, false, or null where nothing can be said; differences: in words, what differs
 ///   end          how the session ended, "cut" where the recording has no end
@@ -72,6 +76,9 @@ class RecordingScorer {
   std::uint64_t key_base_ = 0;
   std::map<std::string, Exercise> known_;  ///< by parameters and seed
 };
+
+/// What a simulation measured otherwise than the recording says it was; nothing of a recording that does not say.
+std::vector<std::string> measured_otherwise(const Recording& recording, const SessionResult& session);
 
 /// The entry of a recording that has no score.
 OrderedJson failed_entry(const std::string& file, const Failure& failure);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "app/terminal.h"
@@ -14,24 +14,23 @@
 namespace calot {
 namespace {
 
-bool is_scored(const OrderedJson& entry) { return !entry.contains("failure"); }
 bool is_whole(const OrderedJson& entry) { return is_scored(entry) && entry["whole"].get<bool>(); }
 bool has_passed(const OrderedJson& entry) { return is_scored(entry) && entry["score"]["passed"].get<bool>(); }
 double total_of(const OrderedJson& entry) { return entry["score"]["total"].get<double>(); }
+std::string text_of(const OrderedJson& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
-/// The place of an entry's outcome in tables: more than all others for one without a score.
-std::size_t outcome_rank(const OrderedJson& entry) {
-  const std::vector<OutcomeRow>& rows = outcome_rows();
-  if (!is_scored(entry)) return rows.size();
-  const auto is = [&](const OutcomeRow& row) { return entry["score"]["outcome"] == row.name; };
-  return static_cast<std::size_t>(std::find_if(rows.begin(), rows.end(), is) - rows.begin());
+using Entries = std::vector<OrderedJson>;
+
+std::size_t count(const Entries& entries, const ScoreGroup& group, bool (*is)(const OrderedJson&)) {
+  return static_cast<std::size_t>(std::count_if(group.members.begin(), group.members.end(),
+                                                [&](std::size_t i) { return is(entries[i]); }));
 }
 
 /// The totals of those that were finished, ascending.
-std::vector<double> finished_totals(const ClassScores& scores) {
+std::vector<double> finished_totals(const Entries& entries, const ScoreGroup& group) {
   std::vector<double> totals;
-  for (const OrderedJson& entry : scores.entries)
-    if (is_finished(entry)) totals.push_back(total_of(entry));
+  for (const std::size_t i : group.members)
+    if (is_finished(entries[i])) totals.push_back(total_of(entries[i]));
   std::sort(totals.begin(), totals.end());
   return totals;
 }
@@ -42,15 +41,14 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Of all parts, in the score's order; nan of one that nobody has.
-std::vector<double> mean_points(const ClassScores& scores) {
+/// Of the group's parts, over its finished attempts; nan where there is none.
+std::vector<double> mean_points(const Entries& entries, const ScoreGroup& group) {
   std::vector<double> means;
-  for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i) {
+  for (std::size_t part = 0; part < group.parts.size(); ++part) {
     std::vector<double> points;
-    for (const OrderedJson& entry : scores.entries) {
-      const OrderedJson* parts = parts_of(scores, entry);
-      if (parts != nullptr && is_finished(entry)) points.push_back((*parts)[i]["points"].get<double>());
-    }
+    for (const std::size_t i : group.members)
+      if (is_finished(entries[i]))
+        points.push_back(entries[i]["score"]["parts"][part]["points"].get<double>());
     means.push_back(points.empty() ? std::numeric_limits<double>::quiet_NaN() : mean_of(points));
   }
   return means;
@@ -76,27 +74,29 @@ OrderedJson totals_json(const std::vector<double>& totals) {
   return json;
 }
 
-OrderedJson class_json(const ClassScores& scores) {
-  const auto count = [&](bool (*is)(const OrderedJson&)) {
-    return std::count_if(scores.entries.begin(), scores.entries.end(), is);
-  };
-  OrderedJson json = {{"recordings", scores.entries.size()},
-                      {"scored", count(is_scored)},
-                      {"whole", count(is_whole)},
-                      {"finished", count(is_finished)},
-                      {"passed", count(has_passed)}};
-  for (std::size_t rank = 0; rank < outcome_rows().size(); ++rank)
-    json["outcomes"][outcome_rows()[rank].name] =
-        std::count_if(scores.entries.begin(), scores.entries.end(),
-                      [&](const OrderedJson& entry) { return outcome_rank(entry) == rank; });
-  json["total"] = totals_json(finished_totals(scores));
+OrderedJson group_json(const Entries& entries, const ScoreGroup& group) {
+  OrderedJson json = {{"mode", group.mode},
+                      {"params", group.params},
+                      {"digest", group.digest},
+                      {"pass_mark", group.pass_mark},
+                      {"files", OrderedJson::array()},
+                      {"scored", group.members.size()},
+                      {"whole", count(entries, group, is_whole)},
+                      {"finished", count(entries, group, is_finished)},
+                      {"passed", count(entries, group, has_passed)}};
+  for (const std::size_t i : group.members) json["files"].push_back(entries[i]["file"]);
+  for (const OutcomeRow& row : outcome_rows())
+    json["outcomes"][row.name] =
+        std::count_if(group.members.begin(), group.members.end(),
+                      [&](std::size_t i) { return entries[i]["score"]["outcome"] == row.name; });
+  json["total"] = totals_json(finished_totals(entries, group));
   json["parts"] = OrderedJson::array();
-  const std::vector<double> means = mean_points(scores);
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    const ScorePart& part = scores.exercise.score.parts[i];
-    json["parts"].push_back({{"name", part.name},
-                             {"weight", part.weight},
-                             {"mean_points", std::isnan(means[i]) ? OrderedJson() : OrderedJson(means[i])}});
+  const std::vector<double> means = mean_points(entries, group);
+  for (std::size_t part = 0; part < means.size(); ++part) {
+    OrderedJson entry;
+    for (const char* key : {"name", "title", "weight"}) entry[key] = group.parts[part][key];
+    entry["mean_points"] = std::isnan(means[part]) ? OrderedJson() : OrderedJson(means[part]);
+    json["parts"].push_back(std::move(entry));
   }
   return json;
 }
@@ -112,40 +112,119 @@ std::string csv_value(const OrderedJson& value) {
   return csv_field(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-std::set<std::string> all_metrics(const ClassScores& scores) {
+/// Names of the groups' parts, each once, in the order in which they come.
+std::vector<std::string> all_parts(const std::vector<ScoreGroup>& groups) {
+  std::vector<std::string> names;
+  for (const ScoreGroup& group : groups)
+    for (const OrderedJson& part : group.parts)
+      if (const std::string name = text_of(part["name"]);
+          std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+  return names;
+}
+
+std::set<std::string> all_metrics(const Entries& entries) {
   std::set<std::string> names;
-  for (const OrderedJson& entry : scores.entries)
+  for (const OrderedJson& entry : entries)
     if (is_scored(entry))
       for (const auto& [name, value] : entry["metrics"].items()) names.insert(name);
   return names;
 }
 
-std::vector<std::string> csv_entry(const ClassScores& scores, const OrderedJson& entry,
-                                   const std::set<std::string>& metrics) {
-  const OrderedJson& score = entry["score"];
-  std::string critical;
-  for (const OrderedJson& event : score["critical"])
-    critical += (critical.empty() ? "" : " ") + event["event"].get<std::string>();
-  std::string reasons;
-  for (const OrderedJson& gate : score["gates"])
-    reasons += fmt::format("{}{} ({})", reasons.empty() ? "" : "; ", gate["reason"].get<std::string>(),
-                           gate["found"].get<std::string>());
-  std::vector<std::string> fields;
-  for (const char* key : {"file", "from", "end", "whole", "stopped_at_s"})
-    fields.push_back(csv_value(entry[key]));
-  for (const char* key : {"outcome", "verdict", "total", "passed", "completed", "steps_done", "steps"})
-    fields.push_back(csv_value(score[key]));
-  fields.push_back(csv_field(critical));
-  fields.push_back(csv_field(reasons));
-  const OrderedJson* parts = parts_of(scores, entry);
-  for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
-    for (const char* key : {"points", "measured", "explanation"})
-      fields.push_back(parts != nullptr ? csv_value((*parts)[i][key]) : "");
-  for (const std::string& name : metrics)
-    fields.push_back(entry["metrics"].contains(name) ? csv_value(entry["metrics"][name]) : "");
-  fields.emplace_back();
-  return fields;
-}
+constexpr std::array attempt_keys = {"session", "source", "mode", "trainee", "attempt", "began", "machine"};
+constexpr std::array session_keys = {"from", "end", "whole", "stopped_at_s", "measures"};
+constexpr std::array score_keys = {"scoring", "digest", "pass_mark", "outcome",    "verdict",
+                                   "total",   "passed", "completed", "steps_done", "steps"};
+constexpr std::array part_keys = {"points", "weight", "measured", "explanation"};
+
+/// The table of CSV: what each row has, column by column.
+class CsvTable {
+ public:
+  explicit CsvTable(const ClassScores& scores)
+      : scores_(scores),
+        groups_(score_groups(scores.entries)),
+        parts_(all_parts(groups_)),
+        metrics_(all_metrics(scores.entries)) {}
+
+  std::string text() const {
+    std::string text = csv_row(head());
+    for (const std::size_t i : by_outcome(scores_.entries)) text += csv_row(row(i));
+    return text;
+  }
+
+ private:
+  std::vector<std::string> head() const {
+    std::vector<std::string> head{"file", "group"};
+    head.insert(head.end(), attempt_keys.begin(), attempt_keys.end());
+    if (!scores_.names.empty()) head.emplace_back("name");
+    head.insert(head.end(), session_keys.begin(), session_keys.end());
+    head.insert(head.end(), score_keys.begin(), score_keys.end());
+    for (const char* key : {"critical", "gates"}) head.emplace_back(key);
+    for (const std::string& name : parts_)
+      for (const char* what : {"points", "weight", "measured", "reason"})
+        head.push_back(csv_field(name + ' ' + what));
+    for (const std::string& name : metrics_) head.push_back(csv_field(name));
+    head.emplace_back("failure");
+    return head;
+  }
+
+  std::vector<std::string> row(std::size_t index) const {
+    const OrderedJson& entry = scores_.entries[index];
+    std::vector<std::string> row{csv_value(entry["file"])};
+    if (!is_scored(entry)) {
+      row.resize(head().size());
+      row.back() = csv_field(failure_text(entry));
+      return row;
+    }
+    row.push_back(csv_field(group_of(index)));
+    for (const char* key : attempt_keys) row.push_back(csv_value(entry[key]));
+    if (!scores_.names.empty()) row.push_back(csv_field(name_of(entry)));
+    for (const char* key : session_keys) row.push_back(csv_value(entry[key]));
+    const OrderedJson& score = entry["score"];
+    for (const char* key : score_keys) row.push_back(csv_value(score[key]));
+    add_gates(score, row);
+    for (const std::string& name : parts_) add_part(score, name, row);
+    for (const std::string& name : metrics_)
+      row.push_back(entry["metrics"].contains(name) ? csv_value(entry["metrics"][name]) : "");
+    row.emplace_back();
+    return row;
+  }
+
+  std::string group_of(std::size_t index) const {
+    for (const ScoreGroup& group : groups_)
+      if (std::find(group.members.begin(), group.members.end(), index) != group.members.end())
+        return group_title(group, groups_);
+    return {};
+  }
+
+  std::string name_of(const OrderedJson& entry) const {
+    const auto found = scores_.names.find(text_of(entry["trainee"]));
+    return found == scores_.names.end() ? "" : found->second;
+  }
+
+  static void add_gates(const OrderedJson& score, std::vector<std::string>& row) {
+    std::string critical, reasons;
+    for (const OrderedJson& event : score["critical"])
+      critical += (critical.empty() ? "" : " ") + text_of(event["event"]);
+    for (const OrderedJson& gate : score["gates"])
+      reasons += fmt::format("{}{} ({})", reasons.empty() ? "" : "; ", text_of(gate["reason"]),
+                             text_of(gate["found"]));
+    row.push_back(csv_field(critical));
+    row.push_back(csv_field(reasons));
+  }
+
+  static void add_part(const OrderedJson& score, const std::string& name, std::vector<std::string>& row) {
+    const OrderedJson& parts = score["parts"];
+    const auto part =
+        std::find_if(parts.begin(), parts.end(), [&](const OrderedJson& one) { return one["name"] == name; });
+    for (const char* key : part_keys) row.push_back(part == parts.end() ? "" : csv_value((*part)[key]));
+  }
+
+  const ClassScores& scores_;
+  std::vector<ScoreGroup> groups_;
+  std::vector<std::string> parts_;
+  std::set<std::string> metrics_;
+};
 
 std::string class_verdict(const OrderedJson& entry) {
   return has_passed(entry) ? green(verdict_text(entry)) : red(verdict_text(entry));
@@ -153,34 +232,92 @@ std::string class_verdict(const OrderedJson& entry) {
 
 std::string one_decimal(double value) { return fmt::format("{:.1f}", value); }
 
-std::vector<std::string> class_row(const ClassScores& scores, const OrderedJson& entry) {
-  std::vector<std::string> row{entry["file"].get<std::string>()};
-  row.push_back(has_total(entry) ? one_decimal(total_of(entry)) : "");
-  row.push_back(is_scored(entry) ? steps_text(entry) : "");
-  const OrderedJson* parts = parts_of(scores, entry);
-  for (std::size_t i = 0; i < scores.exercise.score.parts.size(); ++i)
-    row.push_back(parts != nullptr ? one_decimal((*parts)[i]["points"].get<double>()) : "");
-  row.push_back(class_verdict(entry));  // last: colours have a width for the table, and none on the screen
-  return row;
+/// One group's table; columns that nobody has are left out.
+class GroupTable {
+ public:
+  GroupTable(const ClassScores& scores, const ScoreGroup& group) : scores_(scores), group_(group) {
+    for (const std::size_t i : group.members) {
+      has_trainees_ = has_trainees_ || scores.entries[i]["trainee"].is_string();
+      has_times_ = has_times_ || scores.entries[i]["began"].is_string();
+    }
+  }
+
+  std::string text() const {
+    std::vector<std::vector<std::string>> rows{head()};
+    for (const std::size_t i : group_.members) rows.push_back(row(scores_.entries[i]));
+    if (finished_totals(scores_.entries, group_).size() > 1) rows.push_back(means());
+    std::string alignment = 'l' + std::string(before_score() - 1, 'l') + "rr";
+    alignment += std::string(group_.parts.size(), 'r') + 'l';
+    return table(rows, alignment);
+  }
+
+ private:
+  std::size_t before_score() const { return 1U + (has_trainees_ ? 1U : 0U) + (has_times_ ? 2U : 0U); }
+
+  std::vector<std::string> head() const {
+    std::vector<std::string> head{"recording"};
+    if (has_trainees_) head.emplace_back("trainee");
+    if (has_times_) head.insert(head.end(), {"began", "attempt"});
+    head.insert(head.end(), {"score", "steps"});
+    for (const OrderedJson& part : group_.parts)
+      head.push_back(fmt::format("{} ({:.0f})", text_of(part["name"]), 100 * part["weight"].get<double>()));
+    head.emplace_back("verdict");
+    return head;
+  }
+
+  std::vector<std::string> row(const OrderedJson& entry) const {
+    std::vector<std::string> row{text_of(entry["file"])};
+    if (has_trainees_) row.push_back(with_name(text_of(entry["trainee"]), scores_.names));
+    if (has_times_)
+      row.insert(row.end(), {began_text(entry), entry["attempt"].is_null() ? "" : entry["attempt"].dump()});
+    row.push_back(has_total(entry) ? one_decimal(total_of(entry)) : "");
+    row.push_back(steps_text(entry));
+    for (const OrderedJson& part : entry["score"]["parts"])
+      row.push_back(one_decimal(part["points"].get<double>()));
+    row.push_back(class_verdict(entry));  // last: colours have a width for the table, and none on the screen
+    return row;
+  }
+
+  std::vector<std::string> means() const {
+    const std::vector<double> totals = finished_totals(scores_.entries, group_);
+    std::vector<std::string> row{
+        fmt::format("mean of {} finished, of {} attempts", totals.size(), group_.members.size())};
+    row.resize(before_score());
+    row.insert(row.end(), {one_decimal(mean_of(totals)), ""});
+    for (const double points : mean_points(scores_.entries, group_))
+      row.push_back(std::isnan(points) ? "" : one_decimal(points));
+    row.emplace_back();
+    return row;
+  }
+
+  const ClassScores& scores_;
+  const ScoreGroup& group_;
+  bool has_trainees_ = false, has_times_ = false;
+};
+
+/// What the columns of parts are about.
+std::string legend(const ScoreGroup& group) {
+  std::vector<std::vector<std::string>> rows;
+  for (const OrderedJson& part : group.parts)
+    rows.push_back({"  " + text_of(part["name"]), text_of(part["title"])});
+  return table(rows, "ll");
 }
 
-std::string class_table(const ClassScores& scores) {
-  std::vector<std::vector<std::string>> rows{{"recording", "score", "steps"}};
-  for (const ScorePart& part : scores.exercise.score.parts)
-    rows[0].push_back(fmt::format("{} ({:.0f})", part.name, 100 * part.weight));
-  const std::string alignment = "lrr" + std::string(scores.exercise.score.parts.size(), 'r') + 'l';
-  rows[0].emplace_back("verdict");
-  for (const std::size_t i : by_outcome(scores.entries)) rows.push_back(class_row(scores, scores.entries[i]));
-  const std::vector<double> totals = finished_totals(scores);
-  if (totals.size() > 1) {
-    rows.push_back({fmt::format("mean of {} finished, of {} attempts", totals.size(),
-                                std::count_if(scores.entries.begin(), scores.entries.end(), is_scored)),
-                    one_decimal(mean_of(totals)), ""});
-    for (const double points : mean_points(scores))
-      rows.back().push_back(std::isnan(points) ? "" : one_decimal(points));
-    rows.back().emplace_back();
-  }
-  return table(rows, alignment);
+std::string group_text(const ClassScores& scores, const ScoreGroup& group,
+                       const std::vector<ScoreGroup>& all) {
+  return fmt::format("{}: {} of {} passed (pass mark {:g})\n{}{}\n", bold(group_title(group, all)),
+                     count(scores.entries, group, has_passed), group.members.size(), group.pass_mark,
+                     GroupTable(scores, group).text(), scores.entries.size() > 1 ? legend(group) : "");
+}
+
+/// Copies, and recordings without a score, each with its reason.
+std::string not_counted(const Entries& entries) {
+  std::string text;
+  for (const OrderedJson& entry : entries)
+    if (!is_scored(entry))
+      text += fmt::format("  {}: {}\n", text_of(entry["file"]),
+                          entry.contains("failure") ? "no score, for the reason above" : failure_text(entry));
+  return text.empty() ? "" : "Not counted:\n" + text + '\n';
 }
 
 std::string explained(const OrderedJson& entry) {
@@ -192,33 +329,12 @@ std::string explained(const OrderedJson& entry) {
   for (const OrderedJson& part : entry["score"]["parts"])
     rows.push_back({one_decimal(part["points"].get<double>()),
                     fmt::format("of {:.1f}", 100 * part["weight"].get<double>()),
-                    part["name"].get<std::string>(), part["explanation"].get<std::string>()});
+                    fmt::format("{} ({})", part["title"].get<std::string>(), part["name"].get<std::string>()),
+                    part["explanation"].get<std::string>()});
   return gates + table(rows, "rrll");
 }
 
-std::string counts_text(const ClassScores& scores) {
-  const OrderedJson counted = class_json(scores);
-  const auto number = [&](const char* key) { return counted[key].get<std::size_t>(); };
-  std::string text = fmt::format("{} of {} passed (pass mark {:.0f})", number("passed"), number("recordings"),
-                                 scores.exercise.score.pass);
-  if (number("scored") > number("whole"))
-    text += fmt::format("; {} scored up to where they stop", number("scored") - number("whole"));
-  if (number("recordings") > number("scored"))
-    text += fmt::format("; {} without a score", number("recordings") - number("scored"));
-  return text + '\n';
-}
-
 }  // namespace
-
-const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry) {
-  if (!is_scored(entry)) return nullptr;
-  const OrderedJson& parts = entry["score"]["parts"];
-  const std::vector<ScorePart>& expected = scores.exercise.score.parts;
-  const bool same =
-      std::equal(expected.begin(), expected.end(), parts.begin(), parts.end(),
-                 [](const ScorePart& part, const OrderedJson& json) { return json["name"] == part.name; });
-  return same ? &parts : nullptr;
-}
 
 bool has_total(const OrderedJson& entry) { return is_scored(entry) && !entry["score"]["total"].is_null(); }
 
@@ -231,17 +347,15 @@ bool is_finished(const OrderedJson& entry) {
   return has_total(entry) && entry["score"]["completed"].get<bool>();
 }
 
-std::vector<std::size_t> by_outcome(const std::vector<OrderedJson>& entries) {
-  std::vector<std::size_t> order(entries.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return outcome_rank(entries[a]) < outcome_rank(entries[b]);
-  });
-  return order;
+std::string began_text(const OrderedJson& entry) {
+  std::string text = text_of(entry["began"]);
+  if (text.size() < 16) return text;
+  text[10] = ' ';
+  return text.substr(0, 16);
 }
 
 std::string verdict_text(const OrderedJson& entry) {
-  if (!is_scored(entry)) return "no score";
+  if (!is_scored(entry)) return entry.contains("copy_of") ? "a copy" : "no score";
   std::string text = entry["score"]["verdict"].get<std::string>();
   if (!is_whole(entry))
     text += fmt::format(" ({} at {:.2f} s)", entry["end"].get<std::string>(),
@@ -250,49 +364,32 @@ std::string verdict_text(const OrderedJson& entry) {
 }
 
 std::string scores_json(const ClassScores& scores) {
-  OrderedJson json = {{"schema", "calot.scores/2"},
+  OrderedJson json = {{"schema", "calot.scores/3"},
                       {"scenario", scores.exercise.id},
                       {"title", scores.exercise.title},
                       {"file", scores.exercise.file},
                       {"pass_mark", scores.exercise.score.pass},
                       {"benchmarks", benchmarks_json(scores.benchmarks)},
-                      {"recordings", scores.entries}};
-  json["class"] = class_json(scores);
+                      {"recordings", scores.entries},
+                      {"groups", OrderedJson::array()}};
+  for (OrderedJson& entry : json["recordings"])
+    if (const auto name = scores.names.find(entry.contains("trainee") ? text_of(entry["trainee"]) : "");
+        name != scores.names.end())
+      entry["name"] = name->second;
+  for (const ScoreGroup& group : score_groups(scores.entries))
+    json["groups"].push_back(group_json(scores.entries, group));
   return json_text(json) + '\n';
 }
 
-std::string scores_csv(const ClassScores& scores) {
-  std::vector<std::string> head{"file",       "from",    "end",      "whole",  "stopped_at_s",
-                                "outcome",    "verdict", "total",    "passed", "completed",
-                                "steps_done", "steps",   "critical", "gates"};
-  for (const ScorePart& part : scores.exercise.score.parts) {
-    head.push_back(csv_field(part.name + " points"));
-    head.push_back(csv_field(part.name + " measured"));
-    head.push_back(csv_field(part.name + " reason"));
-  }
-  const std::set<std::string> metrics = all_metrics(scores);
-  for (const std::string& name : metrics) head.push_back(csv_field(name));
-  head.emplace_back("failure");
-  std::string text = csv_row(head);
-  for (const std::size_t i : by_outcome(scores.entries)) {
-    const OrderedJson& entry = scores.entries[i];
-    std::vector<std::string> fields(head.size());
-    if (is_scored(entry)) {
-      fields = csv_entry(scores, entry, metrics);
-    } else {
-      fields.front() = csv_value(entry["file"]);
-      fields.back() = csv_field(failure_text(entry));
-    }
-    text += csv_row(fields);
-  }
-  return text;
-}
+std::string scores_csv(const ClassScores& scores) { return CsvTable(scores).text(); }
 
 std::string scores_text(const ClassScores& scores) {
-  std::string text =
-      fmt::format("{} ({})\n\n{}", bold(scores.exercise.title), scores.exercise.id, class_table(scores));
-  if (scores.entries.size() == 1 && is_scored(scores.entries[0])) text += '\n' + explained(scores.entries[0]);
-  text += '\n' + counts_text(scores);
+  std::string text = fmt::format("{} ({})\n\n", bold(scores.exercise.title), scores.exercise.id);
+  const std::vector<ScoreGroup> groups = score_groups(scores.entries);
+  for (const ScoreGroup& group : groups) text += group_text(scores, group, groups);
+  if (scores.entries.size() == 1 && is_scored(scores.entries[0])) text += explained(scores.entries[0]) + '\n';
+  text += not_counted(scores.entries);
+  if (groups.size() > 1) text += "What is of another mode, parameters or score is averaged apart.\n";
   if (scores.benchmarks)
     text += fmt::format("Benchmarks: {}, version {}, {}.\n", scores.benchmarks->name,
                         scores.benchmarks->version, scores.benchmarks->calibration);
@@ -303,6 +400,8 @@ std::string scores_text(const ClassScores& scores) {
 }
 
 std::string failure_text(const OrderedJson& entry) {
+  if (entry.contains("copy_of"))
+    return fmt::format("the same session as {}: it counts once", text_of(entry["copy_of"]));
   std::string text;
   for (const OrderedJson& problem : entry["failure"]) {
     const Problem plain{{problem["file"].get<std::string>(), problem["line"].get<int>(), {}},

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "app/name_register.h"
+#include "app/score_groups.h"
 #include "session/benchmarks.h"
 #include "session/json.h"
 
@@ -12,24 +14,25 @@ namespace calot {
 struct ClassScores {
   const ExerciseDefinition& exercise;  ///< with the benchmarks
   const std::optional<BenchmarkTable>& benchmarks;
-  const std::vector<OrderedJson>& entries;  ///< in the order in which they are shown
+  const std::vector<OrderedJson>& entries;  ///< in the order in which they are shown; copies are marked
+  NameRegister names = {};                  ///< of trainees, to be joined
 };
 
-/// One object of schema calot.scores/2, with a line end: exercise, benchmarks, recordings (the entries) and class: how
-/// many there are, were scored, came to their end, were finished and passed, and had each outcome; of the totals of those
-/// that were finished, mean, median, standard deviation (of a sample), least and most; and each part's mean points.
+/// One object of schema calot.scores/3, with a line end: exercise, benchmarks, recordings (the entries; a copy has copy_of)
+/// and groups (score_groups.h): how many of each were scored, came to their end, were finished and passed, and had each
+/// outcome; of the totals of those that were finished, mean, median, standard deviation (of a sample), least and most; and
+/// each part's mean points.
 std::string scores_json(const ClassScores& scores);
 
-/// RFC 4180, a row a recording, by outcome: file, from, end, whole, stopped_at_s, outcome, verdict, total, passed,
-/// completed, steps_done, steps, critical, gates with their reasons, each part's points, what was measured and the
-/// reason, all metrics, failure. What is not known is empty.
+/// RFC 4180, a row a recording, by outcome: who, when and by what; outcome, verdict and total; gates with their reasons; each
+/// part's points, weight, what was measured and the reason; all metrics; failure. What is not known is empty.
 std::string scores_csv(const ClassScores& scores);
 
-/// A table by outcome, what has no total last; of a single recording its parts, explained.
+/// A table for each group, by outcome, and what is not counted; of a single recording its parts, explained.
 std::string scores_text(const ClassScores& scores);
 
-/// The score's parts, in the order of the exercise's; null of an entry without, or with others (other parameters).
-const OrderedJson* parts_of(const ClassScores& scores, const OrderedJson& entry);
+/// When it began, UTC, to the minute: "2026-11-25 20:13"; may be empty.
+std::string began_text(const OrderedJson& entry);
 
 /// Not of one without a score, nor where the simulation failed.
 bool has_total(const OrderedJson& entry);
@@ -40,13 +43,10 @@ std::string steps_text(const OrderedJson& entry);
 /// Whether all steps were done, or left by a bail-out that was right: only such totals are averaged.
 bool is_finished(const OrderedJson& entry);
 
-/// Indices of the entries by outcome, those without a score last; within an outcome in the order in which they are given.
-std::vector<std::size_t> by_outcome(const std::vector<OrderedJson>& entries);
-
 /// "passed", or why not, of an entry that may have failed.
 std::string verdict_text(const OrderedJson& entry);
 
-/// A failure's problems, "file:line: message (hint)" each, one a line.
+/// A failure's problems, "file:line: message (hint)" each, one a line; of a copy, whose.
 std::string failure_text(const OrderedJson& entry);
 
 }  // namespace calot

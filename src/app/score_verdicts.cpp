@@ -69,6 +69,7 @@ ExitCode judge(const std::vector<OrderedJson>& entries, const std::string& exerc
       if (!failed) failed = static_cast<ExitCode>(entry["exit_code"].get<int>());
       continue;
     }
+    if (!is_scored(entry)) continue;  // a copy: what is said of the other holds for it
     const OrderedJson& total = entry["score"]["total"];
     if (!entry["whole"].get<bool>())
       tell(entry,

@@ -169,7 +169,12 @@ std::vector<KeyTable> option_tables() {
       {"step_options",
        "Options of t:step.",
        {number("limit", quantity::time, 0.1 * s, 3600 * s, "", "after it the step ends as timed out"),
-        text("hint", "", "how it is done, shown to who practises and not in an exam")}},
+        text("hint", "", "how it is done, shown to who practises and not in an exam"),
+        text("force_on", "",
+             "the instrument on whose jaws the step asks for a force from `least` to `most`: a page "
+             "shows the band in its plot"),
+        number("least", quantity::force, 0, 1000, "", "of that force"),
+        number("most", quantity::force, 0, 1000, "", "of that force")}},
       critical_view_options(),
       {"move_options", "Options of motions.", {speed()}},
       {"rotate_options",

@@ -243,8 +243,8 @@ struct Load {
 Load load_of(lua_State* L, const HandleTarget& target, const Arguments& arguments) {
   const InstrumentState state = instrument_state(L, target);
   const std::optional<ToolPart> part = part_called(arguments.text("part"));
-  if (!part || target.session->checking()) return {state.tip_force, state.touching};
-  const PartLoad& of_part = state.parts[static_cast<std::size_t>(*part)];
+  if (!part || target.session->checking()) return {state.force, state.touching};
+  const PartLoad& of_part = state.load_on(*part);
   return {of_part.force, of_part.touches > 0};
 }
 Load load_of(lua_State* L, const char* method) {
@@ -333,15 +333,14 @@ void push_text_field(lua_State* L, const char* key, const std::string& text) {
 
 /// The part that was asked for, or the one that is pressed hardest; the tip where it is the tip's hardest point.
 ToolPart hardest_part(const InstrumentState& state, const std::optional<ToolPart>& asked) {
-  const auto load = [&](ToolPart part) -> const PartLoad& {
-    return state.parts[static_cast<std::size_t>(part)];
-  };
-  ToolPart part =
-      load(ToolPart::jaws).largest >= load(ToolPart::shaft).largest ? ToolPart::jaws : ToolPart::shaft;
-  if (load(ToolPart::jaws).touches == 0) part = ToolPart::shaft;
-  if (load(ToolPart::shaft).touches == 0) part = ToolPart::jaws;
+  ToolPart part = state.load_on(ToolPart::jaws).largest >= state.load_on(ToolPart::shaft).largest
+                      ? ToolPart::jaws
+                      : ToolPart::shaft;
+  if (state.load_on(ToolPart::jaws).touches == 0) part = ToolPart::shaft;
+  if (state.load_on(ToolPart::shaft).touches == 0) part = ToolPart::jaws;
   if (asked) part = *asked;
-  const bool at_tip = load(ToolPart::tip).touches > 0 && load(ToolPart::tip).at == load(ToolPart::jaws).at;
+  const bool at_tip = state.load_on(ToolPart::tip).touches > 0 &&
+                      state.load_on(ToolPart::tip).at == state.load_on(ToolPart::jaws).at;
   return part == ToolPart::jaws && at_tip ? ToolPart::tip : part;
 }
 
@@ -393,16 +392,42 @@ StepsScript& steps_of(lua_State* L, const char* method) {
   return *steps;
 }
 
+/// The band that a step asks for; none where its three keys are not there, and complains where they do not fit.
+std::optional<ForceBand> take_band(lua_State* L, ScriptSession& session, TableReader& options) {
+  ForceBand band;
+  std::optional<double> least, most;
+  options.take("force_on", band.instrument);
+  const bool named = !band.instrument.empty();
+  options.take("least", least);
+  options.take("most", most);
+  if (!named && !least && !most) return std::nullopt;
+  if (!named || !least || !most || !(*least < *most)) {
+    session.complain(L, "force_on, least and most say together which force a step asks for",
+                     "write force_on = \"left\", least = 1.5 * N, most = 3 * N");
+    return std::nullopt;
+  }
+  std::vector<std::string> names;
+  for (const InstrumentDefinition& instrument : session.scene().instruments) names.push_back(instrument.name);
+  if (std::find(names.begin(), names.end(), band.instrument) == names.end()) {
+    session.complain(L, fmt::format("there is no instrument \"{}\"", band.instrument),
+                     suggestion(band.instrument, names));
+    return std::nullopt;
+  }
+  band.least = *least;
+  band.most = *most;
+  return band;
+}
+
 int step(lua_State* L) {
   StepsScript& steps = steps_of(L, "step");
   steps.try_step();
   Arguments arguments(L, steps, "Steps", "step");
-  double limit = 0;
-  std::string hint;
+  StepOptions about;
   TableReader options = arguments.options("step_options");
-  options.take("limit", limit);
-  options.take("hint", hint);
-  if (arguments.finish()) steps.step(L, arguments.text("name"), arguments.text("title"), limit, hint);
+  options.take("limit", about.limit);
+  options.take("hint", about.hint);
+  about.band = take_band(L, steps, options);
+  if (arguments.finish()) steps.step(L, arguments.text("name"), arguments.text("title"), about);
   return 0;
 }
 

@@ -298,12 +298,12 @@ TouchedPlace ScriptSession::contact(lua_State* L, int instrument,
     place.organ = scene().anatomy.organs.front().name;
     place.landmark = landmarks.front();
     place.at = landmark(L, place.landmark);
-    place.force = stand_in_instrument(instrument).tip_force.norm();
+    place.force = stand_in_instrument(instrument).force.norm();
     return place;
   }
   const InstrumentState& state = world(L).report().instruments[static_cast<std::size_t>(instrument)];
   place.part = choose(state);
-  const PartLoad& load = state.parts[static_cast<std::size_t>(place.part)];
+  const PartLoad& load = state.load_on(place.part);
   if (load.touches == 0) return place;
   place.at = load.at;
   place.organ = load.organ;
@@ -343,8 +343,8 @@ InstrumentState ScriptSession::stand_in_instrument(int instrument) {
     state.tip += way * (scene().anatomy.organs.front().fundus - state.tip);
   }
   state.tip = known_tip(instrument).value_or(state.tip);
-  state.tip_force = Vec3(0, 0, force_at[level]);
-  state.handle_force = state.tip_force;
+  state.force = Vec3(0, 0, force_at[level]);
+  state.handle_force = state.force;
   state.touching = level > 0;
   const std::size_t grip = static_cast<std::size_t>(2 * level + (guess_ ? 1 : 0));
   state.grip = static_cast<GripState>(grip % grip_state_names().size());

@@ -194,8 +194,8 @@ int StepsScript::wait_until(lua_State* L, int predicate) {
   return suspend(L, std::move(wait));
 }
 
-void StepsScript::step(lua_State* L, const std::string& name, const std::string& title, double limit,
-                       const std::string& hint) {
+void StepsScript::step(lua_State* L, const std::string& name, const std::string& title,
+                       const StepOptions& options) {
   if (!may_wait(L, "step") || !is_name(L, "step", name)) return;
   if (declared_.steps.size() >= most_steps) {
     luaL_error(L, "more than %d steps", static_cast<int>(most_steps));
@@ -214,7 +214,7 @@ void StepsScript::step(lua_State* L, const std::string& name, const std::string&
   current_ = name;
   if (checking()) return;
   timed_out_ = false;
-  progress_->begin_step(now_, name, title, limit, hint);
+  progress_->begin_step(now_, name, title, options);
 }
 
 void StepsScript::note(lua_State* L, const std::string& name, const Value& value, const std::string& unit) {

@@ -29,8 +29,7 @@ class StepsScript final : public ScriptSession {
   int wait_until(lua_State* L, int predicate) override;
   /// A step is about to be declared: what is said of it stands for what follows from it.
   void try_step() { step_tried_ = true; }
-  void step(lua_State* L, const std::string& name, const std::string& title, double limit,
-            const std::string& hint);
+  void step(lua_State* L, const std::string& name, const std::string& title, const StepOptions& options);
   void missed(lua_State* L, const std::string& why);
   /// So far; in a dry run none.
   std::vector<SessionEvent> events(lua_State* L);

@@ -10,20 +10,20 @@ namespace {
 /// Where to go from the top.
 std::string contents(const Page& page) {
   std::string out = "<nav aria-label=\"Contents\"><ul>";
-  if (page.rows.size() != 1) out += "<li><a href=\"#overview\">Overview</a></li>";
+  if (page.count() != 1 || page.groups.empty()) out += "<li><a href=\"#overview\">Overview</a></li>";
   const std::pair<const char*, const char*> parts[] = {
       {"score", "Score"},       {"time", "Timeline"},
       {"pictures", "Pictures"}, {"plots", "Forces and paths"},
       {"events", "Events"},     {"figures", "All figures"}};
-  for (const PageRow& row : page.rows) {
-    if (!row.problem.empty()) continue;
-    if (page.rows.size() > 1) {
-      out += fmt::format("<li><a href=\"#{}recording\">{}</a></li>", row.prefix, escaped(row.name));
-      continue;
+  for (const PageGroup& group : page.groups)
+    for (const PageRow& row : group.rows) {
+      if (page.count() > 1) {
+        out += fmt::format("<li><a href=\"#{}recording\">{}</a></li>", row.prefix, escaped(row.name));
+        continue;
+      }
+      for (const auto& [id, words] : parts)
+        out += fmt::format("<li><a href=\"#{}{}\">{}</a></li>", row.prefix, id, words);
     }
-    for (const auto& [id, words] : parts)
-      out += fmt::format("<li><a href=\"#{}{}\">{}</a></li>", row.prefix, id, words);
-  }
   return out + "</ul></nav>\n";
 }
 

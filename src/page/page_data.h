@@ -34,7 +34,7 @@ struct PageEvent {
 };
 
 struct PagePart {
-  std::string name, explanation;
+  std::string name, title, explanation;  ///< as the author calls it; what it is of, in words, with the unit
   double weight = 0, points = 0;
   std::optional<double> measured;
   std::optional<std::array<double, 2>> novice_expert;  ///< none of a penalty
@@ -67,11 +67,18 @@ struct PageLevel {
   double y = 0;
 };
 
+/// What is asked for while something lasts.
+struct PageBand {
+  std::string name;
+  double low = 0, high = 0, from = 0, to = 0;  ///< of y; of x
+};
+
 struct PagePlot {
   std::string title, x_label, y_label;
   bool is_path = false;  ///< both axes to one scale; else x is time, s
   std::vector<PageCurve> curves;
   std::vector<PageLevel> levels;  ///< not of a path
+  std::vector<PageBand> bands;    ///< not of a path
 };
 
 /// A name and what it is, such as a metric's.
@@ -96,6 +103,7 @@ struct PageRecording {
   bool simulated = true;  ///< again: else forces are not known
   std::size_t pictures_left_out = 0;
   std::vector<PagePlot> plots;
+  std::vector<PageFact> attempt;  ///< who, when and by what
   std::vector<PageFact> parameters, metrics, noted;
   std::vector<std::string> notes;
 };
@@ -103,7 +111,8 @@ struct PageRecording {
 /// A recording's line in the overview.
 struct PageRow {
   std::string prefix, name, verdict;
-  std::string problem;  ///< why it has no score; then nothing follows
+  std::string problem;         ///< why it has no score; then nothing follows
+  std::string trainee, began;  ///< may be empty
   bool finished = false, passed = false, unsafe = false;
   std::optional<double> total;                ///< points; none where the simulation failed
   std::string steps;                          ///< done, of how many: "3/5"
@@ -112,14 +121,31 @@ struct PageRow {
   std::size_t errors = 0;
 };
 
+/// A part's column in the overview.
+struct PagePartHead {
+  std::string name, title, points;  ///< title as PagePart's; the points that it may earn
+};
+
+/// Attempts that may be compared: of one mode, one set of parameters and one score.
+struct PageGroup {
+  std::string title;     ///< what tells it from the others: "exam, anatomy = wide"
+  double pass_mark = 0;  ///< points
+  std::vector<PagePartHead> parts;
+  std::vector<PageRow> rows;
+};
+
 /// All but the recordings' own sections.
 struct Page {
   std::string title, scenario, file;
   std::string benchmarks, calibration;  ///< whose figures, and where they come from
-  double pass_mark = 0;                 ///< points
   bool of_a_class = false;  ///< recordings of different people; else of one, in the order of their attempts
-  std::vector<PageFact> parts;  ///< name, and the points that it may earn
-  std::vector<PageRow> rows;
+  std::vector<PageGroup> groups;
+  std::vector<PageRow> not_counted;  ///< without a score, or copies: with their problem
+  std::size_t count() const {
+    std::size_t rows = not_counted.size();
+    for (const PageGroup& group : groups) rows += group.rows.size();
+    return rows;
+  }
 };
 
 }  // namespace calot

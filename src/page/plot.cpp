@@ -45,6 +45,7 @@ Axes axes_of(const PagePlot& plot) {
       y.add(point[1]);
     }
   for (const PageLevel& level : plot.levels) y.add(level.y);
+  for (const PageBand& band : plot.bands) y.add(band.high);
   if (!plot.is_path) {
     if (y.low > 0 && y.low < 0.5 * y.high) y.low = 0;
     SvgScale time = SvgScale::around(x.low, x.high, 6);
@@ -77,6 +78,14 @@ std::string grid(const PagePlot& plot, const Axes& axes) {
     out += svg_text(left - 5, axes.y_of(y) + 4, axes.y.text(y), "end");
   }
   out += svg_text(left + inner_width / 2, plot_height - 6, plot.x_label, "mid");
+  return out;
+}
+
+std::string bands(const PagePlot& plot, const Axes& axes) {
+  std::string out;
+  for (const PageBand& band : plot.bands)
+    out += fmt::format("<path d=\"M{0:.1f} {2:.1f}H{1:.1f}V{3:.1f}H{0:.1f}Z\" class=\"band\"/>",
+                       axes.x_of(band.from), axes.x_of(band.to), axes.y_of(band.low), axes.y_of(band.high));
   return out;
 }
 
@@ -123,6 +132,8 @@ std::string description(const PageRecording& recording, const PagePlot& plot) {
                          : fmt::format(" {}: {:.4g} to {:.4g}.", curve.name, y.low, y.high);
   }
   for (const PageLevel& level : plot.levels) text += fmt::format(" {}: {:.4g}.", level.name, level.y);
+  for (const PageBand& band : plot.bands)
+    text += fmt::format(" {}: {:.4g} to {:.4g}.", band.name, band.low, band.high);
   const auto errors = std::count_if(recording.events.begin(), recording.events.end(),
                                     [](const PageEvent& event) { return event.error; });
   if (!plot.is_path && errors > 0) text += fmt::format(" {} errors are marked.", errors);
@@ -140,6 +151,8 @@ std::string legend(const PageRecording& recording, const PagePlot& plot) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i)
     entry(fmt::format("curve c{}", i % colours), plot.curves[i].name);
   for (const PageLevel& level : plot.levels) entry("level", fmt::format("{}: {:.4g}", level.name, level.y));
+  for (const PageBand& band : plot.bands)
+    entry("band", fmt::format("{}: {:.4g} to {:.4g}", band.name, band.low, band.high));
   if (plot.is_path) return out + "<li>&#9679; where it begins</li>";
   const auto is_error = [](const PageEvent& event) { return event.error; };
   if (recording.steps.size() > 1) entry("step", "a step begins");
@@ -156,7 +169,7 @@ std::string plot_html(const PageRecording& recording, std::size_t index) {
   std::string out = fmt::format("<figure id=\"{}\"><figcaption><b>{}</b><br>{}</figcaption>\n", id,
                                 escaped(plot.title), escaped(plot.y_label));
   out += svg_begin(id, plot_width, plot_height, plot.title, description(recording, plot));
-  out += grid(plot, axes);
+  out += bands(plot, axes) + grid(plot, axes);
   if (!plot.is_path) out += moments(recording, axes);
   for (const PageLevel& level : plot.levels)
     out += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" class=\"level\"/>", left, axes.y_of(level.y),

@@ -72,9 +72,9 @@ class Section {
 
   std::string part(std::size_t index) const {
     const PagePart& part = recording_.score.parts[index];
-    std::string out =
-        fmt::format("<li><h4>{}</h4><p><b>{:.1f}</b> of {:.1f} points</p><p>{}.</p>", escaped(part.name),
-                    part.points, 100 * part.weight, escaped(part.explanation));
+    std::string out = fmt::format(
+        "<li><h4>{}</h4><p class=\"soft path\">{}</p><p><b>{:.1f}</b> of {:.1f} points</p><p>{}.</p>",
+        escaped(part.title), escaped(part.name), part.points, 100 * part.weight, escaped(part.explanation));
     if (!part.rule.empty()) out += fmt::format("<p>{}</p>", escaped(part.rule));
     out += benchmark_bar(part, fmt::format("{}part-{}", prefix_, index + 1));
     out += fmt::format("<p class=\"soft\">Figures: {}.</p>", escaped(part.calibration));
@@ -215,7 +215,7 @@ class Section {
   }
 
   std::string figures() const {
-    std::string out = head("figures", "All figures") +
+    std::string out = head("figures", "All figures") + facts("The attempt", recording_.attempt) +
                       facts("Parameters of the exercise", recording_.parameters) +
                       facts("What the exercise noted", recording_.noted) +
                       "<details><summary>Everything that was measured</summary>" +

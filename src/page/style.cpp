@@ -58,7 +58,7 @@ svg .mid{text-anchor:middle}svg .end{text-anchor:end}
 .c3{stroke:var(--c3);stroke-dasharray:8 3 2 3}.c4{stroke:var(--c4);stroke-dasharray:4 4}
 .begin.c0{fill:var(--c0)}.begin.c1{fill:var(--c1)}.begin.c2{fill:var(--c2)}.begin.c3{fill:var(--c3)}.begin.c4{fill:var(--c4)}
 .begin{stroke-dasharray:none}
-.level{stroke:var(--bad);stroke-dasharray:8 4;fill:none}.step{stroke:var(--soft);stroke-dasharray:1 3;fill:none}
+.band{fill:var(--good);fill-opacity:.18;stroke:none}.level{stroke:var(--bad);stroke-dasharray:8 4;fill:none}.step{stroke:var(--soft);stroke-dasharray:1 3;fill:none}
 .error{stroke:var(--bad);fill:none;opacity:.8}
 .bar{fill:var(--card);stroke:var(--soft)}.bar.bad{stroke:var(--bad);stroke-width:2}
 .error-mark{fill:var(--bad)}.mark{fill:var(--bg);stroke:var(--fg);stroke-width:1.5}

@@ -26,7 +26,5 @@ std::string plot_html(const PageRecording& recording, std::size_t plot);
 std::string timeline_html(const PageRecording& recording);
 /// Where a part's measure lies between novice and expert.
 std::string benchmark_bar(const PagePart& part, const std::string& id);
-/// The totals: of one person from attempt to attempt, of a class side by side with the median.
-std::string totals_html(const Page& page);
 
 }  // namespace calot

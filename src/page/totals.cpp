@@ -12,9 +12,10 @@ namespace {
 /// The totals as points over the numbers of their rows.
 class TotalsChart {
  public:
-  explicit TotalsChart(const Page& page) : page_(page) {
-    for (std::size_t i = 0; i < page.rows.size(); ++i)
-      if (page.rows[i].total) scored_.push_back({&page.rows[i], i + 1});
+  TotalsChart(const PageGroup& group, bool of_a_class, std::size_t number)
+      : group_(group), of_a_class_(of_a_class), id_(fmt::format("totals-{}", number)) {
+    for (std::size_t i = 0; i < group.rows.size(); ++i)
+      if (group.rows[i].total) scored_.push_back({&group.rows[i], i + 1});
     if (scored_.size() > most_on_a_phone) width_ = 900;
   }
 
@@ -22,13 +23,12 @@ class TotalsChart {
 
   std::string html() const {
     const bool narrow = width_ < 900;
-    const char* title =
-        page_.of_a_class ? "Scores of the class" : "Learning curve: score from attempt to attempt";
+    const char* title = of_a_class_ ? "Scores of the class" : "Learning curve: score from attempt to attempt";
     return fmt::format(
                "<figure{0}><figcaption><b>{1}</b></figcaption>"
                "<div class=\"wide{2}\" role=\"region\" tabindex=\"0\" aria-label=\"{1}\">\n",
                narrow ? " class=\"narrow\"" : "", title, narrow ? "" : " drawing") +
-           svg_begin("totals", width_, height, title, description(), true) + levels() + way() + marks() +
+           svg_begin(id_, width_, height, title, description(), true) + levels() + way() + marks() +
            "</svg></div><p class=\"soft\">Discs passed, rings were finished and did not; dashed rings were "
            "not "
            "finished: beside them stand the steps done. A cross was unsafe.</p></figure>\n";
@@ -50,7 +50,7 @@ class TotalsChart {
   static double y_of(double points) { return top + inner_height * (1 - points / 100); }
 
   std::string description() const {
-    std::string text = fmt::format("{} recordings, pass mark {:g}:", scored_.size(), page_.pass_mark);
+    std::string text = fmt::format("{} recordings, pass mark {:g}:", scored_.size(), group_.pass_mark);
     for (const Scored& each : scored_) text += fmt::format(" {} {:.1f};", each.row->name, *each.row->total);
     return text;
   }
@@ -63,19 +63,19 @@ class TotalsChart {
     std::string out;
     for (int points = 0; points <= 100; points += 20)
       out += level(points, "grid") + svg_text(left - 6, y_of(points) + 4, fmt::format("{}", points), "end");
-    out += level(page_.pass_mark, "level") +
-           svg_text(width_ - right, y_of(page_.pass_mark) - 4, "pass mark", "end");
-    const std::optional<ClassTotals> totals = class_totals(page_);
-    if (page_.of_a_class && totals)  // below its line, as the pass mark is above its own
+    out += level(group_.pass_mark, "level") +
+           svg_text(width_ - right, y_of(group_.pass_mark) - 4, "pass mark", "end");
+    const std::optional<ClassTotals> totals = class_totals(group_);
+    if (of_a_class_ && totals)  // below its line, as the pass mark is above its own
       out += level(totals->median, "step") +
              svg_text(width_ - right, y_of(totals->median) + 13, "median", "end");
-    return out + svg_text((width_ + left - right) / 2, height - 6, page_.of_a_class ? "recording" : "attempt",
-                          "mid");
+    return out +
+           svg_text((width_ + left - right) / 2, height - 6, of_a_class_ ? "recording" : "attempt", "mid");
   }
 
   /// From attempt to attempt; what was not finished is none to compare.
   std::string way() const {
-    if (page_.of_a_class) return {};
+    if (of_a_class_) return {};
     std::string d;
     for (std::size_t i = 0; i < scored_.size(); ++i)
       if (scored_[i].row->finished)
@@ -108,15 +108,17 @@ class TotalsChart {
     return out;
   }
 
-  const Page& page_;
+  const PageGroup& group_;
+  bool of_a_class_;
+  std::string id_;
   std::vector<Scored> scored_;
   double width_ = 420;
 };
 
 }  // namespace
 
-std::string totals_html(const Page& page) {
-  const TotalsChart chart(page);
+std::string totals_html(const PageGroup& group, bool of_a_class, std::size_t number) {
+  const TotalsChart chart(group, of_a_class, number);
   return chart.size() < 2 ? "" : chart.html();
 }
 

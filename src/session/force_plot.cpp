@@ -34,7 +34,7 @@ std::vector<Point> curve_of(const std::vector<InstrumentSample>& samples) {
   double way = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k > 0) way += (samples[k].tip - samples[k - 1].tip).norm();
-    out.push_back({1e3 * way, samples[k].tip_force});
+    out.push_back({1e3 * way, samples[k].force});
   }
   return out;
 }
@@ -64,7 +64,7 @@ std::string axes(const Scale& ways, const Scale& forces) {
     out += text(x_of(0) - 8, y_of(forces.share(force)) + 4, fmt::format("{:.3g}", force), "end", "#333");
   }
   out += text(x_of(0.5), height - 10, "way of the tip, mm", "middle", "#333");
-  out += text(left - 40, top - 20, "force on the tip, N", "start", "#333");
+  out += text(left - 40, top - 20, "force on the whole instrument, N", "start", "#333");
   return out;
 }
 

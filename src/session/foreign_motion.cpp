@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/suggest.h"
+#include "session/csv.h"
 #include "session/registration.h"
 
 namespace calot {
@@ -47,26 +48,6 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
     at = end;
   }
   return numbers;
-}
-
-/// Fields of a row of RFC 4180 on one line; none where a quotation does not end.
-std::optional<std::vector<std::string>> fields_of(std::string_view line, char separator) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
-      fields.back() += line[++i];
-    else if (c == '"')
-      quoted = !quoted;
-    else if (c == separator && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  if (quoted) return std::nullopt;
-  for (std::string& field : fields) field = std::string(trimmed(field));
-  return fields;
 }
 
 /// What all formats share: lines, and what is wrong with them.
@@ -145,7 +126,7 @@ class CsvReader final : public MotionReader {
   bool take_line(std::string_view line) override {
     if (row_ == 1) return read_head(line);
     if (trimmed(line).empty()) return true;
-    const std::optional<std::vector<std::string>> fields = fields_of(line, separator_);
+    const std::optional<std::vector<std::string>> fields = csv_fields(line, separator_);
     if (!fields)
       problem("a quotation does not end on this line", "mend or remove the row");
     else if (fields->size() != columns_)
@@ -163,7 +144,7 @@ class CsvReader final : public MotionReader {
         separator_ = c;
         break;
       }
-    const std::optional<std::vector<std::string>> names = fields_of(line, separator_);
+    const std::optional<std::vector<std::string>> names = csv_fields(line, separator_);
     if (!names) {
       problem("a quotation does not end on this line", "the first line names the columns");
       return false;

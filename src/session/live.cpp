@@ -171,6 +171,7 @@ void LiveSource::begin(const World& world) {
   told_to_wait_.assign(states_now_.size(), 0);
   catching_up_.assign(instruments_.size(), 0);
   started_ = options_.begins_at_once || options_.stamped;
+  heard_ = options_.begins_at_once;
   last_input_ = due_ = clock_.now();
 }
 
@@ -327,6 +328,7 @@ void LiveSource::apply(const LiveInput& input, double at) {
     asked_.actions[i] = input.action;
   }
   ++figures_.inputs;
+  heard_ = true;
   if (!started_) {
     started_ = true;
     due_ = clock_.now();
@@ -345,7 +347,7 @@ void LiveSource::apply(const SessionAct& act, double at) {
     return refuse(
         {{}, fmt::format("no {} while the session is paused", to_text(act.kind)), "`resume` first"});
   if (!started_) due_ = clock_.now();
-  started_ = true;
+  started_ = heard_ = true;
   asked_.acts.push_back(act);
   last_input_ = at;
   said_silence_ = false;
@@ -444,6 +446,8 @@ StepInput LiveSource::follow(double dt) {
 
 Result<std::optional<StepInput>> LiveSource::conclude() const {
   const bool scored = options_.mode == LiveMode::exam && !stopped();
+  if (never_began())
+    return fail(FailureKind::interrupted, "the exam ended before it began: nothing had come");
   if (ended_by_ == "end" || (scored && !ended_by_.empty())) return std::optional<StepInput>();
   return fail(FailureKind::interrupted, "the session was ended by its operator");
 }
@@ -463,6 +467,7 @@ LiveFigures LiveSource::figures() const {
 std::vector<std::string> LiveSource::notes() const {
   std::vector<std::string> notes;
   const LiveFigures f = figures();
+  if (never_began()) notes.emplace_back("the exam ended before it began: nothing had come");
   if (f.ended_by == "abandon") notes.emplace_back("the session was abandoned by its operator");
   if (f.ended_by == "restart") notes.emplace_back("the session was begun again by its operator");
   if (f.ended_by == "lost") notes.emplace_back("the input was lost before it said `end`");

@@ -202,6 +202,8 @@ class LiveSource : public InputSource {
   void set_paused(bool paused, const std::string& why);
   void end_by(const std::string& how);
   bool stopped() const { return options_.stop != nullptr && *options_.stop; }
+  /// An exam that ended before anything had come: it has no score.
+  bool never_began() const { return options_.mode == LiveMode::exam && !heard_ && !ended_by_.empty(); }
   bool over() const { return !ended_by_.empty() || stopped(); }
   void refuse(const Problem& problem);
   bool is_exchange(const LiveInput& input);
@@ -224,6 +226,7 @@ class LiveSource : public InputSource {
   std::vector<InstrumentState> states_now_;  ///< of the world, but for the laparoscope
   std::vector<char> told_to_wait_;           ///< the operator knows that it waits
   bool begun_ = false, started_ = false;     ///< called at all; an input has come, or need not
+  bool heard_ = false;                       ///< an input or an act has come, or none need come
   bool paused_ = false;
   std::optional<double> lost_at_;
   std::string ended_by_;

@@ -58,15 +58,15 @@ std::uint64_t exercise_hash(const ExerciseDefinition& exercise) {
 }
 
 OrderedJson measured_json(const Measured& measured) {
-  return {{"exercise_hash", hex(measured.exercise_hash)}, {"metrics", measured.metrics},
-          {"steps", steps_json(measured.progress)},       {"events", events_json(measured.progress)},
-          {"noted", notes_json(measured.progress)},       {"notes", measured.notes}};
+  return {{"metrics", measured.metrics},
+          {"steps", steps_json(measured.progress)},
+          {"events", events_json(measured.progress)},
+          {"noted", notes_json(measured.progress)},
+          {"notes", measured.notes}};
 }
 
-Measured read_measured(const Json& json, std::vector<std::string>& problems) {
-  JsonFields fields(json, problems);
+Measured read_measured(JsonFields& fields, std::vector<std::string>& problems) {
   Measured measured;
-  measured.exercise_hash = fields.hash("exercise_hash");
   measured.metrics = read_metrics(fields.any("metrics"), problems);
   measured.progress = read_progress(fields.any("steps"), fields.any("events"), fields.any("noted"), problems);
   measured.notes = fields.texts("notes");

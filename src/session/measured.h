@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "session/exercise.h"
-#include "session/json.h"
+#include "session/json_fields.h"
 #include "session/progress.h"
 
 namespace calot {
 
 struct Measured {
-  std::uint64_t exercise_hash = 0;  ///< of what was played: exercise_hash()
   std::map<std::string, double> metrics;
   Progress progress;               ///< steps, events, notes; its own metrics are among those above
   std::vector<std::string> notes;  ///< what could not be measured or is less accurate, and why
@@ -25,7 +24,7 @@ struct Measured {
 std::uint64_t exercise_hash(const ExerciseDefinition& exercise);
 
 OrderedJson measured_json(const Measured& measured);
-/// What is wrong is added to `problems`.
-Measured read_measured(const Json& json, std::vector<std::string>& problems);
+/// From the members that nobody took yet; what is wrong is added to `problems`, the reader's own.
+Measured read_measured(JsonFields& fields, std::vector<std::string>& problems);
 
 }  // namespace calot

@@ -120,14 +120,14 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
   double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, peak_lag = 0, peak_pads = 0, sum = 0;
   int loaded = 0;
   for (const InstrumentSample& sample : samples) {
-    peak = std::max(peak, sample.tip_force);
+    peak = std::max(peak, sample.force);
     peak_handle = std::max(peak_handle, sample.handle_force);
     peak_jaws = std::max(peak_jaws, sample.jaws_force);
     peak_shaft = std::max(peak_shaft, sample.shaft_force);
     peak_lag = std::max(peak_lag, sample.lag);
     peak_pads = std::max(peak_pads, sample.pad_pressure);
-    if (sample.tip_force > smallest_force) {
-      sum += sample.tip_force;
+    if (sample.force > smallest_force) {
+      sum += sample.force;
       ++loaded;
     }
   }
@@ -239,10 +239,13 @@ const std::vector<MetricRow>& metric_rows() {
       {"depth_perception_mm", instrument, "way in and out along the shaft, sum |dd|"},
       {"angular_path_deg", instrument, "sum of the angle between u and the next u"},
       {"response_orientation_deg", instrument, "turning about the shaft, sum |dpsi|"},
-      {"peak_force_N", instrument, "largest force of the tissue on it, raw", EventKind::overforce},
-      {"mean_force_N", instrument, "mean of that force where it is above 1 mN, raw", EventKind::overforce},
-      {"peak_handle_force_N", instrument, "largest force felt at its handle, raw", EventKind::overforce},
-      {"peak_jaws_force_N", instrument, "largest force on its jaws, or on what its shaft ends in, raw"},
+      {"peak_force_N", instrument,
+       "largest force of the tissue on the whole of it, raw: opposite forces on jaws and shaft cancel"},
+      {"mean_force_N", instrument, "mean of that force where it is above 1 mN, raw"},
+      {"peak_handle_force_N", instrument, "largest force felt at its handle, raw"},
+      {"peak_jaws_force_N", instrument,
+       "largest force on its jaws, or on what its shaft ends in, raw: what its force_limit judges",
+       EventKind::overforce},
       {"peak_shaft_force_N", instrument, "largest force on its shaft, raw"},
       {"peak_lag_mm", instrument,
        "furthest that its tip was from where it was commanded to be, as its hand gave way, raw"},
@@ -289,6 +292,22 @@ const std::vector<MetricRow>& metric_rows() {
       {"aspirated_mL", total, "what needles drew out of all organs", EventKind::aspirated},
   };
   return rows;
+}
+
+std::string metric_title(const std::string& metric) {
+  static const std::pair<std::string_view, const char*> units[] = {
+      {"_mm2", "mm²"}, {"_mm", "mm"},   {"_mL", "mL"}, {"_N", "N"},   {"_s", "s"},
+      {"_deg", "°"},   {"_kPa", "kPa"}, {"_Pa", "Pa"}, {"_Hz", "Hz"}, {"_pct", "%"}};
+  const std::size_t dot = metric.rfind('.');
+  std::string name = metric.substr(dot == std::string::npos ? 0 : dot + 1), unit;
+  for (const auto& [ending, word] : units)
+    if (unit.empty() && name.ends_with(ending)) {
+      name.resize(name.size() - ending.size());
+      unit = std::string(", ") + word;
+    }
+  if (name == "time_in") name = "time held";
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return (dot == std::string::npos ? "" : metric.substr(0, dot) + ": ") + name + unit;
 }
 
 std::string pattern(const MetricRow& row) {

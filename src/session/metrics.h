@@ -15,6 +15,10 @@
 
 namespace calot {
 
+/// Raised with every change of what a metric or an event means, so that figures of two meanings never stand under one name.
+/// 1: overforce judged the sum of all forces on an instrument. 2: it judges those on its jaws.
+inline constexpr int measures_version = 2;
+
 enum class MetricOwner {
   instrument,
   organ,
@@ -43,6 +47,9 @@ std::string pattern(const MetricRow& row);
 
 /// Every metric a session of this exercise can measure.
 std::vector<std::string> metric_names(const ExerciseDefinition& exercise);
+
+/// A metric in words, its unit last: "left: path length, mm" of left.path_length_mm.
+std::string metric_title(const std::string& metric);
 
 /// The events behind a metric, called without its owner.
 std::optional<EventKind> event_behind(const std::string& metric);

@@ -9,14 +9,15 @@ bool is_event(const WorldEvent& event, const std::string& kind, const std::strin
          (organ.empty() || event.organ == organ || event.organ.starts_with(organ + "."));
 }
 
-void Progress::begin_step(double time, const std::string& name, const std::string& title, double limit,
-                          const std::string& hint) {
+void Progress::begin_step(double time, const std::string& name, const std::string& title,
+                          const StepOptions& options) {
   end_step(time, "done");
   StepRecord step;
   step.name = name;
   step.title = title;
-  step.hint = hint;
-  step.limit = limit;
+  step.hint = options.hint;
+  step.limit = options.limit;
+  step.band = options.band;
   step.started = time;
   steps_.push_back(std::move(step));
 }

@@ -10,10 +10,24 @@
 
 namespace calot {
 
+/// A force that is asked for, so that a plot can show it.
+struct ForceBand {
+  std::string instrument;      ///< on whose jaws
+  double least = 0, most = 0;  ///< N
+};
+
+/// What the author says of a step besides its name and title.
+struct StepOptions {
+  double limit = 0;                    ///< s, 0: none
+  std::string hint = {};               ///< how it is done, for who practises; in no report
+  std::optional<ForceBand> band = {};  ///< in no report
+};
+
 struct StepRecord {
   std::string name, title;
-  std::string hint;                 ///< how it is done, for who practises; in no report
+  std::string hint;                 ///< StepOptions
   double limit = 0;                 ///< s, 0: none
+  std::optional<ForceBand> band;    ///< StepOptions
   double started = 0, ended = -1;   ///< s; ended < 0 while it runs
   std::string outcome = "running";  ///< running, done, timeout, missed, bail_out, aborted
 };
@@ -43,8 +57,8 @@ class Progress {
   Progress(std::vector<StepRecord> steps, std::vector<SessionEvent> events, std::vector<Note> notes)
       : steps_(std::move(steps)), events_(std::move(events)), notes_(std::move(notes)) {}
   /// Ends the running step as done, if any, and starts the next.
-  void begin_step(double time, const std::string& name, const std::string& title, double limit,
-                  const std::string& hint = {});
+  void begin_step(double time, const std::string& name, const std::string& title,
+                  const StepOptions& options = {});
   /// Ends the running step, if any, and raises step_done, step_timeout or step_missed (with `why`) where the outcome is
   /// that.
   void end_step(double time, const std::string& outcome, const std::string& why = {});

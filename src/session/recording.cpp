@@ -3,20 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
 #include "base/suggest.h"
 #include "session/acts.h"
 #include "session/json_fields.h"
-#include "session/live.h"
+#include "session/metrics.h"
 #include "session/runner.h"
+#include "session/scoring.h"
 
 namespace calot {
 namespace {
 
-constexpr const char* schema = "calot.recording/2";
-constexpr const char* schema_without_actions = "calot.recording/1";
+constexpr std::array schemas = {"calot.recording/1", "calot.recording/2", "calot.recording/3"};
+constexpr int newest = 3, with_actions = 2, with_versions = 3;
 constexpr std::size_t longest_line = 1 << 20;                 // bytes
 constexpr std::size_t longest_file = std::size_t{128} << 20;  // bytes: an hour of two instruments at 200 Hz
 constexpr double highest_rate = 1e6;                          // Hz
@@ -30,23 +32,24 @@ Make parse_make(JsonFields& fields) {
   return make;
 }
 
-std::string parse_mode(JsonFields& fields) {
-  const std::string mode = fields.text("mode");
-  const std::vector<std::string>& known = live_mode_names();
-  if (std::find(known.begin(), known.end(), mode) == known.end())
-    fields.wrong("mode", fmt::format("is \"{}\"; {}", shortened(mode, 40), suggestion(mode, known)));
-  return mode;
+/// By which rules; none before calot.recording/3.
+void parse_versions(JsonFields& fields, RecordingHeader& header) {
+  constexpr int most = 1'000'000;
+  if (fields.has("exercise_hash")) header.exercise_hash = fields.hash("exercise_hash");
+  if (fields.has("measures")) header.measures = fields.integer("measures", 1, most);
+  if (fields.has("scoring")) header.scoring = fields.integer("scoring", 1, most);
 }
 
 RecordingHeader parse_header(const Json& json, std::vector<std::string>& problems) {
   JsonFields fields(json, problems);
   RecordingHeader header;
   const std::string given = fields.text("schema");
-  if (given != schema && given != schema_without_actions) {
-    problems = {fmt::format("this is not a recording of schema {} or {}", schema, schema_without_actions)};
+  const auto known = std::find(schemas.begin(), schemas.end(), given);
+  if (known == schemas.end()) {
+    problems = {fmt::format("this is not a recording of schema {}", fmt::join(schemas, ", "))};
     return header;
   }
-  header.has_actions = given == schema;
+  header.version = static_cast<int>(known - schemas.begin()) + 1;
   header.scenario = fields.text("scenario");
   if (fields.has("file")) header.file = fields.text("file");
   if (fields.has("source_hash")) header.source_hash = fields.hash("source_hash");
@@ -54,7 +57,13 @@ RecordingHeader parse_header(const Json& json, std::vector<std::string>& problem
   if (fields.has("params")) header.params = fields.text_map("params");
   header.rate = fields.number("rate_Hz", 1 / highest_rate, highest_rate);
   header.instruments = fields.texts("instruments");
-  if (fields.has("mode")) header.mode = parse_mode(fields);
+  if (header.version >= with_versions) {
+    parse_versions(fields, header);
+    header.attempt = read_attempt(fields);
+  } else {
+    header.measures = header.scoring = 1;
+    header.attempt.mode = read_mode(fields);
+  }
   header.make = parse_make(fields);
   if (fields.has("state_hash")) header.state_hash = fields.hash("state_hash");
   fields.expect_no_others();
@@ -124,7 +133,7 @@ RecordedStep parse_step(const Json& json, const RecordingHeader& header, double 
   RecordedStep step;
   step.time = fields.number("time_s");
   step.input.instruments = parse_poses(fields.any("poses"), problems);
-  if (header.has_actions && fields.has("actions"))
+  if (header.version >= with_actions && fields.has("actions"))
     step.input.actions = parse_actions(fields.texts("actions"), problems);
   if (fields.has("laparoscope"))
     step.input.laparoscope = parse_laparoscope(fields.any("laparoscope"), problems);
@@ -143,9 +152,15 @@ RecordedStep parse_step(const Json& json, const RecordingHeader& header, double 
   return step;
 }
 
-Measured parse_measured(const Json& json, std::vector<std::string>& problems) {
+/// Before calot.recording/3 the exercise's hash stands here.
+Measured parse_measured(const Json& json, RecordingHeader& header, std::vector<std::string>& problems) {
   JsonFields fields(json, problems);
-  Measured measured = read_measured(fields.any("measured"), problems);
+  JsonFields inner(fields.any("measured"), problems);
+  if (header.version < with_versions)
+    header.exercise_hash = inner.hash("exercise_hash");
+  else if (!header.exercise_hash || header.measures == 0)
+    problems.emplace_back("what was measured needs exercise_hash and measures in the first line");
+  Measured measured = read_measured(inner, problems);
   fields.expect_no_others();
   return measured;
 }
@@ -249,7 +264,7 @@ class Reader {
     else if (recording_.measured)
       problems.emplace_back("there is more between what was measured and the recording's end");
     else if (json.is_object() && json.contains("measured"))
-      recording_.measured = parse_measured(json, problems);
+      recording_.measured = parse_measured(json, recording_.header, problems);
     else
       add_step(parse_step(json, recording_.header, static_cast<double>(line_ - 1) / recording_.header.rate,
                           problems),
@@ -292,11 +307,15 @@ std::optional<std::string> cut_note(const Recording& recording) {
 }
 
 RecordingHeader recording_header(const ExerciseDefinition& exercise, const World& world,
-                                 const std::string& file) {
+                                 const std::string& file, const Attempt& attempt) {
   RecordingHeader header;
   header.scenario = exercise.id;
   header.file = file;
   header.source_hash = exercise.source_hash;
+  header.exercise_hash = exercise_hash(exercise);
+  header.measures = measures_version;
+  header.scoring = scoring_version;
+  header.attempt = attempt;
   header.seed = exercise.seed;
   header.params = exercise.params;
   header.rate = exercise.scene.solver.rate;
@@ -311,13 +330,16 @@ RecordingHeader recording_header(const ExerciseDefinition& exercise, const World
 Result<RecordingWriter> RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
   RecordingWriter writer;
   writer.out_.open(path, std::ios::trunc);
-  OrderedJson json = {{"schema", schema}, {"scenario", header.scenario}, {"file", header.file}};
+  OrderedJson json = {{"schema", schemas[newest - 1]}, {"scenario", header.scenario}, {"file", header.file}};
   if (header.source_hash) json["source_hash"] = hex(*header.source_hash);
+  if (header.exercise_hash) json["exercise_hash"] = hex(*header.exercise_hash);
+  if (header.measures > 0) json["measures"] = header.measures;
+  if (header.scoring > 0) json["scoring"] = header.scoring;
   json["seed"] = header.seed;
   json["params"] = header.params;
   json["rate_Hz"] = header.rate;
   json["instruments"] = header.instruments;
-  if (!header.mode.empty()) json["mode"] = header.mode;
+  write_attempt(header.attempt, json);
   json["toolchain"] = header.make.toolchain;
   json["instruction_set"] = header.make.instruction_set;
   json["mathematics"] = header.make.mathematics;

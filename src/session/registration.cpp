@@ -174,6 +174,7 @@ class Importer {
   void write_header(const std::vector<std::string>& names) {
     RecordingHeader& header = result_.recording.header;
     header.scenario = exercise_.id;
+    header.attempt.source = "import";
     header.rate = rate_;
     header.instruments = names;
     result_.recording.end = to_text(SessionEnd::source_ended);

@@ -7,6 +7,8 @@
 #include "session/build_info.h"
 #include "session/csv.h"
 #include "session/json.h"
+#include "session/measured.h"
+#include "session/metrics.h"
 #include "session/progress_json.h"
 
 namespace calot {
@@ -113,7 +115,9 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
                       {"steps", score.steps},
                       {"missing_steps", score.missing},
                       {"uncapped_total", has_total ? OrderedJson(score.uncapped) : OrderedJson()},
-                      {"api", exercise.api}};
+                      {"api", exercise.api},
+                      {"scoring", scoring_version},
+                      {"digest", hex(score_digest(exercise))}};
   if (score.bail_out)
     json["bail_out"] = {{"right", score.bail_out->share > 0}, {"reason", score.bail_out->reason}};
   json["critical"] = OrderedJson::array();
@@ -132,6 +136,7 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
   json["parts"] = OrderedJson::array();
   for (const ScoredPart& part : score.parts) {
     OrderedJson entry = {{"name", part.definition.name},
+                         {"title", part_title(part.definition)},
                          {"kind", score_part_kinds()[static_cast<std::size_t>(part.definition.kind)]}};
     entry["measured"] = part.measured ? OrderedJson(*part.measured) : OrderedJson();
     entry["benchmark"] = benchmark_json(part.definition);
@@ -178,6 +183,10 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
                       {"file", exercise.file},      {"seed", exercise.seed},   {"params", exercise.params},
                       {"end", to_text(session.end)}};
   if (session.end == SessionEnd::failed) json["failure"] = to_text(session.failure);
+  json["exercise_hash"] = hex(exercise_hash(exercise));
+  json["measures"] = measures_version;
+  json["attempt"] = OrderedJson::object();
+  write_attempt(report.attempt, json["attempt"]);
   json["steps"] = steps_json(session.progress);
   json["events"] = events_json(session.progress);
   json["metrics"] = session.metrics;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "session/attempt.h"
 #include "session/exercise.h"
 #include "session/json.h"
 #include "session/live.h"
@@ -19,6 +20,7 @@ struct SessionReport {
   bool has_total() const { return !aborted && !score.parts.empty(); }
   double start_to_first_frame_s = -1;  ///< of the process; negative: no frame was drawn
   std::optional<LiveFigures> live;     ///< of a session that was operated
+  Attempt attempt;                     ///< who operated, when and by what
 };
 
 /// Total (null unless `has_total`), outcome, steps, the gates that were tripped (of these, critical events once more) and

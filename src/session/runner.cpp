@@ -57,8 +57,7 @@ class Session {
  private:
   void finish_recording() {
     if (options_.recording == nullptr) return;
-    options_.recording->write(
-        {exercise_hash(script_.definition()), result_.metrics, result_.progress, result_.notes});
+    options_.recording->write({result_.metrics, result_.progress, result_.notes});
     const bool by_source = result_.end == SessionEnd::source_ended && !options_.source_end.empty();
     options_.recording->finish(by_source ? options_.source_end : to_text(result_.end));
   }

@@ -341,6 +341,23 @@ const std::vector<std::string>& score_part_kinds() {
   return names;
 }
 
+std::string part_title(const ScorePart& part) {
+  switch (part.kind) {
+    case ScorePartKind::benchmark:
+    case ScorePartKind::critical_view:
+      return metric_title(part.metric);
+    case ScorePartKind::penalty:
+      return fmt::format("how often {}", event_row(part.event).doc);
+    case ScorePartKind::procedure:
+      return "steps done, less its errors";
+    case ScorePartKind::time:
+      return "time of the session with its errors' costs, s";
+    case ScorePartKind::rule:
+      return "a rule of the exercise's author";
+  }
+  return {};
+}
+
 const TrippedGate* failing_gate(const Score& score) {
   return !score.gates.empty() && score.gates.front().fails ? &score.gates.front() : nullptr;
 }

@@ -17,6 +17,10 @@ namespace calot {
 inline constexpr const char* api_1_remark =
     "Scored by api = 1: parts earn points whether their steps were done or not.";
 
+/// Raised with every change of how metrics and events become points and outcomes. 1: any bail-out completed, and there were
+/// no outcomes. 2: parts earn by their steps (api 2), and every attempt has an outcome.
+inline constexpr int scoring_version = 2;
+
 /// What an attempt was. In the order in which tables show them, the best first.
 enum class AttemptOutcome {
   passed,          ///< every step done, no gate that fails, the pass mark reached
@@ -76,6 +80,13 @@ struct Score {
     return outcome == AttemptOutcome::passed || outcome == AttemptOutcome::right_bail_out;
   }
 };
+
+/// A hash of all that turns figures into points: parts with their weights and figures, gates, cap and pass mark, and where
+/// an author's function judges, the exercise's text. Totals of two digests are of two scores.
+std::uint64_t score_digest(const ExerciseDefinition& exercise);
+
+/// What a part judges, with its unit, in words: "left: peak jaws force, N".
+std::string part_title(const ScorePart& part);
 
 /// The first gate that fails the exercise; null: none.
 const TrippedGate* failing_gate(const Score& score);

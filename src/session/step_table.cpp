@@ -32,7 +32,9 @@ Result<StepTable> StepTable::create(const std::string& path, const SceneDefiniti
   table.out_.open(path, std::ios::trunc);
   std::string header = "time_s";
   for (const InstrumentDefinition& instrument : scene.instruments) {
-    header += fmt::format(",{0}.tip_force_N,{0}.handle_force_N,{0}.jaw_deg,{0}.grip_points", instrument.name);
+    header += fmt::format(
+        ",{0}.force_N,{0}.jaws_force_N,{0}.shaft_force_N,{0}.handle_force_N,{0}.jaw_deg,{0}.grip_points",
+        instrument.name);
   }
   for (const OrganDefinition& organ : scene.anatomy.organs) {
     header += organ_header(organ.name);
@@ -68,7 +70,8 @@ bool StepTable::write(const StepReport& report) {
   if (!fresh.empty() && !widen(fresh)) return false;
   std::string row = fmt::format("{}", report.time);
   for (const InstrumentState& state : report.instruments) {
-    row += fmt::format(",{},{},{},{}", state.tip_force.norm(), state.handle_force.norm(),
+    row += fmt::format(",{},{},{},{},{},{}", state.force.norm(), state.load_on(ToolPart::jaws).force.norm(),
+                       state.load_on(ToolPart::shaft).force.norm(), state.handle_force.norm(),
                        state.pose.jaw / units::deg, state.grip_points);
   }
   for (std::size_t k = 0; k < of_scene_; ++k) row += organ_fields(report, organs_[k]);

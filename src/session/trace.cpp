@@ -50,10 +50,10 @@ void append_sample(const World& world, Traces& traces) {
     sample.axis = (state.tip - world.port_position(scene.instruments[i].port)).normalized();
     sample.insertion = state.pose.insertion;
     sample.roll = state.pose.roll;
-    sample.tip_force = state.tip_force.norm();
+    sample.force = state.force.norm();
     sample.handle_force = state.handle_force.norm();
-    sample.jaws_force = state.parts[static_cast<std::size_t>(ToolPart::jaws)].force.norm();
-    sample.shaft_force = state.parts[static_cast<std::size_t>(ToolPart::shaft)].force.norm();
+    sample.jaws_force = state.load_on(ToolPart::jaws).force.norm();
+    sample.shaft_force = state.load_on(ToolPart::shaft).force.norm();
     sample.active = state.action == InstrumentAction::activate;
     sample.waits = state.waits;
     sample.lag = state.lag;

@@ -17,7 +17,7 @@ struct InstrumentSample {
   Vec3 axis = Vec3::Zero();                ///< unit, along the shaft from trocar to tip
   double insertion = 0;                    ///< m
   double roll = 0;                         ///< rad, not wrapped
-  double tip_force = 0;                    ///< N, magnitude
+  double force = 0;                        ///< N, magnitude of the whole: opposite forces on its parts cancel
   double handle_force = 0;                 ///< N, magnitude
   double jaws_force = 0, shaft_force = 0;  ///< N, magnitudes; what the jaws hold pulls on them
   bool active = false;                     ///< current flowed in the step that ended here

@@ -17,8 +17,10 @@ const std::vector<EventRow>& event_rows() {
        "force_N", true, true, true},
       {activation, "activation", "current begins to flow in an instrument; with the organ it touches", "",
        true, true},
-      {overforce, "overforce", "the force on an instrument rises above its force_limit", "force_N", true,
-       true, true},
+      {overforce, "overforce",
+       "the force on an instrument's jaws, or on what its shaft ends in, rises above its force_limit; what "
+       "leans on its shaft does not count",
+       "force_N", true, true, true},
       {overstretch, "overstretch", "an organ's wall is stretched beyond its overstretch", "stretch", false,
        true, true},
       {tear, "tear", "strands of a tissue begin to tear; with the share of them that is torn", "share", false,

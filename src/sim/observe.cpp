@@ -20,7 +20,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   InstrumentState state;
   state.pose = tool.pose;
   state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
-  state.tip_force = load.force;
+  state.force = load.force;
   state.at_tip = force_at_tip(tool, load.force, load.moment);
   state.handle_force =
       handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force) + tool.drag;
@@ -85,12 +85,16 @@ std::vector<TissueState> tissue_states(const Field& field) {
   return out;
 }
 
+std::optional<Vec3> place_of(const PartLoad& load) {
+  return load.touches > 0 ? std::optional<Vec3>(load.at) : std::nullopt;
+}
+
 /// Where an instrument is pressed hardest, m; none where it touches nothing.
 std::optional<Vec3> touched_place(const InstrumentState& state) {
   const PartLoad* hardest = nullptr;
   for (const PartLoad& load : state.parts)
     if (load.touches > 0 && (hardest == nullptr || load.largest > hardest->largest)) hardest = &load;
-  return hardest == nullptr ? std::nullopt : std::optional<Vec3>(hardest->at);
+  return hardest == nullptr ? std::nullopt : place_of(*hardest);
 }
 
 /// Walls that are stretched so far that they open, or too far, since this step.
@@ -161,10 +165,11 @@ void observe(Field& field, const std::vector<InstrumentAction>& actions, double 
     if (asked == InstrumentAction::activate && tool.action != asked)
       events.push_back({EventKind::activation, 0, tool.definition.name, organ, 0, touched_place(state)});
     tool.action = report.instruments[i].action = asked;
-    const double force = state.tip_force.norm();
-    const bool over = force > tool.definition.force_limit;
+    const PartLoad& on_jaws = state.load_on(ToolPart::jaws);
+    const bool over = on_jaws.force.norm() > tool.definition.force_limit;
     if (over && !tool.over_limit)
-      events.push_back({EventKind::overforce, 0, tool.definition.name, organ, force, touched_place(state)});
+      events.push_back({EventKind::overforce, 0, tool.definition.name, on_jaws.organ, on_jaws.force.norm(),
+                        place_of(on_jaws)});
     tool.touched = state.touching;
     tool.over_limit = over;
     if (i < tools_before.size()) feel_stiffness(tool, tools_before[i], state);

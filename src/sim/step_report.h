@@ -34,9 +34,10 @@ struct StepInput {
 struct InstrumentState {
   InstrumentPose pose;
   Vec3 tip = Vec3::Zero();           ///< m
-  Vec3 tip_force = Vec3::Zero();     ///< N, of the tissue on the instrument
+  Vec3 force = Vec3::Zero();         ///< N, of the tissue on the whole instrument: the sum of jaws and shaft
   Vec3 handle_force = Vec3::Zero();  ///< N, felt at the handle, lever about the trocar
   PartLoads parts;                   ///< by ToolPart
+  const PartLoad& load_on(ToolPart part) const { return parts[static_cast<std::size_t>(part)]; }
   bool touching = false;
   std::string holds;  ///< organ's name, empty when nothing is held
   int grip_points = 0;

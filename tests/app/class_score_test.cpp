@@ -42,14 +42,6 @@ class ScoredClass : public ProgramTest {
     EXPECT_TRUE(Json::accept(outcome_.out)) << outcome_.err;
     return Json::parse(outcome_.out)["recordings"][0];
   }
-  /// The recording with the checksum of what it now is.
-  static std::string sealed(const std::string& text) {
-    const std::size_t last = text.rfind('\n', text.size() - 2) + 1,
-                      at = text.find("checksum\":\"", last) + 11;
-    Hash hash;
-    hash.add(std::string_view(text).substr(0, last));
-    return text.substr(0, at) + hex(hash.value()) + text.substr(at + 16);
-  }
   static std::string replaced(std::string text, const std::string& from, const std::string& to) {
     EXPECT_NE(text.find(from), std::string::npos) << from;
     return text.replace(text.find(from), from.size(), to);
@@ -61,7 +53,7 @@ class ScoredClass : public ProgramTest {
 
 TEST_F(ScoredClass, TwoHundredRecordingsScoreTheSameWhateverTheNumberOfProcesses) {
   for (int i = 0; i < 200; ++i) {
-    std::string text = text_;
+    std::string text = of_session(text_, i);
     if (i == 20) text.resize(text.size() / 2);
     if (i == 30) text = replaced(text, "\"time_s\":0.1,", "\"time_s\":7,");
     spill(folder_ / "class" / fmt::format("{:03}.jsonl", i), text);
@@ -74,16 +66,18 @@ TEST_F(ScoredClass, TwoHundredRecordingsScoreTheSameWhateverTheNumberOfProcesses
   EXPECT_NE(one.err.find("class/020.jsonl: it did not come to its end (cut)"), std::string::npos) << one.err;
   expect_next_command(one);
   const Json json = Json::parse(one.out);
-  EXPECT_EQ(json["schema"], "calot.scores/2");
+  EXPECT_EQ(json["schema"], "calot.scores/3");
   ASSERT_EQ(json["recordings"].size(), 200u);
   for (std::size_t i = 0; i < 200; ++i)
     EXPECT_EQ(json["recordings"][i]["file"], fmt::format("class/{:03}.jsonl", i));
-  EXPECT_EQ(json["class"]["recordings"], 200);
-  EXPECT_EQ(json["class"]["scored"], 199);
-  EXPECT_EQ(json["class"]["whole"], 198);
+  ASSERT_EQ(json["groups"].size(), 1u);
+  const Json& group = json["groups"][0];
+  EXPECT_EQ(group["mode"], "demo");
+  EXPECT_EQ(group["scored"], 199);
+  EXPECT_EQ(group["whole"], 198);
   const double total = json["recordings"][0]["score"]["total"];
-  EXPECT_NEAR(json["class"]["total"]["mean"].get<double>(), total, 1e-9);  // a sum of 198 rounds
-  EXPECT_EQ(json["class"]["total"]["median"], total);
+  EXPECT_NEAR(group["total"]["mean"].get<double>(), total, 1e-9);  // a sum of 198 rounds
+  EXPECT_EQ(group["total"]["median"], total);
 }
 
 TEST_F(ScoredClass, WhatARecordingHoldsIsWhatItsSimulationMeasures) {
@@ -125,8 +119,11 @@ TEST_F(ScoredClass, MeasuresWithoutTheirStepsAreRefusedAndNoMessageHelpsToForgeT
 TEST_F(ScoredClass, ARecordingCutAnywhereIsScoredUpToThereAndSaysSo) {
   const Json whole = entry(text_);
   const std::size_t measured = text_.find("{\"measured\""), header = text_.find('\n') + 1;
-  for (const std::size_t size : {header, header + 10, text_.find('\n', measured / 2) + 1, measured,
-                                 measured + 40, text_.rfind("{\"end\""), text_.size() - 2}) {
+  entry(text_.substr(0, header + 10));
+  EXPECT_EQ(outcome_.code, 4);
+  EXPECT_NE(outcome_.err.find("this recording has no step"), std::string::npos) << outcome_.err;
+  for (const std::size_t size : {text_.find('\n', measured / 2) + 1, measured, measured + 40,
+                                 text_.rfind("{\"end\""), text_.size() - 2}) {
     const Json cut = entry(text_.substr(0, size));
     EXPECT_EQ(cut["from"], "simulation");
     EXPECT_NE(outcome_.err.find("1 of 1 simulated: the recording was cut"), std::string::npos)
@@ -232,14 +229,13 @@ TEST_F(ScoredClass, MistakesInBenchmarksAreNamedAtTheirLines) {
 
 TEST_F(ScoredClass, ASecondRunTakesWhatIsThereUnlessAnythingButTheNameIsOther) {
   spill(folder_ / "class" / "a.jsonl", text_);
-  spill(folder_ / "class" / "b.jsonl", text_.substr(0, text_.size() / 2));
+  spill(folder_ / "class" / "b.jsonl", of_session(text_.substr(0, text_.size() / 2), 2));
   spill(folder_ / "class" / "c.jsonl", "no recording");
   const Outcome first = score({"class", "-o", "kept", "--json"});
   EXPECT_EQ(first.code, 4) << first.err;
   EXPECT_EQ(first.err.find("taken"), std::string::npos) << first.err;
   EXPECT_EQ(first.out, slurp(folder_ / "kept" / "scores.json"));
-  EXPECT_NE(slurp(folder_ / "kept" / "scores.csv").find("class/b.jsonl,simulation,cut,false"),
-            std::string::npos);
+  EXPECT_NE(slurp(folder_ / "kept" / "scores.csv").find(",simulation,cut,false"), std::string::npos);
 
   fs::rename(folder_ / "class" / "a.jsonl", folder_ / "class" / "d.jsonl");
   const Outcome second = score({"class", "-o", "kept", "--json"});
@@ -269,13 +265,14 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
   EXPECT_NE(csv.err.find("is named twice"), std::string::npos) << csv.err;
   const std::size_t end = csv.out.find("\r\n");
   const std::string head = csv.out.substr(0, end), row = csv.out.substr(end + 2);
-  EXPECT_TRUE(
-      head.starts_with("file,from,end,whole,stopped_at_s,outcome,verdict,total,passed,completed,steps_done,"
-                       "steps,critical,gates,"
-                       "left.path_length_mm points,left.path_length_mm measured,left.path_length_mm reason,"
-                       "empty_grasp points,"))
+  EXPECT_TRUE(head.starts_with(
+      "file,group,session,source,mode,trainee,attempt,began,machine,from,end,whole,stopped_at_s,"
+      "measures,scoring,digest,pass_mark,outcome,verdict,total,passed,completed,steps_done,"
+      "steps,critical,gates,left.path_length_mm points,left.path_length_mm weight,"
+      "left.path_length_mm measured,left.path_length_mm reason,empty_grasp points,"))
       << head;
-  EXPECT_TRUE(row.starts_with("out/recording.jsonl,recording,done,true,0.2,passed,passed,")) << row;
+  EXPECT_TRUE(row.starts_with("out/recording.jsonl,demo,")) << row;
+  EXPECT_NE(row.find(",recording,done,true,0.2,2,2,"), std::string::npos) << row;
   const auto fields = [](const std::string& line) {
     bool quoted = false;
     return 1 + std::count_if(line.begin(), line.end(), [&](char c) {
@@ -286,7 +283,7 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
   EXPECT_EQ(fields(head), fields(row.substr(0, row.find("\r\n"))));
   EXPECT_NE(row.find("\"left.path_length_mm = "), std::string::npos) << "its reason: " << row;
   EXPECT_NE(text.out.find("  out/recording.jsonl "), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("1 of 1 passed (pass mark 80)"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("demo: 1 of 1 passed (pass mark 80)"), std::string::npos) << text.out;
   EXPECT_EQ(score({"out", "--fail-below", "99"}).code, 1);
 }
 
@@ -306,6 +303,121 @@ TEST_F(ScoredClass, WhatCannotBeScoredSaysWhatToDo) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"empty"}, {"nobody.jsonl"}, {"out", "-j", "0"}})
     expect_next_command(score(arguments));
+}
+
+/// With what the first line says of who operated.
+std::string of_whom(const std::string& text, const std::string& members) {
+  std::string out = text;
+  const std::string source = "\"source\":\"demo\"";
+  return out.replace(out.find(source), source.size(), members);
+}
+
+TEST_F(ScoredClass, ACopyCountsOnceAndTheLongestWholeOneIsIt) {
+  spill(folder_ / "class" / "a_cut.jsonl", text_.substr(0, text_.size() / 2));
+  spill(folder_ / "class" / "b.jsonl", text_);
+  spill(folder_ / "class" / "c.jsonl", text_);
+  spill(folder_ / "class" / "d_other.jsonl", of_session(text_, 7));
+  const Outcome outcome = score({"class", "--json"});
+  EXPECT_EQ(outcome.code, 0) << "what is left out fails nothing: " << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["groups"][0]["files"], Json({"class/b.jsonl", "class/d_other.jsonl"}));
+  EXPECT_EQ(json["recordings"][0]["copy_of"], "class/b.jsonl");
+  EXPECT_EQ(json["recordings"][2]["copy_of"], "class/b.jsonl");
+  const std::string text = score({"class"}).out;
+  EXPECT_NE(text.find("class/c.jsonl: the same session as class/b.jsonl: it counts once"), std::string::npos)
+      << text;
+  // One that names no session is known by its text.
+  const std::string nameless = sealed(replaced(text_, text_.substr(text_.find("\"session\""), 45), ""));
+  for (const char* name : {"a.jsonl", "b.jsonl"}) spill(folder_ / "nameless" / name, nameless);
+  EXPECT_EQ(Json::parse(score({"nameless", "--json"}).out)["recordings"][1]["copy_of"], "nameless/a.jsonl");
+}
+
+TEST_F(ScoredClass, PracticeAndExamAreAveragedApartAndWhoOperatedIsShown) {
+  const std::string who = R"("source":"lines","mode":"{}","trainee":"{}","attempt":{})";
+  for (int i = 0; i < 6; ++i)
+    spill(folder_ / "class" / fmt::format("{}.jsonl", i),
+          of_session(sealed(of_whom(text_, fmt::format(fmt::runtime(who), i < 2 ? "exam" : "practice",
+                                                       i % 2 == 0 ? "T-01" : "T-02", i + 1))),
+                     i + 1));
+  const Json json = Json::parse(score({"class", "--json"}).out);
+  ASSERT_EQ(json["groups"].size(), 2u);
+  EXPECT_EQ(json["groups"][0]["mode"], "exam");
+  EXPECT_EQ(json["groups"][0]["scored"], 2);
+  EXPECT_EQ(json["groups"][1]["scored"], 4);
+  EXPECT_FALSE(json.contains("class")) << "no mean of all";
+  spill(folder_ / "names.csv", "trainee,name\nT-01,\"Muster, Anna\"\nT-09,Nobody\n");
+  const std::string text = score({"class", "--names", "names.csv", "-o", "kept"}).out;
+  for (const char* part : {"exam: 2 of 2 passed", "practice: 4 of 4 passed", "Muster, Anna (T-01)", " T-02 ",
+                           "mean of 4 finished, of 4 attempts", "averaged apart"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is missing in\n" << text;
+  for (const fs::directory_entry& file : fs::directory_iterator(folder_ / "kept"))
+    EXPECT_EQ(slurp(file.path()).find("Muster"), std::string::npos) << file.path();
+  EXPECT_NE(score({"class", "--names", "names.csv", "--csv"}).out.find("\"Muster, Anna\""),
+            std::string::npos);
+}
+
+TEST_F(ScoredClass, ARegistersMistakesAreNamedAtTheirLines) {
+  const auto complaint = [&](const std::string& text) {
+    spill(folder_ / "names.csv", text);
+    const Outcome outcome = score({"out", "--names", "names.csv"});
+    EXPECT_EQ(outcome.code, 4) << outcome.err;
+    expect_next_command(outcome);
+    return outcome.err;
+  };
+  const std::pair<const char*, const char*> wrong[] = {
+      {"", "names.csv:1: this register is empty"},
+      {"T-01,Anna\n", "names.csv:1: this is no register of names"},
+      {"trainee,name\nT-01\n", "names.csv:2: this line has no trainee and name"},
+      {"trainee,name\nAnna Muster,Anna\n", "names.csv:2: \"Anna Muster\" is no pseudonym"},
+      {"trainee,name\nT-01,A\n\nT-01,B\n", "names.csv:4: T-01 stands twice"},
+      {"trainee,name\nT-01,\n", "names.csv:2: T-01 has no name"}};
+  for (const auto& [text, words] : wrong)
+    EXPECT_NE(complaint(text).find(words), std::string::npos) << complaint(text);
+  spill(folder_ / "names.csv", "\xef\xbb\xbfname;group;trainee\r\nAnna;3;T-01\r\n");
+  EXPECT_EQ(score({"out", "--names", "names.csv"}).code, 0) << "as a spreadsheet writes it";
+  EXPECT_EQ(score({"out", "--names", "nowhere.csv"}).code, 4);
+}
+
+TEST_F(ScoredClass, OtherParametersAreAScoreOfTheirOwn) {
+  std::string text = replaced(scored_scenario(), "score = calot.score.weighted {",
+                              "score = function(p) return calot.score.weighted {");
+  const std::size_t end = text.rfind("},\n", text.find("golden =")) + 1;
+  text = replaced(text.insert(end, " end"), "novice = 20", "novice = p.height * 2000");
+  spill(folder_ / "small.lua", text);
+  for (const char* height : {"10", "20"})
+    ASSERT_EQ(calot({"run", "small.lua", "--no-render", "-o", std::string("runs/") + height, "--param",
+                     std::string("height=") + height})
+                  .code,
+              0);
+  const Json json = Json::parse(score({"runs", "--json"}).out);
+  ASSERT_EQ(json["groups"].size(), 2u) << json.dump(1);
+  EXPECT_NE(json["groups"][0]["digest"], json["groups"][1]["digest"]);
+  const std::string shown = score({"runs"}).out;
+  EXPECT_NE(shown.find("demo, height = 20: "), std::string::npos) << shown;
+  EXPECT_EQ(shown.find("nan"), std::string::npos) << "every part has its points: " << shown;
+}
+
+TEST_F(ScoredClass, WhatWasMeasuredByAnOlderVersionIsMeasuredAnew) {
+  const Json newer = entry(sealed(replaced(text_, "\"measures\":2", "\"measures\":1")));
+  EXPECT_EQ(newer["from"], "simulation");
+  EXPECT_EQ(newer["measures"], 2);
+  EXPECT_EQ(newer["recorded"]["measures"], 1);
+  EXPECT_NE(outcome_.err.find("measured by version 1, and this program measures by version 2"),
+            std::string::npos)
+      << outcome_.err;
+  EXPECT_EQ(newer["metrics"], entry(text_)["metrics"]) << "the same session";
+  // calot.recording/2 says neither, and is of version 1.
+  std::string old = replaced(text_, "calot.recording/3", "calot.recording/2");
+  const std::size_t hash = old.find("\"exercise_hash\":"), seed = old.find("\"seed\""),
+                    session = old.find("\"session\""), make = old.find("\"toolchain\"");
+  const std::string exercise = old.substr(hash, 35);
+  old = old.substr(0, hash) + old.substr(seed, session - seed) + old.substr(make);
+  old = replaced(old, "{\"measured\":{", "{\"measured\":{" + exercise);
+  const Json of_old = entry(sealed(old));
+  EXPECT_EQ(outcome_.code, 0) << outcome_.err;
+  EXPECT_EQ(of_old["recorded"], Json({{"schema", 2}, {"measures", 1}, {"scoring", 1}}));
+  EXPECT_EQ(of_old["from"], "simulation");
+  EXPECT_EQ(of_old["score"], newer["score"]);
 }
 
 }  // namespace

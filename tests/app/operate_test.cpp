@@ -240,6 +240,46 @@ TEST_F(Operate, ASocketMovesItInRealTimeAndASecondSenderGoesOnWhereTheFirstWasLo
   EXPECT_EQ(calot({"replay", "here/recording.jsonl"}).code, 0);
 }
 
+TEST_F(Operate, WhoConnectsAndSaysNothingNeitherBeginsNorEndsAnExam) {
+  const Outcome outcome = calot({"operate", "small.lua", "--no-window", "--exam", "--trainee", "T-07",
+                                 "--input", "unix:s", "-o", "here"},
+                                [&](pid_t) {
+                                  close(connect_to(folder_ / "s"));  // as a port scan does
+                                  const int odd = connect_to(folder_ / "s");
+                                  send_text(odd, "GET / HTTP/1.1\n");
+                                  close(odd);
+                                  const int tracker = connect_to(folder_ / "s");
+                                  ASSERT_GE(tracker, 0);
+                                  send_text(tracker, "tip 0 left -0.08 0.06 -0.03 0 0\n");
+                                  ASSERT_TRUE(wait_for_lines(folder_ / "here/recording.jsonl", 5));
+                                  send_text(tracker, "end\n");
+                                  close(tracker);
+                                });
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = report("here");
+  EXPECT_EQ(json["operated"]["inputs"], 1) << outcome.err;
+  EXPECT_EQ(json["operated"]["ended_by"], "end");
+  EXPECT_EQ(json["attempt"]["trainee"], "T-07");
+  EXPECT_EQ(json["attempt"]["mode"], "exam");
+  EXPECT_EQ(json["attempt"]["source"], "lines");
+  EXPECT_EQ(json["attempt"]["attempt"], 1);
+  EXPECT_NE(outcome.err.find("it sent nothing that can be used"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Operate, AnExamThatNeverBeganHasNoScore) {
+  const Outcome outcome = operate("end\n", {"--exam"});
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_TRUE(report("here")["score"]["total"].is_null());
+  EXPECT_EQ(calot({"score", "small.lua", "here"}).code, 4) << "nor later";
+}
+
+TEST_F(Operate, APersonsNameIsNoPseudonym) {
+  const Outcome outcome = calot({"operate", "small.lua", "--no-window", "--trainee", "Anna Muster"});
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_NE(outcome.err.find("\"Anna Muster\" is no pseudonym"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--names FILE"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Operate, AKilledSessionLosesNothingThatWasRecorded) {
   spill(folder_ / "small.lua", endless_scenario());
   const fs::path recording = folder_ / "here" / "recording.jsonl";

@@ -68,7 +68,7 @@ TEST_F(PageOfSmall, HasItsScoreAndPicturesWhereStepsBeginAndEndAndNoForeignMarku
 }
 
 TEST_F(PageOfSmall, GoesToTheCutAndListsWhatIsBadAsScoreDoes) {
-  const std::string half = text_.substr(0, text_.size() / 2);
+  const std::string half = of_session(text_.substr(0, text_.size() / 2), 2);
   spill(folder_ / "cut.jsonl", half);
   spill(folder_ / "foreign.jsonl", std::string(half).replace(half.find("\"small\""), 7, "\"other\""));
   const std::vector<std::string> files{"out/recording.jsonl", "cut.jsonl", "missing.jsonl", "foreign.jsonl"};
@@ -141,7 +141,7 @@ TEST_F(PageOfSmall, ABrowserFindsNothingBrokenAndAsksForNothingElse) {
   if (!long_run()) GTEST_SKIP() << "left to scripts/test --long: it takes a browser of 300 MB";
   Browser browser(folder_ / "browser");
   ASSERT_TRUE(browser.is_there()) << "no chromium, which scripts/test --long installs";
-  spill(folder_ / "cut.jsonl", text_.substr(0, text_.size() / 2));
+  spill(folder_ / "cut.jsonl", of_session(text_.substr(0, text_.size() / 2), 2));
   EXPECT_EQ(calot({"page", "out/recording.jsonl", "cut.jsonl", "-o", "p.html"}).code, 1);
   const std::string html = slurp(folder_ / "p.html");
   const char* look = R"((() => {
@@ -170,6 +170,19 @@ TEST_F(PageOfSmall, ABrowserFindsNothingBrokenAndAsksForNothingElse) {
   EXPECT_EQ(found.found["broken"], 2) << found.found;
   EXPECT_EQ(found.found["lost"], Json({"#nowhere"}));
   EXPECT_FALSE(found.said.empty()) << "a picture from elsewhere is refused, and that is said";
+}
+
+TEST_F(PageOfSmall, SaysWhereItsReplayMeasuresOtherwiseThanTheRecordingClaims) {
+  EXPECT_EQ(calot({"page", "out/recording.jsonl", "-o", "p.html"}).code, 0);
+  EXPECT_THAT(slurp(folder_ / "p.html"), Not(HasSubstr("is not what its replay measures")));
+  std::string forged = text_;
+  const std::string key = "\"left.path_length_mm\":";
+  const std::size_t at = forged.find(key) + key.size();
+  forged.replace(at, forged.find_first_of(",}", at) - at, "1.5");
+  spill(folder_ / "forged.jsonl", sealed(forged));
+  EXPECT_EQ(calot({"page", "forged.jsonl", "-o", "p.html"}).code, 0);
+  EXPECT_THAT(slurp(folder_ / "p.html"),
+              HasSubstr("is not what its replay measures: left.path_length_mm is 1.5 in the recording"));
 }
 
 TEST_F(PageOfSmall, WithoutPicturesWhatARecordingHoldsIsNotPlayedAgain) {
@@ -233,7 +246,7 @@ TEST(PageMoments, ThereAreOnlySoManyPicturesAndTheRestIsCounted) {
       {EventKind::slip, EventKind::overforce, EventKind::empty_grasp, EventKind::overstretch});
   Drawn drawn(moments);
   for (int i = 0; i < 30; ++i) {
-    drawn.progress.begin_step(10 * i, "s", "Step", 0);
+    drawn.progress.begin_step(10 * i, "s", "Step", {0});
     drawn.at(10 * i);
     drawn.event(EventKind::slip, 10 * i + 1);
     drawn.event(EventKind::overforce, 10 * i + 2);

@@ -2,6 +2,7 @@
 // Runs the program as a user would: in a folder of its own, with its output caught.
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/hash.h"
 #include "support/paths.h"
 
 namespace calot::test {
@@ -101,6 +103,21 @@ class ProgramTest : public ::testing::Test {
   }
 
   /// Waits until a file has so many lines; false after 30 s.
+  /// The recording with the checksum of what it now is.
+  static std::string sealed(const std::string& text) {
+    const std::size_t last = text.rfind('\n', text.size() - 2) + 1,
+                      at = text.find("checksum\":\"", last) + 11;
+    Hash hash;
+    hash.add(std::string_view(text).substr(0, last));
+    return text.substr(0, at) + hex(hash.value()) + text.substr(at + 16);
+  }
+  /// The same as if another session had been recorded; of a whole recording still with its checksum.
+  static std::string of_session(std::string text, int number) {
+    const std::string key = "\"session\":\"";
+    const std::size_t at = text.find(key) + key.size();
+    text.replace(at, 32, fmt::format("{:032x}", number));
+    return text.find("\"checksum\":") == std::string::npos ? text : sealed(text);
+  }
   static bool wait_for_lines(const fs::path& file, std::ptrdiff_t lines) {
     for (int i = 0; i < 3000; ++i) {
       const std::string text = slurp(file);

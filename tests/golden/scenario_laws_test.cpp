@@ -19,8 +19,7 @@ class Watch {
     for (std::size_t k = 0; k < volumes_.size(); ++k)
       if (volumes_[k] > 0)  // a duct keeps none
         swelling = std::max(swelling, std::abs(report.organs[k].volume / volumes_[k] - 1));
-    for (const InstrumentState& tool : report.instruments)
-      strongest = std::max(strongest, tool.tip_force.norm());
+    for (const InstrumentState& tool : report.instruments) strongest = std::max(strongest, tool.force.norm());
   }
   double deepest = 0;    ///< m, of an instrument in a skin
   double swelling = 0;   ///< of an organ's volume, a share

@@ -30,7 +30,7 @@ ScenarioText ruled(const std::string& body, const std::string& head = "") {
 /// A cut at 2 s before a clip at 3 s.
 Progress cut_then_clip() {
   Progress progress;
-  progress.begin_step(0, "look", "", 0);
+  progress.begin_step(0, "look", "", {0});
   progress.add_event({EventKind::cut, 2, "blades", "duct.patient", 0.5, Vec3(1, 2, 3), EventCause::blades});
   progress.add_event({EventKind::clip, 3, "applier", "duct", 0});
   progress.add_note({4, "", "views", 3.0, ""});
@@ -91,7 +91,8 @@ TEST(ScoreRules, SeeEventsStepsMetricsNotesAndParameters) {
 }
 
 TEST(ScoreRules, AreAskedInAStateOfTheirOwnAndAnswerTheSameEachTime) {
-  const Ruled exercise(ruled("calls = calls + 1\nreturn calls / 10, tostring(math.random())", "local calls = 0"));
+  const Ruled exercise(
+      ruled("calls = calls + 1\nreturn calls / 10, tostring(math.random())", "local calls = 0"));
   const Result<Score> one = exercise.judged(), two = exercise.judged();
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->total, 10);

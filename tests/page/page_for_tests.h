@@ -22,7 +22,7 @@ inline PageRecording made_up(const std::string& prefix, std::size_t samples, std
   const double end = static_cast<double>(samples) / 50;
   r.prefix = prefix, r.name = word, r.file = word, r.verdict = word, r.stopped_at = end, r.pass_mark = 80;
   r.warnings = {word}, r.notes = {word};
-  r.parameters = r.metrics = r.noted = {{word, word}};
+  r.attempt = r.parameters = r.metrics = r.noted = {{word, word}};
   for (std::size_t i = 0; i < pictures; ++i)
     r.pictures.push_back(
         {0.5, word, "image/jpeg", std::string(picture_bytes, static_cast<char>(i)), 640, 360});
@@ -35,14 +35,14 @@ inline PageRecording made_up(const std::string& prefix, std::size_t samples, std
   for (std::size_t i = 0; i < events; ++i)
     r.events.push_back({word, word, end * static_cast<double>(i) / static_cast<double>(events), word, word,
                         word, word, i % 3 == 0, picture(i), word, word});
-  PagePart part{word, word, 0.5, 20, 3.0, std::array{10.0, 2.0}, "", word, {}};
+  PagePart part{word, word, word, 0.5, 20, 3.0, std::array{10.0, 2.0}, "", word, {}};
   for (std::size_t i = 0; i < events; ++i) part.events.push_back(i);
   r.score = {40, 60, {part, part}, {{word, word, 40, true, part.events}}};
   r.score.parts[1].novice_expert.reset();
   r.score.parts[1].rule = word;
   for (const bool is_path : {false, false, false, false, false, false, true, true}) {
-    PagePlot plot{word, word, word, is_path, {}, {}};
-    if (!is_path) plot.levels = {{word, 5}};
+    PagePlot plot{word, word, word, is_path, {}, {}, {}};
+    if (!is_path) plot.levels = {{word, 5}}, plot.bands = {{word, 1, 3, 0.25 * end, 0.5 * end}};
     for (std::size_t c = 0; c < instruments; ++c) {
       PageCurve& curve = plot.curves.emplace_back(PageCurve{word, {}});
       for (std::size_t k = 0; k < samples; ++k) {
@@ -65,8 +65,8 @@ inline PageRow row(const std::string& prefix, double total, bool passed = false,
 inline Page page_of(std::vector<PageRow> rows) {
   Page page;
   page.title = "Title", page.scenario = "id", page.file = "x.lua", page.benchmarks = "own";
-  page.calibration = "uncalibrated", page.pass_mark = 80, page.parts = {{"a", "50.0"}, {"b", "50.0"}};
-  page.rows = std::move(rows);
+  page.calibration = "uncalibrated";
+  page.groups = {{"exam", 80, {{"a", "A", "50.0"}, {"b", "B", "50.0"}}, std::move(rows)}};
   return page;
 }
 

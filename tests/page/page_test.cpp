@@ -20,9 +20,10 @@ using testing::Not;
 std::string whole_page() {
   PageRow lost;
   lost.name = "lost", lost.verdict = "no score", lost.problem = "cannot read lost.jsonl";
+  Page page = page_of({row("r1-", 40), row("r3-", 90, true)});
+  page.not_counted = {lost};
   return page_html(
-      page_of({row("r1-", 40), lost, row("r3-", 90, true)}),
-      {recording_html(made_up("r1-", 500, 30, 5, 100)), recording_html(made_up("r3-", 500, 30, 0, 0))});
+      page, {recording_html(made_up("r1-", 500, 30, 5, 100)), recording_html(made_up("r3-", 500, 30, 0, 0))});
 }
 
 TEST(ThePage, AsksForNoNetwork) {
@@ -84,9 +85,12 @@ TEST(ThePage, EscapesTextFromOutside) {
   const std::string evil = "<script>x</script>\"'><img onerror=x>&\x01";
   Page page = page_of({row("r1-", 40), row("r2-", 50)});
   page.title = page.scenario = page.file = page.benchmarks = page.calibration = evil;
-  page.parts = {{evil, evil}, {evil, evil}};
-  page.rows[0].name = page.rows[0].verdict = page.rows[1].name = page.rows[1].problem = page.rows[1].verdict =
-      evil;
+  page.groups[0].title = evil;
+  page.groups[0].parts = {{evil, evil, evil}, {evil, evil, evil}};
+  for (PageRow& row : page.groups[0].rows)
+    row.name = row.verdict = row.trainee = row.began = row.steps = evil;
+  page.not_counted = {page.groups[0].rows[0]};
+  page.not_counted[0].problem = evil;
   for (const bool of_a_class : {false, true}) {
     page.of_a_class = of_a_class;
     const std::string html = page_html(page, {recording_html(made_up("r1-", 100, 20, 2, 10, evil))});
@@ -159,7 +163,7 @@ TEST(ThePage, HasTextThatStandsOutInLightAndDark) {
 
 TEST(Overview, HasBestMedianAndWorstOfWhatWasFinished) {
   Page page = page_of({row("r1-", 40), row("r2-", 90, true), row("r3-", 99, false, false), row("r4-", 60)});
-  const std::optional<ClassTotals> totals = class_totals(page);
+  const std::optional<ClassTotals> totals = class_totals(page.groups[0]);
   ASSERT_TRUE(totals);
   EXPECT_EQ(totals->best, 90);
   EXPECT_EQ(totals->median, 60);
@@ -167,8 +171,24 @@ TEST(Overview, HasBestMedianAndWorstOfWhatWasFinished) {
   const std::string html = overview_html(page);
   EXPECT_THAT(html, HasSubstr("1 of 4 passed"));
   EXPECT_THAT(html, HasSubstr("1 unfinished"));
-  EXPECT_THAT(html, HasSubstr("3 finished of 4 recordings"));
+  EXPECT_THAT(html, HasSubstr("3 finished of 4 attempts"));
   EXPECT_EQ(overview_html(page_of({row("", 40)})), "") << "a single one has its section";
+}
+
+TEST(Overview, KeepsGroupsApartAndListsWhatIsNotCounted) {
+  Page page = page_of({row("r1-", 40), row("r2-", 60)});
+  page.groups.push_back(
+      {"practice", 70, {{"c", "C", "100.0"}}, {row("r3-", 90, true), row("r4-", 100, true)}});
+  page.not_counted = {row("r5-", 0)};
+  page.not_counted[0].problem = "the same session as another one";
+  const std::string html = overview_html(page);
+  EXPECT_THAT(html, HasSubstr("<h3>exam</h3>"));
+  EXPECT_THAT(html, HasSubstr("<h3>practice</h3>"));
+  EXPECT_THAT(html, HasSubstr("0 of 2 passed; the pass mark is 80."));
+  EXPECT_THAT(html, HasSubstr("2 of 2 passed; the pass mark is 70."));
+  EXPECT_THAT(html, HasSubstr("the same session as another one"));
+  EXPECT_EQ(all(html, "(median</t[dh]>)").size(), 2u) << "each group has its own";
+  EXPECT_EQ(all(html, "id=\"(totals-[12]-title)").size(), 2u);
 }
 
 TEST(Overview, JoinsAttemptsInTheirOrderAndAClassNotAtAll) {
@@ -187,8 +207,8 @@ TEST(Overview, JoinsAttemptsInTheirOrderAndAClassNotAtAll) {
 
 TEST(Overview, MarksUnfinishedAttemptsWithTheirStepsAndUnsafeOnesWithACross) {
   Page page = page_of({row("r1-", 90, true), row("r2-", 30, false, false), row("r3-", 20, false, false)});
-  page.rows[1].steps = "2/5";
-  page.rows[2].unsafe = true;
+  page.groups[0].rows[1].steps = "2/5";
+  page.groups[0].rows[2].unsafe = true;
   const std::string curve = overview_html(page);
   EXPECT_EQ(all(curve, "(class=\"disc\")").size(), 1u);
   EXPECT_EQ(all(curve, "(class=\"ring cut\")").size(), 1u);

@@ -15,7 +15,7 @@ Traces pulled(double force) {
   for (int k = 0; k < 3; ++k) {
     InstrumentSample sample;
     sample.tip = Vec3(0, 0, 10e-3 * k);
-    sample.tip_force = force * k;
+    sample.force = force * k;
     traces.instruments[0].push_back(sample);
   }
   return traces;

@@ -331,6 +331,20 @@ TEST(Live, AnExamIsNeitherPausedNorBegunAgain) {
   EXPECT_EQ(rig.source->figures().refused, 2);
 }
 
+TEST(Live, AnExamThatEndsBeforeAnythingHasComeNeverBeganAndHasNoScore) {
+  for (const LiveEvent& event : {LiveEvent(LiveCommand::end), LiveEvent(LiveCommand::abandon),
+                                 LiveEvent(LiveLoss{"a pipe has ended"})}) {
+    Rig rig;
+    rig.options.mode = LiveMode::exam;
+    rig.options.begins_at_once = false;
+    rig.send_at(0.1, event);
+    const SessionResult result = rig.play(5);
+    EXPECT_EQ(result.end, SessionEnd::interrupted);
+    EXPECT_EQ(result.traces.time.back(), 0);
+    EXPECT_THAT(result.notes[0], HasSubstr("ended before it began"));
+  }
+}
+
 TEST(Live, GivenUpPracticeIsInterruptedAndAGivenUpExamIsScoredAsItStands) {
   for (const LiveMode mode : {LiveMode::practice, LiveMode::exam}) {
     for (const LiveEvent& event :

@@ -167,8 +167,8 @@ TEST(Metrics, DepthAngleAndRollAreSumsOfChangesBackAndForth) {
 TEST(Metrics, ForcesArePeaksAndTheMeanOfWhatWasLoaded) {
   const Traces traces = traced(50, 4, [](double t) {
     InstrumentSample sample = at(Vec3::Zero());
-    sample.tip_force = t < 1.99 ? 0 : t < 2.99 ? 2 : 4;
-    sample.handle_force = 0.5 * sample.tip_force;
+    sample.force = t < 1.99 ? 0 : t < 2.99 ? 2 : 4;
+    sample.handle_force = 0.5 * sample.force;
     return sample;
   });
   EXPECT_EQ(measured(traces, "left.peak_force_N"), 4);
@@ -189,8 +189,8 @@ TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   traces.organ_names = {"ball"};
   traces.organs.assign(1, std::vector<OrganSample>(traces.time.size()));
   Progress progress;
-  progress.begin_step(0, "grasp", "", 0);
-  progress.begin_step(0.5, "hold", "", 0);
+  progress.begin_step(0, "grasp", "", {0});
+  progress.begin_step(0.5, "hold", "", {0});
   progress.set_metric("hold.band.time_in_s", 0.3);      // by the script
   progress.set_metric("ball.lowest_frequency_Hz", 12);  // by the runner, as the next
   progress.set_metric("ball.rest_shift_mm", 0.2);

@@ -8,8 +8,8 @@ namespace {
 TEST(Progress, BeginningAStepEndsTheOneBeforeAsDone) {
   Progress progress;
   EXPECT_EQ(progress.running(), nullptr);
-  progress.begin_step(0, "grasp", "Grasp", 30);
-  progress.begin_step(4, "hold", "Hold", 0);
+  progress.begin_step(0, "grasp", "Grasp", {30});
+  progress.begin_step(4, "hold", "Hold", {0});
   ASSERT_EQ(progress.steps().size(), 2u);
   EXPECT_EQ(progress.steps()[0].outcome, "done");
   EXPECT_EQ(progress.steps()[0].ended, 4);
@@ -19,9 +19,9 @@ TEST(Progress, BeginningAStepEndsTheOneBeforeAsDone) {
 
 TEST(Progress, AnEndedStepRaisesItsEventWithNameAndDuration) {
   Progress progress;
-  progress.begin_step(1, "grasp", "", 2);
+  progress.begin_step(1, "grasp", "", {2});
   progress.end_step(3.5, "timeout");
-  progress.begin_step(3.5, "hold", "", 0);
+  progress.begin_step(3.5, "hold", "", {0});
   progress.end_step(5, "aborted");
   ASSERT_EQ(progress.events().size(), 1u);  // an aborted step was neither done nor too late
   EXPECT_EQ(progress.events()[0].kind, EventKind::step_timeout);
@@ -34,7 +34,7 @@ TEST(Progress, EndingWithoutARunningStepChangesNothing) {
   Progress progress;
   progress.end_step(1, "done");
   EXPECT_TRUE(progress.steps().empty());
-  progress.begin_step(1, "a", "", 0);
+  progress.begin_step(1, "a", "", {0});
   progress.end_step(2, "done");
   progress.end_step(3, "timeout");
   EXPECT_EQ(progress.steps()[0].outcome, "done");
@@ -46,7 +46,7 @@ TEST(Progress, AnEventCarriesTheStepItFellInto) {
   WorldEvent event;
   event.kind = EventKind::contact;
   progress.add_event(event);
-  progress.begin_step(0, "grasp", "", 0);
+  progress.begin_step(0, "grasp", "", {0});
   progress.add_event(event);
   EXPECT_EQ(progress.events()[0].step, "");
   EXPECT_EQ(progress.events()[1].step, "grasp");

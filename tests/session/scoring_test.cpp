@@ -54,7 +54,7 @@ ExerciseDefinition exercise() {
 
 Progress finished() {
   Progress progress;
-  progress.begin_step(0, "only", "", 0);
+  progress.begin_step(0, "only", "", {0});
   progress.end_step(9, "done");
   return progress;
 }
@@ -139,7 +139,7 @@ TEST(Scoring, PassingTakesEveryDeclaredStepAndThePassMark) {
   const std::map<std::string, double> perfect{{"hold.band.time_in_s", 20}, {"left.path_length_mm", 100}};
   EXPECT_FALSE(scored(exercise(), perfect, Progress()).passed()) << "no step was done";
   Progress late;
-  late.begin_step(0, "only", "", 1);
+  late.begin_step(0, "only", "", {1});
   late.end_step(1, "timeout");
   EXPECT_FALSE(scored(exercise(), perfect, late).passed());
   EXPECT_FALSE(scored(exercise(), {{"hold.band.time_in_s", 20}}, finished()).total < 80);
@@ -150,11 +150,11 @@ TEST(Scoring, PassingTakesEveryDeclaredStepAndThePassMark) {
 
 TEST(Scoring, AForcePartPointsAtTheTimesOfItsOwnInstrumentsOverforce) {
   ExerciseDefinition definition = exercise();
-  definition.score.parts = {benchmark("left.peak_force_N", 8, 3, 1)};
+  definition.score.parts = {benchmark("left.peak_jaws_force_N", 8, 3, 1)};
   Progress progress = finished();
   progress.add_event(event(EventKind::overforce, 2, "left"));
   progress.add_event(event(EventKind::overforce, 5, "right"));
-  EXPECT_EQ(scored(definition, {{"left.peak_force_N", 9}}, progress).parts[0].times,
+  EXPECT_EQ(scored(definition, {{"left.peak_jaws_force_N", 9}}, progress).parts[0].times,
             (std::vector<double>{2}));
 }
 
@@ -275,8 +275,8 @@ ScoredPart part_of(const ScorePart& part, const std::map<std::string, double>& m
 /// Of part_of's exercise.
 Progress both_done() {
   Progress progress;
-  progress.begin_step(0, "clip", "", 0);
-  progress.begin_step(4, "divide", "", 0);
+  progress.begin_step(0, "clip", "", {0});
+  progress.begin_step(4, "divide", "", {0});
   progress.end_step(5, "done");
   return progress;
 }
@@ -288,9 +288,9 @@ TEST(Scoring, AProcedureEarnsItsStepsLessErrorsByTheirSeverity) {
   part.minor = {EventKind::slip, EventKind::empty_cut};
   part.major = {EventKind::perforation};
   Progress progress;
-  progress.begin_step(0, "clip", "", 0);
+  progress.begin_step(0, "clip", "", {0});
   progress.end_step(4, "done");
-  progress.begin_step(4, "divide", "", 1);
+  progress.begin_step(4, "divide", "", {1});
   progress.end_step(5, "timeout");
   EXPECT_DOUBLE_EQ(part_of(part, {}, progress).fraction, 0.5);
   EXPECT_EQ(part_of(part, {}, progress).explanation, "1 of 2 steps done (not divide), no errors");
@@ -374,7 +374,7 @@ TEST(Scoring, InApi1ABailOutCompletesWhereTheAuthorSaysSo) {
   ExerciseDefinition definition = exercise();
   definition.api = 1;
   Progress progress;
-  progress.begin_step(0, "only", "", 0);
+  progress.begin_step(0, "only", "", {0});
   progress.add_event(event(EventKind::bail_out, 3, ""));
   progress.end_step(3, "bail_out");
   EXPECT_FALSE(scored(definition, perfect_metrics, progress).passed());
@@ -393,8 +393,8 @@ struct BailedOut {
     RuleAnswers answers;
     answers.bail_out = RuleAnswer{right ? 1.0 : 0.0, "so it is", {}};
     definition.score.rules = std::make_shared<FixedRules>(std::move(answers));
-    progress.begin_step(0, "first", "", 0);
-    progress.begin_step(2, "second", "", 0);
+    progress.begin_step(0, "first", "", {0});
+    progress.begin_step(2, "second", "", {0});
     progress.add_event(event(EventKind::bail_out, 3, ""));
     progress.end_step(3, "bail_out");
   }
@@ -425,10 +425,10 @@ TEST(Scoring, PartsEarnByTheShareOfTheirStepsThatWereDone) {
   definition.score.parts[1].steps = {"first", "third"};
   definition.score.parts[2].steps = {"second"};
   Progress progress;
-  progress.begin_step(0, "first", "", 0);
-  progress.begin_step(1, "second", "", 0);
+  progress.begin_step(0, "first", "", {0});
+  progress.begin_step(1, "second", "", {0});
   progress.end_step(2, "timeout");
-  progress.begin_step(2, "third", "", 0);
+  progress.begin_step(2, "third", "", {0});
   progress.end_step(3, "missed", "it was too late");
   const Score result = scored(definition, perfect_metrics, progress);
   EXPECT_EQ(result.parts[0].done, 0.25) << "of all";
@@ -452,7 +452,7 @@ TEST(Scoring, WhereNoStepIsAskedForNothingIsEarned) {
 
 TEST(Scoring, UnsafeIsUnsafeHoweverLittleWasDone) {
   Progress progress;
-  progress.begin_step(0, "only", "", 0);
+  progress.begin_step(0, "only", "", {0});
   progress.add_event(event(EventKind::overstretch, 1));
   Score result = scored(exercise(), perfect_metrics, progress);
   EXPECT_EQ(result.outcome, AttemptOutcome::unsafe);

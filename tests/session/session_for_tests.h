@@ -88,7 +88,7 @@ class TimedScript : public ExerciseScript {
   InputSource& demo() override { return demo_; }
   Result<bool> advance(World& world, Progress& progress, double dt) override {
     const double time = world.report().time;
-    if (progress.steps().empty()) progress.begin_step(time - dt, "only", "The only step", 0);
+    if (progress.steps().empty()) progress.begin_step(time - dt, "only", "The only step", {0});
     if (time < duration_ - dt / 2) return false;
     progress.end_step(time, "done");
     return true;

@@ -280,13 +280,13 @@ TEST(BodyRubbing, ADragThereAndBackCostsWork) {
   const auto cycle = [](double friction) {
     Ducts ducts(friction);
     double work = 0;
-    Vec3 at = ducts.world.report().instruments[0].tip, force = ducts.world.report().instruments[0].tip_force;
+    Vec3 at = ducts.world.report().instruments[0].tip, force = ducts.world.report().instruments[0].force;
     const Vec3 start = at;
     for (const double y : {0.75, 0.5, 0.25, 0.0, 0.25, 0.5, 0.75, 1.0}) {
       EXPECT_TRUE(ducts.driver.go(start + Vec3(0, (y - 1) * 6e-3, 0), 0, 1)) << ducts.driver.why();
       const InstrumentState& now = ducts.world.report().instruments[0];
-      work += 0.5 * (force + now.tip_force).dot(now.tip - at);
-      at = now.tip, force = now.tip_force;
+      work += 0.5 * (force + now.force).dot(now.tip - at);
+      at = now.tip, force = now.force;
     }
     return -work;
   };

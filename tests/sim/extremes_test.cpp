@@ -115,7 +115,7 @@ TEST(Extremes, AStonePressedOnTheGroundSlipsAsideOrSaysThatItCannotAndIsNeverEnt
   const Vec3 top(-80e-3, 70e-3, floor + 2 * radius);
   double largest = 0;
   driver.watch = [&](const StepReport& report) {
-    largest = std::max(largest, report.instruments[0].tip_force.norm());
+    largest = std::max(largest, report.instruments[0].force.norm());
     EXPECT_LT(world.deepest_penetration(), 0.1e-3);
   };
   ASSERT_TRUE(driver.go(top + 2e-3 * Vec3::UnitZ(), 0, 4)) << driver.why();

@@ -31,10 +31,10 @@ TEST(Grasp, VolumeIsKeptPressureRisesAndForcePullsBackWhileLifted) {
   EXPECT_LT(worst, 1e-9);
   EXPECT_GT(path.world.report().organs[0].pressure, rest.pressure);
   // Lifting along `out` does work on the organ: the tissue pulls the tool against it, more than before.
-  EXPECT_LT((lifted.tip_force - held.tip_force).dot(path.out), -0.1);
+  EXPECT_LT((lifted.force - held.force).dot(path.out), -0.1);
   // The fold lies between the pads, up to a jaw's length behind the tip: a lever shorter by at most a fifth
   // here.
-  const Vec3 at_tip = handle_force(path.driver.trocar(), lifted.pose, {}, lifted.tip_force);
+  const Vec3 at_tip = handle_force(path.driver.trocar(), lifted.pose, {}, lifted.force);
   EXPECT_LT(lifted.handle_force.norm(), at_tip.norm());
   EXPECT_LT((lifted.handle_force - at_tip).norm(), 0.2 * at_tip.norm());
 }
@@ -75,7 +75,7 @@ TEST(Grasp, ReleasedOrganReturnsToItsRest) {
   const OrganState after = path.world.report().organs[0];
   EXPECT_EQ(path.driver.count(EventKind::release), 1);
   EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);
-  EXPECT_EQ(path.world.report().instruments[0].tip_force, Vec3::Zero());
+  EXPECT_EQ(path.world.report().instruments[0].force, Vec3::Zero());
   // Equilibrium is found to 1e-6 of the nodal forces: the energy follows to second order, but for the bile's
   // share, which is linear in a volume kept to 1e-10.
   EXPECT_NEAR(after.energy / rest.energy, 1.0, 1e-6);
@@ -110,7 +110,7 @@ TEST(Events, AreRaisedOnceWhenTheirConditionBegins) {
   Conditions before;
   path.driver.watch = [&](const StepReport& report) {
     const InstrumentState& tool = report.instruments[0];
-    const Conditions now{tool.touching, !tool.holds.empty(), tool.tip_force.norm() > 1.0,
+    const Conditions now{tool.touching, !tool.holds.empty(), tool.load_on(ToolPart::jaws).force.norm() > 1.0,
                          report.organs[0].max_stretch > 1.3};
     const auto expect = [&](EventKind kind, bool begins) {
       const auto is_kind = [&](const WorldEvent& e) { return e.kind == kind; };
@@ -125,7 +125,7 @@ TEST(Events, AreRaisedOnceWhenTheirConditionBegins) {
     for (const WorldEvent& event : report.events) {
       EXPECT_EQ(event.time, report.time);
       EXPECT_EQ(event.instrument, event.kind == EventKind::overstretch ? "" : "left");
-      const double value = event.kind == EventKind::overforce     ? tool.tip_force.norm()
+      const double value = event.kind == EventKind::overforce     ? tool.load_on(ToolPart::jaws).force.norm()
                            : event.kind == EventKind::overstretch ? report.organs[0].max_stretch
                                                                   : 0.0;
       EXPECT_EQ(event.value, value);

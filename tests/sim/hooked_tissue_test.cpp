@@ -92,7 +92,7 @@ DrawnAlong draw_along(const SceneDefinition& scene, double to = -65e-3, int thre
   DrawnAlong out;
   driver.watch = [&](const StepReport& report) {
     const InstrumentState& tool = report.instruments[0];
-    out.last = tool.tip_force.norm();
+    out.last = tool.force.norm();
     out.largest = std::max(out.largest, out.last);
     out.least_ahead =
         std::min(out.least_ahead, least_ahead(world, tool.tip, (driver.trocar() - tool.tip).normalized()));
@@ -205,7 +205,7 @@ TEST(HookedTissue, CurrentDividesWhatItsElectrodeTouchesByPowerAndTime) {
   EXPECT_EQ(world.report().state_hash, hash) << "what it had taken is part of the state";
   EXPECT_TRUE(keep_acting(world, InstrumentAction::activate, 5).empty()) << "let go of soon enough";
   EXPECT_FALSE(world.report().instruments[0].touching) << "a divided strand is not felt";
-  EXPECT_EQ(world.report().instruments[0].tip_force.norm(), 0);
+  EXPECT_EQ(world.report().instruments[0].force.norm(), 0);
 }
 
 TEST(HookedTissue, JawsDivideAllThatTheyCarryAndTheLastStrandPartsTheTissue) {

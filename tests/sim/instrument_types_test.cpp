@@ -17,7 +17,7 @@ TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
   ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 3)) << path.driver.why();
   ASSERT_TRUE(path.driver.go(path.fundus - 6e-3 * path.out, 0, 6)) << path.driver.why();
   const StepReport& pressed = path.world.report();
-  EXPECT_GT(pressed.instruments[0].tip_force.dot(path.out), 0.1) << "it is pushed back";
+  EXPECT_GT(pressed.instruments[0].force.dot(path.out), 0.1) << "it is pushed back";
   EXPECT_GT(pressed.organs[0].pressure, pressure);
   EXPECT_LT(path.world.deepest_penetration(), 0.1e-3);
   // The wall has gone along: it covers the tip, within the contact's range and half a grid of the skin.
@@ -109,7 +109,7 @@ TEST(SemmGrasp, GripsLiftsAndLetsGo) {
   EXPECT_EQ(path.world.report().instruments[0].holds, "gallbladder");
   ASSERT_TRUE(path.lift()) << path.driver.why();
   EXPECT_EQ(path.world.report().instruments[0].holds, "gallbladder");
-  EXPECT_LT(path.world.report().instruments[0].tip_force.dot(path.out), -0.2) << "it pulls";
+  EXPECT_LT(path.world.report().instruments[0].force.dot(path.out), -0.2) << "it pulls";
   ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
   EXPECT_EQ(path.world.report().instruments[0].holds, "");
   EXPECT_EQ(path.driver.count(EventKind::release), 1);

@@ -57,7 +57,7 @@ TEST(Kinds, ADuctHeldAtBothEndsGivesWayToARodAndComesBack) {
   ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 5e-3), 0, 4) && driver.go(middle - Vec3(0, 0, 3e-3), 0, 4))
       << driver.why();
   const InstrumentState pressed = world.report().instruments[0];
-  EXPECT_GT(pressed.tip_force.z(), 0.02);
+  EXPECT_GT(pressed.force.z(), 0.02);
   EXPECT_LT(world.landmark("duct.middle").z(), middle.z() - 1e-3);
   EXPECT_LT(world.deepest_penetration(), 1e-9) << "its middle line stays outside";
   ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 10e-3), 0, 4)) << driver.why();
@@ -122,7 +122,7 @@ TEST(Kinds, WhatLiesLooseOnTheGroundPressesOnItWithItsWeight) {
     const VecX& load = world.field().organs[organ].body->kept_load();
     return test::net_force(load);
   };
-  EXPECT_EQ(world.report().instruments[0].tip_force.norm(), 0) << "what rubs on the ground rubs on no tool";
+  EXPECT_EQ(world.report().instruments[0].force.norm(), 0) << "what rubs on the ground rubs on no tool";
   for (int step = 0; step < 5; ++step)
     ASSERT_TRUE(world.step({.instruments = {world.report().instruments[0].pose}}));
   for (int organ : {0, 1}) {

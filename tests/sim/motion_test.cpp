@@ -379,7 +379,7 @@ TEST(Motion, ALooseBallIsPickedUpSwingsAndFallsBack) {
   // The grasper carries all of it.
   ASSERT_TRUE(path.driver.stay(25)) << path.driver.why();
   const double weight = test::mass_of(path.world.field().organs[0]) * standard_gravity;
-  EXPECT_NEAR(path.world.report().instruments[0].tip_force.z(), -weight, 0.02 * weight);
+  EXPECT_NEAR(path.world.report().instruments[0].force.z(), -weight, 0.02 * weight);
   ASSERT_TRUE(path.driver.go(path.fundus + Vec3(10e-3, 0, 15e-3), test::open_jaw, 4)) << path.driver.why();
   ASSERT_TRUE(path.driver.stay(40)) << path.driver.why();
   EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);

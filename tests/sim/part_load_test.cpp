@@ -8,20 +8,16 @@
 namespace calot {
 namespace {
 
-const PartLoad& load_on(const InstrumentState& tool, ToolPart part) {
-  return tool.parts[static_cast<std::size_t>(part)];
-}
-
 TEST(PartLoads, OfJawsAndShaftMakeTheWholeAndGripsTellWhatTheyDo) {
   CALOT_SLOW_WHEN_SANITIZED("a whole gallbladder");
   test::FundusPath path(test::ball_scene());
   path.driver.watch = [](const StepReport& report) {
     const InstrumentState& tool = report.instruments[0];
-    const PartLoad &jaws = load_on(tool, ToolPart::jaws), &shaft = load_on(tool, ToolPart::shaft);
+    const PartLoad &jaws = tool.load_on(ToolPart::jaws), &shaft = tool.load_on(ToolPart::shaft);
     // Summed in another order: rounding of some hundred forces of a newton.
-    EXPECT_LT((jaws.force + shaft.force - tool.tip_force).norm(), 1e-12);
+    EXPECT_LT((jaws.force + shaft.force - tool.force).norm(), 1e-12);
     EXPECT_EQ(tool.touching, jaws.touches + shaft.touches > 0);
-    EXPECT_LE(load_on(tool, ToolPart::tip).touches, jaws.touches);
+    EXPECT_LE(tool.load_on(ToolPart::tip).touches, jaws.touches);
     EXPECT_EQ(tool.grip == GripState::holding, !tool.holds.empty());
   };
   const auto grip = [&] { return path.world.report().instruments[0].grip; };
@@ -34,7 +30,7 @@ TEST(PartLoads, OfJawsAndShaftMakeTheWholeAndGripsTellWhatTheyDo) {
   ASSERT_TRUE(path.grasp() && path.lift()) << path.driver.why();
   EXPECT_EQ(grip(), GripState::holding);
   const InstrumentState& lifted = path.world.report().instruments[0];
-  const PartLoad& jaws = load_on(lifted, ToolPart::jaws);
+  const PartLoad& jaws = lifted.load_on(ToolPart::jaws);
   EXPECT_EQ(jaws.organ, "ball");
   EXPECT_GT(jaws.force.dot(-path.out), 0.1) << "what is lifted draws the tool into the body";
   EXPECT_LT((jaws.at - lifted.tip).norm(), 20e-3) << "within the jaws' length of their tip";
@@ -60,15 +56,17 @@ TEST(PartLoads, AnElectrodeThatPressesFeelsItAtItsTip) {
   ASSERT_TRUE(path.driver.go(path.fundus + 5e-3 * path.out, 0, 3)) << path.driver.why();
   ASSERT_TRUE(path.driver.go(path.fundus - 4e-3 * path.out, 0, 4)) << path.driver.why();
   const InstrumentState& tool = path.world.report().instruments[0];
-  EXPECT_GT(load_on(tool, ToolPart::tip).force.dot(path.out), 0.05) << "it is pushed back";
-  EXPECT_EQ(load_on(tool, ToolPart::shaft).touches, 0);
+  EXPECT_GT(tool.load_on(ToolPart::tip).force.dot(path.out), 0.05) << "it is pushed back";
+  EXPECT_EQ(tool.load_on(ToolPart::shaft).touches, 0);
   // The hardest point is on the round end: within its radius and the wall's way of the tip.
-  EXPECT_LT((load_on(tool, ToolPart::tip).at - tool.tip).norm(), 3e-3);
+  EXPECT_LT((tool.load_on(ToolPart::tip).at - tool.tip).norm(), 3e-3);
 }
 
 TEST(PartLoads, AShaftThatLeansOnTheBellyIsNotTheTip) {
   CALOT_SLOW_WHEN_SANITIZED("a whole gallbladder");
-  test::FundusPath path(test::grasper_scene());
+  SceneDefinition scene = test::grasper_scene();
+  scene.instruments[0].force_limit = 0.05;
+  test::FundusPath path(scene);
   // Beside the organ and past its fundus, then across until the shaft lies against it.
   const auto beside = [&](double across) {
     return Vec3(path.fundus - 70e-3 * path.out + Vec3(-across, 0, 0));
@@ -77,16 +75,18 @@ TEST(PartLoads, AShaftThatLeansOnTheBellyIsNotTheTip) {
   ASSERT_TRUE(path.driver.go(beside(60e-3), 0, 4)) << path.driver.why();
   double across = 60e-3;
   const auto leans = [&] {
-    return load_on(path.world.report().instruments[0], ToolPart::shaft).force.norm() > 0.05;
+    return path.world.report().instruments[0].load_on(ToolPart::shaft).force.norm() > 0.05;
   };
   while (across > 0 && !leans())
     ASSERT_TRUE(path.driver.go(beside(across -= 2e-3), 0, 1)) << path.driver.why();
   const InstrumentState& tool = path.world.report().instruments[0];
   ASSERT_TRUE(leans());
-  EXPECT_EQ(load_on(tool, ToolPart::tip).touches, 0);
-  EXPECT_EQ(load_on(tool, ToolPart::jaws).touches, 0);
-  EXPECT_EQ(load_on(tool, ToolPart::tip).force.norm(), 0);
+  EXPECT_EQ(tool.load_on(ToolPart::tip).touches, 0);
+  EXPECT_EQ(tool.load_on(ToolPart::jaws).touches, 0);
+  EXPECT_EQ(tool.load_on(ToolPart::tip).force.norm(), 0);
   EXPECT_TRUE(tool.touching);
+  EXPECT_GT(tool.force.norm(), scene.instruments[0].force_limit);
+  EXPECT_EQ(path.driver.count(EventKind::overforce), 0) << "its limit is that of the jaws";
 }
 
 }  // namespace

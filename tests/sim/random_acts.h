@@ -129,7 +129,7 @@ class RandomActs {
     return true;
   }
   /// A hand goes no further.
-  bool presses_hard() const { return report_.instruments[tool_].tip_force.norm() > hardest; }
+  bool presses_hard() const { return report_.instruments[tool_].force.norm() > hardest; }
   bool close(double jaw, int parts) {
     const InstrumentPose from = here_[tool_];
     InstrumentPose to = from;
@@ -183,7 +183,7 @@ class RandomActs {
       EXPECT_TRUE(organ.state.x.allFinite() && std::isfinite(organ.state.datum_pressure)) << when;
     for (const Tissue& tissue : world_.field().tissues) EXPECT_TRUE(tissue.now.state.x.allFinite()) << when;
     for (const InstrumentState& tool : now.instruments)
-      EXPECT_TRUE(tool.tip_force.allFinite() && tool.handle_force.allFinite()) << when;
+      EXPECT_TRUE(tool.force.allFinite() && tool.handle_force.allFinite()) << when;
     const Spill& spill = world_.field().spill;
     std::array<double, liquids> lost{}, hanging{};
     for (const LostState& one : now.lost) lost[0] += one.bile, lost[1] += one.blood;

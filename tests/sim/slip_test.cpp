@@ -265,7 +265,7 @@ TEST(Slip, AFoldPulledOutOfTheJawsIsReleasedAndTheOrganReturnsToItsRest) {
   EXPECT_GE(path.driver.count(EventKind::slip), 1);
   EXPECT_EQ(path.driver.count(EventKind::release), 1);
   EXPECT_EQ(path.world.report().instruments[0].holds, "");
-  EXPECT_EQ(path.world.report().instruments[0].tip_force, Vec3::Zero());
+  EXPECT_EQ(path.world.report().instruments[0].force, Vec3::Zero());
   EXPECT_NEAR(path.world.report().organs[0].energy / energy, 1, 1e-5);
 }
 

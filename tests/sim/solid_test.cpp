@@ -342,7 +342,7 @@ TEST(Solid, ARodDentsItAndItComesBack) {
   const Vec3 up = organ_frame(scene.anatomy.organs[0]).linear().col(0);
   const Vec3 top = world.landmark("liver.upper_side");
   ASSERT_TRUE(driver.go(top + 12e-3 * up, 0, 4) && driver.go(top - 3e-3 * up, 0, 6)) << driver.why();
-  EXPECT_GT(world.report().instruments[0].tip_force.norm(), 0.01);
+  EXPECT_GT(world.report().instruments[0].force.norm(), 0.01);
   EXPECT_LT((world.landmark("liver.upper_side") - top).dot(up), -1e-3);
   // A skin point between two contact points, 0.35 mm from either, under a tip 2.5 mm round.
   EXPECT_LT(world.deepest_penetration(), 2.5e-5);

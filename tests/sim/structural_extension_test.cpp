@@ -217,7 +217,7 @@ TEST(StructuralExtension, ItIsLaidBeforeTheTouchAndTakenAwayAfterIt) {
   ASSERT_TRUE(pressed.driver.go(pressed.top + Vec3(-5e-3, 0, 8e-3), 0, 20)) << pressed.driver.why();
   EXPECT_EQ(pressed.world.report().organs[0].details, 0);
   ASSERT_TRUE(pressed.driver.go(pressed.top + Vec3(-5e-3, 0, -3e-3), 0, 110)) << pressed.driver.why();
-  EXPECT_GT(pressed.world.report().instruments[0].tip_force.norm(), 0.1);
+  EXPECT_GT(pressed.world.report().instruments[0].force.norm(), 0.1);
   EXPECT_GE(pressed.world.report().organs[0].details, details_per_level);
   EXPECT_EQ(without, 0);
   EXPECT_GT(before_touch, 5);

@@ -57,7 +57,7 @@ TEST(TubeGrasp, ADuctOrAnArteryIsHeldByBothPadsAndGoesWithThem) {
     ASSERT_TRUE(acting.go(lifted(8e-3), 20));
     EXPECT_NEAR(acting.world.landmark("duct.middle").z() - closed.z(), 8e-3, 0.1e-3);
     const double expected = string_force(scene, 8e-3);
-    EXPECT_NEAR(acting.world.report().instruments[0].tip_force.z(), -expected, 0.2 * expected)
+    EXPECT_NEAR(acting.world.report().instruments[0].force.z(), -expected, 0.2 * expected)
         << "a thick tube resists being bent, too";
     ASSERT_TRUE(acting.go({0, 0, lifted(8e-3).insertion, 0, 0.5}, 10));
     EXPECT_EQ(acting.count(EventKind::release), 1);
@@ -91,7 +91,7 @@ TEST(TubeGrasp, AStumpIsGraspedAndDrawnAlongItself) {
   ASSERT_EQ(acting.world.report().instruments[0].holds, "duct.patient");
   ASSERT_TRUE(acting.go(lifted(5e-3), 20));
   EXPECT_EQ(acting.world.report().instruments[0].holds, "duct.patient");
-  EXPECT_LT(acting.world.report().instruments[0].tip_force.z(), -1e-3);
+  EXPECT_LT(acting.world.report().instruments[0].force.z(), -1e-3);
 }
 
 TEST(TubeGrasp, BladesAndAppliersHoldNothingOfIt) {

@@ -53,7 +53,7 @@ TEST(World, StepWithUnchangedPosesLeavesTheStateBitIdentical) {
     const StepReport after = path.world.report();
     EXPECT_EQ(path.world.skin_positions(0), skin);
     EXPECT_EQ(after.organs[0].pressure, before.organs[0].pressure);
-    EXPECT_EQ(after.instruments[0].tip_force, before.instruments[0].tip_force);
+    EXPECT_EQ(after.instruments[0].force, before.instruments[0].force);
     EXPECT_TRUE(after.events.empty());
   };
   expect_still();
