@@ -136,7 +136,7 @@ return calot.exercise {
 
   score = calot.score.weighted {
     { calot.score.rule(judge_view), name = "critical_view", weight = 0.7 },
-    { calot.score.benchmark { metric = "hook.peak_force_N", novice = 3, expert = 1.5 }, weight = 0.15 },
+    { calot.score.benchmark { metric = "hook.peak_jaws_force_N", novice = 3, expert = 1.5 }, weight = 0.15 },
     { calot.score.penalty { event = "dry_activation", each = 0.25 }, weight = 0.15 },
     critical = { "overforce", "perforation" },
     bail_out = judge_bail_out,

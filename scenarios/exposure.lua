@@ -124,7 +124,7 @@ return calot.exercise {
     -- Gained since the pouch was taken: an untouched field shows more of the triangle than a lifted one.
     { calot.score.benchmark { metric = "note.triangle_gained_mm2", novice = 0, expert = 60 }, weight = 0.4 },
     { calot.score.benchmark { metric = "note.angle_gained_deg", novice = 5, expert = 35 }, weight = 0.3 },
-    { calot.score.benchmark { metric = "left.peak_force_N", novice = 5, expert = 3 }, weight = 0.2 },
+    { calot.score.benchmark { metric = "left.peak_jaws_force_N", novice = 5, expert = 3 }, weight = 0.2 },
     { calot.score.penalty { event = "slip", each = 0.5 }, weight = 0.1 },
     critical = { "overforce" },
     cap = 40,

@@ -94,7 +94,8 @@ PagePart part_of(const OrderedJson& json, const PageRecording& page) {
   part.calibration = benchmark["calibration"].get<std::string>();
   if (benchmark.contains("event")) {
     const auto event = benchmark["event"].get<std::string>();
-    part.rule = fmt::format("Each {} costs {:.4g} of the part.", event, benchmark["each"].get<double>());
+    part.rule = fmt::format("Each {} costs {:.4g} of the part: {}.", event, benchmark["each"].get<double>(),
+                            event_row(*event_called(event)).doc);
     part.events =
         events_at(json["event_times_s"], page, [&](const PageEvent& found) { return found.kind == event; });
     return part;

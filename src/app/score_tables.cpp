@@ -295,19 +295,25 @@ class GroupTable {
   bool has_trainees_ = false, has_times_ = false;
 };
 
-/// What the columns of parts are about.
-std::string legend(const ScoreGroup& group) {
+/// What the columns of parts are about, each once.
+std::string legend(const std::vector<ScoreGroup>& groups) {
   std::vector<std::vector<std::string>> rows;
-  for (const OrderedJson& part : group.parts)
-    rows.push_back({"  " + text_of(part["name"]), text_of(part["title"])});
-  return table(rows, "ll");
+  for (const std::string& name : all_parts(groups))
+    for (const ScoreGroup& group : groups) {
+      const auto part = std::find_if(group.parts.begin(), group.parts.end(),
+                                     [&](const OrderedJson& one) { return one["name"] == name; });
+      if (part == group.parts.end()) continue;
+      rows.push_back({name, text_of((*part)["title"])});
+      break;
+    }
+  return rows.empty() ? "" : "Parts:\n" + table(rows, "ll") + '\n';
 }
 
 std::string group_text(const ClassScores& scores, const ScoreGroup& group,
                        const std::vector<ScoreGroup>& all) {
-  return fmt::format("{}: {} of {} passed (pass mark {:g})\n{}{}\n", bold(group_title(group, all)),
+  return fmt::format("{}: {} of {} passed (pass mark {:g})\n{}\n", bold(group_title(group, all)),
                      count(scores.entries, group, has_passed), group.members.size(), group.pass_mark,
-                     GroupTable(scores, group).text(), scores.entries.size() > 1 ? legend(group) : "");
+                     GroupTable(scores, group).text());
 }
 
 /// Copies, and recordings without a score, each with its reason.
@@ -387,7 +393,8 @@ std::string scores_text(const ClassScores& scores) {
   std::string text = fmt::format("{} ({})\n\n", bold(scores.exercise.title), scores.exercise.id);
   const std::vector<ScoreGroup> groups = score_groups(scores.entries);
   for (const ScoreGroup& group : groups) text += group_text(scores, group, groups);
-  if (scores.entries.size() == 1 && is_scored(scores.entries[0])) text += explained(scores.entries[0]) + '\n';
+  text +=
+      scores.entries.size() == 1 && !groups.empty() ? explained(scores.entries[0]) + '\n' : legend(groups);
   text += not_counted(scores.entries);
   if (groups.size() > 1) text += "What is of another mode, parameters or score is averaged apart.\n";
   if (scores.benchmarks)

@@ -142,7 +142,7 @@ std::optional<ClassTotals> class_totals(const PageGroup& group) {
 }
 
 std::string verdict_html(const std::string& verdict, bool passed) {
-  return fmt::format("<span class=\"{}\"><span aria-hidden=\"true\">{}</span> {}</span>",
+  return fmt::format("<span class=\"verdict {}\"><span aria-hidden=\"true\">{}</span> {}</span>",
                      passed ? "good" : "bad", passed ? "&#10003;" : "&#10007;", escaped(verdict));
 }
 

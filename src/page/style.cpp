@@ -42,7 +42,7 @@ th,td{text-align:left;padding:.3rem .7rem;border-bottom:1px solid var(--line);ve
 thead th{font-weight:600}th:first-child,td:first-child{padding-left:.4rem}.n{text-align:right}
 td a,td.n,th.n[scope=row]{white-space:nowrap}
 .overview thead th{max-width:9rem;vertical-align:bottom}.overview th:nth-child(n+6){min-width:4rem}.overview th,.overview td{padding:.3rem .38rem}
-.overview td:nth-child(4){min-width:9rem;max-width:24rem;overflow-wrap:anywhere}
+.overview .verdict{display:inline-block;min-width:9rem;max-width:24rem;overflow-wrap:anywhere}
 .sum td,.sum th{background:var(--card)}
 tr:target,figure:target{background:var(--mark)}
 figure:target{box-shadow:0 0 0 6px var(--mark)}
@@ -58,7 +58,7 @@ svg .mid{text-anchor:middle}svg .end{text-anchor:end}
 .c3{stroke:var(--c3);stroke-dasharray:8 3 2 3}.c4{stroke:var(--c4);stroke-dasharray:4 4}
 .begin.c0{fill:var(--c0)}.begin.c1{fill:var(--c1)}.begin.c2{fill:var(--c2)}.begin.c3{fill:var(--c3)}.begin.c4{fill:var(--c4)}
 .begin{stroke-dasharray:none}
-.band{fill:var(--good);fill-opacity:.18;stroke:none}.level{stroke:var(--bad);stroke-dasharray:8 4;fill:none}.step{stroke:var(--soft);stroke-dasharray:1 3;fill:none}
+.band{fill:var(--good);fill-opacity:.18;stroke:none}.key .band{stroke:var(--good);stroke-opacity:.3;stroke-width:9}.level{stroke:var(--bad);stroke-dasharray:8 4;fill:none}.step{stroke:var(--soft);stroke-dasharray:1 3;fill:none}
 .error{stroke:var(--bad);fill:none;opacity:.8}
 .bar{fill:var(--card);stroke:var(--soft)}.bar.bad{stroke:var(--bad);stroke-width:2}
 .error-mark{fill:var(--bad)}.mark{fill:var(--bg);stroke:var(--fg);stroke-width:1.5}
@@ -68,7 +68,8 @@ a:target .mark,a:target .error-mark{stroke:var(--link);stroke-width:4}
 @media (max-width:48rem){.overview thead{display:none}.overview table,.overview tbody,.overview tr{display:block}
 .overview tr{border-top:2px solid var(--line);padding:.4rem 0}.overview caption,.overview th[scope=row]{display:block;text-align:left}
 .overview td{display:flex;justify-content:space-between;gap:1rem;border:0;min-width:0!important;max-width:none!important;text-align:right}
-.overview td::before{content:attr(data-label);color:var(--soft);text-align:left;overflow-wrap:anywhere}.overview td:empty{display:none}
+.overview td::before{content:attr(data-label);color:var(--soft);text-align:left;overflow-wrap:anywhere;min-width:5rem}
+.overview .verdict{min-width:0}.overview td:empty{display:none}
 }
 @media print{nav,.skip{display:none}body{max-width:none;padding:0}.wide{overflow:visible}}
 )";

@@ -347,7 +347,7 @@ std::string part_title(const ScorePart& part) {
     case ScorePartKind::critical_view:
       return metric_title(part.metric);
     case ScorePartKind::penalty:
-      return fmt::format("how often {}", event_row(part.event).doc);
+      return to_text(part.event) + " events";
     case ScorePartKind::procedure:
       return "steps done, less its errors";
     case ScorePartKind::time:

@@ -85,7 +85,8 @@ struct Score {
 /// an author's function judges, the exercise's text. Totals of two digests are of two scores.
 std::uint64_t score_digest(const ExerciseDefinition& exercise);
 
-/// What a part judges, with its unit, in words: "left: peak jaws force, N".
+/// What a part judges, with its unit, in words: "left: peak jaws force, N",
+/// "overforce events".
 std::string part_title(const ScorePart& part);
 
 /// The first gate that fails the exercise; null: none.
