@@ -74,6 +74,8 @@ void add_report_options(CLI::App& command, SessionCommand& options) {
 void add_session_options(CLI::App& command, SessionCommand& options) {
   add_report_options(command, options);
   command.add_flag("--no-render", options.no_render, "draw no frames");
+  command.add_flag("--profile", options.profile,
+                   "write what each step took: profile.csv, and profile.svg over time");
   command.add_option("--size", options.size, "size of the frames, px")
       ->type_name("WxH")
       ->capture_default_str();
@@ -194,6 +196,7 @@ void add_replay(Program& program) {
                   "write report, frames and table there (default: nowhere)")
       ->type_name("DIR");
   add_session_options(command, program.replay);
+  command.get_option("--profile")->needs(command.get_option("--output"));
   add_dry_run(command, program.replay);
   command.callback([&program] { program.chosen = [&program] { return replay_command(program.replay); }; });
 }

@@ -25,6 +25,7 @@ struct SessionCommand : AnyCommand {
   std::optional<int> threads;  ///< none: as many as is usual, or, beside a window drawn in software, as fit
   std::string output;          ///< folder
   bool json = false, no_render = false;
+  bool profile = false;              ///< write what each step took
   std::string size = "960x540";      ///< "WxH", px
   std::vector<double> at;            ///< s, of frames besides the scenario's own
   std::optional<double> fail_below;  ///< points of 100

@@ -32,7 +32,7 @@ Failure taken(const fs::path& path) {
 
 bool written_by_session(const std::string& name) {
   static const std::regex pattern(
-      R"((recording\.(jsonl|html)|(steps|events)\.csv|report\.json|force_over_way\.svg|end\.png|t\d{3,}\.\d\ds\.png)(\.part)?)");
+      R"((recording\.(jsonl|html)|(steps|events|profile)\.csv|profile\.svg|report\.json|force_over_way\.svg|end\.png|t\d{3,}\.\d\ds\.png)(\.part)?)");
   return std::regex_match(name, pattern);
 }
 

@@ -83,6 +83,7 @@ struct Outputs {
   std::optional<OutputFolder> folder;
   std::optional<RecordingWriter> recording;
   std::optional<StepTable> table;
+  std::vector<ProfiledStep> profile;
 };
 
 /// The user's folder is theirs to reuse; without one, no session replaces another unless that was asked for.
@@ -131,6 +132,7 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
     options.source_end = request.replay->end.empty() ? cut_end : request.replay->end;
   options.recording = outputs.recording ? &*outputs.recording : nullptr;
   options.table = outputs.table ? &*outputs.table : nullptr;
+  options.profile = request.profile ? &outputs.profile : nullptr;
   ProgressLine line;
   options.observer = [&](const World& present, const Progress& progress, bool last) {
     if (request.show_progress) show_progress(line, present, progress, script.definition().time_limit);
@@ -186,6 +188,16 @@ std::optional<Failure> make_report(Played& played) {
   if (!table) return table.failure();
   const Result<std::string> written = write_text(played.output / "report.json", played.json);
   return written ? std::nullopt : std::optional<Failure>(written.failure());
+}
+
+std::optional<Failure> write_profile(const PlayRequest& request, const Played& played,
+                                     const std::vector<ProfiledStep>& steps) {
+  if (!request.profile || played.output.empty()) return std::nullopt;
+  const Result<std::string> table = write_text(played.output / "profile.csv", profile_csv(steps));
+  if (!table) return table.failure();
+  const Result<std::string> plot =
+      write_text(played.output / "profile.svg", profile_plot(steps, 1 / played.exercise.scene.solver.rate));
+  return plot ? std::nullopt : std::optional<Failure>(plot.failure());
 }
 
 }  // namespace
@@ -271,6 +283,7 @@ Result<Played> play(const PlayRequest& request) {
     played.report.start_to_first_frame_s = capture->first_frame_s;
   }
   if (std::optional<Failure> unwritten = make_report(played)) return *unwritten;
+  if (std::optional<Failure> unwritten = write_profile(request, played, outputs->profile)) return *unwritten;
   if (capture && capture->failure) return *capture->failure;
   return played;
 }

@@ -41,6 +41,7 @@ struct PlayRequest {
       output;                 ///< folder, of which an earlier session's files are replaced; empty: out/<id>
   bool overwrite = false;     ///< without `output`: replace what out/<id> holds instead of taking out/<id>-2
   bool show_progress = true;  ///< on a terminal
+  bool profile = false;       ///< write profile.csv and profile.svg too (session/step_profile.h)
   const Recording* replay = nullptr;  ///< play these inputs instead of the scenario's demo
   LiveSource* live = nullptr;         ///< let these hands move the instruments instead
   /// Who operates, and by what; the session, its time and its machine are play's to name. A replay keeps its recording's.

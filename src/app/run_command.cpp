@@ -18,6 +18,7 @@ ExitCode run_command(const RunCommand& command) {
   request.scenario = command.scenario;
   request.threads = command.threads.value_or(usual_threads());
   request.render = !command.no_render;
+  request.profile = command.profile;
   request.at = command.at;
   if (command.seed) request.seed = *command.seed;
   std::optional<Failure> wrong = read_size(command.size, request);
@@ -57,6 +58,7 @@ ExitCode replay_command(const ReplayCommand& command) {
   request.seed = recording->header.seed;
   request.replay = &recording.value();
   request.render = !command.no_render && !command.output.empty();
+  request.profile = command.profile;
   request.at = command.at;
   request.write = !command.output.empty();
   request.output = command.output;

@@ -47,9 +47,11 @@ class Iteration {
   }
 
   NewtonResult run() {
+    result_.furthest.resize(parts_.size());
     evaluate(x_, multipliers_, state_);
     while (!ended()) {
       if (result_.iterations++ == 0) problem_.prepare(work_);
+      ++result_.furthest[static_cast<std::size_t>(state_.worst_residual.index)];
       if (!chord() && !newton()) break;
       ++result_.by_last_factor;
     }

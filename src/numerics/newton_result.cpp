@@ -1,5 +1,7 @@
 #include "numerics/newton_result.h"
 
+#include <algorithm>
+
 namespace calot {
 
 void NewtonResult::add(const NewtonResult& next) {
@@ -8,7 +10,10 @@ void NewtonResult::add(const NewtonResult& next) {
   iterations += before.iterations;
   if (next.chords == next.iterations) by_last_factor += before.by_last_factor;
   chords += before.chords;
+  factorisations += before.factorisations;
   shifts += before.shifts;
+  furthest.resize(std::max(furthest.size(), before.furthest.size()));
+  for (std::size_t p = 0; p < before.furthest.size(); ++p) furthest[p] += before.furthest[p];
   assembly_s += before.assembly_s;
   factorisation_s += before.factorisation_s;
   solve_s += before.solve_s;

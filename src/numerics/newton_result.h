@@ -2,6 +2,7 @@
 // How a solve ended.
 
 #include <string>
+#include <vector>
 
 namespace calot {
 
@@ -20,9 +21,12 @@ struct NewtonResult {
   NewtonStatus status = NewtonStatus::converged;
   int part = 0;  ///< that the status is of: the one furthest from converged, or that nothing holds
   int iterations = 0;
-  int chords = 0;               ///< of the iterations, those that reused a factor
-  int by_last_factor = 0;       ///< of the iterations, those since the last factorisation
-  int shifts = 0;               ///< factorisations that needed a diagonal shift
+  int chords = 0;          ///< of the iterations, those that reused a factor
+  int by_last_factor = 0;  ///< of the iterations, those since the last factorisation
+  int factorisations = 0;  ///< of a matrix, with or without a shift
+  int shifts = 0;          ///< of these, of a matrix that was shifted
+  /// By part: iterations that began with its forces further from balance than any other's. Empty: there was none.
+  std::vector<int> furthest;
   double residual = 0;          ///< largest nodal residual / largest internal nodal force, of the worst part
   double increment = 0;         ///< largest coordinate of the last increment / length, of the worst part
   double constraint_error = 0;  ///< relative, of the worst constraint

@@ -21,9 +21,14 @@ void add_shifts(const VecX& shifts, std::span<const Part> parts, BlockMatrix& ma
     parts[p].for_nodes([&](int node) { matrix.add_to_diagonal(node, shifts[p]); });
 }
 
+FactorStatus factorise_once(Workers* workers, NewtonWorkspace& work, NewtonResult& result) {
+  ++result.factorisations;
+  return work.factor.factorise(work.matrix, workers);
+}
+
 NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Workers* workers,
                               NewtonWorkspace& work, NewtonResult& result) {
-  FactorStatus status = work.factor.factorise(work.matrix, workers);
+  FactorStatus status = factorise_once(workers, work, result);
   const Border& border = work.border;
   // Between a stiff joint and a strand of fat the condition is low without anything amiss.
   const bool weighed = std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.weighed; });
@@ -42,14 +47,14 @@ NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Worker
       mechanism(work.matrix, border.gradients, VecX(), x, parts)) {
     add_shifts(shifts_of(next_to_nothing, work.matrix, parts), parts, work.matrix);
     ++result.shifts;
-    status = work.factor.factorise(work.matrix, workers);
+    status = factorise_once(workers, work, result);
   }
   const bool shifted = status == FactorStatus::not_positive_definite;
   VecX shifts = shifted ? shifts_of(1e-4, work.matrix, parts) : VecX();
   while (status == FactorStatus::not_positive_definite) {
     add_shifts(shifts, parts, work.matrix);
     ++result.shifts;
-    status = work.factor.factorise(work.matrix, workers);
+    status = factorise_once(workers, work, result);
     shifts *= 4;
     if (!shifts.allFinite()) return NewtonStatus::not_finite;
   }

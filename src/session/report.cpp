@@ -52,8 +52,9 @@ OrderedJson benchmark_json(const ScorePart& part) {
   return json;
 }
 
-OrderedJson timing_json(const SessionResult& session, double start_to_first_frame) {
+OrderedJson timing_json(const SessionResult& session, double step, double start_to_first_frame) {
   const SessionTiming& timing = session.timing;
+  const StepTimes times = step_times(timing.step_s, step);
   OrderedJson json = {{"real_time_factor", real_time_factor(session)},
                       {"simulated_s", session.traces.time.empty() ? 0.0 : session.traces.time.back()},
                       {"wall_s", timing.wall_s},
@@ -67,6 +68,11 @@ OrderedJson timing_json(const SessionResult& session, double start_to_first_fram
                       {"steps", session.state_hashes.empty() ? 0 : session.state_hashes.size() - 1},
                       {"substeps", timing.substeps},
                       {"newton_iterations", timing.newton_iterations}};
+  json["step_ms"] = {{"median", 1e3 * times.median},
+                     {"p90", 1e3 * times.p90},
+                     {"p99", 1e3 * times.p99},
+                     {"longest", 1e3 * times.longest}};
+  json["steps_over_time"] = times.over_time;
   json["start_to_first_frame_s"] =
       start_to_first_frame >= 0 ? OrderedJson(start_to_first_frame) : OrderedJson();
   return json;
@@ -203,7 +209,7 @@ std::string report_json(const ExerciseDefinition& exercise, const SessionResult&
                    {"instruction_set", make.instruction_set},
                    {"mathematics", make.mathematics}};
   if (report.live) json["operated"] = operated_json(*report.live);
-  json["timing"] = timing_json(session, report.start_to_first_frame_s);
+  json["timing"] = timing_json(session, 1 / exercise.scene.solver.rate, report.start_to_first_frame_s);
   return json_text(json) + "\n";
 }
 

@@ -78,7 +78,12 @@ class Session {
     if (!read_input()) return;
     const Clock::time_point start = Clock::now();
     Result<StepReport> report = world_.step(input_);
-    note_time(seconds_since(start));
+    const double taken = seconds_since(start);
+    note_time(taken);
+    if (options_.profile != nullptr) {
+      const StepReport& now = world_.report();
+      options_.profile->push_back({now.time + (report ? 0 : dt_), taken, now.statistics, now.events});
+    }
     if (!report) return note_failed_step(report.failure());
     note_report();
     for (const WorldEvent& event : report->events) result_.progress.add_event(event);
@@ -93,6 +98,7 @@ class Session {
   void note_time(double taken) {
     SessionTiming& timing = result_.timing;
     timing.simulation_s += taken;
+    timing.step_s.push_back(taken);
     const double second = std::floor(world_.report().time - dt_ / 2);  // in which the step lies
     in_second_ = std::exchange(second_, second) == second ? in_second_ + taken : taken;
     timing.slowest_s = std::max(timing.slowest_s, in_second_);

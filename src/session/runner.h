@@ -10,6 +10,7 @@
 #include "session/exercise.h"
 #include "session/progress.h"
 #include "session/recording.h"
+#include "session/step_profile.h"
 #include "session/step_table.h"
 #include "session/trace.h"
 
@@ -21,6 +22,8 @@ struct SessionTiming {
   double simulation_s = 0;  ///< inside World::step
   double slowest_s = 0;  ///< the most of it in any simulated second: of the seconds 0 to 1, 1 to 2 ... begun
   double frames_s = 0;   ///< inside the frame callback
+  std::vector<double>
+      step_s;  ///< inside World::step, one a step; of one that was skipped as still next to nothing
   int substeps = 0, newton_iterations = 0;
   double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
 };
@@ -35,6 +38,7 @@ struct SessionOptions {
   std::string source_end;
   RecordingWriter* recording = nullptr;
   StepTable* table = nullptr;
+  std::vector<ProfiledStep>* profile = nullptr;  ///< gets what each step took
   StepObserver observer;
 };
 

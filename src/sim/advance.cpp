@@ -170,7 +170,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
         if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, static_cast<int>(i), poses[i].jaw);
       return follow(field, poses, duration, slipped_before, events, statistics);
     };
-    if (Result<bool> moved = close_within_pinch(field, here, targets, go, events); !moved)
+    if (Result<bool> moved = close_within_pinch(field, here, targets, go, events, statistics); !moved)
       return moved.failure();
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
       const std::vector<double>& own = holding_stops[i];

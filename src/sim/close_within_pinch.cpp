@@ -23,11 +23,13 @@ constexpr int most_trials = 24;
 class Trials {
  public:
   Trials(Field& field, Poses to, const std::function<Result<bool>(const Poses&)>& go,
-         std::vector<WorldEvent>& events, const std::vector<std::size_t>& pressing)
+         std::vector<WorldEvent>& events, const std::vector<std::size_t>& pressing,
+         SolveStatistics& statistics)
       : field_(field),
         to_(std::move(to)),
         go_(go),
         events_(events),
+        statistics_(statistics),
         start_(field_state(field)),
         told_(events.size()),
         at_start_(field.tools.size(), 0.0) {
@@ -44,6 +46,7 @@ class Trials {
     }
     fresh_ = false;
     to_[tool].jaw = jaw;
+    ++statistics_.jaw_trials[field_.tools[tool].definition.name];
     last_ = go_(to_);
     if (!last_) return std::numeric_limits<double>::infinity();
     return excess(tool);
@@ -63,6 +66,7 @@ class Trials {
   Poses to_;
   const std::function<Result<bool>(const Poses&)>& go_;
   std::vector<WorldEvent>& events_;
+  SolveStatistics& statistics_;
   FieldState start_;
   std::size_t told_;
   std::vector<double> at_start_;
@@ -115,7 +119,7 @@ void turn_to_pinch(Trials& trials, std::size_t tool, At here, double end) {
 
 Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targets,
                                 const std::function<Result<bool>(const Poses&)>& go,
-                                std::vector<WorldEvent>& events) {
+                                std::vector<WorldEvent>& events, SolveStatistics& statistics) {
   std::vector<std::size_t> pressing;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Tool& tool = field.tools[i];
@@ -124,7 +128,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     if (has_teeth(tool) && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
   }
   if (pressing.empty()) return go(to);
-  Trials trials(field, to, go, events, pressing);
+  Trials trials(field, to, go, events, pressing, statistics);
   std::vector<std::size_t> stopped;
   for (std::size_t i : pressing) {
     if (!trials.last()) break;

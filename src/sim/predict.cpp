@@ -200,7 +200,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
     if (field.step_time > 0) values = add_inertia(problem, multipliers, load);
     FirstOrderAnswer answer = first_order_answer(problem, group.work, problem.coordinates(), multipliers,
                                                  load, all_edge_lengths(field), fresh, values);
-    count(answer.result, statistics);
+    count(field, answer.result, statistics);
     if (!answer.result.converged())
       return solve_failure(answer.result, member_name(field, answer.result.part), "under its instruments");
     make_believable(field, answer.dx);

@@ -45,14 +45,6 @@ std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<Inst
   return out;
 }
 
-void count(const NewtonResult& result, SolveStatistics& statistics) {
-  statistics.newton_iterations += result.iterations;
-  statistics.assembly_s += result.assembly_s;
-  statistics.factorisation_s += result.factorisation_s;
-  statistics.solve_s += result.solve_s;
-  statistics.contact_s += result.safety_s;
-}
-
 std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads) {
   std::vector<Member> out;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
@@ -66,6 +58,19 @@ std::string member_name(const Field& field, int part) {
   const auto index = static_cast<std::size_t>(part);
   if (index < field.organs.size()) return field.organs[index].definition.name;
   return field.tissues[index - field.organs.size()].definition.name;
+}
+
+void count(const Field& field, const NewtonResult& result, SolveStatistics& statistics) {
+  statistics.newton_iterations += result.iterations;
+  statistics.factorisations += result.factorisations;
+  statistics.shifts += result.shifts;
+  statistics.assembly_s += result.assembly_s;
+  statistics.factorisation_s += result.factorisation_s;
+  statistics.solve_s += result.solve_s;
+  statistics.contact_s += result.safety_s;
+  for (std::size_t part = 0; part < result.furthest.size(); ++part)
+    if (result.furthest[part] > 0)
+      statistics.furthest[member_name(field, static_cast<int>(part))] += result.furthest[part];
 }
 
 std::vector<JoinPointer> all_joins(const Field& field, const std::vector<InstrumentPose>& poses) {
@@ -113,6 +118,8 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   for (int round = 0; round <= friction_rounds; ++round) {
     const std::vector<JoinPointer> joins = joins_with(all_joins(field, poses), rubbing);
     total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
+    ++statistics.solves;
+    if (round > 0) ++statistics.friction_rounds;
     if (!total.converged() || !has_friction(field)) break;
     std::vector<FrictionLoad> used;
     for (const ContactLoads& of_organ : loads) used.push_back(of_organ.friction);
@@ -131,7 +138,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     }
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
   }
-  count(total, statistics);
+  count(field, total, statistics);
   return total;
 }
 
@@ -153,7 +160,8 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
   tissues.add_to(members);
   const NewtonResult result =
       sink(members, all_joins(field, present_poses(field)), group.patterns, settings, group.work);
-  count(result, statistics);
+  ++statistics.solves;
+  count(field, result, statistics);
   if (!result.converged())
     return solve_failure(result, member_name(field, result.part), "as it sank to rest");
   return true;

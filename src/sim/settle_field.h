@@ -17,7 +17,7 @@ ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vect
 std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses);
 
 /// Adds a solve's counts and times.
-void count(const NewtonResult& result, SolveStatistics& statistics);
+void count(const Field& field, const NewtonResult& result, SolveStatistics& statistics);
 
 /// What such a group's part is called, the tissues behind the organs.
 std::string member_name(const Field& field, int part);

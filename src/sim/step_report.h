@@ -2,6 +2,7 @@
 // What goes into a step and what comes out of it: plain data.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -92,9 +93,17 @@ struct LostState {
   double aspirated = 0;        ///< m^3, drawn out
 };
 
+/// What a step's solves took. Its counts are the same at every number of threads; times are no part of any hash.
 struct SolveStatistics {
-  int substeps = 0;
-  int newton_iterations = 0;
+  int substeps = 0;  ///< parts of the motion that were kept
+  int solves = 0;    ///< of the whole group for a balance, those that were given up included
+  int newton_iterations = 0, factorisations = 0;
+  int shifts = 0;           ///< of the factorisations, those of a matrix that was shifted
+  int friction_rounds = 0;  ///< solves that only renewed what rubs
+  /// By tool: motions of this step that were played to try an angle of its jaws.
+  std::map<std::string, int> jaw_trials;
+  /// By organ or tissue: Newton steps in which its forces were the furthest from balance.
+  std::map<std::string, int> furthest;
   /// Changes of the active details, and those given up because the organ found no rest with them.
   int extensions_changed = 0, extensions_refused = 0;
   /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "app/play.h"
 #include "app/program.h"
@@ -36,6 +37,28 @@ TEST_F(Run, PrintsStepsMetricsAndScoreAndWritesEverythingIntoItsFolder) {
     files.insert(entry.path().filename());
   EXPECT_EQ(files, (std::set<std::string>{"end.png", "events.csv", "recording.jsonl", "report.json",
                                           "steps.csv", "t000.00s.png", "t000.40s.png"}));
+}
+
+TEST_F(Run, AProfileHasARowForEachStepAndTheirTimesAreTheReports) {
+  const Json json = report({"run", "small.lua", "--no-render", "--profile", "-o", "here"});
+  std::istringstream rows(slurp(folder_ / "here" / "profile.csv"));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_TRUE(row.starts_with("time_s,wall_ms,parts,solves,newton_steps,factorisations,")) << row;
+  double sum = 0, longest = 0;
+  int count = 0;
+  for (; std::getline(rows, row); ++count) {
+    const double ms = std::stod(row.substr(row.find(',') + 1));
+    sum += ms;
+    longest = std::max(longest, ms);
+  }
+  EXPECT_EQ(count, json["timing"]["steps"]);
+  EXPECT_NEAR(sum, 1e3 * json["timing"]["simulation_s"].get<double>(), 5e-4 * count) << "three decimals each";
+  EXPECT_NEAR(longest, json["timing"]["step_ms"]["longest"].get<double>(), 5e-4);
+  EXPECT_NE(slurp(folder_ / "here" / "profile.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(calot({"replay", "here/recording.jsonl", "--profile"}).code, 4) << "it has nowhere to write it";
+  EXPECT_EQ(calot({"replay", "here/recording.jsonl", "--no-render", "--profile", "-o", "again"}).code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "again" / "profile.csv"));
 }
 
 TEST_F(Run, WritesIntoOutByDefault) {

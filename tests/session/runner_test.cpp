@@ -329,6 +329,10 @@ TEST(Report, HoldsEveryPromisedKeyAndItsPointsSumToTheTotal) {
   EXPECT_EQ(json["rest"], nlohmann::json::array({"ball lies elsewhere"}));
   EXPECT_GT(json["timing"]["real_time_factor"].get<double>(), 0);
   EXPECT_GT(json["timing"]["slowest_second_s"].get<double>(), 0);
+  EXPECT_EQ(result.timing.step_s.size() + 1, result.state_hashes.size());
+  EXPECT_LE(json["timing"]["step_ms"]["p99"], json["timing"]["step_ms"]["longest"]);
+  EXPECT_GT(json["timing"]["step_ms"]["median"].get<double>(), 0);
+  EXPECT_TRUE(json["timing"]["steps_over_time"].is_number_integer());
   EXPECT_LE(json["timing"]["slowest_second_s"].get<double>(), json["timing"]["simulation_s"].get<double>());
   double sum = 0;
   for (const auto& part : json["score"]["parts"]) {

@@ -96,6 +96,31 @@ TEST(Grasp, JawsHoldNothingWhenTheyCloseOnAir) {
   EXPECT_EQ(path.driver.events[0].kind, EventKind::empty_grasp);
 }
 
+TEST(Statistics, SayWhichBodyWasFurthestFromBalanceInEachNewtonStepAndWhoseJawsWereTried) {
+  CALOT_SLOW_WHEN_SANITIZED("a whole grasp");
+  test::FundusPath path(test::grasper_scene());
+  int trials = 0, newton_steps = 0;
+  path.driver.watch = [&](const StepReport& report) {
+    const SolveStatistics& found = report.statistics;
+    int furthest = 0;
+    for (const auto& [name, count] : found.furthest) {
+      EXPECT_EQ(name, report.organs[0].name);
+      furthest += count;
+    }
+    EXPECT_EQ(furthest, found.newton_iterations);
+    EXPECT_LE(found.shifts, found.factorisations);
+    EXPECT_LE(found.friction_rounds, found.solves);
+    for (const auto& [name, count] : found.jaw_trials) {
+      EXPECT_EQ(name, "left");
+      trials += count;
+    }
+    newton_steps += found.newton_iterations;
+  };
+  ASSERT_TRUE(path.grasp()) << path.driver.why();
+  EXPECT_GT(newton_steps, 0);
+  EXPECT_GT(trials, 1) << "its pinch is found by trying";
+}
+
 /// What the conditions of events were at a step.
 struct Conditions {
   bool contact = false, grasp = false, overforce = false, overstretch = false;
