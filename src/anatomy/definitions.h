@@ -61,7 +61,7 @@ struct TubeShape {
   PatientEnd patient_end = PatientEnd::held;
   Carries carries = Carries::bile;
   /// What drives it out of an end that is cut open where the patient feeds it, Pa, gauge, and what resists on the way
-  /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (sim/leak.h).
+  /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (liquid/leak.h).
   std::optional<double> feed_pressure = {}, feed_resistance = {};
   /// m, outer, one at each of its points and straight in between, by the way along them; empty: from `radius` to
   /// `end_radius`. Other bodies, but not instruments, feel a tube everywhere as thick as where it is thickest.
@@ -316,7 +316,7 @@ struct InstrumentDefinition {
   double power = 30;  ///< W of its current, where it has any: 25 to 40 in use (c)
   ClipSize clip = ClipSize::ml;
   int clips = 8;  ///< that it carries at the start
-  // Of a needle that draws liquid out, sim/aspirate.h. A bore of 1.6 mm is 14 gauge (c); the others (d), uncalibrated.
+  // Of a needle that draws liquid out, liquid/aspirate.h. A bore of 1.6 mm is 14 gauge (c); the others (d), uncalibrated.
   double bore = 1.6e-3;         ///< m, across
   double bore_length = 330e-3;  ///< m, from its mouth to where the suction's pressure is
   double suction = 13e3;        ///< Pa below the pressure outside: some 100 mmHg
@@ -374,7 +374,7 @@ struct LaparoscopeDefinition {
 /// after them, as the paper does (section 5).
 enum class ExtensionScheme { condensed, staged };
 
-/// What a step is: a rest under its loads, or a time in which masses move (sim/inertia.h).
+/// What a step is: a rest under its loads, or a time in which masses move (body/inertia.h).
 enum class SolverMotion { statics, dynamics };
 
 /// Nodes of the finest level of extensions of all organs together: each takes some 5 kB.
@@ -384,9 +384,9 @@ inline constexpr int most_extension_levels = 4;  ///< a 61-node ball's nodes the
 struct SolverDefinition {
   double rate = 50;  ///< steps a second
   SolverMotion motion = SolverMotion::statics;
-  double tolerance = 1e-6;  ///< dimensionless, see sim/equilibrium.h
+  double tolerance = 1e-6;  ///< dimensionless, see group/equilibrium.h
   int extension_levels =
-      0;  ///< of structural extensions at contacts, see sim/structural_extension.h; 0: none
+      0;  ///< of structural extensions at contacts, see motion/structural_extension.h; 0: none
   ExtensionScheme extension_scheme = ExtensionScheme::condensed;
   /// m; where the laparoscope looks at an organ from nearer than this, it has an extension there too; 0: never
   double extension_view = 0;

@@ -4,7 +4,7 @@
 #include "lua/api_parts.h"
 #include "lua/demo_script.h"
 #include "session/exercise.h"
-#include "sim/critical_view.h"
+#include "world/critical_view.h"
 
 namespace calot {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "base/units.h"
 #include "lua/api_parts.h"
-#include "sim/events.h"
-#include "sim/instrument.h"
-#include "sim/part_load.h"
+#include "tools/events.h"
+#include "tools/instrument.h"
+#include "tools/part_load.h"
 
 namespace calot {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <limits>
 
+#include "acts/exchange.h"
 #include "base/units.h"
 #include "script/lua_headers.h"
-#include "sim/exchange.h"
 
 namespace calot {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "anatomy/instruments.h"
 #include "base/suggest.h"
+#include "field/change_bodies.h"
 #include "lua/calot_module.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"
@@ -14,11 +15,10 @@
 #include "lua/score_rules.h"
 #include "lua/steps_script.h"
 #include "lua/table_file.h"
+#include "organs/body_kinds.h"
 #include "script/lua_headers.h"
 #include "script/source_map.h"
 #include "session/metrics.h"
-#include "sim/body_kinds.h"
-#include "sim/change_bodies.h"
 
 namespace calot {
 namespace {

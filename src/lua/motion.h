@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/instrument.h"
+#include "tools/instrument.h"
 
 namespace calot {
 

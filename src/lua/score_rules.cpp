@@ -9,7 +9,7 @@
 #include "lua/methods.h"
 #include "script/binding.h"
 #include "script/lua_headers.h"
-#include "sim/events.h"
+#include "tools/events.h"
 
 namespace calot {
 namespace {

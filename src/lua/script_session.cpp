@@ -9,12 +9,12 @@
 #include "anatomy/instruments.h"
 #include "base/suggest.h"
 #include "base/units.h"
+#include "field/between_jaws.h"
+#include "field/change_bodies.h"
 #include "lua/handles.h"
+#include "organs/strand_places.h"
 #include "script/lua_headers.h"
-#include "sim/between_jaws.h"
-#include "sim/change_bodies.h"
-#include "sim/critical_view.h"
-#include "sim/strand_places.h"
+#include "world/critical_view.h"
 
 namespace calot {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "lua/read_parameters.h"
 #include "lua/table_reader.h"
+#include "organs/tissue.h"
 #include "script/sandbox.h"
 #include "session/exercise.h"
-#include "sim/tissue.h"
 
 namespace calot {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "field/change_bodies.h"
 #include "script/lua_headers.h"
-#include "sim/change_bodies.h"
 
 namespace calot {
 namespace {

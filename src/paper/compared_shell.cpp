@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "base/timed.h"
+#include "group/staged.h"
+#include "motion/structural_extension.h"
 #include "numerics/response.h"
 #include "paper/comparison_run.h"
-#include "sim/staged.h"
-#include "sim/structural_extension.h"
 
 namespace calot {
 namespace {
@@ -84,7 +84,7 @@ class ComparedShell : public ComparedBody {
     return {};
   }
 
-  /// As the simulator's motion (sim/advance.cpp): in parts that a first-order answer begins.
+  /// As the simulator's motion (acts/advance.cpp): in parts that a first-order answer begins.
   NewtonResult step(double share) override {
     constexpr int most_parts = 100;
     NewtonResult total;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/status.h"
-#include "sim/step_report.h"
+#include "tools/step_report.h"
 
 namespace calot {
 

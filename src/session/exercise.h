@@ -12,7 +12,7 @@
 #include "anatomy/definitions.h"
 #include "base/status.h"
 #include "session/progress.h"
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 #include "geometry/types.h"
-#include "sim/instrument.h"
+#include "tools/instrument.h"
 
 namespace calot {
 

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <thread>
 
-#include "sim/exchange.h"
-#include "sim/tool.h"
+#include "acts/exchange.h"
+#include "tools/tool.h"
 
 namespace calot {
 namespace {

@@ -10,7 +10,7 @@
 #include "geometry/decompose.h"
 #include "session/registered_tool.h"
 #include "session/runner.h"
-#include "sim/tool.h"
+#include "tools/tool.h"
 
 namespace calot {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // Which organs lie elsewhere at the start than they are drawn.
 
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 

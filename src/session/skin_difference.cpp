@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "collision/simplex_distance.h"
+#include "field/field.h"
 #include "geometry/tri_mesh.h"
-#include "sim/field.h"
 
 namespace calot {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 

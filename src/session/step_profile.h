@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/step_report.h"
+#include "tools/step_report.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/status.h"
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 

@@ -1,7 +1,7 @@
 #include "view/build_scene.h"
 
 #include "anatomy/organ_frame.h"
-#include "sim/aspirate.h"
+#include "liquid/aspirate.h"
 #include "view/clip_mesh.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "render/scene.h"
-#include "sim/world.h"
 #include "view/coarse_mesh.h"
 #include "view/instrument_parts.h"
 #include "view/jaw_mould.h"
+#include "world/world.h"
 
 namespace calot {
 

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "sim/between_jaws.h"
-#include "sim/spill.h"
+#include "field/between_jaws.h"
+#include "liquid/spill.h"
 #include "view/instrument_parts.h"
 #include "view/surfaces.h"
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "field/field.h"
 #include "render/scene.h"
-#include "sim/field.h"
 
 namespace calot {
 

@@ -1,12 +1,12 @@
 #pragma once
-// What drawn instruments have in common. All in the hinge's frame (sim/instrument.h) unless said otherwise.
+// What drawn instruments have in common. All in the hinge's frame (tools/instrument.h) unless said otherwise.
 
 #include <array>
 #include <functional>
 #include <vector>
 
 #include "render/scene.h"
-#include "sim/instrument.h"
+#include "tools/instrument.h"
 
 namespace calot {
 
@@ -49,7 +49,7 @@ struct InstrumentPart {
 struct InstrumentModel {
   InstrumentGeometry geometry;
   InstrumentPart shaft;  ///< in the hinge's frame
-  /// Each in its jaw's frame (sim/instrument.h); empty where it has none.
+  /// Each in its jaw's frame (tools/instrument.h); empty where it has none.
   std::array<InstrumentPart, 2> jaws;
 };
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "sim/grip.h"
+#include "field/grip.h"
 #include "view/surfaces.h"
 
 namespace calot {

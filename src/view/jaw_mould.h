@@ -8,13 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include "sim/field.h"
-#include "sim/world.h"
+#include "field/field.h"
 #include "skin/free_form.h"
+#include "world/world.h"
 
 namespace calot {
 
-/// Height of the wall that a pad moulds, m: the x in the jaw's frame (sim/instrument.h) of the skin before the place
+/// Height of the wall that a pad moulds, m: the x in the jaw's frame (tools/instrument.h) of the skin before the place
 /// (y, z) of its pad. Just clear of a solid pad; in a window up to window_bulge beyond it.
 double moulded_height(const InstrumentGeometry& geometry, double y, double z);
 

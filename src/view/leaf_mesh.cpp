@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "sim/between_jaws.h"
-#include "sim/field.h"
-#include "sim/skin_place.h"
+#include "field/between_jaws.h"
+#include "field/field.h"
+#include "joins/skin_place.h"
 #include "view/surfaces.h"
 
 namespace calot {

@@ -3,7 +3,7 @@
 // strands and the tubes that they end on. It hangs and is drawn along as they are, and is open where they are torn.
 
 #include "render/scene.h"
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 

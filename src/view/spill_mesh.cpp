@@ -5,8 +5,8 @@
 #include <map>
 #include <numbers>
 
-#include "sim/between_jaws.h"
-#include "sim/spill.h"
+#include "field/between_jaws.h"
+#include "liquid/spill.h"
 #include "view/surfaces.h"
 
 namespace calot {

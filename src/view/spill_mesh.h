@@ -2,7 +2,7 @@
 // Bile and blood that have left the organs, to look at: drops that fall and films that lie.
 
 #include "render/scene.h"
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 

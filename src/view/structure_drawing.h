@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/shell_body.h"
+#include "body/shell_body.h"
 
 namespace calot {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/field.h"
+#include "field/field.h"
 #include "view/surfaces.h"
 
 namespace calot {

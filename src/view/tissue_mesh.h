@@ -3,8 +3,8 @@
 // what is left draws back to both ends and curls up.
 
 #include "render/scene.h"
-#include "sim/world.h"
 #include "view/coarse_mesh.h"
+#include "world/world.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "numerics/cholesky.h"
 #include "numerics/condense.h"
-#include "sim/body_kinds.h"
+#include "organs/body_kinds.h"
 
 namespace {
 

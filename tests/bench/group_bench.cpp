@@ -7,8 +7,8 @@
 #include <chrono>
 #include <vector>
 
-#include "sim/tool.h"
-#include "sim/world.h"
+#include "tools/tool.h"
+#include "world/world.h"
 
 namespace {
 

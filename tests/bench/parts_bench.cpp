@@ -2,9 +2,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "sim/instrument.h"
-#include "sim/body_kinds.h"
-#include "sim/structural_extension.h"
+#include "motion/structural_extension.h"
+#include "organs/body_kinds.h"
+#include "tools/instrument.h"
 
 namespace {
 

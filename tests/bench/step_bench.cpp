@@ -7,9 +7,9 @@
 #include <chrono>
 #include <vector>
 
-#include "sim/body_kinds.h"
-#include "sim/tool.h"
-#include "sim/world.h"
+#include "organs/body_kinds.h"
+#include "tools/tool.h"
+#include "world/world.h"
 
 namespace {
 

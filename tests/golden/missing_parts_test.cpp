@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "field/field.h"
 #include "golden/stored_goldens.h"
 #include "sim/act_rig.h"
-#include "sim/field.h"
 #include "sim/rail_rig.h"
 #include "sim/rig.h"
 #include "view/build_scene.h"

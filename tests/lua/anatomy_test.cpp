@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "field/field.h"
 #include "lua/scenario_files.h"
 #include "session/runner.h"
-#include "sim/field.h"
-#include "sim/world.h"
 #include "support/long_run.h"
+#include "world/world.h"
 
 namespace calot {
 namespace {

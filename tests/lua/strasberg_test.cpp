@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "field/between_jaws.h"
 #include "lua/scenario_files.h"
 #include "session/runner.h"
 #include "sim/act_rig.h"
-#include "sim/between_jaws.h"
 
 namespace calot {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "sim/tool.h"
-#include "sim/world.h"
+#include "tools/tool.h"
+#include "world/world.h"
 
 namespace calot::test {
 

@@ -1,6 +1,6 @@
 // What a needle draws out of a hollow organ, how fast, until when, and that all of it is counted.
 
-#include "sim/aspirate.h"
+#include "liquid/aspirate.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "act_rig.h"
 #include "base/units.h"
+#include "field/field_state.h"
+#include "liquid/leak.h"
 #include "rig.h"
-#include "sim/field_state.h"
-#include "sim/leak.h"
 #include "support/long_run.h"
 
 namespace calot {

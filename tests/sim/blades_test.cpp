@@ -1,13 +1,13 @@
 // What scissors do, on one tube that is held at both ends.
 
-#include "sim/blades.h"
+#include "acts/blades.h"
 
 #include <gtest/gtest.h>
 
 #include "act_rig.h"
+#include "field/between_jaws.h"
+#include "field/field_state.h"
 #include "rig.h"
-#include "sim/between_jaws.h"
-#include "sim/field_state.h"
 
 namespace calot {
 namespace {

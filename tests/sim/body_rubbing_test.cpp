@@ -1,17 +1,17 @@
 // Friction of bodies on each other: what it balances, what it holds, what it costs.
 
-#include "sim/body_rubbing.h"
+#include "motion/body_rubbing.h"
 
 #include <gtest/gtest.h>
 
+#include "body/rigid_body.h"
+#include "field/field_state.h"
 #include "field_rig.h"
+#include "group/self_contact.h"
 #include "group_rig.h"
-#include "sim/field_state.h"
-#include "sim/rigid_body.h"
-#include "sim/rubbing.h"
-#include "sim/self_contact.h"
-#include "sim/settle_field.h"
-#include "sim/skin_join.h"
+#include "joins/skin_join.h"
+#include "motion/rubbing.h"
+#include "motion/settle_field.h"
 #include "support/long_run.h"
 
 namespace calot {

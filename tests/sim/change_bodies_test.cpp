@@ -1,4 +1,4 @@
-#include "sim/change_bodies.h"
+#include "field/change_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include "anatomy/definitions.h"
 #include "base/rng.h"
 #include "base/units.h"
-#include "sim/field_state.h"
-#include "sim/rod_body.h"
-#include "sim/settle_field.h"
-#include "sim/world.h"
+#include "body/rod_body.h"
+#include "field/field_state.h"
+#include "motion/settle_field.h"
 #include "support/bodies.h"
+#include "world/world.h"
 
 namespace calot {
 namespace {

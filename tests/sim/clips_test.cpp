@@ -1,14 +1,14 @@
 // What a fired clip does, on one tube that is held at both ends.
 
-#include "sim/clips.h"
+#include "acts/clips.h"
 
 #include <gtest/gtest.h>
 
 #include "act_rig.h"
-#include "sim/between_jaws.h"
-#include "sim/field_state.h"
-#include "sim/grip_slip.h"
-#include "sim/spill.h"
+#include "acts/grip_slip.h"
+#include "field/between_jaws.h"
+#include "field/field_state.h"
+#include "liquid/spill.h"
 
 namespace calot {
 namespace {

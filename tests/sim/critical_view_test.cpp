@@ -1,12 +1,12 @@
 // What each criterion of the critical view of safety measures, and that it measures nothing else.
 
-#include "sim/critical_view.h"
+#include "world/critical_view.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/change_bodies.h"
-#include "sim/field_state.h"
-#include "sim/strand_places.h"
+#include "field/change_bodies.h"
+#include "field/field_state.h"
+#include "organs/strand_places.h"
 #include "triangle_rig.h"
 
 namespace calot {

@@ -1,6 +1,6 @@
 // The organ's whole energy, contact included, and the measure of who is inside whom.
 
-#include "sim/equilibrium.h"
+#include "group/equilibrium.h"
 
 #include <gtest/gtest.h>
 

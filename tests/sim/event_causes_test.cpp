@@ -4,9 +4,9 @@
 
 #include "act_rig.h"
 #include "base/units.h"
+#include "field/between_jaws.h"
+#include "field/field_state.h"
 #include "rig.h"
-#include "sim/between_jaws.h"
-#include "sim/field_state.h"
 
 namespace calot {
 namespace {

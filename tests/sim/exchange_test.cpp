@@ -1,12 +1,12 @@
 // Instruments that share a port, one after the other.
 
-#include "sim/exchange.h"
+#include "acts/exchange.h"
 
 #include <gtest/gtest.h>
 
 #include "act_rig.h"
+#include "field/field_state.h"
 #include "rig.h"
-#include "sim/field_state.h"
 
 namespace calot {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "field/field_state.h"
 #include "field_rig.h"
 #include "rig.h"
-#include "sim/field_state.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -1,13 +1,13 @@
 #pragma once
 // The field below the world: where held points, bed forces and supports can be looked at.
 
+#include "acts/advance.h"
 #include "base/units.h"
+#include "field/grip.h"
+#include "motion/structural_extension.h"
+#include "motion/tool_loads.h"
+#include "organs/body_kinds.h"
 #include "rig.h"
-#include "sim/advance.h"
-#include "sim/body_kinds.h"
-#include "sim/grip.h"
-#include "sim/structural_extension.h"
-#include "sim/tool_loads.h"
 
 namespace calot::test {
 

@@ -1,4 +1,4 @@
-#include "sim/field_state.h"
+#include "field/field_state.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "organs/body_kinds.h"
 #include "rig.h"
-#include "sim/body_kinds.h"
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot {
 namespace {

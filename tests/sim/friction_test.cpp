@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/settle_field.h"
+#include "motion/settle_field.h"
 #include "slide_rig.h"
 #include "support/long_run.h"
 

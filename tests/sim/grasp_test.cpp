@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 
+#include "field/grip.h"
 #include "field_rig.h"
 #include "rig.h"
-#include "sim/grip.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -1,4 +1,4 @@
-#include "sim/grip_springs.h"
+#include "group/grip_springs.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 
 #include <deque>
 
-#include "sim/equilibrium.h"
-#include "sim/rod_body.h"
-#include "sim/shell_body.h"
+#include "body/rod_body.h"
+#include "body/shell_body.h"
+#include "group/equilibrium.h"
 #include "support/bodies.h"
 #include "support/derivatives.h"
 

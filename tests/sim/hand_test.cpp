@@ -1,6 +1,6 @@
 // Hands that give way.
 
-#include "sim/hand.h"
+#include "tools/hand.h"
 
 #include "numerics/dense_cholesky.h"
 #include "numerics/modes.h"

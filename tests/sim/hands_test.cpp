@@ -1,12 +1,12 @@
 // Hands that give way: a tool is where it is commanded to be until the tissue or another tool presses it with more than its
 // hand holds.
 
-#include "sim/hands.h"
+#include "acts/hands.h"
 
 #include <gtest/gtest.h>
 
+#include "field/field_state.h"
 #include "rig.h"
-#include "sim/field_state.h"
 
 namespace calot {
 namespace {

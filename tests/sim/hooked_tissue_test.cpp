@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "field/field_state.h"
+#include "organs/tissue.h"
 #include "rail_rig.h"
 #include "rig.h"
-#include "sim/field_state.h"
-#include "sim/tissue.h"
 
 namespace calot {
 namespace {

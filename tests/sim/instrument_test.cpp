@@ -1,10 +1,10 @@
-#include "sim/instrument.h"
+#include "tools/instrument.h"
 
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
 #include "base/units.h"
-#include "sim/contact_points.h"
+#include "body/contact_points.h"
 
 namespace calot {
 namespace {

@@ -1,6 +1,6 @@
 // What ties one body to another.
 
-#include "sim/joint.h"
+#include "joins/joint.h"
 
 #include <gtest/gtest.h>
 

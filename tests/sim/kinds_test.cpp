@@ -4,8 +4,8 @@
 
 #include <limits>
 
+#include "motion/settle_field.h"
 #include "rig.h"
-#include "sim/settle_field.h"
 #include "support/bodies.h"
 
 namespace calot {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "field/field_state.h"
 #include "rig.h"
-#include "sim/field_state.h"
-#include "sim/sight.h"
+#include "world/sight.h"
 
 namespace calot {
 namespace {

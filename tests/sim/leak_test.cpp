@@ -1,19 +1,19 @@
 // What leaves organs by openings, how fast, and that all of it is counted.
 
-#include "sim/leak.h"
+#include "liquid/leak.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "act_rig.h"
+#include "acts/clips.h"
+#include "field/between_jaws.h"
+#include "field/change_bodies.h"
+#include "field/field_state.h"
+#include "field/join_bodies.h"
+#include "organs/body_kinds.h"
 #include "rig.h"
-#include "sim/between_jaws.h"
-#include "sim/body_kinds.h"
-#include "sim/change_bodies.h"
-#include "sim/clips.h"
-#include "sim/field_state.h"
-#include "sim/join_bodies.h"
 #include "support/long_run.h"
 
 namespace calot {

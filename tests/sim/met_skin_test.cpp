@@ -1,11 +1,11 @@
-#include "sim/met_skin.h"
+#include "joins/met_skin.h"
 
 #include <map>
 #include <numeric>
 #include <set>
 
+#include "body/loop_skin.h"
 #include "group_rig.h"
-#include "sim/loop_skin.h"
 #include "skin/tessellate.h"
 
 namespace calot {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "field/field_state.h"
 #include "rig.h"
-#include "sim/field_state.h"
 
 namespace calot::test {
 

@@ -1,9 +1,9 @@
 #pragma once
 // Fields whose organs move by their masses.
 
+#include "body/inertia.h"
+#include "body/rod_body.h"
 #include "field_rig.h"
-#include "sim/inertia.h"
-#include "sim/rod_body.h"
 
 namespace calot::test {
 

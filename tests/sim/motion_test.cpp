@@ -3,11 +3,11 @@
 #include <functional>
 #include <numbers>
 
+#include "field/field_state.h"
+#include "group/vibration.h"
 #include "milestone.h"
+#include "motion/settle_field.h"
 #include "motion_rig.h"
-#include "sim/field_state.h"
-#include "sim/settle_field.h"
-#include "sim/vibration.h"
 #include "support/bodies.h"
 #include "support/long_run.h"
 

@@ -6,10 +6,10 @@
 #include <array>
 #include <map>
 
+#include "acts/pads.h"
+#include "body/rigid_body.h"
 #include "field_rig.h"
 #include "rig.h"
-#include "sim/pads.h"
-#include "sim/rigid_body.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -1,6 +1,6 @@
 // Places on an instrument's parts and distances from them, with their derivatives by the pose.
 
-#include "sim/posed_part.h"
+#include "tools/posed_part.h"
 
 #include "support/derivatives.h"
 #include "support/random.h"

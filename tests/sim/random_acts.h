@@ -8,12 +8,12 @@
 #include <numeric>
 
 #include "base/rng.h"
-#include "sim/field.h"
-#include "sim/field_state.h"
-#include "sim/tissue.h"
-#include "sim/tool.h"
-#include "sim/world.h"
+#include "field/field.h"
+#include "field/field_state.h"
+#include "organs/tissue.h"
 #include "support/random.h"
+#include "tools/tool.h"
+#include "world/world.h"
 
 namespace calot::test {
 

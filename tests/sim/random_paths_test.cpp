@@ -7,9 +7,9 @@
 
 #include "base/rng.h"
 #include "rig.h"
-#include "sim/tool.h"
 #include "support/bodies.h"
 #include "support/long_run.h"
+#include "tools/tool.h"
 
 namespace calot {
 namespace {

@@ -1,13 +1,13 @@
 // A rest state that was kept is as good as one that is found anew, to the last bit, and no other scene's.
 
-#include "sim/rest_state.h"
+#include "world/rest_state.h"
 
 #include <gtest/gtest.h>
 
 #include "anatomy/key_table.h"
-#include "sim/definition_digest.h"
 #include "support/remembered_results.h"
 #include "triangle_rig.h"
+#include "world/definition_digest.h"
 
 namespace calot {
 namespace {

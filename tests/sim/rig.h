@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "sim/world.h"
+#include "world/world.h"
 
 namespace calot::test {
 

@@ -1,6 +1,6 @@
 // Walls of one organ against each other: its energy, its forces, and what it keeps from crossing.
 
-#include "sim/self_contact.h"
+#include "group/self_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -1,18 +1,18 @@
 // Skins of two bodies against each other: energy, forces, what it keeps from passing, and what it remembers.
 
-#include "sim/skin_join.h"
+#include "joins/skin_join.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numbers>
 
+#include "body/rigid_body.h"
 #include "field_rig.h"
 #include "geometry/self_touch.h"
+#include "group/self_contact.h"
 #include "group_rig.h"
-#include "sim/joint.h"
-#include "sim/rigid_body.h"
-#include "sim/self_contact.h"
+#include "joins/joint.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -2,8 +2,8 @@
 // A closed jaw that lies flat on a ball, is pressed down on it and drawn along its own shaft.
 
 #include "field_rig.h"
-#include "sim/rubbing.h"
-#include "sim/settle_field.h"
+#include "motion/rubbing.h"
+#include "motion/settle_field.h"
 
 namespace calot::test {
 

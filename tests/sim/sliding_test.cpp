@@ -4,9 +4,9 @@
 
 #include <set>
 
+#include "field/field_state.h"
 #include "field_rig.h"
-#include "sim/field_state.h"
-#include "sim/settle_field.h"
+#include "motion/settle_field.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "acts/grip_slip.h"
+#include "field/field_state.h"
 #include "field_rig.h"
 #include "rig.h"
-#include "sim/field_state.h"
-#include "sim/grip_slip.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -1,11 +1,11 @@
 // Where bile and blood go that have left the organs.
 
-#include "sim/spill.h"
+#include "liquid/spill.h"
 
 #include <gtest/gtest.h>
 
 #include "field_rig.h"
-#include "sim/leak.h"
+#include "liquid/leak.h"
 #include "support/long_run.h"
 
 namespace calot {

@@ -1,4 +1,4 @@
-#include "sim/strand_join.h"
+#include "joins/strand_join.h"
 
 #include <numeric>
 

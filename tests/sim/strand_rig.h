@@ -1,12 +1,12 @@
 #pragma once
 // Two bodies with strands between them, moved by their masses.
 
+#include "body/inertia.h"
+#include "body/rigid_body.h"
+#include "body/tissue_body.h"
 #include "group_rig.h"
-#include "sim/inertia.h"
-#include "sim/rigid_body.h"
-#include "sim/skin_place.h"
-#include "sim/strand_join.h"
-#include "sim/tissue_body.h"
+#include "joins/skin_place.h"
+#include "joins/strand_join.h"
 
 namespace calot::test {
 

@@ -1,8 +1,8 @@
 // Instruments on strands, without a world around.
 
-#include "sim/strand_touch.h"
+#include "joins/strand_touch.h"
 
-#include "sim/contact_search.h"
+#include "group/contact_search.h"
 #include "strand_rig.h"
 
 namespace calot {

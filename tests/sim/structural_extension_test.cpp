@@ -1,13 +1,13 @@
 // Structural extensions: laid ahead of contact, followed as it slides, taken away after it, without a trace.
 
-#include "sim/structural_extension.h"
+#include "motion/structural_extension.h"
 
 #include <gtest/gtest.h>
 
 #include "field_rig.h"
+#include "group/detail_fading.h"
+#include "motion/settle_field.h"
 #include "rig.h"
-#include "sim/detail_fading.h"
-#include "sim/settle_field.h"
 #include "support/derivatives.h"
 #include "support/long_run.h"
 

@@ -1,14 +1,14 @@
 // Tissue between the organs of a scene.
 
-#include "sim/tissue.h"
+#include "organs/tissue.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "field/field_state.h"
+#include "organs/strand_places.h"
 #include "rig.h"
-#include "sim/field_state.h"
-#include "sim/strand_places.h"
 
 namespace calot {
 namespace {

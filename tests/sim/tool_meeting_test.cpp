@@ -1,6 +1,6 @@
 // Instruments that meet.
 
-#include "sim/tool_meeting.h"
+#include "tools/tool_meeting.h"
 
 #include "base/units.h"
 #include "support/derivatives.h"

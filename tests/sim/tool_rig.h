@@ -1,9 +1,9 @@
 #pragma once
 // Instruments as bodies that hands hold, alone in the world.
 
-#include "sim/equilibrium.h"
-#include "sim/tool_body.h"
-#include "sim/tool_meeting.h"
+#include "group/equilibrium.h"
+#include "tools/tool_body.h"
+#include "tools/tool_meeting.h"
 
 namespace calot::test {
 

@@ -1,8 +1,8 @@
-#include "sim/tool.h"
+#include "tools/tool.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/grip.h"
+#include "field/grip.h"
 #include "support/bodies.h"
 
 namespace calot {

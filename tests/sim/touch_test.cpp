@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "field_rig.h"
+#include "motion/settle_field.h"
 #include "rig.h"
-#include "sim/settle_field.h"
 #include "support/long_run.h"
 #include "support/random.h"
 

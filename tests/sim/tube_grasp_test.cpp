@@ -1,8 +1,8 @@
 // Jaws that close on a duct or a vessel hold it, pressed flat, between both pads.
 
 #include "act_rig.h"
+#include "acts/grip_slip.h"
 #include "base/units.h"
-#include "sim/grip_slip.h"
 
 namespace calot {
 namespace {

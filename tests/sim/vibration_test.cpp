@@ -1,6 +1,6 @@
 // Masses and frequencies against closed forms: bile in a sphere, and a ball on springs.
 
-#include "sim/vibration.h"
+#include "group/vibration.h"
 
 #include <gtest/gtest.h>
 

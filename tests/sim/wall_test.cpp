@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "fem/membrane_material.h"
-#include "sim/body_kinds.h"
+#include "organs/body_kinds.h"
 
 namespace calot {
 namespace {

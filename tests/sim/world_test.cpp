@@ -1,6 +1,6 @@
 // Laws of the world's step: determinism, failures, filling.
 
-#include "sim/world.h"
+#include "world/world.h"
 
 #include <gtest/gtest.h>
 

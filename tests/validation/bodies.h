@@ -1,8 +1,8 @@
 #pragma once
 // Nested spheres, and equilibrium of a body under links alone.
 
-#include "sim/equilibrium.h"
-#include "sim/shell_body.h"
+#include "body/shell_body.h"
+#include "group/equilibrium.h"
 #include "support/bodies.h"
 
 namespace calot::test {

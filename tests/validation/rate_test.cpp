@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "sim/tool.h"
-#include "sim/world.h"
+#include "tools/tool.h"
+#include "world/world.h"
 
 namespace calot {
 namespace {

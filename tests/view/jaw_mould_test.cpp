@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/grip.h"
+#include "field/grip.h"
+#include "field/teeth.h"
 #include "sim/rig.h"
-#include "sim/teeth.h"
 #include "view/coarse_mesh.h"
 
 namespace calot {

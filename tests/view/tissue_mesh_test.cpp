@@ -1,7 +1,7 @@
 #include "view/tissue_mesh.h"
 
+#include "field/field_state.h"
 #include "sim/act_rig.h"
-#include "sim/field_state.h"
 #include "view/leaf_mesh.h"
 
 namespace calot {
@@ -61,7 +61,8 @@ TEST(LeafMesh, CoversTheStrandsAndTheTubesTowardsTheFront) {
   ASSERT_FALSE(leaf.triangles.empty());
   const VecX nodes = world.state().group.tissues[0].state.x;
   double strands = 0;  // m, how high their middles lie in the mean
-  for (Eigen::Index i = 2; i < nodes.size(); i += 3) strands += 3 * nodes[i] / static_cast<double>(nodes.size());
+  for (Eigen::Index i = 2; i < nodes.size(); i += 3)
+    strands += 3 * nodes[i] / static_cast<double>(nodes.size());
   double left = 1, right = -1, over_strands = -1;
   for (std::size_t i = 0; i < leaf.positions.size(); ++i) {
     if (leaf.rest_positions[i].z() < 0.9e-3) continue;  // its faint rim

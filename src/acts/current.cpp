@@ -1,0 +1,201 @@
+#include "acts/current.h"
+
+#include <algorithm>
+
+#include "base/units.h"
+#include "field/between_jaws.h"
+#include "field/field_tissues.h"
+#include "liquid/leak.h"
+
+namespace calot {
+namespace {
+
+/// Current that still flows when what was cut gives way is let go of within this, s: no sooner is it an error.
+constexpr double dry_limit = 0.25;
+
+bool is_active(const Tool& tool) { return tool.action == InstrumentAction::activate; }
+
+/// A strand that current flows through.
+struct Heated {
+  std::size_t tissue, strand;
+  bool operator==(const Heated&) const = default;
+};
+
+/// Of each tool, once each.
+std::vector<std::vector<Heated>> heated_strands(const Field& field) {
+  std::vector<std::vector<Heated>> out(field.tools.size());
+  if (std::none_of(field.tools.begin(), field.tools.end(), is_active)) return out;
+  const VecX x = place_strands_and_tools(field);
+  for (std::size_t t = 0; t < field.tissues.size(); ++t)
+    field.tissues[t].strands->for_contacts(x, [&](std::size_t strand, const StrandContact& contact) {
+      const std::size_t index = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
+      const Tool& tool = field.tools[index];
+      if (!is_active(tool) || !conducts(tool.geometry, contact.shape % shapes_per_tool)) return;
+      const Heated one{t, strand};
+      std::vector<Heated>& of_tool = out[index];
+      if (std::find(of_tool.begin(), of_tool.end(), one) == of_tool.end()) of_tool.push_back(one);
+    });
+  return out;
+}
+
+/// Whether it is divided by what it takes, J.
+bool heat(Tissue& tissue, std::size_t strand, double energy) {
+  const PlacedStrand& placed = tissue.strands->strands()[strand];
+  const StrandLaw& law = placed.strand.law;
+  double &heated = tissue.now.heated[strand], &opened = tissue.now.opened[strand];
+  if (law.torn(opened)) return false;  // another instrument has divided it
+  heated += energy;
+  if (heated < tissue.definition.divide_energy * placed.area) return false;
+  opened = std::max(opened, law.peak() + law.tail());
+  return true;
+}
+
+/// What of the tool current flows through to a place there, m away.
+double distance_to(const Tool& tool, const std::vector<Shape>& shapes, const Vec3& place) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int part = 1; part < shapes_per_tool; ++part)
+    if (conducts(tool.geometry, part))
+      nearest = std::min(nearest, signed_distance(shapes[static_cast<std::size_t>(part)], place));
+  return nearest;
+}
+
+/// Where a shut clip's legs are: from their ends to what joins them, m.
+std::array<Vec3, 2> ends_of(const Organ& organ, const Clip& clip) {
+  const RodBody& rod = *rod_of(organ);
+  const Vec3 middle = rod.place_at(clip.at, organ.state.x);
+  const Vec3 legs = rod.frame_at(clip.at, organ.state.x) * clip.legs;
+  return {middle + clip.reach * legs, middle + (clip.reach - clip_row(clip.size).leg) * legs};
+}
+
+/// The organ whose clip is touched by what current flows through, and where.
+std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field, const Tool& tool,
+                                                          const std::vector<Shape>& shapes) {
+  constexpr double half = 0.6e-3;  // m, half as thick as a shut clip, and as near as touches
+  constexpr int looks = 8;         // along the legs: less than 1.5 mm apart
+  for (const Organ& organ : field.organs)
+    for (const Clip& clip : organ.clips) {
+      const auto [from, to] = ends_of(organ, clip);
+      for (int k = 0; k <= looks; ++k)
+        if (const Vec3 at = from + static_cast<double>(k) / looks * (to - from);
+            distance_to(tool, shapes, at) < half)
+          return {{&organ, at}};
+    }
+  return std::nullopt;
+}
+
+/// Current in or near what it should be kept from: raised when it begins.
+void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& events) {
+  const bool active = is_active(tool);
+  const std::vector<Shape> shapes =
+      active ? instrument_shapes(tool.trocar, tool.pose, tool.geometry) : std::vector<Shape>{};
+  const auto clip = active ? touched_clip(field, tool, shapes) : std::nullopt;
+  if (clip && !tool.on_clip)
+    events.push_back({EventKind::activation_on_clip, 0, tool.definition.name, clip->first->definition.name, 0,
+                      clip->second, EventCause::current});
+  tool.on_clip = clip.has_value();
+  const Organ* kept = nullptr;
+  double nearest = std::numeric_limits<double>::infinity();
+  Vec3 place = Vec3::Zero();
+  for (const Organ& organ : field.organs) {
+    if (!active || organ.definition.keep_clear == 0) continue;
+    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+    const std::vector<double>& radii = organ.body->skin_radii();
+    // Of a tube, whose points stand far apart, between them too.
+    const std::size_t parts = rod_of(organ) == nullptr ? 1 : 8;
+    for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
+      const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
+      const Vec3 at =
+          skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
+      const double distance = distance_to(tool, shapes, at) - (radii.empty() ? 0.0 : radii[p]);
+      if (distance >= organ.definition.keep_clear || distance >= nearest) continue;
+      kept = &organ;
+      nearest = distance;
+      place = at;
+    }
+  }
+  if (kept != nullptr && !tool.beside_kept)
+    events.push_back({EventKind::activation_beside, 0, tool.definition.name, kept->definition.name,
+                      std::max(0.0, nearest) / units::mm, place, EventCause::current});
+  tool.beside_kept = kept != nullptr;
+}
+
+/// The organ whose skin what current flows through touches; null: none.
+Organ* touched_wall(Field& field, const Tool& tool, const PartLoad& load) {
+  if (!is_active(tool) || load.touches == 0) return nullptr;
+  const int touched = organ_called(field, load.organ);
+  return touched < 0 ? nullptr : &field.organs[touched];
+}
+
+/// Leaves a mark, which grows as long as the current stays there.
+void mark(Organ& wall, const Vec3& at, double energy) {
+  if (energy == 0) return;
+  const int point = nearest_of(wall.body->drawn(wall.state.x).positions, at);
+  const auto known = std::find_if(wall.burns.begin(), wall.burns.end(),
+                                  [&](const Burn& burn) { return burn.point == point; });
+  if (known == wall.burns.end())
+    wall.burns.push_back({point, energy});
+  else
+    known->energy += energy;
+}
+
+/// Raised when it has taken what opens it: once, as long as the current stays there.
+void burn_wall(Organ* wall, Tool& tool, const Vec3& at, double energy, std::vector<WorldEvent>& events) {
+  if (wall == nullptr || wall->record != tool.burnt_record) tool.burnt = 0;
+  tool.burnt_record = wall == nullptr ? -1 : wall->record;
+  if (wall == nullptr) return;
+  mark(*wall, at, energy);
+  const OrganDefinition& organ = wall->definition;
+  const double limit = organ.wall.burn_energy;
+  if (tool.burnt >= limit) return;
+  tool.burnt += energy;
+  if (tool.burnt < limit) return;
+  const std::string& name = tool.definition.name;
+  if (is_hollow(organ.shape)) {
+    perforate(*wall, at, name);
+    events.push_back({EventKind::perforation, 0, name, organ.name, 0, at, EventCause::current});
+  }
+  if (!organ.injury.partly.empty())
+    events.push_back(
+        {EventKind::injury, 0, name, organ.name, 0, at, EventCause::current, organ.injury.partly});
+}
+
+}  // namespace
+
+std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
+                                      double duration) {
+  std::vector<WorldEvent> events;
+  const std::vector<std::vector<Heated>> heated = heated_strands(field);
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    if (!is_active(tool) || tool.touched) {
+      tool.dry = 0;
+    } else if (tool.dry < dry_limit) {
+      tool.dry = std::min(tool.dry + duration, dry_limit);
+      if (tool.dry == dry_limit)
+        events.push_back({EventKind::dry_activation, 0, tool.definition.name, {}, 0});
+    }
+    judge_neighbours(field, tool, events);
+    const ToolPart end = tool.geometry.has_jaws() ? ToolPart::jaws : ToolPart::tip;
+    const PartLoad& load = instruments[i].parts[static_cast<std::size_t>(end)];
+    burn_wall(touched_wall(field, tool, load), tool, load.at,
+              heated[i].empty() ? tool.definition.power * duration : 0, events);
+    std::vector<double> areas(field.tissues.size(), 0.0);
+    for (const Heated& one : heated[i]) {
+      Tissue& tissue = field.tissues[one.tissue];
+      if (heat(tissue, one.strand, tool.definition.power * duration / static_cast<double>(heated[i].size())))
+        areas[one.tissue] += tissue.strands->strands()[one.strand].area;
+    }
+    for (std::size_t t = 0; t < areas.size(); ++t) {
+      if (areas[t] == 0) continue;
+      const Tissue& tissue = field.tissues[t];
+      const std::string& name = tissue.definition.name;
+      events.push_back({EventKind::divided, 0, tool.definition.name, name, areas[t] / (units::mm * units::mm),
+                        std::nullopt, EventCause::current});
+      if (tissue.torn() == static_cast<int>(tissue.now.opened.size()))
+        events.push_back({EventKind::parted, 0, {}, name, 0, std::nullopt, EventCause::current});
+    }
+  }
+  return events;
+}
+
+}  // namespace calot

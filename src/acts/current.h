@@ -1,0 +1,17 @@
+#pragma once
+// What an instrument's current does to the strands that it touches: they share its power evenly, and each is divided once
+// it has taken what its area takes. Where they touch none, a wall takes it all, and is opened once that is its
+// burn_energy; what it took is forgotten where the current stops or the instrument leaves it, and a
+// mark stays.
+
+#include "field/field.h"
+
+namespace calot {
+
+/// The step after which all stand as they do, with the `instruments` as they are reported, has lasted `duration` s with
+/// the tools' actions. Strands that have taken enough are torn from now on. Of what current should not be let into
+/// (a wall, a clip, what is to be kept clear of) there are only events. They have no time yet.
+std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
+                                      double duration);
+
+}  // namespace calot

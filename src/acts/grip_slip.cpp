@@ -1,0 +1,240 @@
+#include "acts/grip_slip.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "acts/clips.h"
+#include "field/field_state.h"
+#include "field/grip.h"
+#include "field/teeth.h"
+#include "motion/settle_field.h"
+
+namespace calot {
+namespace {
+
+/// Newton iterations that a change of a grip may take.
+struct Budget {
+  const SolveStatistics& statistics;
+  int last;  ///< count at which it is spent
+  bool spent() const { return statistics.newton_iterations >= last; }
+};
+
+Failure without_end(const Field& field, int instrument, const std::string& what) {
+  return fail(
+      FailureKind::simulation,
+      fmt::format("{} the jaws of '{}' finds no rest", what, field.tools[instrument].definition.name),
+      "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
+}
+
+/// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
+/// equilibria; then they are let go.
+Result<bool> fade(Field& field, int instrument, const std::function<bool(const GripPoint&)>& leaves,
+                  double weaken, const Budget& budget, SolveStatistics& statistics) {
+  constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
+  const std::string when = "as a grip let it go";
+  for (double stiffness = grip_stiffness; stiffness > last_stiffness; stiffness *= weaken) {
+    if (budget.spent()) return without_end(field, instrument, "what leaves");
+    for (Organ& organ : field.organs)
+      for (GripPoint& grip : organ.grips)
+        if (leaves(grip)) grip.stiffness *= weaken;
+    if (Result<bool> settled = settle_field(field, when, statistics); !settled) return settled;
+  }
+  for (Organ& organ : field.organs) std::erase_if(organ.grips, leaves);
+  return settle_field(field, when, statistics);
+}
+
+auto held_by(int instrument) {
+  return [instrument](const GripPoint& grip) { return grip.instrument == instrument; };
+}
+
+/// What a tool's pads hold is asked of them: a pull along them, or a couple about its shaft.
+struct Demand {
+  Vec3 towards = Vec3::Zero();  ///< unit: of the pull, or of the couple's axis; patient's frame
+  bool turns = false;           ///< it is a couple
+  double asked = 0, limit = 0;  ///< N or N m
+  double share() const { return asked > 0 ? asked / limit : 0; }
+};
+
+/// m, from the middle between the pads to a fold's walls: one that turns by an angle has come by that times this.
+constexpr double turning_lever = 1.2e-3;
+
+/// Where a point goes as what the pads hold gives way by `way` m, patient's frame.
+Vec3 given_way(const Tool& tool, const Demand& demand, double way, const Vec3& at) {
+  if (!demand.turns) return way * demand.towards;
+  const Vec3 hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).translation();
+  return way / turning_lever * demand.towards.cross(at - hinge);
+}
+
+/// Moves what a tool holds along its pads by `way` (m) and lets go what leaves them.
+Result<bool> slide(Field& field, int instrument, const Demand& demand, double way, const Budget& budget,
+                   SolveStatistics& statistics) {
+  const Tool& tool = field.tools[instrument];
+  const bool draws = hold_of_clips(field, instrument) < holding_limit(tool);
+  if (draws) draw_clips(field, instrument, way * demand.towards);
+  const auto off_the_pads = [&](const GripPoint& grip) {
+    return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
+  };
+  bool leave = false;
+  for (Organ& organ : field.organs) {
+    for (GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      const Pose jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, grip.jaw);
+      Vec3 along = jaw.linear().transpose() * given_way(tool, demand, way, jaw * grip.local);
+      along.x() = 0;  // never through the pad
+      grip.local += along;
+      leave |= off_the_pads(grip);
+    }
+  }
+  if (draws && hold_by_clips(field, instrument))
+    return settle_field(field, "as a clip was drawn along", statistics);
+  // A clip that has come off was what the pads held.
+  if (draws) return fade(field, instrument, held_by(instrument), 0.04, budget, statistics);
+  // The rest of the fold holds on: longer steps than a release's do.
+  if (leave) return fade(field, instrument, off_the_pads, 0.04, budget, statistics);
+  return settle_field(field, "as it slipped from the jaws", statistics);
+}
+
+}  // namespace
+
+Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
+  const FieldState before = field_state(field);
+  const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics);
+  if (!faded) restore(field, before);
+  return faded;
+}
+
+Result<bool> leave_pads(Field& field, int instrument, SolveStatistics& statistics) {
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
+  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
+                            jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  std::vector<GripPoint> off;
+  for (const Organ& organ : field.organs)
+    for (const GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      const Vec3 at = to_local[grip.jaw] * organ.body->skin_point(grip.skin_point, organ.state.x);
+      if (at.x() < grip.local.x() - pad_reach) off.push_back(grip);
+    }
+  if (off.empty()) return true;
+  const FieldState before = field_state(field);
+  const auto leaves = [&](const GripPoint& grip) {
+    return std::any_of(off.begin(), off.end(), [&](const GripPoint& one) {
+      return one.instrument == grip.instrument && one.jaw == grip.jaw && one.skin_point == grip.skin_point &&
+             one.local == grip.local;
+    });
+  };
+  const Result<bool> left = fade(field, instrument, leaves, 0.04, budget, statistics);
+  if (!left) restore(field, before);
+  return left;
+}
+
+PadLoad pad_load(const Field& field, int instrument) {
+  const Tool& tool = field.tools[instrument];
+  const Pose hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry);
+  const Vec3 across = hinge.linear().col(0), shaft = hinge.linear().col(2);
+  PadLoad load;
+  const auto add = [&](const Vec3& at, const Vec3& force) {
+    load.pull += force - across * across.dot(force);
+    load.couple += shaft.dot((at - hinge.translation()).cross(force));
+  };
+  for (const Organ& organ : field.organs) {
+    if (grip_count(organ, instrument) == 0) continue;
+    const ContactLoads now = contact_loads(field, organ, present_poses(field));
+    for (std::size_t g = 0; g < organ.grips.size(); ++g) {
+      if (organ.grips[g].instrument != instrument) continue;
+      const Vec3 at = organ.body->skin_point(now.grip.row[g], organ.state.x);
+      add(at, now.grip.sample(g, at).gradient);
+    }
+    const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
+    for (const ContactForce& contact : contact_forces(touching))
+      if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
+        add(contact.at, contact.on_shape);
+  }
+  return load;
+}
+
+double couple_limit(const Tool& tool) { return tool.definition.pinch_force * tool.geometry.jaw_width / 2; }
+
+namespace {
+
+/// Of the pull and the couple that which comes nearer to what is held of it, or goes further beyond. A fold that is
+/// `turning` is held by turning_share of the couple.
+Demand largest_demand(const Field& field, int instrument, bool turning) {
+  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  const PadLoad load = pad_load(field, instrument);
+  // Clips, which the pads hold across, are drawn along by the pull alone.
+  const bool clips = hold_of_clips(field, instrument) < holding_limit(tool);
+  const Vec3 asked = clips ? load.pull : asked_of_friction(tool, load.pull);
+  const Demand pull{asked.normalized(), false, asked.norm(), holding_limit(field, instrument)};
+  // A tube lies in the middle of both pads: it does not come out of a couple by turning about the shaft.
+  const bool tube = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+    return !organ.body->skin_radii().empty() && grip_count(organ, instrument) > 0;
+  });
+  if (clips || tube) return pull;
+  const Vec3 shaft = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
+  const Demand couple{load.couple > 0 ? shaft : Vec3(-shaft), true, std::abs(load.couple),
+                      (turning ? turning_share : 1.0) * couple_limit(tool)};
+  return couple.share() > pull.share() ? couple : pull;
+}
+
+}  // namespace
+
+Vec3 asked_of_friction(const Tool& tool, const Vec3& pull) {
+  const Mat3 hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear();
+  const double half = 0.5 * tool.pose.jaw;
+  const double out = pull.dot(hinge.col(2)), pressed_out = 2 * tool.definition.pinch_force * std::sin(half);
+  return pull + ((out + pressed_out) / std::cos(half) - out) * hinge.col(2);
+}
+
+double holding_limit(const Tool& tool) {
+  return 2.0 * tool.definition.pad_friction * tool.definition.pinch_force;
+}
+
+double holding_limit(const Field& field, int instrument) {
+  return std::min(holding_limit(field.tools[instrument]), hold_of_clips(field, instrument));
+}
+
+Result<Slipped> slip(Field& field, int instrument, SolveStatistics& statistics) {
+  constexpr double above = 1.001, below = 0.95;  // of the limit
+  // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
+  // slide but the jump of a fold that a leaving point frees.
+  constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
+  Demand demand = largest_demand(field, instrument, false);
+  if (demand.share() <= above) return Slipped{};
+  const Slipped out{true, demand.turns, pad_load(field, instrument).pull.norm()};
+  const FieldState start = field_state(field);
+  double way = demand.turns ? 0.5 * longest_way : shortest_way;
+  bool turning = false;
+  while (!budget.spent()) {
+    if (demand.turns && !std::exchange(turning, true)) demand = largest_demand(field, instrument, true);
+    const FieldState before = field_state(field);
+    const Result<bool> slid = slide(field, instrument, demand, way, budget, statistics);
+    if (!slid) {
+      restore(field, start);
+      return slid.failure();
+    }
+    const Demand now = largest_demand(field, instrument, turning);
+    const bool lost = !both_pads_hold(field, instrument);
+    if (!lost && now.share() < below && way > shortest_way) {  // too far
+      restore(field, before);
+      way = std::max(0.3 * way, shortest_way);
+      continue;
+    }
+    if (lost || now.share() <= above) return out;
+    // By the secant; a fold that gives no more resistance is followed at a growing pace.
+    const double stiffness = (demand.share() - now.share()) / way, longest = std::min(2 * way, longest_way);
+    const double next = stiffness > 0 ? (now.share() - 1) / stiffness : longest;
+    way = std::clamp(next, shortest_way, longest);
+    demand = now;
+  }
+  restore(field, start);
+  return without_end(field, instrument, "the fold that slips through");
+}
+
+}  // namespace calot

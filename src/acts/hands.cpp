@@ -1,0 +1,269 @@
+#include "acts/hands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "group/equilibrium.h"
+#include "tools/tool_body.h"
+#include "tools/tool_meeting.h"
+
+namespace calot {
+namespace {
+
+using Poses = std::vector<InstrumentPose>;
+
+/// N/m, where a force above the strength came without a way of the tip's that shows how it grows: between an organ that is
+/// pushed about and one that is squeezed.
+constexpr double unknown_stiffness = 2e3;
+/// N/m: less is felt where a force falls for another reason than the tip's way.
+constexpr double least_stiffness = 100;
+/// m: a shorter way tells nothing of how a force grows.
+constexpr double shortest_way = 1e-6;
+/// The same about the shaft: such forces on pads 5 mm wide, N m/rad, and ways at their edges, rad.
+constexpr double unknown_roll_stiffness = 12e-3, least_roll_stiffness = 0.6e-3, shortest_turn = 4e-4;
+/// rad: turns of the jaws and about the shaft that are no more than a solver's rounding; 1 um at the pads' ends.
+constexpr double turn_slack = 1e-4;
+
+/// Share of a tip's way across the force on it. Tissue that holds the tip pulls it back aside, too; as the force turns
+/// by that, a hand that is far from its command would swing about more with every step. By a force that grows alike in
+/// all directions the way is that to the place nearest to the command which the strength reaches.
+double share_across(const Tool& tool, const Vec3& force, const Vec3& way) {
+  const double strength = tool.definition.hand_force, stiffness = tool.stiffness_across;
+  const double wanted = (stiffness * way - force).norm();
+  return wanted <= strength ? 1.0 : strength / wanted;
+}
+
+/// The torque that a hand holds about the shaft, N m.
+double roll_strength(const Tool& tool) { return tool.definition.hand_force * HandStrength().roll_arm; }
+
+/// How far a hand turns its tool about the shaft, rad, against the tissue's torque.
+double roll_within_strength(const Tool& tool, const InstrumentState& last, double command) {
+  const double strength = roll_strength(tool), torque = std::abs(last.roll_torque);
+  if (torque == 0 || (!(tool.roll_stiffness > 0) && torque <= strength)) return command;
+  const double away = last.roll_torque > 0 ? 1.0 : -1.0, into = -away * (command - tool.pose.roll);
+  const double stiffness = tool.roll_stiffness > 0 ? tool.roll_stiffness : unknown_roll_stiffness;
+  const double allowed = (strength - torque) / stiffness;
+  return into <= allowed ? command : tool.pose.roll - away * allowed;
+}
+
+/// Where a hand takes its tool against what the tissue does.
+InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, InstrumentPose command) {
+  command.roll = roll_within_strength(tool, last, command.roll);
+  const double strength = tool.definition.hand_force, force = last.at_tip.norm();
+  if (force == 0 || (!(tool.tissue_stiffness > 0) && force <= strength)) return command;
+  // Jaws that rest on a fold close no further, and the tip of open jaws is nearer to the hinge.
+  InstrumentPose reached = command;
+  if (tool.jaws_rest()) reached.jaw = std::max(command.jaw, tool.pose.jaw);
+  const Vec3 away = last.at_tip / force;
+  const Vec3 way = tip_position(tool.trocar, reached, tool.geometry) - last.tip;
+  const double into = -way.dot(away);
+  const double stiffness = tool.tissue_stiffness > 0 ? tool.tissue_stiffness : unknown_stiffness;
+  const double allowed = (strength - force) / stiffness;
+  if (into <= allowed) return command;
+  const Vec3 across = share_across(tool, last.at_tip, way) * (way + into * away);
+  InstrumentPose out = pose_reaching(tool.trocar, last.tip + across - allowed * away, command.roll,
+                                     reached.jaw, tool.geometry);
+  out.jaw = command.jaw;
+  return out;
+}
+
+/// A pair of tools that may meet on their ways.
+using Pair = std::array<std::size_t, 2>;
+
+/// m, between two tools where they are, at most `most`.
+double gap_between(const Tool& one, const Tool& other, double most) {
+  VecX x(12);
+  x << tool_coordinates(one.pose), tool_coordinates(other.pose);
+  return ToolMeeting({&one, 0}, {&other, tool_nodes}).gap(x, most);
+}
+
+std::vector<Pair> near_pairs(const Field& field, const Poses& to) {
+  std::vector<Pair> out;
+  const auto travel = [&](std::size_t k) { return travel_bound(field.tools[k], field.tools[k].pose, to[k]); };
+  for (std::size_t a = 0; a < field.tools.size(); ++a)
+    for (std::size_t b = a + 1; b < field.tools.size(); ++b) {
+      const Tool &one = field.tools[a], &other = field.tools[b];
+      if (one.waits || other.waits) continue;
+      const double reach = travel(a) + travel(b) + field.barrier.range;
+      if (gap_between(one, other, reach) < reach) out.push_back({a, b});
+    }
+  return out;
+}
+
+/// Tools of some pairs between their hands and each other.
+class MetTools {
+ public:
+  MetTools(const Field& field, const std::vector<Pair>& pairs, const Poses& commands) : field_(field) {
+    for (const Pair& pair : pairs) tools_.insert(tools_.end(), pair.begin(), pair.end());
+    std::sort(tools_.begin(), tools_.end());
+    tools_.erase(std::unique(tools_.begin(), tools_.end()), tools_.end());
+    for (std::size_t tool : tools_) {
+      const Tool& one = field.tools[tool];
+      bodies_.emplace_back(one, commands[tool], hand_of(one, one.definition.hand_force));
+      states_.push_back(ToolBody::at(one.pose));
+    }
+    for (const Pair& pair : pairs) {
+      meetings_.push_back(std::make_shared<const ToolMeeting>(side(pair[0]), side(pair[1]), field.barrier));
+      joins_.push_back(meetings_.back());
+      pairs_.push_back(pair);
+    }
+  }
+
+  NewtonResult balance() {
+    std::vector<ContactSearch> searches(bodies_.size());
+    std::vector<Member> members;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      searches[k].own.active = false;
+      members.push_back({bodies_[k], no_loads_, searches[k], states_[k]});
+    }
+    NewtonWorkspace work{BlockMatrix(0, {})};
+    GroupPatterns patterns;
+    return settle(members, joins_, patterns, {}, work);
+  }
+
+  /// Writes where the tools that press on another are, and with what.
+  void keep(std::vector<Tool>& tools, Poses& poses) const {
+    VecX x(6 * static_cast<Eigen::Index>(tools_.size()));
+    for (std::size_t k = 0; k < tools_.size(); ++k)
+      x.segment<6>(6 * static_cast<Eigen::Index>(k)) = states_[k].x;
+    VecX gradient = VecX::Zero(x.size());
+    for (const auto& meeting : meetings_) meeting->add_gradient(x, gradient);
+    for (std::size_t k = 0; k < tools_.size(); ++k) {
+      const ToolVector pressed = -gradient.segment<6>(6 * static_cast<Eigen::Index>(k));
+      if (pressed.isZero(0)) continue;
+      Tool& tool = tools[tools_[k]];
+      poses[tools_[k]] = without_rounding(tool.pose, poses[tools_[k]], pose_at(states_[k].x));
+      const Mat3 tip_by_unknowns = PosedPart(tool, poses[tools_[k]], 0)
+                                       .slopes(tip_position(tool.trocar, poses[tools_[k]], tool.geometry))
+                                       .leftCols<3>();
+      tool.meeting.force = tip_by_unknowns.transpose().fullPivLu().solve(pressed.head<3>());
+    }
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      if (meetings_[k]->force(x).isZero(0)) continue;
+      for (int side : {0, 1}) {
+        std::string& with = tools[pairs_[k][static_cast<std::size_t>(side)]].meeting.with;
+        if (with.empty()) with = tools[pairs_[k][static_cast<std::size_t>(1 - side)]].definition.name;
+      }
+    }
+  }
+
+ private:
+  ToolMeeting::Side side(std::size_t tool) const {
+    const auto place = std::lower_bound(tools_.begin(), tools_.end(), tool) - tools_.begin();
+    return {&field_.tools[tool], tool_nodes * static_cast<int>(place)};
+  }
+  /// Jaws that other tools do not move close, stand and open as they are asked to, to the bit.
+  static InstrumentPose without_rounding(const InstrumentPose& was, const InstrumentPose& commanded,
+                                         InstrumentPose pose) {
+    if (std::abs(pose.roll - commanded.roll) < turn_slack) pose.roll = commanded.roll;
+    if (std::abs(pose.jaw - commanded.jaw) < turn_slack)
+      pose.jaw = commanded.jaw;
+    else if (std::abs(pose.jaw - was.jaw) < turn_slack)
+      pose.jaw = was.jaw;
+    return pose;
+  }
+
+  const Field& field_;
+  std::vector<std::size_t> tools_;  ///< increasing
+  std::vector<Pair> pairs_;
+  std::vector<ToolBody> bodies_;
+  std::vector<BodyState> states_;
+  std::vector<std::shared_ptr<const ToolMeeting>> meetings_;
+  std::vector<JoinPointer> joins_;
+  ContactLoads no_loads_;
+};
+
+}  // namespace
+
+Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment) {
+  // What touches the shaft has a shorter lever.
+  const Vec3 arm = tip_position(tool.trocar, tool.pose, tool.geometry) - tool.trocar, axis = arm.normalized();
+  if (!(arm.norm() > 0)) return force;
+  return axis * axis.dot(force) + moment.cross(axis) / arm.norm();
+}
+
+Vec3 port_drag(const Tool& tool, double way, double duration) {
+  constexpr double full_speed = 5e-3;  // m/s
+  const double share = std::clamp(way / duration / full_speed, -1.0, 1.0);
+  // The hinge frame's z points along the shaft, inwards.
+  return -share * tool.definition.port_friction *
+         hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
+}
+
+Result<Poses> bring_tools(Field& field, const Poses& commands, const std::vector<InstrumentState>& last) {
+  Poses to;
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    tool.command = tool.waits ? tool.pose : commands[i];
+    tool.meeting = {};
+    to.push_back(tool.waits ? tool.pose : within_strength(tool, last[i], commands[i]));
+  }
+  const std::vector<Pair> pairs = near_pairs(field, to);
+  if (pairs.empty()) return to;
+  MetTools met(field, pairs, to);
+  const NewtonResult result = met.balance();
+  if (!result.converged())
+    return fail(FailureKind::simulation,
+                fmt::format("instruments that press on each other find no balance: {} (residual {:.2g})",
+                            to_text(result.status), result.residual),
+                "move them more slowly, or apart first");
+  met.keep(field.tools, to);
+  return to;
+}
+
+namespace {
+
+void feel_roll_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now) {
+  if (std::abs(now.roll_torque) < 0.5 * roll_strength(tool)) {
+    tool.roll_stiffness = 0;
+    return;
+  }
+  const double back = before.pose.roll - now.pose.roll, more = now.roll_torque - before.roll_torque;
+  if (std::abs(back) >= shortest_turn) tool.roll_stiffness = std::max(least_roll_stiffness, more / back);
+}
+
+}  // namespace
+
+void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now) {
+  feel_roll_stiffness(tool, before, now);
+  const double force = now.at_tip.norm();
+  // No single step makes twice as much of a force that the hand has to give way to.
+  if (force < 0.5 * tool.definition.hand_force) {
+    tool.tissue_stiffness = tool.stiffness_across = 0;
+    return;
+  }
+  const Vec3 away = now.at_tip / force;
+  const Vec3 back = before.tip - now.tip, more = now.at_tip - before.at_tip;
+  const double into = back.dot(away);
+  if (const Vec3 across = back - into * away; across.norm() >= shortest_way)
+    tool.stiffness_across = std::max(0.0, more.dot(across) / across.squaredNorm());
+  if (std::abs(into) < shortest_way) return;
+  tool.tissue_stiffness = std::max(least_stiffness, more.dot(away) / into);
+}
+
+std::string tool_met(const Field& field, int instrument) {
+  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  for (const Tool& other : field.tools) {
+    if (&other == &tool || other.waits) continue;
+    if (gap_between(tool, other, field.barrier.range) < field.barrier.range) return other.definition.name;
+  }
+  return {};
+}
+
+Result<bool> check_apart(const Field& field) {
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    const Tool& tool = field.tools[i];
+    const std::string met = tool.waits ? std::string() : tool_met(field, static_cast<int>(i));
+    if (met.empty()) continue;
+    const std::string& name = tool.definition.name;
+    return fail(
+        FailureKind::scenario,
+        fmt::format("instrument '{}' meets '{}' where both wait in their trocars, 30 mm deep", name, met),
+        "put their ports further apart, or have both name one port and one of them wait outside",
+        {"", 0, fmt::format("scene.instruments.{}.port", name)});
+  }
+  return true;
+}
+
+}  // namespace calot

@@ -1,0 +1,42 @@
+#pragma once
+// Hands that give way: from where tools are commanded to be to where they come in a step, before the organs answer.
+//
+// A hand holds its tool to the command until the tissue presses the tip with the hand's strength
+// (InstrumentDefinition::hand_force); beyond, the tip goes no further against that force, and back where it grew, so that
+// the force stays at the strength: rigid, then plastic. How the force grows with the way is the secant of the last step,
+// so that after a step of a motion it may be off by what that step's secant is.
+// Just so a hand turns its tool about the shaft until the tissue's torque is its strength times HandStrength::roll_arm.
+// Tools that meet press on each other by the contact barrier (tool_meeting.h) against the springs of their hands (hand.h),
+// solved together: each gives way until both hands carry the force. What touches no other tool comes exactly to where its
+// hand takes it.
+
+#include "field/field.h"
+
+namespace calot {
+
+/// The force at the tip (N) of the same moment about the trocar as a load's; zero for a tip in its trocar, but along the
+/// shaft.
+Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment);
+
+/// N at the hand, of the port's seal on a shaft that was pushed in by `way` (m; negative: drawn out) in `duration` s:
+/// against the way, the whole friction from 5 mm/s on, and in proportion below.
+Vec3 port_drag(const Tool& tool, double way, double duration);
+
+/// Where tools come by the end of a step, one a tool, as commands and last states are. Waiting tools stay. Keeps each
+/// tool's command and what other tools press it with. Fails (simulation) where tools that meet find no balance.
+Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
+                                                const std::vector<InstrumentState>& last);
+
+/// Sets tissue_stiffness, stiffness_across and roll_stiffness: how the tissue's force on the tip and its torque about the
+/// shaft grew in a step, for the next one. The states are those at the step's begin and end; a tip that went less than
+/// 1 um, or a tool that rolled by less than 0.4 mrad, keeps what it felt before.
+void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now);
+
+/// The name of a tool that another one is in or as near to as contact reaches, where both are; empty: none. Not of those
+/// that wait.
+std::string tool_met(const Field& field, int instrument);
+
+/// Fails (scenario) where tools that do not wait meet at the start.
+Result<bool> check_apart(const Field& field);
+
+}  // namespace calot

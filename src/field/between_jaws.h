@@ -1,0 +1,45 @@
+#pragma once
+// What lies across open jaws: in the plane in which they open, y = 0 of the hinge's frame, between their pads.
+
+#include "body/rod_body.h"
+#include "field/field.h"
+
+namespace calot {
+
+/// Where a duct or a vessel passes between the pads.
+struct TubeBetween {
+  int organ = 0;
+  double at = 0;              ///< skin points from its start
+  Vec3 place = Vec3::Zero();  ///< m, in the hinge's frame
+  Vec3 along = Vec3::Zero();  ///< unit, the tube's way, in the hinge's frame
+  double gap = 0;             ///< m, of the pads there
+  double radius = 0;          ///< m, outer
+};
+
+/// Whether an organ feels the jaws of a tool: not while it lies between blades that have cut it.
+bool feels(const Organ& organ, int instrument);
+
+/// Of all tubes that feel the jaws, in the order of organs and places.
+std::vector<TubeBetween> tubes_between(const Field& field, int instrument);
+
+/// Whether a line from one place to another (m) passes between the pads of a tool now, and no longer when its jaws have
+/// closed by an angle (rad) more: an edge passes it.
+bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle);
+
+/// A clip on a tube that is between the pads of a tool, anywhere over their width.
+struct ClipBetween {
+  int clip = 0;                    ///< place among the organ's
+  Vec3 place = Vec3::Zero();       ///< m, the tube's middle there
+  double half_height = 0;          ///< m, of the clip across its legs
+  std::array<int, 2> points = {};  ///< skin points of the tube before and behind it
+};
+/// Of an organ, in the order of their places; of one that does not feel the jaws there are none.
+std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ);
+
+/// The organ as a tube; null: it is none.
+const RodBody* rod_of(const Organ& organ);
+
+/// Along a tube at rest from its start to a place (skin points from there), m.
+double way_from_start(const RodBody& rod, double at);
+
+}  // namespace calot

@@ -1,0 +1,104 @@
+#pragma once
+// Organs, tools and what carries them.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fem/assembly.h"
+#include "field/members.h"
+#include "field/spilled.h"
+#include "joins/skin_rubbing.h"
+#include "organs/tissue.h"
+#include "tools/step_report.h"
+#include "tools/tool.h"
+
+namespace calot {
+
+/// What the last first-order answer to the tools' motion missed. The next motion misses nearly the same, as it is of
+/// the second order in the way.
+struct MissedMotion {
+  VecX dx;                 ///< m, 3 a node of all members; empty: none known
+  VecX dpressures;         ///< Pa, one an organ
+  double travel = 0;       ///< of the tool that travelled furthest, m
+  int by_last_factor = 0;  ///< iterations that took it, of the last factor
+};
+
+/// How the organs of a field are solved together, kept from one solve to the next.
+struct Group {
+  /// Without nodes until it is asked for (GroupProblem::prepare).
+  NewtonWorkspace work{BlockMatrix(0, {})};
+  GroupPatterns patterns;
+  std::vector<JoinPointer> joins;
+  MissedMotion missed;
+  double friction = 0;            ///< Coulomb's, of skins of different bodies on each other
+  std::vector<SkinHold> rubbing;  ///< at the last equilibrium (body_rubbing.h)
+
+  /// After a body has become another one: nothing that was made for it serves.
+  void forget_bodies() {
+    work = NewtonWorkspace(BlockMatrix(0, {}));
+    patterns = {};
+  }
+};
+
+/// A shape that stays.
+struct Ground {
+  std::string name;
+  Shape shape;
+  double friction = 0;  ///< Coulomb's
+  bool broad = true;    ///< felt by few points; by all as instruments are where it is false
+};
+
+struct Field {
+  std::vector<Organ> organs;
+  std::vector<Tissue> tissues;  ///< between them
+  Group group;
+  std::vector<Tool> tools;
+  std::vector<Ground> ground;
+  Barrier barrier = contact_barrier;
+  double tolerance = 1e-6;
+  double step_time = 0;   ///< s that a step takes where masses count; 0: statics
+  double time = 0;        ///< s, at the end of the present step
+  Spill spill;            ///< what has left the organs
+  double heart_rate = 0;  ///< a minute
+  Vec3 up = Vec3::UnitZ();
+  Vec3 middle = Vec3::Zero();  ///< m, of the first organ at rest
+  std::optional<ViewedPlace> viewed;
+  ExtensionScheme scheme = ExtensionScheme::condensed;
+  Assembly* assembly = nullptr;  ///< the world's threads; null: one does all
+  Membership membership;
+  std::shared_ptr<const FieldMembers> members;  ///< as it is now, for states; null before keep_members()
+  std::uint64_t lives = 0;                      ///< that were given to bodies
+
+  /// Null: one thread does all.
+  Workers* workers() const { return workers_of(assembly); }
+  /// The first one's last factor serves on.
+  void add(RestedOrgan made);
+  /// Puts an organ on the roll.
+  void enrol(Organ& organ);
+};
+
+/// Place of the organ that has this place on the roll, or of the one of this name; -1: it is not in the field.
+int organ_of_record(const Field& field, int record);
+int organ_called(const Field& field, const std::string& name);
+
+std::vector<InstrumentPose> present_poses(const Field& field);
+/// Where the nodes of each organ are, m.
+std::vector<VecX> present_places(const Field& field);
+/// The anatomy's ground, its support last.
+std::vector<Ground> ground_of(const AnatomyDefinition& anatomy);
+
+/// All that moves of the organs, cheap to copy: what failed is undone by it.
+struct GroupSnapshot {
+  std::vector<OrganSnapshot> organs;
+  std::vector<TissueMotion> tissues;
+  NewtonWorkspace::Kept factor = NewtonWorkspace(BlockMatrix(0, {})).keep();
+  GroupPatterns patterns;  ///< without values
+  MissedMotion missed;
+  std::vector<SkinHold> rubbing;
+};
+GroupSnapshot snapshot(const Field& field);
+/// The field must have the organs that it is of.
+void restore(Field& field, const GroupSnapshot& snapshot);
+
+}  // namespace calot

@@ -1,0 +1,50 @@
+#pragma once
+// What jaws hold: skin points that keep their places along the pads until they slip, are drawn off or let go.
+
+#include "field/field.h"
+
+namespace calot {
+
+/// Stiffness of a held skin point, N/m: a hundred times the wall's, so that 5 N on the tens of points of a fold move it
+/// by some um. Well below a contact point's: a fold's wall, which cannot bend between its nodes, sets its grips against
+/// each other and against the jaws, and stiffer ones would push it into them.
+inline constexpr double grip_stiffness = 4e4;
+
+/// How far before a pad its teeth take hold, m (d).
+inline constexpr double pad_reach = 0.5e-3;
+
+/// Jaw angles (rad) at which closing jaws may take hold.
+inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
+
+/// Skin points that touch a pad of a closing tool are held by it from here on; not of a wall after it has lost what it held.
+void take_hold(Field& field, int instrument);
+
+/// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to:
+/// others are let go, new ones held where they are. Returns whether it holds any.
+bool hold_by_clips(Field& field, int instrument);
+
+/// True when both jaws hold skin and the pads are as near as the folded wall allows.
+bool fold_fills_jaws(const Field& field, int instrument);
+
+/// Before jaws that hold some skin close further, to `jaw` (rad): each pad keeps what it holds within its half of the
+/// gap, out of the other's way.
+void make_room(Field& field, int instrument, double jaw);
+
+/// Area of the walls (m^2, at rest) that a tool's jaws hold between them: of the pad that holds less. A tube counts as
+/// wide as it is flat; what a clip keeps the pads off does not count.
+double held_area(const Field& field, int instrument);
+
+/// Skin points of the organ that tool `instrument` grips.
+int grip_count(const Organ& organ, int instrument);
+
+/// Name of the first organ of which a tool holds something; empty: none.
+std::string held_organ(const Field& field, int instrument);
+
+/// True while skin of one organ is held by both pads.
+bool both_pads_hold(const Field& field, int instrument);
+
+/// What holds an organ's points to the tools at `poses`.
+GripSprings grip_springs(const Organ& organ, const std::vector<Tool>& tools,
+                         const std::vector<InstrumentPose>& poses);
+
+}  // namespace calot

@@ -1,0 +1,74 @@
+#pragma once
+// Who is in a field, and who was. Bodies join it, leave it and are divided while it runs (change_bodies.h); between two
+// such changes nothing here changes, so that all states of that time share one copy.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "body/body_handle.h"
+#include "joins/joint.h"
+#include "joins/skin_join.h"
+#include "organs/organ.h"
+#include "organs/tissue.h"
+
+namespace calot {
+
+/// What the laparoscope looks at from near by.
+struct ViewedPlace {
+  int organ = 0, skin_point = 0;
+};
+
+struct SkinPlace {
+  Vec3 at = Vec3::Zero();      ///< m
+  Vec3 normal = Vec3::Zero();  ///< unit, outward
+};
+
+/// When and why a body went.
+struct Departure {
+  double time = 0;                             ///< s
+  std::string how;                             ///< "was divided", "was removed: taken out"
+  std::vector<std::string> pieces;             ///< the patient's and the specimen's, of one that was divided
+  std::map<std::string, SkinPlace> landmarks;  ///< where they were last
+};
+
+/// A body that is or was in the field.
+struct BodyRecord {
+  std::string name;
+  std::uint64_t life = 0;
+  std::optional<Departure> gone;
+};
+
+/// Nothing of two bodies presses on each other there.
+struct TiedPlace {
+  std::array<int, 2> bodies{};  ///< increasing
+  JoinedPlace place;
+};
+
+struct FieldJoint {
+  std::shared_ptr<const Joint> joint;
+  bool of_scene = false;
+};
+
+/// Beside the bodies themselves.
+struct Membership {
+  std::vector<FieldJoint> joints;
+  std::vector<TiedPlace> tied;
+  std::vector<BodyRecord> roll;  ///< in the order in which they came; the scene's first
+  std::size_t of_scene = 0;      ///< bodies, and
+  std::size_t scene_joints = 0;
+};
+
+/// All of it at one time.
+struct FieldMembers {
+  std::vector<Organ> organs;    ///< as they were when it began
+  std::vector<Tissue> tissues;  ///< likewise
+  std::vector<JoinPointer> joins;
+  std::optional<ViewedPlace> viewed;
+  Membership membership;
+  std::shared_ptr<const int> world;  ///< whose it is
+};
+
+}  // namespace calot

@@ -1,0 +1,54 @@
+#include "field/moving_bodies.h"
+
+#include <cmath>
+
+namespace calot {
+
+std::size_t moving_bodies(const Field& field) { return field.organs.size() + field.tissues.size(); }
+
+BodyState& state_of(Field& field, std::size_t k) {
+  const std::size_t organs = field.organs.size();
+  return k < organs ? field.organs[k].state : field.tissues[k - organs].now.state;
+}
+
+const BodyState& state_of(const Field& field, std::size_t k) {
+  const std::size_t organs = field.organs.size();
+  return k < organs ? field.organs[k].state : field.tissues[k - organs].now.state;
+}
+
+const Body& body_of(const Field& field, std::size_t k) {
+  const std::size_t organs = field.organs.size();
+  if (k < organs) return *field.organs[k].body;
+  return *field.tissues[k - organs].body;
+}
+
+Result<std::vector<MotionPart>> next_parts(const Field& field) {
+  std::vector<MotionPart> out;
+  for (std::size_t k = 0; k < moving_bodies(field) && field.step_time > 0; ++k) {
+    const Body& body = body_of(field, k);
+    Result<MotionPart> part = motion_part(body, present_motion(body, state_of(field, k)), 0);
+    if (!part) return part.failure();
+    out.push_back(std::move(part).value());
+  }
+  return out;
+}
+
+void begin_parts(const std::vector<MotionPart>& parts, double duration, Field& field) {
+  constexpr double alike = 0.1;  // another share than this of the time, and the factor is of another matrix
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    MotionPart& part = state_of(field, k).motion;
+    if (!(std::abs(duration - part.duration) < alike * part.duration)) field.group.work.factored = false;
+    part = parts[k];
+    part.duration = duration;
+  }
+}
+
+bool all_stand_still(const Field& field) {
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) {
+    const MotionPart& motion = state_of(field, k).motion;
+    if (motion.duration > 0 && !stands_still(motion.begin)) return false;
+  }
+  return true;
+}
+
+}  // namespace calot

@@ -1,0 +1,341 @@
+#include "group/group_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "fem/assembly.h"
+
+namespace calot {
+namespace {
+
+/// Bodies of fewer nodes are too little to share.
+constexpr int large_body = 32;
+
+}  // namespace
+
+GroupProblem::GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins,
+                           GroupPatterns& patterns, bool fixed_pressures)
+    : members_(members), joins_(joins), patterns_(patterns) {
+  problems_.reserve(members.size());
+  for (const Member& member : members) {
+    const bool large = member.body.nodes() >= large_body;
+    small_ += large ? 0 : 1;
+    by_size_.push_back(problems_.size());
+    problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures,
+                           large ? members[0].assembly : nullptr);
+    const Eigen::Index size = member.state.x.size(), constraints = problems_.back().constraints();
+    ranges_.push_back({size_, size, constraints_, constraints});
+    size_ += size;
+    constraints_ += static_cast<int>(constraints);
+  }
+  std::stable_sort(by_size_.begin(), by_size_.end(),
+                   [&](std::size_t a, std::size_t b) { return ranges_[a].size < ranges_[b].size; });
+  if (joins.empty()) return;
+  std::vector<GroupPlace> bodies;
+  for (std::size_t k = 0; k < members.size(); ++k)
+    bodies.push_back({&members[k].body, static_cast<int>(ranges_[k].first) / 3, workers()});
+  for (const JoinPointer& join : joins) join->begin(bodies);
+}
+
+VecX GroupProblem::coordinates() const {
+  VecX out(size_);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    out.segment(ranges_[k].first, ranges_[k].size) = members_[k].state.x;
+  return out;
+}
+
+VecX GroupProblem::multipliers() const {
+  VecX out(constraints_);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].multipliers();
+  return out;
+}
+
+VecX GroupProblem::resting_multipliers() const {
+  const VecX given = compliances();
+  VecX out = multipliers();
+  for (Eigen::Index k = 0; k < out.size(); ++k)
+    if (given[k] > 0) out[k] = 0;
+  return out;
+}
+
+void GroupProblem::keep(const VecX& x, const VecX& multipliers) const {
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    members_[k].state.x = part_of(k, x);
+    if (ranges_[k].constraints > 0) members_[k].state.datum_pressure = multipliers[ranges_[k].constraint];
+  }
+}
+
+std::vector<Part> GroupProblem::parts() const {
+  std::vector<Part> out;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    const int first = static_cast<int>(ranges_[k].first) / 3;
+    for (Part part : problems_[k].parts()) {
+      for (NodeRange* range : {&part.places, &part.displacements})
+        range->first += first, range->last += first;
+      out.push_back(part);
+    }
+  }
+  return out;
+}
+
+template <class Work>
+void GroupProblem::for_each_member(const Work& work, std::span<const Join* const> joins,
+                                   const VecX* x) const {
+  // The last are begun first: what takes longest.
+  const std::size_t found = small_ + joins.size();
+  for_each_chunk(workers(), static_cast<int>(by_size_.size() + joins.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    if (k >= small_ && k < found) return joins[k - small_]->find(*x);
+    work(by_size_[k < small_ ? k : k - joins.size()]);
+  });
+}
+
+Workers* GroupProblem::workers() const {
+  return members_.empty() ? nullptr : workers_of(members_[0].assembly);
+}
+
+std::vector<const Join*> GroupProblem::joins_at(const VecX& x, const VecX* step) const {
+  std::vector<const Join*> out;
+  if (joins_.empty()) return out;
+  std::vector<SkinBounds> bounds;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    bounds.push_back({skin_box(members_[k].body, part_of(k, x)), {}});
+    if (step) bounds.back().motion = skin_motion(members_[k].body, part_of(k, *step));
+  }
+  for (const JoinPointer& join : joins_)
+    if (!join->idle(bounds)) out.push_back(join.get());
+  return out;
+}
+
+double GroupProblem::value(const VecX& x) const {
+  std::vector<double> values(problems_.size());
+  const std::vector<const Join*> joins = joins_at(x);
+  for_each_member([&](std::size_t k) noexcept { values[k] = problems_[k].value(part_of(k, x)); }, joins, &x);
+  double sum = 0;
+  for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k) sum += values[k];
+  if (!std::isfinite(sum)) return sum;
+  for (const Join* join : joins) {
+    sum += join->value(x);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+double GroupProblem::cancelling() const {
+  double sum = 0;
+  for (const BodyProblem& problem : problems_) sum += problem.cancelling();
+  return sum;
+}
+
+void GroupProblem::add_joins(std::span<const Join* const> joins, const VecX& x, VecX& gradient,
+                             VecX& largest_internal) const {
+  if (joins_.empty()) return;
+  for (const Join* join : joins) join->add_gradient(x, gradient);
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    largest_internal[static_cast<Eigen::Index>(k)] =
+        force_scale(largest_internal[static_cast<Eigen::Index>(k)], part_of(k, gradient));
+}
+
+void GroupProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const {
+  const std::vector<const Join*> joins = joins_at(x);
+  if (alone()) {
+    problems_[0].gradient(x, gradient, largest_internal);
+    return add_joins(joins, x, gradient, largest_internal);
+  }
+  gradient.resize(size_);
+  largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
+  const auto own_part = [&](std::size_t k) noexcept {
+    VecX own, internal;
+    problems_[k].gradient(part_of(k, x), own, internal);
+    gradient.segment(ranges_[k].first, ranges_[k].size) = own;
+    largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
+  };
+  for_each_member(own_part, joins, &x);
+  add_joins(joins, x, gradient, largest_internal);
+}
+
+void GroupProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const {
+  if (alone()) {
+    problems_[0].hessian(x, multipliers, matrix);
+  } else {
+    matrix.set_zero();
+    for_each_member([&](std::size_t k) noexcept { add_own_hessian(k, x, multipliers, matrix); });
+  }
+  for (const Join* join : joins_at(x)) join->add_hessian(x, matrix);
+}
+
+void GroupProblem::add_own_hessian(std::size_t k, const VecX& x, const VecX& multipliers,
+                                   BlockMatrix& matrix) const {
+  const Range& range = ranges_[k];
+  BlockMatrix& own = patterns_.own[k];
+  problems_[k].hessian(part_of(k, x), multipliers.segment(range.constraint, range.constraints), own);
+  matrix.add_part(own, static_cast<int>(range.first) / 3);
+}
+
+void GroupProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
+  if (alone()) return problems_[0].constraint(x, values, gradients);
+  values.resize(constraints_);
+  gradients.setZero(size_, constraints_);
+  VecX own_values;
+  Eigen::MatrixXd own;
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    const Range& range = ranges_[k];
+    if (range.constraints == 0) continue;
+    problems_[k].constraint(part_of(k, x), own_values, own);
+    values.segment(range.constraint, range.constraints) = own_values;
+    gradients.block(range.first, range.constraint, range.size, range.constraints) = own;
+  }
+}
+
+VecX GroupProblem::constraint_values(const VecX& x) const {
+  VecX values(constraints_);
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    if (ranges_[k].constraints > 0)
+      values.segment(ranges_[k].constraint, ranges_[k].constraints) =
+          problems_[k].constraint_values(part_of(k, x));
+  return values;
+}
+
+void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal,
+                                           VecX& values, Eigen::MatrixXd& of_constraints) const {
+  const std::vector<const Join*> joins = joins_at(x);
+  if (alone()) {
+    problems_[0].gradient_and_constraint(x, of_energy, largest_internal, values, of_constraints);
+    return add_joins(joins, x, of_energy, largest_internal);
+  }
+  of_energy.resize(size_);
+  largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
+  values.resize(constraints_);
+  of_constraints.setZero(size_, constraints_);
+  const auto own_part = [&](std::size_t k) noexcept {
+    VecX own, internal, own_values;
+    Eigen::MatrixXd own_constraints;
+    const Range& range = ranges_[k];
+    if (range.constraints == 0) {
+      problems_[k].gradient(part_of(k, x), own, internal);
+    } else {
+      problems_[k].gradient_and_constraint(part_of(k, x), own, internal, own_values, own_constraints);
+      values.segment(range.constraint, range.constraints) = own_values;
+      of_constraints.block(range.first, range.constraint, range.size, range.constraints) = own_constraints;
+    }
+    of_energy.segment(range.first, range.size) = own;
+    largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
+  };
+  for_each_member(own_part, joins, &x);
+  add_joins(joins, x, of_energy, largest_internal);
+}
+
+VecX GroupProblem::constraint_scales() const {
+  VecX out(constraints_);
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].constraint_scales();
+  return out;
+}
+
+VecX GroupProblem::compliances() const {
+  VecX out(constraints_);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    out.segment(ranges_[k].constraint, ranges_[k].constraints) = problems_[k].compliances();
+  return out;
+}
+
+VecX GroupProblem::pressures(const VecX& multipliers) const {
+  VecX out = VecX::Zero(static_cast<Eigen::Index>(members_.size()));
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    if (ranges_[k].constraints > 0) out[static_cast<Eigen::Index>(k)] = multipliers[ranges_[k].constraint];
+  return out;
+}
+
+void GroupProblem::prepare_alone(NewtonWorkspace& work) const {
+  const Body& body = members_[0].body;
+  if (work.matrix.size() != size_) work = NewtonWorkspace(body.pattern(), body.coarse_nodes());
+  if (std::optional<BlockMatrix> pattern = problems_[0].new_pattern(work.matrix))
+    work = NewtonWorkspace(std::move(*pattern), body.coarse_nodes());
+}
+
+namespace {
+
+/// Whether all nodes of each group are coupled.
+bool holds(const BlockMatrix& matrix, const std::vector<std::vector<int>>& cliques) {
+  for (const std::vector<int>& clique : cliques)
+    for (int j : clique)
+      for (int i : clique)
+        if (i > j && matrix.slot(i, j) < 0) return false;
+  return true;
+}
+
+}  // namespace
+
+void GroupProblem::prepare(NewtonWorkspace& work) const {
+  if (alone()) return prepare_alone(work);
+  bool changed = work.matrix.size() != size_;
+  patterns_.own.resize(problems_.size(), BlockMatrix(0, {}));
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    BlockMatrix& own = patterns_.own[k];
+    const bool other_body = own.size() != ranges_[k].size;
+    if (other_body) own = members_[k].body.pattern();
+    std::optional<BlockMatrix> pattern = problems_[k].new_pattern(own);
+    if (pattern) own = std::move(*pattern);
+    changed |= other_body || pattern.has_value();
+  }
+  // What had to be coupled and is apart again costs room in the factor, but a new one costs more.
+  constexpr std::size_t most_idle = 3;  // times as many groups as are close
+  if (!changed) {
+    const std::vector<std::vector<int>> close = cliques(true);
+    if (patterns_.joined.size() <= most_idle * close.size() && holds(work.matrix, close)) return;
+  }
+  patterns_.joined = cliques(false);
+  work = workspace();
+}
+
+NewtonWorkspace GroupProblem::workspace() const {
+  return NewtonWorkspace(BlockMatrix(patterns_.own, patterns_.joined), kept_nodes());
+}
+
+std::vector<char> GroupProblem::kept_nodes() const {
+  std::vector<char> kept;
+  for (const Member& member : members_) {
+    kept.insert(kept.end(), member.body.kept_nodes(), 1);
+    kept.insert(kept.end(), member.body.nodes() - member.body.kept_nodes(), 0);
+  }
+  return kept;
+}
+
+std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
+  std::vector<std::vector<int>> out;
+  if (joins_.empty()) return out;
+  const VecX x = coordinates();
+  const std::vector<const Join*> joins = joins_at(x);
+  std::vector<std::vector<std::vector<int>>> of_join(joins.size());
+  for_each_chunk(workers(), static_cast<int>(joins.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    joins[k]->add_cliques(x, close, of_join[k]);
+  });
+  for (std::vector<std::vector<int>>& own : of_join)
+    out.insert(out.end(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
+  return out;
+}
+
+double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
+  std::vector<double> shares(problems_.size());
+  for_each_member(
+      [&](std::size_t k) noexcept { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
+  double share = 1;
+  for (double own : shares) share = std::min(share, own);
+  return calot::safe_share(joins_at(x, &step), x, step, share, workers());
+}
+
+double safe_share(std::span<const Join* const> joins, const VecX& x, const VecX& step, double share,
+                  Workers* workers) {
+  std::vector<double> shares(joins.size(), share);
+  for_each_chunk(workers, static_cast<int>(joins.size()), [&](int j) noexcept {
+    const auto k = static_cast<std::size_t>(j);
+    shares[k] = joins[k]->safe_share(x, step, share);
+  });
+  for (double own : shares) share = std::min(share, own);
+  return share;
+}
+
+}  // namespace calot

@@ -1,0 +1,144 @@
+#pragma once
+// The bodies that are solved together: one numbering of all nodes, body by body, and one Newton's method (the paper's
+// groupstructure, section 7).
+
+#include <memory>
+#include <span>
+
+#include "body/skin_bounds.h"
+#include "group/body_problem.h"
+#include "numerics/newton_workspace.h"
+
+namespace calot {
+
+class Workers;
+class SkinJoin;
+
+/// A body, what acts on it and where it is. All must outlive the problem that is made of it.
+struct Member {
+  const Body& body;
+  const ContactLoads& loads;
+  ContactSearch& search;
+  BodyState& state;
+  Assembly* assembly =
+      nullptr;  ///< several threads do the work, to the same bits; of a group the first one's
+};
+
+/// Where a body stands in a group.
+struct GroupPlace {
+  const Body* body = nullptr;
+  int first_node = 0;
+  Workers* workers = nullptr;  ///< who share what is asked about it; none: who asks, alone
+};
+
+/// What joins bodies: an energy over nodes of several of them, in the group's numbering. What it remembers is no part of
+/// any result.
+class Join {
+ public:
+  virtual ~Join() = default;
+  /// Null: it is no contact of skins, which may rub on each other (body_rubbing.h).
+  virtual const SkinJoin* skins() const { return nullptr; }
+  /// A solve begins, of these bodies: they stay what they are until the next. Asked before anything else.
+  virtual void begin(std::span<const GroupPlace> /*bodies*/) const {}
+  /// Whether, while the bodies' skins are in these bounds, nothing acts, couples or stops them: then nothing else needs to
+  /// be asked.
+  virtual bool idle(std::span<const SkinBounds> /*bodies*/) const { return false; }
+  /// Finds what acts at x, which is then asked for; threads call it for several joins at a time.
+  virtual void find(const VecX& /*x*/) const {}
+  virtual double value(const VecX& x) const = 0;  ///< J
+  virtual void add_gradient(const VecX& x, VecX& gradient) const = 0;
+  /// Couplings that the pattern does not hold are left out: Newton then converges more slowly.
+  virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
+  /// Whether the last add_hessian() left some out.
+  virtual bool lacking() const { return false; }
+  /// Adds the groups of nodes that add_hessian() couples near x: with `close` those that a solve from here on may well
+  /// couple, else those that some later one may, too, so that a matrix made for these serves for long. Not asked for
+  /// where there is but one body: it is joined to nothing but itself, by nodes that its own pattern couples.
+  virtual void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const = 0;
+  /// The largest part of `share` of the step that is safe.
+  virtual double safe_share(const VecX& /*x*/, const VecX& /*step*/, double share) const { return share; }
+};
+
+using JoinPointer = std::shared_ptr<const Join>;
+
+/// The largest part of `share` of the step that all of these find safe; threads ask several at a time.
+double safe_share(std::span<const Join* const> joins, const VecX& x, const VecX& step, double share,
+                  Workers* workers);
+
+/// Matrices of the single bodies, with room for what couples each with itself, and the couplings that the joint one
+/// was made for. Of a body alone there is none: its matrix is the group's.
+struct GroupPatterns {
+  std::vector<BlockMatrix> own;
+  std::vector<std::vector<int>> joined;
+};
+
+class GroupProblem : public ConstrainedEnergy {
+ public:
+  GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins, GroupPatterns& patterns,
+               bool fixed_pressures = false);
+
+  VecX coordinates() const;  ///< of all states
+  VecX multipliers() const;  ///< likewise
+  /// The same where nothing is accelerated: those of compliant constraints are 0.
+  VecX resting_multipliers() const;
+  /// Of each member, Pa; 0 where it has none among the multipliers.
+  VecX pressures(const VecX& multipliers) const;
+  /// Room for what its patterns couple, as prepare() makes it; of two members or more.
+  NewtonWorkspace workspace() const;
+  /// Writes a solution into the members' states.
+  void keep(const VecX& x, const VecX& multipliers) const;
+
+  std::vector<Part> parts() const override;
+  int constraints() const override { return constraints_; }
+  double value(const VecX& x) const override;
+  double cancelling() const override;
+  void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
+  void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override;
+  void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override;
+  VecX constraint_values(const VecX& x) const override;
+  void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
+                               Eigen::MatrixXd& of_constraints) const override;
+  VecX constraint_scales() const override;
+  VecX compliances() const override;
+  void prepare(NewtonWorkspace& work) const override;
+  double safe_share(const VecX& x, const VecX& step) const override;
+  Workers* workers() const override;
+
+ private:
+  struct Range {
+    Eigen::Index first, size;              ///< of the coordinates
+    Eigen::Index constraint, constraints;  ///< the first, and how many
+  };
+  /// Then its matrix is the group's, and holds what its joins couple.
+  bool alone() const { return problems_.size() == 1; }
+  VecX part_of(std::size_t member, const VecX& x) const {
+    return x.segment(ranges_[member].first, ranges_[member].size);
+  }
+  /// Calls work(member), which must be noexcept and write nothing that another's does, for each, and meanwhile finds what
+  /// `joins` do at x; the largest is begun first, and who has nothing left to begin helps with it.
+  template <class Work>
+  void for_each_member(const Work& work, std::span<const Join* const> joins = {},
+                       const VecX* x = nullptr) const;
+  /// Those that may act at x, or on a step from there (null: none).
+  std::vector<const Join*> joins_at(const VecX& x, const VecX* step = nullptr) const;
+  void prepare_alone(NewtonWorkspace& work) const;
+  std::vector<std::vector<int>> cliques(bool close) const;
+  /// One a node: what is not kept is condensed.
+  std::vector<char> kept_nodes() const;
+  void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
+  /// Adds what these joins, found at x, do to the bodies; residuals are judged beside these forces, too.
+  void add_joins(std::span<const Join* const> joins, const VecX& x, VecX& gradient,
+                 VecX& largest_internal) const;
+
+  std::span<const Member> members_;
+  std::span<const JoinPointer> joins_;
+  GroupPatterns& patterns_;
+  std::vector<BodyProblem> problems_;
+  std::vector<Range> ranges_;
+  std::vector<std::size_t> by_size_;  ///< members, the largest last
+  std::size_t small_ = 0;             ///< the first of these are not worth sharing
+  Eigen::Index size_ = 0;             ///< coordinates
+  int constraints_ = 0;
+};
+
+}  // namespace calot

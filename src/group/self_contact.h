@@ -1,0 +1,131 @@
+#pragma once
+// Contact of an organ's skin with itself, so that walls squeezed flat or folded do not pass through each other.
+//
+// Each skin point is kept off the triangles of the same skin that are no neighbours of it on the wall, by a barrier of the
+// distance itself: inner and outer faces meet alike, as no side is asked for. Points of both walls are kept off the
+// other, each for half, so wall presses on wall as an instrument does.
+// A force and what answers it lie on one line and share out by the weights of the nearest point: what the wall does
+// to itself sums to no force and no torque.
+//
+// Where the skin's points stand wider apart than the barrier's range (0.4 mm; they may by up to half a jaw's width) sharp
+// folds meet with no point near: their edges are kept apart beside (collision/edge_crossing.h), within a quarter of that
+// range, so that walls that lie on each other press by their points alone.
+
+#include <cmath>
+#include <optional>
+
+#include "collision/barrier.h"
+#include "collision/simplex_distance.h"
+#include "collision/skin_edges.h"
+#include "collision/surface_parts.h"
+#include "group/self_search.h"
+
+namespace calot {
+
+/// How walls press on each other: over less than the 0.7 mm that jaws leave between the two skins of a fold they hold
+/// (what holds them there is the grip).
+inline constexpr Barrier self_barrier{0.4e-3, 20e3};
+/// How far pairs of what meets so are remembered, m.
+inline constexpr double close_reach = 0.8e-3;
+/// Walls that are nearer than the first of these may touch in the next solve, and are coupled in its matrix; beyond
+/// the second they are not any more.
+inline constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
+
+/// Of edges that cross. Ten times as stiff: a few of them carry what lies in a sharp fold, and as soft as points they met at
+/// 1 nm, from where each solve began far from balance (a held fold turned by 240 degrees took 43 s, now 20).
+inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, 10 * self_barrier.stiffness};
+/// Of these: couple_below and uncouple_above in proportion.
+constexpr double edges_couple(double of_points) {
+  return of_points * (self_edge_barrier.range / self_barrier.range);
+}
+
+/// A skin point and a part of the skin that press on each other.
+struct SelfTouch {
+  int skin_point = 0;
+  SurfacePart part;
+  FlatSample sample;
+  double area = 0;  ///< m^2 that it counts for; negative where the part counts so
+};
+
+/// Finds what is near and remembers it until other things could have come near; what it remembers is no part of any
+/// result. For one organ.
+class SelfContact {
+ public:
+  /// Without contact where false: to show what it does.
+  bool active = true;
+  /// Threads that search, while there are some; null: the caller's alone.
+  Workers* workers = nullptr;
+
+  /// All that touches at x, ordered by skin point, then part; found once for a state. Valid until the next call.
+  const std::vector<SelfTouch>& touching(const Body& body, const VecX& x) {
+    return found_at(body, x).touches;
+  }
+  /// And all edges that cross in range, ordered.
+  const std::vector<EdgeTouch>& crossing(const Body& body, const VecX& x) {
+    return found_at(body, x).crossings;
+  }
+  /// Energy (J) and derivatives.
+  double value(const Body& body, const VecX& x);
+  void add_gradient(const Body& body, const VecX& x, VecX& gradient);
+  /// Couplings that the matrix' pattern does not hold are left out: Newton then converges more slowly.
+  void add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix);
+  /// Whether the last add_hessian left some out.
+  bool lacking() const { return lacking_; }
+
+  /// The largest part of `share` of the step on which no point and triangle, and no two edges, lose more than 1 - keep of their
+  /// distance; of a long step, gone in parts, in none of these.
+  double safe_share(const Body& body, const VecX& x, const VecX& step, double keep, double share);
+  /// The pattern that a matrix needs to hold the couplings of what is near at x, or the body's own once that has moved
+  /// apart; none: `present` serves.
+  std::optional<BlockMatrix> new_pattern(const Body& body, const VecX& x, const BlockMatrix& present);
+
+ private:
+  /// Sees to it that near_ holds all pairs nearer than `need` at x, and those at edges nearer than `need_edges`. Returns
+  /// how much of their distance its pairs may have lost since it was gathered, m.
+  double refresh(const Body& body, const VecX& x, double need, double need_edges);
+  void forget_pairs() { near_.clear(), edges_near_.clear(); }
+  /// Half of the longest edge at rest, stretched by a quarter: how far a point may be beside edges that meet, m.
+  double beside_edges(const Body& body) { return 0.625 * net(body).edges.longest; }
+  /// safe_share() of a step no longer than groups are remembered.
+  double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
+  /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
+  void refresh_groups(const Body& body, const VecX& x, double need);
+  /// Whether walls are nearer than this (at most close_reach) at x.
+  bool any_nearer(const Body& body, const VecX& x, double distance);
+  /// Places (at x) or motions of the skin points in rows_; the others mean nothing.
+  void look_up(const Body& body, const VecX& x, std::vector<Vec3>& points) const;
+  const SkinNet& net(const Body& body);
+  std::vector<SelfTouch> find_touching(const Body& body, const VecX& x);
+  std::vector<EdgeTouch> find_crossing(const Body& body, const VecX& x);
+
+  /// What touched at the last two states that were asked for: where a step began and where it is tried.
+  struct Touching {
+    VecX x;
+    std::vector<int> details;
+    std::vector<SelfTouch> touches;
+    std::vector<EdgeTouch> crossings;
+  };
+  const Touching& found_at(const Body& body, const VecX& x);
+  std::array<Touching, 2> found_;
+  std::size_t newest_ = 0;
+  std::optional<SkinNet> net_;
+  // Groups of points that were near at groups_x_, their points and those of the triangles around them, and all nodes
+  // that these hang on.
+  bool groups_known_ = false;
+  VecX groups_x_;
+  std::vector<int> groups_details_;
+  std::vector<GroupPair> groups_;
+  std::vector<int> rows_, nodes_;
+  // Pairs among these that were near at pairs_x_.
+  bool pairs_known_ = false;
+  VecX pairs_x_;
+  std::vector<SelfPair> near_;
+  double nearest_ = 0;  ///< m, of these pairs
+  std::vector<EdgesNear> edges_near_;
+  double nearest_edges_ = 0;                  ///< m, of these
+  double pairs_reach_ = 0, edges_reach_ = 0;  ///< m, how near all are remembered
+  bool lacking_ = false;
+  std::vector<Vec3> at_, way_;  ///< room for look_up()
+};
+
+}  // namespace calot

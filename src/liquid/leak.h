@@ -1,0 +1,38 @@
+#pragma once
+// What leaves organs by openings: bile by the end of a duct that was cut or a hole in a wall, blood by an artery's end.
+//
+// An opening lets out Q = Cd A sqrt(2 p / rho) at the pressure p on its inside; A is the smallest area on the way there:
+// of the lumen, of what clips leave open of it, and of what jaws do that pinch it. What drives it:
+// - a hollow organ, of which its wall and the liquid's weight do. Its volume falls by what leaves, so that its pressure
+//   does too and it slackens: by the wall's compliance C, as the last factor knows it, sqrt(p) falls along a straight
+//   line. Of one opening the error of a step is what C changes in it.
+// - the patient, by a pressure behind a resistance: p = R Q + rho / 2 (Q / (Cd A))^2; blood's beats with the heart. A
+//   duct's folds (the valves of Heister) resist what an organ drives through it in the same way.
+// - nothing: what a tube holds runs out of it.
+// Steps are cut into milliseconds: a pulse is known to 1e-5 so, and two openings of one organ share its pressure.
+
+#include "field/field.h"
+#include "liquid/outflow.h"
+
+namespace calot {
+
+inline constexpr double blood_density = 1060;  ///< kg/m^3
+
+/// As its definition has it; else what it carries, and of an artery its width, say.
+TubeFeed feed_of(const OrganDefinition& tube);
+
+/// Share of a tube's lumen that is open at its tightest between two of its places (skin points from its start), where
+/// clips and jaws are on it.
+double open_between(const Field& field, int organ, double one, double other);
+
+/// Lets out what leaves in `duration` s up to field.time: liquids' kept volumes fall, field.spill.lost grows, and drops
+/// begin to hang on openings; what needles are in is drawn out beside (aspirate.h). Returns the events bile_leak, bleeding
+/// and leak_stopped.
+std::vector<WorldEvent> leak(Field& field, double duration);
+
+/// Makes the holes that a tool's jaws, which hold them, cut or crush into hollow organs.
+void perforate(Field& field, int instrument);
+/// Makes one where current has burnt a wall, at the skin point nearest to `at`; what holds no liquid has nothing to lose.
+void perforate(Organ& organ, const Vec3& at, const std::string& instrument);
+
+}  // namespace calot

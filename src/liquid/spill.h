@@ -1,0 +1,26 @@
+#pragma once
+// What has left the organs or an instrument, on its way and where it lies: clips that fell, drops that fall, and a film on skins and on the ground that
+// runs down and gathers in the lowest places.
+//
+// A drop falls freely from its opening until it meets the skin of an organ or the ground (tubes let it pass: it would
+// run off them); there it spreads to a film. The film has a volume at each point of the surface. By points it flows to
+// where it stands lower, as fast as a liquid sheet of its thickness runs (rho g h^2 / 3 mu), but for what sticks to the
+// surface, and it wets a dry point only once it stands high enough. Where it hangs it drops off, and
+// drips where it is too thick to hang.
+// Nothing of this acts on the organs.
+
+#include "field/field.h"
+
+namespace calot {
+
+/// Moves all of it on by `duration` s, and makes drops of what hangs on openings.
+void spill(Field& field, double duration);
+
+/// Lets a clip fall from there straight down onto what a drop would meet; what meets nothing is not seen again. It falls
+/// in no time: 50 mm take a tenth of a second.
+void drop_clip(Field& field, ClipSize size, const Vec3& from, const Vec3& legs);
+
+/// The surface of a film that is `on` there; its mesh is null where the organ is gone.
+WetSurface wet_surface(const Field& field, int on);
+
+}  // namespace calot

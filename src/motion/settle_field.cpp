@@ -1,0 +1,170 @@
+#include "motion/settle_field.h"
+
+#include "field/field_tissues.h"
+#include "field/grip.h"
+#include "group/detail_fading.h"
+#include "motion/body_rubbing.h"
+#include "motion/rubbing.h"
+
+namespace calot {
+
+ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
+  ContactLoads out;
+  out.barrier = field.barrier;
+  for (std::size_t i = 0; i < field.tools.size(); ++i)
+    for (const Shape& shape : shapes_in_field(field.tools[i], poses[i]))
+      out.shapes.push_back(contact_shape(shape));
+  for (int tool : organ.unfelt)
+    for (int part : {1, 2}) out.shapes[static_cast<std::size_t>(tool) * shapes_per_tool + part] = nowhere;
+  out.broad.assign(out.shapes.size(), 0);
+  for (const Ground& ground : field.ground) {
+    out.shapes.push_back(contact_shape(ground.shape));
+    out.broad.push_back(ground.broad);
+  }
+  out.grip = grip_springs(organ, field.tools, poses);
+  out.friction = friction_load(field, organ, poses);
+  if (const ShellBody* shell = shell_of(organ)) out.detail_holds = detail_holds(*shell, organ.state.shares);
+  out.load = organ.state.fading_load;
+  return out;
+}
+
+ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
+  ContactLoads out = contact_loads(field, organ, poses);
+  if (organ.state.motion.duration > 0)
+    out.inertia =
+        std::make_shared<const Inertia>(*organ.body, organ.state, organ.definition.wall.retardation);
+  return out;
+}
+
+std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses) {
+  std::vector<ContactLoads> out(field.organs.size());
+  for_each_chunk(field.workers(), static_cast<int>(out.size()), [&](int chunk) noexcept {
+    const auto k = static_cast<std::size_t>(chunk);
+    out[k] = solve_loads(field, field.organs[k], poses);
+  });
+  return out;
+}
+
+std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads) {
+  std::vector<Member> out;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    Organ& organ = field.organs[k];
+    out.push_back({*organ.body, loads[k], organ.search, organ.state, field.assembly});
+  }
+  return out;
+}
+
+std::string member_name(const Field& field, int part) {
+  const auto index = static_cast<std::size_t>(part);
+  if (index < field.organs.size()) return field.organs[index].definition.name;
+  return field.tissues[index - field.organs.size()].definition.name;
+}
+
+void count(const Field& field, const NewtonResult& result, SolveStatistics& statistics) {
+  statistics.newton_iterations += result.iterations;
+  statistics.factorisations += result.factorisations;
+  statistics.shifts += result.shifts;
+  statistics.assembly_s += result.assembly_s;
+  statistics.factorisation_s += result.factorisation_s;
+  statistics.solve_s += result.solve_s;
+  statistics.contact_s += result.safety_s;
+  for (std::size_t part = 0; part < result.furthest.size(); ++part)
+    if (result.furthest[part] > 0)
+      statistics.furthest[member_name(field, static_cast<int>(part))] += result.furthest[part];
+}
+
+std::vector<JoinPointer> all_joins(const Field& field, const std::vector<InstrumentPose>& poses) {
+  std::vector<JoinPointer> out = field.group.joins;
+  add_strands(field, poses, out);
+  return out;
+}
+
+double largest_travel(const Field& field, const std::vector<InstrumentPose>& to) {
+  double travel = 0;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    travel = std::max(travel, travel_bound(field.tools[i], field.tools[i].pose, to[i]));
+  return travel;
+}
+
+namespace {
+
+/// Renews what rubs on all organs; whether no normal force asks for another limit any more.
+bool friction_agrees(Field& field, const std::vector<InstrumentPose>& poses, const std::vector<VecX>& before,
+                     int round, std::vector<ContactLoads>& loads, std::vector<SkinHold>& rubbing) {
+  const double share = round < relaxed_round ? 1.0 : 0.5;
+  bool agrees = true;
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
+    agrees &= renew_friction(field, field.organs[k], poses, before[k], share, loads[k]) <= friction_tolerance;
+  agrees &= renew_body_friction(field, before, share, rubbing) <= friction_tolerance;
+  return agrees;
+}
+
+}  // namespace
+
+NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics) {
+  NewtonSettings settings;
+  settings.tolerance = field.tolerance;
+  settings.max_iterations = max_iterations;
+  const double travel = largest_travel(field, poses);
+  for (Organ& organ : field.organs) fade_details(travel, organ.state);
+  std::vector<ContactLoads> loads = solve_loads(field, poses);
+  std::vector<Member> members = members_of(field, loads);
+  TissueMembers tissues(field);
+  tissues.add_to(members);
+  Group& group = field.group;
+  std::vector<SkinHold> rubbing = group.rubbing;
+  NewtonResult total;
+  for (int round = 0; round <= friction_rounds; ++round) {
+    const std::vector<JoinPointer> joins = joins_with(all_joins(field, poses), rubbing);
+    total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
+    ++statistics.solves;
+    if (round > 0) ++statistics.friction_rounds;
+    if (!total.converged() || !has_friction(field)) break;
+    std::vector<FrictionLoad> used;
+    for (const ContactLoads& of_organ : loads) used.push_back(of_organ.friction);
+    std::vector<SkinHold> used_between = rubbing;
+    if (friction_agrees(field, poses, before, round, loads, rubbing)) {
+      // Where nothing moved, not even rounding may.
+      const bool stayed = poses == present_poses(field);
+      bool all_stayed = true;
+      for (std::size_t k = 0; k < field.organs.size(); ++k) {
+        if (stayed && field.organs[k].state.x == before[k]) continue;
+        keep_friction(field, field.organs[k], poses, used[k]);
+        all_stayed = false;
+      }
+      if (!all_stayed) keep_body_friction(field, std::move(used_between));
+      break;
+    }
+    if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
+  }
+  count(field, total, statistics);
+  return total;
+}
+
+Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
+  const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
+                                           NewtonSettings{}.max_iterations, statistics);
+  if (!result.converged()) return solve_failure(result, member_name(field, result.part), when);
+  return true;
+}
+
+Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
+  NewtonSettings settings;
+  settings.tolerance = field.tolerance;
+  std::vector<ContactLoads> loads;
+  for (const Organ& organ : field.organs) loads.push_back(contact_loads(field, organ, present_poses(field)));
+  Group& group = field.group;
+  std::vector<Member> members = members_of(field, loads);
+  TissueMembers tissues(field);
+  tissues.add_to(members);
+  const NewtonResult result =
+      sink(members, all_joins(field, present_poses(field)), group.patterns, settings, group.work);
+  ++statistics.solves;
+  count(field, result, statistics);
+  if (!result.converged())
+    return solve_failure(result, member_name(field, result.part), "as it sank to rest");
+  return true;
+}
+
+}  // namespace calot

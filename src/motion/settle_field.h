@@ -1,0 +1,46 @@
+#pragma once
+// What acts on the organs of a field, and their equilibrium where the tools stand.
+
+#include <string>
+
+#include "field/field.h"
+
+namespace calot {
+
+/// What acts on an organ when the tools stand at `poses`: the tools' shapes first, three each, then the
+/// ground; the springs of what they hold; and friction as it was at the last equilibrium.
+ContactLoads contact_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
+
+/// The same for a solve: with the organ's inertia in the part of a motion that it is in, if any.
+ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
+/// Those of all organs.
+std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses);
+
+/// Adds a solve's counts and times.
+void count(const Field& field, const NewtonResult& result, SolveStatistics& statistics);
+
+/// What such a group's part is called, the tissues behind the organs.
+std::string member_name(const Field& field, int part);
+/// All joins of the field's group: organs', then tissues', with the tools at `poses`.
+std::vector<JoinPointer> all_joins(const Field& field, const std::vector<InstrumentPose>& poses);
+
+/// The organs as members of one group under `loads`, one an organ.
+std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& loads);
+
+/// The way of the tool that travels most from where it stands, m.
+double largest_travel(const Field& field, const std::vector<InstrumentPose>& to);
+
+/// Brings the organs to rest, or to the end of the part of a motion that they are in, with the tools at `poses`; on failure they are left at the last iterate. `before`, one an
+/// organ, is where they were at their last equilibrium, tools as field.tools stand: friction resists what moved since,
+/// and details fade as far as the tools travel from there.
+NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics);
+
+/// Lets organs that nothing holds sink to rest with no tool near (equilibrium.h); they rest without friction.
+Result<bool> sink_field(Field& field, SolveStatistics& statistics);
+
+/// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
+/// organs are then left as the solves left them.
+Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);
+
+}  // namespace calot

@@ -1,0 +1,46 @@
+#include "organs/body_kinds.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace calot {
+
+const std::vector<BodyKind>& body_kinds() {
+  static const std::vector<BodyKind> kinds = {{"pear", make_hollow_organ},  {"sphere", make_hollow_organ},
+                                              {"swept", make_hollow_organ}, {"obj", make_hollow_organ},
+                                              {"tube", make_tube},          {"rigid", make_rigid_organ},
+                                              {"lobe", make_lobe}};
+  return kinds;
+}
+
+Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
+                               double tolerance, int levels, FillingLimits* limits, KeptResults* kept) {
+  return body_kinds()[definition.shape.index()].make(definition,
+                                                     {loads, up, tolerance, levels, limits, kept});
+}
+
+std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads) {
+  Failure failure{FailureKind::scenario, {}};
+  for (const Shape& shape : loads.shapes) {
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 place = Vec3::Zero();
+    for (std::size_t row = 0; row < body.skin_rest().size(); ++row) {
+      const double radius = body.skin_radii().empty() ? 0 : body.skin_radii()[row];
+      const double distance = signed_distance(shape, body.skin_rest()[row]) - radius;
+      if (distance < least) least = distance, place = 1e3 * body.skin_rest()[row];
+    }
+    if (least > 0) continue;
+    Problem problem;
+    problem.message = fmt::format("organ '{}' starts {:.2g} mm inside the {}, at ({:.0f}, {:.0f}, {:.0f}) mm",
+                                  body.name(), 1e3 * (contact_inset - least),
+                                  std::holds_alternative<Plane>(shape) ? "supporting plane" : "ground",
+                                  place.x(), place.y(), place.z());
+    problem.hint = "move the organ, or what it lies on, by as much and a little more";
+    failure.problems.push_back(std::move(problem));
+  }
+  if (failure.problems.empty()) return std::nullopt;
+  return failure;
+}
+
+}  // namespace calot

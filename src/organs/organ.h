@@ -1,0 +1,141 @@
+#pragma once
+// An organ of the world: its structure, where it is now, and what grips it.
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "body/shell_body.h"
+#include "group/equilibrium.h"
+#include "tools/instrument.h"
+
+namespace calot {
+
+/// A skin point that a pad holds: it keeps its place along the pad until it slips, is drawn off or the jaw opens.
+struct GripPoint {
+  int instrument = 0, jaw = 0;
+  int skin_point = 0;
+  Vec3 local = Vec3::Zero();  ///< m, in the jaw's frame
+  double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
+  bool operator==(const GripPoint&) const = default;
+};
+
+/// Where details are active: around a skin point that a shape of the surroundings is near to.
+struct Extension {
+  int shape = 0;   ///< -1: none, the laparoscope looks there
+  int centre = 0;  ///< skin point
+  bool operator==(const Extension&) const = default;
+};
+
+/// What the active details were chosen by.
+struct ContactPlace {
+  VecX x;
+  std::vector<InstrumentPose> poses;
+  std::vector<GripPoint> grips;
+  std::vector<Extension> extensions;
+  std::vector<DetailShare> shares;
+  std::vector<int> details;
+  std::optional<std::vector<int>> refused_details;
+  bool operator==(const ContactPlace& other) const {
+    return x.size() == other.x.size() && x == other.x && poses == other.poses && grips == other.grips &&
+           extensions == other.extensions && shares == other.shares && details == other.details &&
+           refused_details == other.refused_details;
+  }
+};
+
+/// A clip on a tube.
+struct Clip {
+  ClipSize size = ClipSize::ml;
+  double at = 0;       ///< where: skin points from the tube's start
+  double opening = 0;  ///< share of its width that is not between the legs
+  /// Unit, where the legs point and along what they press, in the tube's frame there (RodBody::frame_at).
+  Vec3 legs = Vec3::Zero(), pressed = Vec3::Zero();
+  double reach = 0;  ///< m, by how much the legs' ends are past the tube's middle
+  bool shut() const { return opening <= 0; }
+  bool operator==(const Clip&) const = default;
+};
+
+/// Where what an organ holds can leave it: the end of a divided tube, or a hole in a wall (leak.h).
+struct Opening {
+  int point = 0;      ///< skin point: a tube's first or last, or where the hole is
+  double area = 0;    ///< m^2, of a hole; a tube's end is as wide as its lumen
+  std::string cause;  ///< the instrument that made it; may be empty
+  double rate = 0;    ///< m^3/s, in the last step
+  double lost = 0;    ///< m^3, since it began to leak last
+  double drop = 0;    ///< m^3, that has left it and hangs on it still
+  bool leaks = false;
+};
+
+/// What current has done to a wall, for pictures.
+struct Burn {
+  int point = 0;      ///< of what is drawn of it
+  double energy = 0;  ///< J
+};
+
+struct Organ {
+  OrganDefinition definition;
+  BodyPointer body;  ///< never null
+  BodyState state;
+  mutable ContactSearch search;  ///< remembers where it looked last: what it finds does not depend on it
+  std::map<std::string, int> landmarks;  ///< skin point of each
+  std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, skin_point
+  std::vector<Extension> extensions;     ///< ordered by shape
+  /// Details that found no rest when they were tried last: not tried again until others are wanted.
+  std::optional<std::vector<int>> refused_details;
+  FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
+  /// Where the details were found to be those that are wanted: remembered, no part of any result.
+  std::optional<ContactPlace> looked_at;
+  int record = -1;               ///< on the field's roll (members.h)
+  std::vector<Clip> clips = {};  ///< ordered by place
+  /// Instruments whose jaws it does not feel, increasing: they cut it, and it is between them still.
+  std::vector<int> unfelt = {};
+  bool of_specimen = false;            ///< a piece that the patient's was cut off from
+  std::vector<Opening> openings = {};  ///< ordered as they were made, but a tube's by their points
+  /// m^3, what is left in a tube that nothing feeds; none: it is full.
+  std::optional<double> left_in = {};
+  std::vector<Burn> burns = {};  ///< in the order in which they began
+  bool is_shut() const {         ///< by a clip
+    return std::any_of(clips.begin(), clips.end(), [](const Clip& clip) { return clip.shut(); });
+  }
+};
+
+/// The body as a shell, which alone is refined; null: it is none.
+const ShellBody* shell_of(const Organ& organ);
+
+/// All that moves of an organ. `search` only remembers.
+struct OrganSnapshot {
+  BodyPointer body;
+  BodyState state;
+  std::vector<GripPoint> grips;
+  std::vector<Extension> extensions;
+  std::optional<std::vector<int>> refused_details;
+  FrictionLoad friction;
+  std::vector<Clip> clips;
+  std::vector<int> unfelt;
+  std::vector<Opening> openings;
+  std::optional<double> left_in;
+  std::vector<Burn> burns;
+};
+OrganSnapshot snapshot(const Organ& organ);
+void restore(Organ& organ, const OrganSnapshot& snapshot);
+
+/// An organ that has come to rest alone, and what was kept of its last solve.
+struct RestedOrgan {
+  Organ organ;
+  NewtonWorkspace work;
+};
+
+/// A failure of make_organ, whose problems' paths start at the organ (".bile"), as one of the scene's
+/// organ of that index.
+Failure at_organ(Failure failure, std::size_t index);
+
+/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
+std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name);
+
+/// A failed solve in words: what happened, and what to change.
+Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);
+
+}  // namespace calot

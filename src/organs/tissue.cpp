@@ -1,0 +1,145 @@
+#include "organs/tissue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "organs/strand_places.h"
+
+namespace calot {
+namespace {
+
+/// What strands are stretched over at least, m: skins that nearly touch hang together by more than their gap.
+constexpr double least_length = 1e-3;
+
+StrandLaw::Setup law_of(const TissueDefinition& definition, const StrandPlace& place) {
+  StrandLaw::Setup out;
+  const double slack = (1 + definition.slack) * place.gap;
+  out.length = std::max(slack, least_length);
+  out.taut = place.way - place.gap + slack;
+  out.stiffness = definition.stiffness * place.area;
+  out.stiffening = definition.stiffening;
+  out.strength = definition.strength * place.area;
+  out.break_energy = definition.break_energy * place.area;
+  return out;
+}
+
+std::shared_ptr<const TissueBody> nodes_of(const TissueDefinition& definition, std::vector<Vec3> at,
+                                           std::vector<double> masses, const Vec3& up, double strength) {
+  TissueBody::Setup setup;
+  setup.name = definition.name;
+  setup.nodes = std::move(at);
+  setup.masses = std::move(masses);
+  setup.up = up;
+  setup.strength = strength;
+  return std::make_shared<const TissueBody>(setup);
+}
+
+}  // namespace
+
+int Tissue::torn() const {
+  int count = 0;
+  for (std::size_t i = 0; i < now.opened.size(); ++i) count += torn(i) ? 1 : 0;
+  return count;
+}
+
+Tissue Tissue::between(std::array<int, 2> bodies) const {
+  Tissue out = *this;
+  out.strands = std::make_shared<StrandJoin>(bodies, strands->strands());
+  return out;
+}
+
+Tissue Tissue::part(std::array<int, 2> bodies, std::vector<PlacedStrand> strands_of,
+                    const std::vector<int>& which) const {
+  Tissue out = *this;
+  out.strands = std::make_shared<StrandJoin>(bodies, std::move(strands_of));
+  out.body = std::make_shared<const TissueBody>(body->part(which));
+  const auto taken = [&](const VecX& all) {
+    VecX some(all.size() == 0 ? 0 : 3 * static_cast<Eigen::Index>(which.size()));
+    for (Eigen::Index i = 0; i < some.size(); i += 3)
+      some.segment<3>(i) = all.segment<3>(3 * Eigen::Index{which[static_cast<std::size_t>(i / 3)]});
+    return some;
+  };
+  out.now.state.x = taken(now.state.x);
+  out.now.state.motion.begin.x = taken(now.state.motion.begin.x);
+  out.now.state.motion.begin.velocity = taken(now.state.motion.begin.velocity);
+  out.now.opened.clear();
+  out.now.heated.clear();
+  for (int strand : which) {
+    out.now.opened.push_back(now.opened[strand]);
+    out.now.heated.push_back(now.heated[strand]);
+  }
+  return out;
+}
+
+double lobule_radius(const PlacedStrand& strand) {
+  constexpr double thinnest = 1.1e-3, thickest = 2.8e-3;
+  return std::clamp(0.6 * std::sqrt(strand.area), thinnest, thickest);
+}
+
+std::vector<StrandLine> strand_lines(const Tissue& tissue, const std::vector<Organ>& organs) {
+  // The few points that carry strands: a gallbladder's skin has 30 thousand.
+  const auto on_skin = [&](const CarriedPlace& place, std::size_t side) {
+    const Organ& organ = organs[static_cast<std::size_t>(tissue.strands->bodies()[side])];
+    Vec3 out = Vec3::Zero();
+    for (std::size_t i = 0; i < place.points.size(); ++i)
+      out += place.weights[i] * organ.body->skin_point(place.points[i], organ.state.x);
+    return out;
+  };
+  std::vector<StrandLine> out;
+  for (const PlacedStrand& strand : tissue.strands->strands())
+    out.push_back({on_skin(strand.one, 0),
+                   tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(out.size())),
+                   on_skin(strand.other, 1)});
+  return out;
+}
+
+Result<Tissue> make_tissue(const TissueDefinition& definition, const std::vector<Organ>& organs,
+                           const Vec3& up) {
+  const auto named = [&](const std::string& name) {  // both are known to be there
+    return static_cast<int>(std::find_if(organs.begin(), organs.end(),
+                                         [&](const Organ& organ) { return organ.definition.name == name; }) -
+                            organs.begin());
+  };
+  const std::array<int, 2> bodies{named(definition.from), named(definition.to)};
+  const Result<std::vector<StrandPlace>> places =
+      strand_places(definition, organs[bodies[0]], organs[bodies[1]]);
+  if (!places) return places.failure();
+  std::vector<PlacedStrand> strands;
+  std::vector<Vec3> at;
+  std::vector<double> masses;
+  double strength = 0, least = 0, longest = 0;
+  for (const StrandPlace& place : places.value()) {
+    const StrandLaw::Setup setup = law_of(definition, place);
+    least = std::max(least, StrandLaw::least_break_energy(setup) / place.area);
+    longest = std::max(longest, setup.length);
+    strength = std::max(strength, setup.strength);
+    at.push_back(0.5 * (place.from + place.to));
+    masses.push_back(definition.density * place.area * setup.length);
+  }
+  if (least > definition.break_energy)
+    return fail(
+        FailureKind::scenario,
+        fmt::format("strands of '{}' are up to {:.3g} mm long: of this strength they take {:.3g} J/m^2 or "
+                    "more to tear, not {:.3g}",
+                    definition.name, 1e3 * longest, least, definition.break_energy),
+        "raise break_energy, or lower strength or within", {"", 0, ".break_energy"});
+  for (const StrandPlace& place : places.value()) {
+    Result<StrandLaw> law = StrandLaw::create(law_of(definition, place));
+    if (!law) return law.failure();
+    const StrandThread thread = strand_thread(law.value(), definition.radius);
+    strands.push_back({{std::move(law).value()}, place.one, place.other, thread, place.area});
+  }
+  Tissue out;
+  out.definition = definition;
+  out.body = nodes_of(definition, std::move(at), std::move(masses), up, strength);
+  out.now.state.x = out.body->rest();
+  out.now.opened.assign(strands.size(), 0.0);
+  out.now.heated.assign(strands.size(), 0.0);
+  out.strands = std::make_shared<StrandJoin>(bodies, std::move(strands));
+  out.search.own.active = false;
+  return out;
+}
+
+}  // namespace calot

@@ -1,0 +1,112 @@
+#pragma once
+// An instrument of the world: its definition, where it is now, and how it moves between two poses.
+
+#include <string>
+#include <vector>
+
+#include "collision/shapes.h"
+#include "joins/strand_touch.h"
+#include "tools/instrument.h"
+
+namespace calot {
+
+/// Of what draws liquid out (aspirate.h).
+struct NeedleState {
+  int record = -1;        ///< on the world's roll: the organ that it is in; none: -1
+  int point = 0;          ///< that organ's skin point where it went in
+  double drawn = 0;       ///< m^3, since it did
+  double drawn_ever = 0;  ///< m^3, of all organs
+  bool empty = false;     ///< it drew at the last step and was in nothing, for events
+};
+
+/// What other tools press it with (hands.h).
+struct MeetingState {
+  Vec3 force = Vec3::Zero();  ///< N at the tip, of the same moment about the trocar
+  std::string with;           ///< the first of those tools; empty: none
+};
+
+struct Tool {
+  InstrumentDefinition definition;
+  InstrumentGeometry geometry;
+  Vec3 trocar = Vec3::Zero();  ///< m
+  InstrumentPose pose;
+  bool touched = false, over_limit = false;  ///< at the last step, for events
+  bool jaw_stopped = false;                  ///< the jaws rest on what they hold
+  bool lost = false;  ///< what it held slid off; until the jaws open or hold again, they take hold of no wall
+  bool beside =
+      false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
+  InstrumentAction action = InstrumentAction::none;
+  double dry = 0;  ///< s for which its current has flowed and it touched nothing, up to what is an event
+  bool slipping = false;  ///< the fold slid through the jaws at the last step, for events
+  bool has_cut = false;   ///< its blades divided something since they opened last, for events
+  int clips = 0;          ///< that it still carries
+  bool on_clip = false, beside_kept = false;  ///< its current was let flow there at the last step, for events
+  double burnt = 0;                           ///< J that a wall has taken at one go, up to what opens it
+  int burnt_record = -1;                      ///< on the world's roll: that wall's organ; none: -1
+  bool waits = false;                         ///< outside: another one is in its port (acts/exchange.h)
+  NeedleState needle = {};
+  InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
+  /// N/m, how the force on the tip grew with its way: along the force and across it; 0: none that counts.
+  double tissue_stiffness = 0, stiffness_across = 0;
+  double roll_stiffness =
+      0;  ///< N m/rad, how the tissue's torque about the shaft grew with its roll; 0: none that counts
+  MeetingState meeting = {};
+  bool met = false;          ///< it pressed on another tool at the last step, for events
+  Vec3 drag = Vec3::Zero();  ///< N at the hand, of the port's seal in the last step (hands.h)
+  bool pressing =
+      false;  ///< what is between its jaws carries the pinch: they turn as that gives way or pushes
+
+  /// Whether tissue keeps its jaws from closing.
+  bool jaws_rest() const { return jaw_stopped || pressing; }
+};
+
+InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
+/// Of each tool; as many of a as of b.
+std::vector<InstrumentPose> interpolate(const std::vector<InstrumentPose>& a,
+                                        const std::vector<InstrumentPose>& b, double share);
+
+/// Far from all: a shape that is not felt, m.
+inline const Capsule nowhere{Vec3(1e3, 1e3, 1e3), Vec3(1e3, 1e3, 1e3), 1e-3};
+/// instrument_shapes() of a tool at a pose; of one that waits outside all are nowhere.
+std::vector<Shape> shapes_in_field(const Tool& tool, const InstrumentPose& pose);
+
+/// Frame (to world) that shape `part` (0 shaft, 1 and 2 the jaws) is fixed in.
+Pose part_frame(const Tool& tool, const InstrumentPose& pose, int part);
+
+/// Rigid motion (world to world) of shape `part` (0 shaft, 1 and 2 the jaws, or what a rod ends in) from one pose to
+/// another.
+Pose part_motion(const Tool& tool, const InstrumentPose& from, const InstrumentPose& to, int part);
+
+/// The motion of a tool's part (as above) from one pose to another, beside many points. The tool must outlive it.
+class PartPath {
+ public:
+  PartPath(const Tool& tool, int part, const InstrumentPose& from, const InstrumentPose& to);
+  /// Share [0 to 1] of the joint motion of a point (x to x + motion, m) and the part (`shape`, where it begins) that
+  /// keeps them further apart than `keep` times their present distance. Judged in the part's own frame, where a point
+  /// that is carried along hardly moves; the path's departure from a straight line there is bounded by the turn squared
+  /// and taken off the distance. 0 where the point is inside already.
+  double share_apart(const Shape& shape, const Vec3& x, const Vec3& motion, double keep) const;
+  /// The same of a straight piece between two points.
+  double share_apart(const Shape& shape, const StrandPiece& piece, const StrandPiece& motion,
+                     double keep) const;
+  /// Bound on how far the point goes seen from the part, m: convex in x and motion, so that no point of a triangle goes
+  /// further than its corners may.
+  double way(const Vec3& x, const Vec3& motion) const;
+
+ private:
+  const Tool& tool_;
+  int part_;
+  InstrumentPose from_, to_;
+  double travel_;  ///< m, bound on the part's
+  Pose back_;      ///< from the part's frame at the end to that at the start
+};
+
+/// Bound on the way that any point of a tool's part inside the field travels between two poses, m.
+double travel_bound(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b);
+
+/// Shares (0, 1] of a motion at which closing jaws reach multiples of `grid`, increasing: the only moments at
+/// which grips are taken, so that what is gripped does not depend on the rate of the steps. Of two motions in
+/// a row the first has the angle at which they meet.
+std::vector<double> closing_stops(const InstrumentPose& from, const InstrumentPose& to, double grid);
+
+}  // namespace calot

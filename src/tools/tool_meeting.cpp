@@ -1,0 +1,276 @@
+#include "tools/tool_meeting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "group/body_problem.h"
+
+namespace calot {
+namespace {
+
+constexpr double rod_spacing = 0.5e-3, jaw_spacing = 1e-3;  ///< m, at most
+
+/// Even places from `first` to `last`, no further apart than `spacing`.
+std::vector<double> even_places(double first, double last, double spacing) {
+  const int parts = std::max(1, static_cast<int>(std::ceil((last - first) / spacing)));
+  std::vector<double> out;
+  for (int k = 0; k <= parts; ++k) out.push_back(first + (last - first) * k / parts);
+  return out;
+}
+
+void add_rod(int part, const Capsule& rod, std::vector<ToolPoint>& out) {
+  const double length = (rod.b - rod.a).norm();
+  const std::vector<double> places = even_places(0, length, rod_spacing);
+  const Vec3 along = (rod.b - rod.a) / length;
+  const double spacing = places[1] - places[0];
+  for (double place : places)
+    out.push_back({part, rod.a + place * along, rod.radius, 2 * rod.radius * spacing});
+}
+
+void add_jaw(int part, const RoundedBox& box, std::vector<ToolPoint>& out) {
+  const auto along = [&](int axis) { return even_places(-box.half[axis], box.half[axis], jaw_spacing); };
+  const std::vector<double> xs = along(0), ys = along(1), zs = along(2);
+  const double area = (ys[1] - ys[0]) * (zs[1] - zs[0]);
+  for (double x : {xs.front(), xs.back()})
+    for (double y : ys)
+      for (double z : zs) out.push_back({part, box.pose * Vec3(x, y, z), box.radius, area});
+}
+
+/// By how much a point that a tool carries departs from its straight way, at most, m: an eighth of what its path would be
+/// bent by in a unit of time.
+double path_bend(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b, const Vec3& p) {
+  const double turn = std::abs(b.pitch - a.pitch) + std::abs(b.yaw - a.yaw) + std::abs(b.roll - a.roll) +
+                      0.5 * std::abs(b.jaw - a.jaw);
+  const double pushed = std::abs(b.insertion - a.insertion);
+  return 0.125 * turn * (turn * ((p - tool.trocar).norm() + pushed) + 2 * pushed);
+}
+
+/// A tool at a pose.
+struct PosedTool {
+  const Tool& tool;
+  InstrumentPose pose;
+  std::vector<PosedPart> parts;
+  std::vector<Shape> shapes;
+
+  PosedTool(const Tool& posed, const ToolVector& q)
+      : tool(posed), pose(pose_at(q)), shapes(instrument_shapes(posed.trocar, pose, posed.geometry)) {
+    for (int part = 0; part < shapes_per_tool; ++part) parts.emplace_back(posed, pose, part);
+  }
+};
+
+Eigen::AlignedBox3d box_around(const Shape& shape, double wider) {
+  const Bounds b = bounds(offset(shape, wider));
+  return {b.lower, b.upper};
+}
+
+}  // namespace
+
+std::vector<ToolPoint> tool_points(const InstrumentGeometry& geometry) {
+  // With the hinge in the trocar and pointing straight, places in the hinge's frame are the world's turned back.
+  InstrumentPose closed;
+  closed.insertion = geometry.jaw_length;
+  const Pose to_hinge = hinge_frame(Vec3::Zero(), closed, geometry).inverse();
+  const std::vector<Shape> shapes = instrument_shapes(Vec3::Zero(), closed, geometry);
+  std::vector<ToolPoint> out;
+  for (int part = 0; part < shapes_per_tool; ++part) {
+    if (const auto* rod = std::get_if<Capsule>(&shapes[part])) {
+      add_rod(part, {to_hinge * rod->a, to_hinge * rod->b, rod->radius}, out);
+    } else {
+      RoundedBox jaw = std::get<RoundedBox>(shapes[part]);
+      jaw.pose = jaw_frame(Vec3::Zero(), closed, geometry, part - 1).inverse() * jaw.pose;
+      add_jaw(part, jaw, out);
+    }
+  }
+  return out;
+}
+
+ToolMeeting::ToolMeeting(const Side& one, const Side& other, const Barrier& barrier)
+    : sides_{one, other},
+      points_{tool_points(one.tool->geometry), tool_points(other.tool->geometry)},
+      barrier_(barrier) {}
+
+template <class Use>
+void ToolMeeting::for_near(const VecX& x, double reach, const Use& use) const {
+  const std::array<PosedTool, 2> tools{PosedTool(*sides_[0].tool, unknowns(0, x)),
+                                       PosedTool(*sides_[1].tool, unknowns(1, x))};
+  for (int side = 0; side < 2; ++side) {
+    const PosedTool &own = tools[side], &other = tools[1 - side];
+    for (int part = 0; part < shapes_per_tool; ++part) {
+      const Shape shape = contact_shape(other.shapes[part]);
+      const Eigen::AlignedBox3d near = box_around(shape, reach);
+      for (std::size_t first = 0, last = 0; first < points_[side].size(); first = last) {
+        const int carrier = points_[side][first].part;
+        while (last < points_[side].size() && points_[side][last].part == carrier) ++last;
+        if (!near.intersects(box_around(own.shapes[carrier], 0))) continue;
+        for (std::size_t k = first; k < last; ++k) {
+          const ToolPoint& point = points_[side][k];
+          const Vec3 at = own.parts[carrier].frame() * point.local;
+          if (signed_distance(shape, at) - point.radius < reach)
+            use(side, point, at, own.parts[carrier], other.parts[part], shape, part);
+        }
+      }
+    }
+  }
+}
+
+double ToolMeeting::value(const VecX& x) const {
+  double sum = 0;
+  for_near(x, barrier_.range,
+           [&](int, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
+               const Shape& shape, int) {
+             sum += 0.5 * point.area * barrier_.sample(signed_distance(shape, at) - point.radius).energy;
+           });
+  return sum;
+}
+
+void ToolMeeting::add_gradient(const VecX& x, VecX& gradient) const {
+  for_near(x, barrier_.range,
+           [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart& own, const PosedPart& other,
+               const Shape& shape, int) {
+             const DistanceSlope d = distance_slope(shape, at);
+             const Vec3 pull =
+                 0.5 * point.area * barrier_.sample(d.distance - point.radius).derivative * d.gradient;
+             gradient.segment<6>(Eigen::Index{3} * sides_[side].first_node) +=
+                 own.slopes(at).transpose() * pull;
+             gradient.segment<6>(Eigen::Index{3} * sides_[1 - side].first_node) -=
+                 other.slopes(at).transpose() * pull;
+           });
+}
+
+void ToolMeeting::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  std::array<ToolMatrix, 2> own_sum{ToolMatrix::Zero(), ToolMatrix::Zero()};
+  ToolMatrix mixed = ToolMatrix::Zero();  // rows of the first side
+  // Pressed harder than any balance is they would rather slide around each other than part.
+  const double hardest = barrier_.sample(barrier_.soft_share * barrier_.range).derivative;
+  for_near(x, barrier_.range,
+           [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart& own, const PosedPart& other,
+               const Shape& shape, int) {
+             const DistanceSlope d = distance_slope(shape, at);
+             const BarrierSample b = barrier_.sample(d.distance - point.radius);
+             const double share = 0.5 * point.area;
+             const double pressed = std::max(b.derivative, hardest);
+             const Vec3 pull = share * pressed * d.gradient;
+             const Mat3 bend = share * (b.second * d.gradient * d.gradient.transpose() +
+                                        pressed * distance_hessian(shape, at, d));
+             const PointAndToolMatrix carried = other.carried_hessian(at, pull, bend);
+             const Eigen::Matrix<double, 3, 6> by_own = own.slopes(at);
+             own_sum[side] += by_own.transpose() * bend * by_own + own.curvature(at, pull);
+             own_sum[1 - side] += carried.bottomRightCorner<6, 6>();
+             const ToolMatrix across = by_own.transpose() * carried.topRightCorner<3, 6>();
+             if (side == 0)
+               mixed += across;
+             else
+               mixed += across.transpose();
+           });
+  const auto add = [&](int row_node, int column_node, const Mat3& block) {
+    if (row_node >= column_node)
+      matrix.add(row_node, column_node, block);
+    else
+      matrix.add(column_node, row_node, block.transpose());
+  };
+  for (int side = 0; side < 2; ++side) {
+    const int node = sides_[side].first_node;
+    matrix.add(node, node, own_sum[side].topLeftCorner<3, 3>());
+    matrix.add(node + 1, node, own_sum[side].bottomLeftCorner<3, 3>());
+    matrix.add(node + 1, node + 1, own_sum[side].bottomRightCorner<3, 3>());
+  }
+  for (int i = 0; i < tool_nodes; ++i)
+    for (int j = 0; j < tool_nodes; ++j)
+      add(sides_[0].first_node + i, sides_[1].first_node + j, mixed.block<3, 3>(3 * i, 3 * j));
+}
+
+void ToolMeeting::add_cliques(const VecX& /*x*/, bool /*close*/,
+                              std::vector<std::vector<int>>& cliques) const {
+  std::vector<int> nodes;
+  for (const Side& side : sides_)
+    for (int k = 0; k < tool_nodes; ++k) nodes.push_back(side.first_node + k);
+  std::sort(nodes.begin(), nodes.end());
+  cliques.push_back(std::move(nodes));
+}
+
+namespace {
+
+/// m: the energy of what is pressed together so deep keeps it from going on, in smaller steps than the tools are thick.
+constexpr double deeper = contact_guard, look_each = 1e-3;
+
+template <class Holds>
+bool on_all_of_way(double share, double travel, const Holds& holds) {
+  const int looks = 1 + static_cast<int>(share * travel / look_each);
+  for (int k = 1; k <= looks; ++k)
+    if (!holds(share * k / looks)) return false;
+  return true;
+}
+
+}  // namespace
+
+double ToolMeeting::safe_share(const VecX& x, const VecX& step, double share) const {
+  std::array<InstrumentPose, 2> from, to;
+  double travel = 0;
+  for (int side = 0; side < 2; ++side) {
+    from[side] = pose_at(unknowns(side, x));
+    to[side] = pose_at(unknowns(side, x) + unknowns(side, step));
+    travel += travel_bound(*sides_[side].tool, from[side], interpolate(from[side], to[side], share));
+  }
+  if (travel == 0) return share;
+  const double reach = travel / (1 - contact_keep);
+  for_near(
+      x, reach,
+      [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
+          const Shape& shape, int part) {
+        const Tool &own = *sides_[side].tool, &other = *sides_[1 - side].tool;
+        const Shape core = offset(core_of(shape), point.radius);
+        const double gap = signed_distance(core, at);
+        if ((1 - contact_keep) * gap > travel) return;
+        // Jaws that turned on what they hold may have come into the other tool: what is in it goes no deeper.
+        if (gap <= 0) {
+          const auto stays = [&](double at_share) {
+            const Vec3 there =
+                PosedPart(own, interpolate(from[side], to[side], at_share), point.part).frame() * point.local;
+            const PosedTool then(other,
+                                 tool_coordinates(interpolate(from[1 - side], to[1 - side], at_share)));
+            const Shape core_then = offset(core_of(contact_shape(then.shapes[part])), point.radius);
+            return signed_distance(core_then, there) >= gap - deeper;
+          };
+          while (share > 0 && !on_all_of_way(share, travel, stays)) share = share > 1e-6 ? 0.5 * share : 0;
+          return;
+        }
+        // The point's own way is bent; what it may stray from the chord falls with the square of the share.
+        for (int halvings = 0; halvings < 60; ++halvings) {
+          const InstrumentPose own_end = interpolate(from[side], to[side], share);
+          const double bend = path_bend(own, from[side], own_end, at);
+          if (bend > 0.25 * gap) {
+            share *= 0.5;
+            continue;
+          }
+          const Vec3 motion = PosedPart(own, own_end, point.part).frame() * point.local - at;
+          const PartPath path(other, part, from[1 - side], interpolate(from[1 - side], to[1 - side], share));
+          share *= path.share_apart(offset(core, bend), at, motion, contact_keep);
+          return;
+        }
+        share = 0;
+      });
+  return share;
+}
+
+Vec3 ToolMeeting::force(const VecX& x) const {
+  Vec3 sum = Vec3::Zero();
+  for_near(x, barrier_.range,
+           [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
+               const Shape& shape, int) {
+             const DistanceSlope d = distance_slope(shape, at);
+             const double push = -0.5 * point.area * barrier_.sample(d.distance - point.radius).derivative;
+             sum += (side == 0 ? -push : push) * d.gradient;
+           });
+  return sum;
+}
+
+double ToolMeeting::gap(const VecX& x, double most) const {
+  double least = most;
+  for_near(
+      x, most,
+      [&](int, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&, const Shape& shape,
+          int) { least = std::min(least, signed_distance(shape, at) - point.radius - contact_inset); });
+  return least;
+}
+
+}  // namespace calot

@@ -1,0 +1,509 @@
+#include "world/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "acts/advance.h"
+#include "acts/clips.h"
+#include "acts/exchange.h"
+#include "acts/hands.h"
+#include "base/hash.h"
+#include "base/suggest.h"
+#include "fem/assembly.h"
+#include "field/change_bodies.h"
+#include "field/field_hash.h"
+#include "field/field_state.h"
+#include "field/field_tissues.h"
+#include "field/join_bodies.h"
+#include "group/vibration.h"
+#include "liquid/aspirate.h"
+#include "liquid/leak.h"
+#include "liquid/spill.h"
+#include "motion/settle_field.h"
+#include "motion/structural_extension.h"
+#include "motion/tool_loads.h"
+#include "organs/body_kinds.h"
+#include "tools/laparoscope.h"
+#include "world/come_to_rest.h"
+#include "world/observe.h"
+#include "world/sight.h"
+
+namespace calot {
+namespace {
+
+Vec3 up_direction(const AnatomyDefinition& anatomy) {
+  // The table turns the patient, so in the patient's frame gravity turns the other way: head up first (about
+  // +x), then left side down (about +y).
+  const Eigen::AngleAxisd head_up(-anatomy.table_head_up, Vec3::UnitX());
+  const Eigen::AngleAxisd left_down(-anatomy.table_left_down, Vec3::UnitY());
+  return (head_up * left_down * Vec3::UnitZ()).normalized();
+}
+
+/// Names are checked where they come in: one that is unknown here is a defect of the program.
+[[noreturn]] void unknown_name(const std::string& what, const std::string& name) {
+  throw std::logic_error("no " + what + " is called '" + name + "'");
+}
+
+}  // namespace
+
+struct World::Impl {
+  explicit Impl(int threads) : workers(threads), assembly(workers) {
+    if (workers.threads() > 1) field.assembly = &assembly;
+  }
+  Workers workers;
+  Assembly assembly;
+  SceneDefinition scene;
+  Vec3 up = Vec3::UnitZ();
+  Laparoscope laparoscope;
+  Vec3 looked_at = Vec3::Zero();  ///< m, at rest
+  Field field;
+  StepReport report;
+  long steps = 0;
+  bool failed = false;
+  Failure failure;
+  std::uint64_t field_hash = 0;
+  std::vector<RestShift> rest_shifts;  ///< one an organ of the scene
+  /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
+  std::optional<StepInput> still;
+
+  /// What happens on the way; on failure the field is to be given back.
+  Result<std::vector<WorldEvent>> move_tools(const std::vector<InstrumentPose>& commands);
+  void place_laparoscope(const InstrumentPose& pose);
+  void keep_hash();
+  bool same_factors(const FieldState& state) const;
+  std::uint64_t hash(std::uint64_t of_field) const;
+
+  double time() const { return static_cast<double>(steps) / scene.solver.rate; }
+  /// Changes the field's members; the report then is of them, with the events of the last step. On failure all is as it
+  /// was before.
+  template <class Change>
+  auto change(const std::string& what, const Change& change) -> decltype(change());
+  /// What change() must leave as it was on failure.
+  Result<bool> settle_change(const std::string& what);
+};
+
+/// The hash knows a factor only by what it makes of one vector.
+bool World::Impl::same_factors(const FieldState& state) const {
+  return field.group.work.factor.shares_factor_with(state.group.factor.factor);
+}
+
+std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
+  Hash hash;
+  hash.add(of_field);
+  hash.add(steps);
+  const InstrumentPose& scope = report.laparoscope.pose;
+  if (scope != laparoscope.start())
+    for (double v : {scope.pitch, scope.yaw, scope.insertion, scope.roll, scope.jaw}) hash.add(v);
+  return hash.value();
+}
+
+Result<std::vector<WorldEvent>> World::Impl::move_tools(const std::vector<InstrumentPose>& commands) {
+  const Result<std::vector<InstrumentPose>> brought = bring_tools(field, commands, report.instruments);
+  if (!brought) return brought.failure();
+  return advance(field, brought.value(), report.statistics);
+}
+
+void World::Impl::keep_hash() {
+  field_hash = hash_of(field);
+  report.state_hash = hash(field_hash);
+}
+
+void World::Impl::place_laparoscope(const InstrumentPose& pose) {
+  report.laparoscope.pose = pose;
+  report.laparoscope.view = laparoscope.view(pose);
+  report.laparoscope.distance = pose == laparoscope.start()
+                                    ? scene.laparoscope.distance
+                                    : (looked_at - report.laparoscope.view.position).norm();
+}
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+namespace {
+
+std::vector<RestShift> shifts_from_drawn(const std::vector<Organ>& organs) {
+  std::vector<RestShift> out;
+  for (const Organ& organ : organs) {
+    const std::vector<Vec3>& drawn = organ.body->skin_rest();
+    const std::vector<Vec3> now = organ.body->skin_positions(organ.state.x);
+    const auto shift = [&](std::size_t i) { return (now[i] - drawn[i]).norm(); };
+    std::size_t furthest = 0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (shift(i) > shift(furthest)) furthest = i;
+    const auto nearer = [&](const auto& a, const auto& b) {
+      return (drawn[a.second] - drawn[furthest]).norm() < (drawn[b.second] - drawn[furthest]).norm();
+    };
+    const auto near = std::min_element(organ.landmarks.begin(), organ.landmarks.end(), nearer);
+    out.push_back({shift(furthest), near == organ.landmarks.end() ? std::string() : near->first});
+  }
+  return out;
+}
+
+/// All organs of a scene, in its order, each as make_organ() has it; after a failure that is not the scenario's there may be
+/// fewer. A lobe is half of the time that it takes: two threads make lobes and what is filled at once.
+std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinition& scene,
+                                                            const ContactLoads& still, const Vec3& up,
+                                                            FillingLimits& limits, Workers& workers,
+                                                            KeptResults* kept) {
+  const std::vector<OrganDefinition>& organs = scene.anatomy.organs;
+  std::vector<std::optional<Result<RestedOrgan>>> out(organs.size());
+  const auto make_those = [&](bool lobes) noexcept {
+    for (std::size_t k = 0; k < organs.size(); ++k) {
+      if (std::holds_alternative<LobeShape>(organs[k].shape) != lobes) continue;
+      // No lobe is filled, and nothing of the others is kept: limits and kept results are each one thread's alone.
+      out[k] = make_organ(organs[k], still, up, scene.solver.tolerance,
+                          organs[k].extensions ? scene.solver.extension_levels : 0, lobes ? nullptr : &limits,
+                          lobes ? kept : nullptr);
+      if (!*out[k] && out[k]->failure().kind != FailureKind::scenario) return;
+    }
+  };
+  do_at_once(
+      &workers, [&]() noexcept { make_those(true); }, [&]() noexcept { make_those(false); });
+  return out;
+}
+
+}  // namespace
+
+Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads,
+                            KeptResults* kept) {
+  std::vector<Problem> problems = validate(scene);
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  auto impl = std::make_unique<Impl>(threads);
+  impl->scene = scene;
+  if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
+  impl->up = up_direction(scene.anatomy);
+  impl->field.tolerance = scene.solver.tolerance;
+  if (scene.solver.motion == SolverMotion::dynamics) impl->field.step_time = 1 / scene.solver.rate;
+  impl->field.scheme = scene.solver.extension_scheme;
+  impl->field.ground = ground_of(scene.anatomy);
+  ContactLoads still;
+  for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
+  FillingLimits limits{stop};
+  limits.sinks = scene.solver.motion == SolverMotion::dynamics;
+  auto organs = make_organs(scene, still, impl->up, limits, impl->workers, kept);
+  for (std::size_t k = 0; k < organs.size(); ++k) {
+    if (!organs[k]) continue;  // after what failed
+    if (*organs[k]) {
+      impl->field.add(std::move(*organs[k]).value());
+      continue;
+    }
+    Failure failure = at_organ(organs[k]->failure(), k);
+    if (failure.kind != FailureKind::scenario) return failure;
+    problems.insert(problems.end(), failure.problems.begin(), failure.problems.end());
+  }
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  if (Result<bool> joined = join_bodies(scene.anatomy, impl->field); !joined) return joined.failure();
+  if (Result<bool> made = add_tissues(scene.anatomy, impl->up, impl->field); !made) return made.failure();
+  if (Result<bool> rested = come_to_rest(scene, impl->field, kept); !rested) return rested.failure();
+  impl->rest_shifts = shifts_from_drawn(impl->field.organs);
+  impl->field.up = impl->up;
+  impl->field.heart_rate = scene.anatomy.heart_rate;
+  if (!impl->field.organs.empty())
+    impl->field.middle = impl->field.organs[0].body->skin_point(0, impl->field.organs[0].state.x);
+  World world(std::move(impl));
+  for (const InstrumentDefinition& definition : scene.instruments) {
+    Tool tool;
+    tool.definition = definition;
+    tool.waits = definition.waits;
+    tool.geometry = instrument_geometry(definition.type);
+    tool.trocar = world.port_position(definition.port);
+    if (has_action(definition.type, InstrumentAction::fire)) tool.clips = definition.clips;
+    // Waiting in the trocar, closed, pointing at the first organ, just far enough in to be seen to come.
+    const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
+                                                       : Vec3(world.skin_positions(0).front());
+    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
+    tool.pose.insertion = port_depth;
+    tool.command = tool.pose;
+    world.impl_->field.tools.push_back(tool);
+  }
+  if (scene.laparoscope.distance < scene.solver.extension_view) {
+    const auto [organ, skin_point] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
+    if (skin_point >= 0) world.impl_->field.viewed = ViewedPlace{organ, skin_point};
+    SolveStatistics statistics;
+    for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
+  }
+  world.impl_->looked_at = world.landmark(scene.laparoscope.look_at);
+  world.impl_->laparoscope =
+      Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), world.impl_->looked_at);
+  world.impl_->place_laparoscope(world.impl_->laparoscope.start());
+  if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
+  if (Result<bool> apart = check_apart(world.impl_->field); !apart) return apart.failure();
+  world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
+  world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
+  keep_members(world.impl_->field);
+  observe(world.impl_->field, {}, 1 / scene.solver.rate, {}, world.impl_->report);
+  world.impl_->keep_hash();
+  return world;
+}
+
+Result<StepReport> World::step(const StepInput& input) {
+  Impl& self = *impl_;
+  if (self.failed) return self.failure;
+  if (input.instruments.size() != self.field.tools.size())
+    return fail(FailureKind::internal, fmt::format("a step needs {} instrument poses, not {}",
+                                                   self.field.tools.size(), input.instruments.size()));
+  if (!input.actions.empty() && input.actions.size() != self.field.tools.size())
+    return fail(FailureKind::internal, fmt::format("a step needs {} actions or none, not {}",
+                                                   self.field.tools.size(), input.actions.size()));
+  for (std::size_t i = 0; i < self.field.tools.size(); ++i) {
+    const Tool& tool = self.field.tools[i];
+    if (std::optional<Failure> failure =
+            check_pose(tool.definition.name, tool.geometry, input.instruments[i]))
+      return *failure;
+    if (input.actions.empty()) continue;
+    if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;
+  }
+  if (std::optional<Failure> failure = check_waiting(self.field.tools, input)) return *failure;
+  if (input.laparoscope)
+    if (std::optional<Failure> failure =
+            check_pose(laparoscope_name, laparoscope_geometry(), *input.laparoscope))
+      return *failure;
+  self.report.statistics = {};
+  if (self.scene.solver.skip_still && self.still == input) {
+    ++self.steps;
+    self.report.time = self.time();
+    self.report.events.clear();
+    self.report.state_hash = self.hash(self.field_hash);
+    return self.report;
+  }
+  const FieldState before = state();
+  const std::uint64_t hash_before = self.field_hash;
+  self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
+  const double duration = 1 / self.scene.solver.rate;
+  const std::vector<WorldEvent> leaked = leak(self.field, duration);
+  Result<std::vector<WorldEvent>> events = self.move_tools(input.instruments);
+  if (!events) {
+    self.failed = true;
+    self.failure = events.failure();
+    for (Problem& problem : self.failure.problems)
+      problem.message +=
+          fmt::format(", at {:.3f} s", static_cast<double>(self.steps + 1) / self.scene.solver.rate);
+    calot::restore(self.field, before);
+    return self.failure;
+  }
+  fire_clips(self.field, input.actions, events.value());
+  puncture(self.field, input.actions, events.value());
+  events->insert(events->begin(), leaked.begin(), leaked.end());
+  spill(self.field, duration);
+  exchange_tools(self.field, input.actions, events.value());
+  ++self.steps;
+  if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
+  self.report.time = self.time();
+  observe(self.field, input.actions, duration, std::move(events).value(), self.report);
+  self.keep_hash();
+  self.still.reset();
+  if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
+    self.still = input;
+  return self.report;
+}
+
+const SceneDefinition& World::scene() const { return impl_->scene; }
+const StepReport& World::report() const { return impl_->report; }
+std::uint64_t World::state_hash() const { return impl_->hash(hash_of(impl_->field)); }
+
+FieldState World::state() const {
+  FieldState state = field_state(impl_->field);
+  state.steps = impl_->steps;
+  state.report = impl_->report;
+  return state;
+}
+
+Result<bool> World::restore(const FieldState& state) {
+  Impl& self = *impl_;
+  if (!state.members || state.members->world != self.field.members->world)
+    return fail(FailureKind::internal, "a field state can only be given back to the world it is of");
+  calot::restore(self.field, state);
+  self.steps = state.steps;
+  self.report = state.report;
+  self.field_hash = hash_of(self.field);
+  self.still.reset();
+  self.failed = false;
+  return true;
+}
+const std::vector<RestShift>& World::rest_shifts() const { return impl_->rest_shifts; }
+Vec3 World::up() const { return impl_->up; }
+const Field& World::field() const { return impl_->field; }
+
+Vec3 World::port_position(const std::string& port) const {
+  for (const PortDefinition& p : impl_->scene.ports)
+    if (p.name == port) return p.position;
+  unknown_name("port", port);
+}
+
+namespace {
+
+/// Where a landmark of an organ that went was last.
+const SkinPlace& last_place(const Field& field, const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  const BodyRecord* record = dot == std::string::npos ? nullptr : gone_body(field, name.substr(0, dot));
+  if (record == nullptr || !record->gone->landmarks.contains(name.substr(dot + 1)))
+    unknown_name("landmark", name);
+  return record->gone->landmarks.at(name.substr(dot + 1));
+}
+
+}  // namespace
+
+Vec3 World::landmark(const std::string& name) const {
+  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
+  if (skin_point < 0) return last_place(impl_->field, name).at;
+  const Organ& at = impl_->field.organs[organ];
+  return at.body->surface_point(skin_point, at.state.x);
+}
+
+Vec3 World::landmark_normal(const std::string& name) const {
+  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
+  return skin_point < 0 ? last_place(impl_->field, name).normal : skin_normals(organ)[skin_point];
+}
+
+double World::seen_area(const std::array<Vec3, 3>& corners) const {
+  constexpr double margin = 2e-3;  // m: as thick as what such a triangle is stretched between
+  return calot::seen_area(impl_->field, impl_->report.laparoscope.view,
+                          impl_->scene.laparoscope.field_of_view, corners, margin);
+}
+
+CriticalView World::critical_view(const CriticalViewQuestion& question) const {
+  const HepatocysticTriangle triangle{landmark(question.neck), landmark(question.junction),
+                                      landmark(question.hilum)};
+  return calot::critical_view(impl_->field, triangle, impl_->report.laparoscope.view.position, question);
+}
+
+const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }
+std::vector<Vec3> World::skin_positions(int organ) const {
+  return impl_->field.organs[organ].body->skin_positions(impl_->field.organs[organ].state.x);
+}
+std::vector<Vec3> World::skin_normals(int organ) const {
+  return impl_->field.organs[organ].body->skin_normals(impl_->field.organs[organ].state.x);
+}
+const std::vector<Triangle>& World::drawn_triangles(int organ) const {
+  return impl_->field.organs[organ].body->drawn_triangles();
+}
+const std::vector<Vec3>& World::drawn_rest(int organ) const {
+  return impl_->field.organs[organ].body->drawn_rest();
+}
+DrawnSurface World::drawn(int organ) const {
+  return impl_->field.organs[organ].body->drawn(impl_->field.organs[organ].state.x);
+}
+
+Result<double> World::lowest_frequency(int index) const {
+  const Organ& organ = impl_->field.organs[index];
+  const ShellBody* shell = shell_of(organ);
+  if (shell == nullptr)
+    return fail(
+        FailureKind::simulation,
+        fmt::format("'{}' is no hollow organ: its natural frequency is not known", organ.definition.name));
+  const BodyMass mass(*shell, organ.state.x, organ.definition.wall.thickness, organ.definition.bile.density);
+  return calot::lowest_frequency(*shell, contact_loads(impl_->field, organ, present_poses(impl_->field)),
+                                 organ.state, mass);
+}
+
+// ---- bodies that come and go
+
+/// Where masses count the next step brings what changed into motion. Else all must come to rest first.
+Result<bool> World::Impl::settle_change(const std::string& what) {
+  if (field.step_time > 0) return true;
+  return settle_field(field, what, report.statistics);
+}
+
+template <class Change>
+auto World::Impl::change(const std::string& what, const Change& change) -> decltype(change()) {
+  if (failed) return failure;
+  const FieldState before = field_state(field);
+  auto done = change();
+  if (!done) return done;
+  if (Result<bool> settled = settle_change(what); !settled) {
+    calot::restore(field, before);
+    return settled.failure();
+  }
+  // What hands felt was of what has changed.
+  for (Tool& tool : field.tools) tool.tissue_stiffness = tool.stiffness_across = tool.roll_stiffness = 0;
+  report_states(field, report);
+  keep_hash();
+  still.reset();
+  return done;
+}
+
+Result<int> World::organ(const std::string& name) const { return find_body(impl_->field, name); }
+Result<int> World::organ(const BodyHandle& handle) const { return find_body(impl_->field, handle); }
+BodyHandle World::handle(int organ) const { return handle_of(impl_->field, organ); }
+
+Result<Division> World::divide(const std::string& name, double share) {
+  const Result<int> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was divided", name),
+                       [&] { return divide_body(impl_->field, organ.value(), share, impl_->time()); });
+}
+
+Result<bool> World::clip(const std::string& name, double share, ClipSize size) {
+  const Result<int> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was clipped", name),
+                       [&] { return clip_body(impl_->field, organ.value(), share, size); });
+}
+
+Result<bool> World::remove(const std::string& name, const std::string& why) {
+  const Result<int> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was removed", name),
+                       [&] { return remove_body(impl_->field, organ.value(), why, impl_->time()); });
+}
+
+Result<int> World::add(const OrganDefinition& definition) {
+  if (std::vector<Problem> problems = validate(definition); !problems.empty())
+    return Failure{FailureKind::scenario, std::move(problems)};
+  const SolverDefinition& solver = impl_->scene.solver;
+  ContactLoads still;
+  for (const Ground& ground : impl_->field.ground) still.shapes.push_back(contact_shape(ground.shape));
+  FillingLimits limits;
+  limits.sinks = solver.motion == SolverMotion::dynamics;
+  const OrganSetting setting{still, impl_->up, solver.tolerance,
+                             definition.extensions ? solver.extension_levels : 0, &limits};
+  Result<int> added = impl_->change(fmt::format("after '{}' came", definition.name),
+                                    [&] { return add_body(impl_->field, definition, setting); });
+  if (added) return added;
+  Failure failure = added.failure();
+  for (Problem& problem : failure.problems)  // of its definition
+    if (problem.place.path.starts_with('.')) problem.place.path.insert(0, "organ");
+  return failure;
+}
+
+Result<bool> World::tie(const JointDefinition& joint) {
+  for (const std::string& name : {joint.from, joint.to})
+    if (Result<Vec3> there = place(name); !there) return there.failure();
+  if (joint.from.substr(0, joint.from.rfind('.')) == joint.to.substr(0, joint.to.rfind('.')))
+    return fail(FailureKind::scenario, "an organ is tied to itself", "name a place on another organ");
+  return impl_->change(fmt::format("after '{}' was tied to '{}'", joint.from, joint.to),
+                       [&] { return tie_bodies(impl_->field, joint); });
+}
+
+Result<bool> World::untie(const std::string& one, const std::string& other) {
+  const Result<int> first = organ(one), second = organ(other);
+  if (!first) return first.failure();
+  if (!second) return second.failure();
+  return impl_->change(fmt::format("after '{}' and '{}' were untied", one, other),
+                       [&] { return untie_bodies(impl_->field, first.value(), second.value()); });
+}
+
+Result<Vec3> World::place(const std::string& name) const {
+  const std::size_t dot = name.rfind('.');
+  if (find_landmark(impl_->field.organs, name).second >= 0) return landmark(name);
+  if (dot != std::string::npos && gone_body(impl_->field, name.substr(0, dot)) != nullptr)
+    if (const Result<int> there = organ(name.substr(0, dot)); !there) return there.failure();
+  return fail(FailureKind::scenario, fmt::format("unknown landmark \"{}\"", name),
+              suggestion(name, landmarks()));
+}
+
+std::vector<std::string> World::landmarks() const {
+  std::vector<std::string> names;
+  for (const Organ& organ : impl_->field.organs)
+    for (const auto& [name, point] : organ.landmarks) names.push_back(organ.definition.name + "." + name);
+  return names;
+}
+
+double World::deepest_penetration() const { return calot::deepest_penetration(impl_->field); }
+
+}  // namespace calot

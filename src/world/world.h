@@ -1,0 +1,123 @@
+#pragma once
+// The simulated operating field: const definition in, mutable state inside, one step at a time.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anatomy/definitions.h"
+#include "body/body_handle.h"
+#include "geometry/stencil.h"
+#include "tools/step_report.h"
+#include "world/critical_view.h"
+
+namespace calot {
+
+struct DrawnSurface;
+struct Field;
+struct FieldState;
+class KeptResults;
+
+/// The point of an organ's skin that came to rest furthest from where it is drawn.
+struct RestShift {
+  double distance = 0;   ///< m
+  std::string landmark;  ///< of the organ, the nearest where it is drawn
+};
+
+class World {
+ public:
+  /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
+  /// (validation), simulation (the rest state could not be found), resource (it would take too long) or interrupted
+  /// (`stop` became true). Of `threads`, at most as many share the work of a step for the world's life: its bits are the
+  /// same whatever their number. What takes long is looked for among `kept` first, and kept there when it had to be found:
+  /// no bit depends on whether it was there; null: nothing is.
+  static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr,
+                              int threads = 1, KeptResults* kept = nullptr);
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  ~World();
+
+  /// Advances by 1 / rate. On failure (FailureKind::simulation) the message says where, when and what to
+  /// change; the state is that of before the step and further steps fail alike. A step that is known to change nothing,
+  /// as the last one with the same input did not, costs a hash (solver.skip_still).
+  Result<StepReport> step(const StepInput& input);
+
+  const SceneDefinition& scene() const;
+  /// The report of the last step (of the rest state before the first).
+  const StepReport& report() const;
+  /// Of the present state, computed anew.
+  std::uint64_t state_hash() const;
+
+  /// All that moves and who is there, to be copied and given back to this world: what follows has the same bits. Fails
+  /// (internal) where it is another world's.
+  FieldState state() const;
+  Result<bool> restore(const FieldState& state);
+
+  // Organs come, go and are divided between steps (field/change_bodies.h); the report then is of those that are there. Where
+  // masses do not count all come to rest at once. Each fails (scenario; simulation where no rest was found) with the world
+  // as it was; what is asked for by a name or handle that is gone is told when it went and why.
+
+  /// Place of an organ among those that are there.
+  Result<int> organ(const std::string& name) const;
+  Result<int> organ(const BodyHandle& handle) const;
+  BodyHandle handle(int organ) const;
+  /// At about this share of a tube's length, from its start.
+  Result<Division> divide(const std::string& organ, double share);
+  /// Sets a clip that shuts a tube, at this share of its length, 0 to 1.
+  Result<bool> clip(const std::string& organ, double share, ClipSize size);
+  Result<bool> remove(const std::string& organ, const std::string& why);
+  /// Its place, the last; problems have paths as of validate(organ).
+  Result<int> add(const OrganDefinition& definition);
+  /// Where they are now.
+  Result<bool> tie(const JointDefinition& joint);
+  /// Undoes all joints of two organs.
+  Result<bool> untie(const std::string& one, const std::string& other);
+  /// Place of "organ.landmark", m, of an organ that is there.
+  Result<Vec3> place(const std::string& organ_and_landmark) const;
+  std::vector<std::string> landmarks() const;  ///< of these
+
+  /// Upward direction (unit): minus gravity, turned by the table's tilt.
+  Vec3 up() const;
+  /// m. This and the next two throw std::logic_error for a name that the scene does not have and no organ had.
+  Vec3 port_position(const std::string& port) const;
+  /// Present place of "organ.landmark" on the skin, m; of an organ that went, where it was last.
+  Vec3 landmark(const std::string& organ_and_landmark) const;
+  /// Of a triangle's area what the laparoscope sees, m^2, across its line of sight (world/sight.h), from where
+  /// it is now.
+  double seen_area(const std::array<Vec3, 3>& corners) const;
+  /// The critical view of safety from where the laparoscope is now (world/critical_view.h). Throws as landmark() does.
+  CriticalView critical_view(const CriticalViewQuestion& question) const;
+  /// How organs had come to rest at the start, one an organ of the scene.
+  const std::vector<RestShift>& rest_shifts() const;
+  /// Outward unit normal of the skin there.
+  Vec3 landmark_normal(const std::string& organ_and_landmark) const;
+
+  /// Organs and tools as they are now (field/field.h), for who looks closer than the report does.
+  const Field& field() const;
+  /// The skin that is touched, and drawn but for the mould of jaws (view/jaw_mould.h): triangles fixed, positions present; rest
+  /// positions for texture.
+  const Tessellation& skin(int organ) const;
+  std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
+  std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
+  /// What is drawn of an organ: triangles fixed, places now, and at rest for texture.
+  const std::vector<Triangle>& drawn_triangles(int organ) const;
+  const std::vector<Vec3>& drawn_rest(int organ) const;
+  DrawnSurface drawn(int organ) const;
+  /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
+  /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
+  /// equilibrium is not stable, its volume kept.
+  Result<double> lowest_frequency(int organ) const;
+  /// Deepest penetration of any instrument part into the skin (m, 0 when none), tested on a finer
+  /// tessellation than contact uses: for tests and reports.
+  double deepest_penetration() const;
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calot
