@@ -19,7 +19,7 @@ namespace calot {
 namespace {
 
 constexpr const char* names_doc =
-    "a register, CSV with the columns trainee and name: names are shown, and never kept";
+    "a register, CSV with the columns trainee and name: shows names, which no recording or result has";
 
 /// Commands as CLI11 fills them in, and the one that was chosen.
 struct Program {

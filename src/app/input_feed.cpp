@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace calot {
 namespace {
@@ -144,11 +145,13 @@ void InputFeed::serve(int file, bool may_return) {
     goes_on = size > 0 && !decoder->broken();
     spoke = spoke || say_something(events);
     // Who has sent nothing that can be used, as a port scan, is nobody whose leaving counts.
-    if (!goes_on && may_return && !spoke)
-      events.emplace_back(
-          LiveRemark{"A sender came to " + name_ + " and left; it sent nothing that can be used."});
-    else if (!goes_on && !decoder->ended())
+    if (!goes_on && may_return && !spoke) {
+      if (!std::exchange(told_, true))
+        events.emplace_back(
+            LiveRemark{name_ + " " + end + ", and sent nothing that can be used: it does not count."});
+    } else if (!goes_on && !decoder->ended()) {
       events.emplace_back(LiveLoss{name_ + " " + end, may_return});
+    }
     for (LiveEvent& event : events)
       if (!mailbox_.put(std::move(event))) return;
     events.clear();

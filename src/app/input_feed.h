@@ -51,6 +51,7 @@ class InputFeed {
   Descriptor wake_, waker_;             ///< a pipe: written to, it ends the thread
   std::string socket_path_, heard_at_;  ///< to be removed; see heard_at()
   bool is_standard_ = false, is_file_ = false;
+  bool told_ = false;  ///< that somebody sent nothing that can be used
   std::thread thread_;
 };
 

@@ -87,7 +87,10 @@ class RegisterReader {
 Result<NameRegister> read_names(const std::string& file) {
   constexpr std::size_t most_bytes = std::size_t{1} << 20;
   Result<std::string> text = read_text(file, most_bytes);
-  if (!text) return text.failure();
+  if (!text)
+    return fail(FailureKind::usage,
+                fmt::format("cannot read {} as a register of names of up to {} bytes", file, most_bytes),
+                example);
   return RegisterReader(file, std::move(text).value()).read();
 }
 

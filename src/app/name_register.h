@@ -1,6 +1,6 @@
 #pragma once
-// Whose pseudonym is whose: a file that stays with the instructor. It is joined when a table or a page is printed, and
-// nothing that Calot keeps has a name in it.
+// Whose pseudonym is whose: a file that stays with the instructor. It is joined when a table is printed or a page is
+// written. No recording and no folder of results has a name in it; a page that was made with names has them.
 
 #include <map>
 #include <string>
@@ -17,7 +17,7 @@ using NameRegister = std::map<std::string, std::string>;
 /// name is empty.
 Result<NameRegister> read_names(const std::string& file);
 
-/// None without a file.
+/// An empty register where `file` is empty; else as read_names.
 Result<NameRegister> names_of(const std::string& file);
 
 /// "Anna Muster (T-07)" of one who is in the register, else the pseudonym.

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/page_recording.h"
@@ -10,8 +12,10 @@
 #include "app/score_tables.h"
 #include "app/score_verdicts.h"
 #include "app/terminal.h"
+#include "base/log.h"
 #include "lua/read_benchmarks.h"
 #include "page/page.h"
+#include "session/measured.h"
 #include "session/scoring.h"
 
 namespace calot {
@@ -77,7 +81,8 @@ class PageMaker {
                        const StateComparison states = compare_states(recording, played.session);
                        watched_ = Watched{played, std::move(*moments_), states.message, {}};
                        if (states.message.empty())
-                         watched_->otherwise = measured_otherwise(recording, played.session);
+                         watched_->otherwise =
+                             measured_otherwise(recording, exercise_hash(played.exercise), played.session);
                      }};
     if (command_.no_pictures)
       request.watcher->held = [this](const Recording& recording, const ExerciseDefinition& exercise) {
@@ -192,21 +197,23 @@ void put_in_order(const std::vector<OrderedJson>& entries, std::vector<std::size
                      [&](std::size_t a, std::size_t b) { return began(a) < began(b); });
 }
 
-std::vector<PageGroup> groups_of(const ClassScores& scores, const std::vector<Answer>& answers,
-                                 bool of_a_class) {
-  std::vector<PageGroup> groups;
-  const std::vector<ScoreGroup> all = score_groups(scores.entries);
-  for (ScoreGroup group : all) {
-    PageGroup& shown = groups.emplace_back();
-    shown.title = group_title(group, all);
-    shown.pass_mark = group.pass_mark;
-    for (const OrderedJson& part : group.parts)
-      shown.parts.push_back({part["name"].get<std::string>(), part["title"].get<std::string>(),
-                             fmt::format("{:.1f}", 100 * part["weight"].get<double>())});
-    if (!of_a_class) put_in_order(scores.entries, group.members);
-    for (const std::size_t i : group.members) shown.rows.push_back(row_of(scores, answers[i], i));
-  }
-  return groups;
+/// Whether recordings that say who operated name several.
+bool several_trainees(const std::vector<OrderedJson>& entries) {
+  std::set<std::string> trainees;
+  for (const OrderedJson& entry : entries)
+    if (is_scored(entry) && entry["trainee"].is_string())
+      trainees.insert(entry["trainee"].get<std::string>());
+  return trainees.size() > 1;
+}
+
+PageGroup shown_group(const ClassScores& scores, const std::vector<Answer>& answers, const ScoreGroup& group,
+                      const std::string& title) {
+  PageGroup shown{title, group.pass_mark, {}, {}};
+  for (const OrderedJson& part : group.parts)
+    shown.parts.push_back(
+        {part["title"].get<std::string>(), fmt::format("{:.1f}", 100 * part["weight"].get<double>())});
+  for (const std::size_t i : group.members) shown.rows.push_back(row_of(scores, answers[i], i));
+  return shown;
 }
 
 std::string page_text(const PageCommand& command, const ClassScores& scores,
@@ -215,20 +222,24 @@ std::string page_text(const PageCommand& command, const ClassScores& scores,
   page.title = scores.exercise.title;
   page.scenario = scores.exercise.id;
   page.file = portable_path(scores.exercise.file);
-  page.of_a_class = command.of_a_class;
+  page.of_a_class = command.of_a_class || several_trainees(scores.entries);
+  if (page.of_a_class && !command.of_a_class)
+    log_info("The recordings are of several trainees: they are shown as a class.");
   page.benchmarks = "the exercise's own, which are design values";
   page.calibration = "uncalibrated";
   if (scores.benchmarks) {
     page.benchmarks = fmt::format("{}, version {}", scores.benchmarks->name, scores.benchmarks->version);
     page.calibration = scores.benchmarks->calibration;
   }
-  page.groups = groups_of(scores, answers, command.of_a_class);
   std::vector<std::string> sections;
+  const std::vector<ScoreGroup> groups = score_groups(scores.entries);
+  for (ScoreGroup group : groups) {
+    if (!page.of_a_class) put_in_order(scores.entries, group.members);
+    page.groups.push_back(shown_group(scores, answers, group, group_title(group, groups)));
+    for (const std::size_t i : group.members) sections.push_back(answers[i].section);
+  }
   for (std::size_t i = 0; i < answers.size(); ++i)
-    if (is_scored(scores.entries[i]))
-      sections.push_back(answers[i].section);
-    else
-      page.not_counted.push_back(row_of(scores, answers[i], i));
+    if (!is_scored(scores.entries[i])) page.not_counted.push_back(row_of(scores, answers[i], i));
   return page_html(page, sections);
 }
 

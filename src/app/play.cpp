@@ -190,6 +190,13 @@ std::optional<Failure> make_report(Played& played) {
   return written ? std::nullopt : std::optional<Failure>(written.failure());
 }
 
+Attempt attempt_of(const PlayRequest& request) {
+  if (request.replay == nullptr) return begin_attempt(request.attempt);
+  Attempt attempt = request.replay->header.attempt;
+  attempt.session = session_of(*request.replay);
+  return attempt;
+}
+
 std::optional<Failure> write_profile(const PlayRequest& request, const Played& played,
                                      const std::vector<ProfiledStep>& steps) {
   if (!request.profile || played.output.empty()) return std::nullopt;
@@ -266,8 +273,7 @@ Result<Played> play(const PlayRequest& request) {
   }
   Result<World> world = World::create(exercise.scene, &interrupt_flag(), request.threads, kept_results());
   if (!world) return script.value()->located(world.failure());
-  played.report.attempt =
-      request.replay != nullptr ? request.replay->header.attempt : begin_attempt(request.attempt);
+  played.report.attempt = attempt_of(request);
   Result<Outputs> outputs = open_outputs(request, exercise, world.value(), played.report.attempt);
   if (!outputs) return outputs.failure();
   if (outputs->folder) played.output = outputs->folder->path();

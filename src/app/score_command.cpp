@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/output_folder.h"
@@ -115,9 +117,11 @@ class ClassScorer {
   void add(const OrderedJson& answer, OrderedJson& entry) {
     const bool kept = answer.contains("kept");
     entry.update(kept ? answer["kept"] : answer["entry"]);
-    if (kept) ++taken_;
-    if (kept || answer["key"] == "" || entry.contains("failure")) return;
-    const Result<std::string> written = results_.keep(answer["key"].get<std::string>(), entry);
+    const auto key = answer["key"].get<std::string>();
+    if (kept && !fresh_.contains(key)) ++taken_;  // a copy's may have been written a moment ago
+    if (kept || key.empty() || entry.contains("failure")) return;
+    fresh_.insert(key);
+    const Result<std::string> written = results_.keep(key, entry);
     if (!written && !unwritten_) unwritten_ = written.failure();
   }
 
@@ -127,6 +131,7 @@ class ClassScorer {
   Results results_;
   std::vector<OrderedJson> entries_;
   int done_ = 0, taken_ = 0;
+  std::set<std::string> fresh_;  ///< keys of what this run scored
   std::optional<Failure> unwritten_;
   std::optional<ProgressLine> line_;  ///< while it runs
 };

@@ -19,6 +19,12 @@ std::size_t outcome_rank(const OrderedJson& entry) {
   return static_cast<std::size_t>(std::find_if(rows.begin(), rows.end(), is) - rows.begin());
 }
 
+void sort_by_outcome(const std::vector<OrderedJson>& entries, std::vector<std::size_t>& order) {
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return outcome_rank(entries[a]) < outcome_rank(entries[b]);
+  });
+}
+
 bool counts_before(const OrderedJson& a, const OrderedJson& b) {
   if (a["whole"] != b["whole"]) return a["whole"].get<bool>();
   return a["stopped_at_s"].get<double>() > b["stopped_at_s"].get<double>();
@@ -66,10 +72,7 @@ std::vector<ScoreGroup> score_groups(const std::vector<OrderedJson>& entries) {
     if (std::none_of(groups.begin(), groups.end(), is_same)) groups.push_back(fresh);
     std::find_if(groups.begin(), groups.end(), is_same)->members.push_back(i);
   }
-  for (ScoreGroup& group : groups)
-    std::stable_sort(group.members.begin(), group.members.end(), [&](std::size_t a, std::size_t b) {
-      return outcome_rank(entries[a]) < outcome_rank(entries[b]);
-    });
+  for (ScoreGroup& group : groups) sort_by_outcome(entries, group.members);
   return groups;
 }
 
@@ -82,15 +85,17 @@ std::string group_title(const ScoreGroup& group, const std::vector<ScoreGroup>& 
   };
   for (const auto& [key, value] : group.params.items())
     if (differs(key, value)) title += fmt::format(", {} = {}", key, value.get<std::string>());
+  const auto is_alike = [&](const ScoreGroup& other) {
+    return other.mode == group.mode && other.params == group.params && other.digest != group.digest;
+  };
+  if (std::any_of(all.begin(), all.end(), is_alike)) title += ", score " + group.digest;
   return title;
 }
 
 std::vector<std::size_t> by_outcome(const std::vector<OrderedJson>& entries) {
   std::vector<std::size_t> order(entries.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return outcome_rank(entries[a]) < outcome_rank(entries[b]);
-  });
+  sort_by_outcome(entries, order);
   return order;
 }
 

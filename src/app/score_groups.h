@@ -18,18 +18,19 @@ void mark_copies(std::vector<OrderedJson>& entries);
 /// Attempts of one mode (practice, exam; where nobody operated, what moved the instruments), one set of parameters and one
 /// score: nothing is averaged across groups.
 struct ScoreGroup {
-  std::string mode;    ///< "exam"
+  std::string mode;    ///< "exam", "demo"; "mode not recorded" where neither mode nor source is known
   OrderedJson params;  ///< of the exercise, as it was played
   std::string digest;  ///< score_digest
   double pass_mark = 0;
   std::vector<std::size_t> members;  ///< indices of entries, by outcome (by_outcome)
-  /// The score's parts, of the first member; names, titles and weights are the group's.
+  /// The score's parts, of the member that was named first; names, titles and weights are the group's.
   OrderedJson parts;
 };
-/// In the order of their first members.
+/// In the order in which each has its first entry.
 std::vector<ScoreGroup> score_groups(const std::vector<OrderedJson>& entries);
 
-/// What tells a group from the others: "exam, anatomy = wide"; parameters that all groups have alike are left out.
+/// What tells a group from the others: "exam, anatomy = wide"; parameters that all groups have alike are left out. The score's
+/// digest follows where nothing else differs.
 std::string group_title(const ScoreGroup& group, const std::vector<ScoreGroup>& all);
 
 /// Indices of the entries by outcome, those without a score and copies last; within an outcome in the order in which they are

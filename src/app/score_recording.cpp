@@ -36,12 +36,12 @@ std::string end_of(const Recording& recording, const SessionResult& session) {
 }
 
 /// Who, when, by what, and by which rules it was recorded.
-void add_attempt(const RecordingHeader& header, const std::string& file, OrderedJson& entry) {
+void add_attempt(const Recording& recording, OrderedJson& entry) {
+  const RecordingHeader& header = recording.header;
   for (const char* key : {"session", "source", "mode", "trainee", "attempt", "began", "machine"})
     entry[key] = nullptr;
   write_attempt(header.attempt, entry);
-  Hash text;
-  if (entry["session"].is_null() && add_file(text, file)) entry["session"] = "text " + hex(text.value());
+  entry["session"] = session_of(recording);
   entry["recorded"] = {
       {"schema", header.version}, {"measures", header.measures}, {"scoring", header.scoring}};
   entry["measures"] = measures_version;
@@ -62,13 +62,14 @@ std::optional<Failure> add_measured(const ExerciseDefinition& exercise,
   return std::nullopt;
 }
 
-void verify(const Recording& recording, const SessionResult& session, OrderedJson& entry) {
+void verify(const Recording& recording, std::uint64_t exercise, const SessionResult& session,
+            OrderedJson& entry) {
   const StateComparison states = compare_states(recording, session);
   std::vector<std::string> found;
   if (!states.message.empty()) found.push_back(states.message);
   const bool same_bits = states.differs || states.message.empty();
   if (same_bits)
-    for (std::string& difference : measured_otherwise(recording, session))
+    for (std::string& difference : measured_otherwise(recording, exercise, session))
       found.push_back(std::move(difference));
   if (same_bits && (recording.header.state_hash || recording.measured)) entry["verified"] = found.empty();
   entry["differences"] = found;
@@ -76,9 +77,12 @@ void verify(const Recording& recording, const SessionResult& session, OrderedJso
 
 }  // namespace
 
-std::vector<std::string> measured_otherwise(const Recording& recording, const SessionResult& session) {
+std::vector<std::string> measured_otherwise(const Recording& recording, std::uint64_t exercise,
+                                            const SessionResult& session) {
   std::vector<std::string> found;
-  if (!recording.measured || recording.header.measures != measures_version) return found;
+  const bool same_rules =
+      recording.header.measures == measures_version && recording.header.exercise_hash == exercise;
+  if (!recording.measured || !same_rules) return found;
   const Measured& held = *recording.measured;
   for (const auto& [name, value] : held.metrics) {
     const auto simulated = session.metrics.find(name);
@@ -185,7 +189,7 @@ std::optional<Failure> RecordingScorer::add_score(const Recording& recording, Or
   if (!found) return found.failure();
   const Exercise& exercise = *found.value();
   if (std::optional<Failure> wrong = check_replay(recording, exercise.definition, hint)) return wrong;
-  add_attempt(recording.header, entry["file"].get<std::string>(), entry);
+  add_attempt(recording, entry);
   const std::optional<std::string> why = why_simulate(recording, exercise);
   entry["from"] = why ? "simulation" : "recording";
   entry["why"] = why ? OrderedJson(*why) : OrderedJson();
@@ -244,7 +248,7 @@ std::optional<Failure> RecordingScorer::simulate(const Recording& recording, con
   const Result<Played> played = replay(recording, exercise);
   if (!played) return played.failure();
   const SessionResult& session = played->session;
-  if (request_.verify) verify(recording, session, entry);
+  if (request_.verify) verify(recording, exercise.hash, session, entry);
   entry["end"] = end_of(recording, session);
   entry["whole"] = !played->report.aborted;
   entry["stopped_at_s"] = session.traces.time.back();

@@ -32,7 +32,7 @@ struct ScoreRequest {
 /// Scores recordings of one exercise. An entry of calot.scores/3 is an object of
 ///   file         as it was named
 ///   failure      a list of problems where there is no score, with the exit_code of their kind; then nothing follows
-///   session      of the recording; of one that names none, a hash of its text
+///   session      of the recording; session_of()
 ///   source, mode, trainee, attempt, began, machine   as in session/attempt.h; null where it is not known
 ///   recorded     the versions by which the recording was written: schema, measures and scoring; 0 where it does not say
 ///   measures     the version by which the metrics below were measured
@@ -43,6 +43,7 @@ struct ScoreRequest {
 ///   stopped_at_s
 ///   params       of the exercise, as it was played
 ///   score, metrics, steps, notes   as in calot.report/1
+///   copy_of      the file that counts instead, of the same session: put there by mark_copies
 class RecordingScorer {
  public:
   /// Reads the exercise with its parameters' defaults. Fails as load_scenario does, or where the benchmarks do not fit.
@@ -77,8 +78,10 @@ class RecordingScorer {
   std::map<std::string, Exercise> known_;  ///< by parameters and seed
 };
 
-/// What a simulation measured otherwise than the recording says it was; nothing of a recording that does not say.
-std::vector<std::string> measured_otherwise(const Recording& recording, const SessionResult& session);
+/// What a simulation measured otherwise than the recording says, by the same exercise (its exercise_hash) and version of
+/// measures; nothing where those differ, or where the recording does not say.
+std::vector<std::string> measured_otherwise(const Recording& recording, std::uint64_t exercise,
+                                            const SessionResult& session);
 
 /// The entry of a recording that has no score.
 OrderedJson failed_entry(const std::string& file, const Failure& failure);

@@ -172,6 +172,8 @@ class CsvTable {
     const OrderedJson& entry = scores_.entries[index];
     std::vector<std::string> row{csv_value(entry["file"])};
     if (!is_scored(entry)) {
+      row.emplace_back();
+      for (const char* key : attempt_keys) row.push_back(entry.contains(key) ? csv_value(entry[key]) : "");
       row.resize(head().size());
       row.back() = csv_field(failure_text(entry));
       return row;
@@ -319,10 +321,13 @@ std::string group_text(const ClassScores& scores, const ScoreGroup& group,
 /// Copies, and recordings without a score, each with its reason.
 std::string not_counted(const Entries& entries) {
   std::string text;
-  for (const OrderedJson& entry : entries)
-    if (!is_scored(entry))
-      text += fmt::format("  {}: {}\n", text_of(entry["file"]),
-                          entry.contains("failure") ? "no score, for the reason above" : failure_text(entry));
+  for (const OrderedJson& entry : entries) {
+    if (is_scored(entry)) continue;
+    std::string why = failure_text(entry);
+    for (std::size_t at = why.find('\n'); at != std::string::npos; at = why.find('\n', at))
+      why.replace(at, 1, "; ");
+    text += fmt::format("  {}: {}\n", text_of(entry["file"]), why);
+  }
   return text.empty() ? "" : "Not counted:\n" + text + '\n';
 }
 

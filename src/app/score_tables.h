@@ -14,12 +14,12 @@ namespace calot {
 struct ClassScores {
   const ExerciseDefinition& exercise;  ///< with the benchmarks
   const std::optional<BenchmarkTable>& benchmarks;
-  const std::vector<OrderedJson>& entries;  ///< in the order in which they are shown; copies are marked
+  const std::vector<OrderedJson>& entries;  ///< as they were named; copies are marked
   NameRegister names = {};                  ///< of trainees, to be joined
 };
 
 /// One object of schema calot.scores/3, with a line end: exercise, benchmarks, recordings (the entries; a copy has copy_of)
-/// and groups (score_groups.h): how many of each were scored, came to their end, were finished and passed, and had each
+/// with --names the name) and groups (score_groups.h): mode, params, digest, pass mark, files; how many of each were scored, came to their end, were finished and passed, and had each
 /// outcome; of the totals of those that were finished, mean, median, standard deviation (of a sample), least and most; and
 /// each part's mean points.
 std::string scores_json(const ClassScores& scores);

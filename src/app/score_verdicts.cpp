@@ -69,7 +69,10 @@ ExitCode judge(const std::vector<OrderedJson>& entries, const std::string& exerc
       if (!failed) failed = static_cast<ExitCode>(entry["exit_code"].get<int>());
       continue;
     }
-    if (!is_scored(entry)) continue;  // a copy: what is said of the other holds for it
+    if (entry["verified"] == false)
+      for (const OrderedJson& difference : entry["differences"])
+        tell(entry, difference.get<std::string>(), "calot replay {1} --scenario {0}");
+    if (!is_scored(entry)) continue;  // a copy: the one that counts is judged
     const OrderedJson& total = entry["score"]["total"];
     if (!entry["whole"].get<bool>())
       tell(entry,
@@ -82,9 +85,6 @@ ExitCode judge(const std::vector<OrderedJson>& entries, const std::string& exerc
                ? fmt::format("there is no score to be {:g} or more", *fail_below)
                : fmt::format("the score, {:.1f}, is below {:g}", total.get<double>(), *fail_below),
            "calot score {0} {1}");
-    if (entry["verified"] == false)
-      for (const OrderedJson& difference : entry["differences"])
-        tell(entry, difference.get<std::string>(), "calot replay {1} --scenario {0}");
   }
   if (next.empty() && failed) next = "calot run " + exercise;
   if (!next.empty()) std::fprintf(stderr, "Next: %s\n", next.c_str());

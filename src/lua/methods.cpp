@@ -401,7 +401,12 @@ std::optional<ForceBand> take_band(lua_State* L, ScriptSession& session, TableRe
   options.take("least", least);
   options.take("most", most);
   if (!named && !least && !most) return std::nullopt;
-  if (!named || !least || !most || !(*least < *most)) {
+  if (least && most && !(*least < *most)) {
+    session.complain(L, fmt::format("least is {:g} N and most {:g} N", *least, *most),
+                     "let least be below most");
+    return std::nullopt;
+  }
+  if (!named || !least || !most) {
     session.complain(L, "force_on, least and most say together which force a step asks for",
                      "write force_on = \"left\", least = 1.5 * N, most = 3 * N");
     return std::nullopt;

@@ -257,7 +257,11 @@ int StepsScript::count(lua_State* L, const std::string& event, const std::string
 }
 
 void StepsScript::missed(lua_State* L, const std::string& why) {
-  if (!may_wait(L, "missed") || checking()) return;
+  if (!may_wait(L, "missed")) return;
+  if (checking()) {
+    std::erase(declared_.waited, current_);  // it can end otherwise than by waiting
+    return;
+  }
   world(L);  // raises what is wrong outside of steps
   progress_->end_step(now_, "missed", why);
 }

@@ -41,7 +41,7 @@ class GroupTable {
     table.caption =
         (of_a_class ? "Recordings of the class, by outcome" : "Attempts of one trainee, in their order") +
         std::string(": ") + group_.title;
-    add_heads(of_a_class, table);
+    add_heads(table);
     table.labelled = true;
     std::size_t number = 0;
     for (const PageRow& row : group_.rows) table.rows.push_back(cells(row, ++number));
@@ -56,8 +56,8 @@ class GroupTable {
   }
 
  private:
-  void add_heads(bool of_a_class, HtmlTable& table) const {
-    table.heads = {of_a_class ? "no." : "attempt", "recording"};
+  void add_heads(HtmlTable& table) const {
+    table.heads = {"no.", "recording"};
     table.numbers = "rl";
     if (has_trainees_) table.heads.emplace_back("trainee"), table.numbers += 'l';
     if (has_times_) table.heads.emplace_back("began, UTC"), table.numbers += 'l';

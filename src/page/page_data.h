@@ -123,7 +123,7 @@ struct PageRow {
 
 /// A part's column in the overview.
 struct PagePartHead {
-  std::string name, title, points;  ///< title as PagePart's; the points that it may earn
+  std::string title, points;  ///< as PagePart's; what it may earn
 };
 
 /// Attempts that may be compared: of one mode, one set of parameters and one score.

@@ -45,7 +45,10 @@ Axes axes_of(const PagePlot& plot) {
       y.add(point[1]);
     }
   for (const PageLevel& level : plot.levels) y.add(level.y);
-  for (const PageBand& band : plot.bands) y.add(band.high);
+  for (const PageBand& band : plot.bands) {
+    y.add(band.low);
+    y.add(band.high);
+  }
   if (!plot.is_path) {
     if (y.low > 0 && y.low < 0.5 * y.high) y.low = 0;
     SvgScale time = SvgScale::around(x.low, x.high, 6);

@@ -26,7 +26,7 @@ struct Attempt {
 /// "demo" of the scenario, "window" (mouse, keyboard, gamepad), "lines", "openigtlink", "import".
 const std::vector<std::string>& input_source_names();
 
-/// The same as a fresh session that begins now on this machine.
+/// Gives it a new session number, the present time and this machine's name.
 Attempt begin_attempt(Attempt attempt);
 
 /// Fails (usage) where a text is no pseudonym: 1 to 40 letters, digits, full stops, hyphens and underscores.
@@ -34,7 +34,9 @@ std::optional<Failure> check_pseudonym(const std::string& text);
 
 /// Adds what is known.
 void write_attempt(const Attempt& attempt, OrderedJson& json);
+/// Takes what is there; what does not fit is added to the reader's problems.
 Attempt read_attempt(JsonFields& fields);
+/// The mode alone, likewise.
 std::string read_mode(JsonFields& fields);
 
 }  // namespace calot

@@ -229,6 +229,7 @@ class Reader {
     if (problems_.empty() && recording_.measured)
       for (std::string& problem : disagreements(recording_)) add_problem(std::move(problem));
     if (!problems_.empty()) return Failure{FailureKind::usage, std::move(problems_)};
+    recording_.text_hash = text_hash_.value();
     return std::move(recording_);
   }
 
@@ -293,6 +294,11 @@ class Reader {
 };
 
 }  // namespace
+
+std::string session_of(const Recording& recording) {
+  const std::string& own = recording.header.attempt.session;
+  return own.empty() ? hex(recording.text_hash) + hex(0) : own;
+}
 
 bool came_to_its_end(const std::string& end) {
   return !end.empty() && end != cut_end && end != to_text(SessionEnd::interrupted) &&

@@ -75,7 +75,11 @@ struct Recording {
   std::vector<RecordedStep> steps;
   std::optional<Measured> measured;  ///< of a whole recording only
   std::string end;                   ///< how the session ended; empty where the last line is missing
+  std::uint64_t text_hash = 0;       ///< of the lines that were read
 };
+
+/// The session's number; of a recording that names none, digits that its text decides, so that copies have the same.
+std::string session_of(const Recording& recording);
 
 /// The end of what was played from a recording without one.
 inline constexpr const char* cut_end = "cut";

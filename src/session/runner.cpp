@@ -82,7 +82,8 @@ class Session {
     note_time(taken);
     if (options_.profile != nullptr) {
       const StepReport& now = world_.report();
-      options_.profile->push_back({now.time + (report ? 0 : dt_), taken, now.statistics, now.events});
+      options_.profile->push_back({now.time + (report ? 0 : dt_), taken, now.statistics,
+                                   report ? now.events : std::vector<WorldEvent>()});
     }
     if (!report) return note_failed_step(report.failure());
     note_report();

@@ -22,8 +22,7 @@ struct SessionTiming {
   double simulation_s = 0;  ///< inside World::step
   double slowest_s = 0;  ///< the most of it in any simulated second: of the seconds 0 to 1, 1 to 2 ... begun
   double frames_s = 0;   ///< inside the frame callback
-  std::vector<double>
-      step_s;  ///< inside World::step, one a step; of one that was skipped as still next to nothing
+  std::vector<double> step_s;  ///< inside World::step, one a step
   int substeps = 0, newton_iterations = 0;
   double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
 };

@@ -55,6 +55,7 @@ std::uint64_t score_digest(const ExerciseDefinition& exercise) {
   const ScoreDefinition& score = exercise.score;
   Digest digest;
   digest.add(static_cast<double>(exercise.api));
+  digest.add(exercise.step_names);
   digest.add(score.parts);
   digest.add(score.critical);
   digest.add(score.gates);

@@ -81,7 +81,7 @@ struct Score {
   }
 };
 
-/// A hash of all that turns figures into points: parts with their weights and figures, gates, cap and pass mark, and where
+/// A hash of all in an exercise that turns figures into points: its steps, parts with their weights and figures, gates, cap and pass mark, and where
 /// an author's function judges, the exercise's text. Totals of two digests are of two scores.
 std::uint64_t score_digest(const ExerciseDefinition& exercise);
 

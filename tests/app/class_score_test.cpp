@@ -317,6 +317,10 @@ TEST_F(ScoredClass, ACopyCountsOnceAndTheLongestWholeOneIsIt) {
   spill(folder_ / "class" / "b.jsonl", text_);
   spill(folder_ / "class" / "c.jsonl", text_);
   spill(folder_ / "class" / "d_other.jsonl", of_session(text_, 7));
+  // Of two that were cut, the longer one.
+  spill(folder_ / "cuts" / "a.jsonl", text_.substr(0, text_.find("\"time_s\":0.08")));
+  spill(folder_ / "cuts" / "b.jsonl", text_.substr(0, text_.find("\"time_s\":0.14")));
+  EXPECT_EQ(Json::parse(score({"cuts", "--json"}).out)["recordings"][0]["copy_of"], "cuts/b.jsonl");
   const Outcome outcome = score({"class", "--json"});
   EXPECT_EQ(outcome.code, 0) << "what is left out fails nothing: " << outcome.err;
   const Json json = Json::parse(outcome.out);
@@ -326,10 +330,25 @@ TEST_F(ScoredClass, ACopyCountsOnceAndTheLongestWholeOneIsIt) {
   const std::string text = score({"class"}).out;
   EXPECT_NE(text.find("class/c.jsonl: the same session as class/b.jsonl: it counts once"), std::string::npos)
       << text;
+  EXPECT_EQ(score({"class", "-o", "kept"}).err.find("taken from"), std::string::npos)
+      << "nothing was there before";
+  // A copy whose figures were changed is told of all the same.
+  spill(folder_ / "forged" / "a.jsonl", text_);
+  spill(folder_ / "forged" / "b.jsonl", sealed(replaced(text_, "\"note.seen\":1.0", "\"note.seen\":2.0")));
+  const Outcome forged = score({"forged", "--replay"});
+  EXPECT_EQ(forged.code, 1);
+  EXPECT_NE(forged.err.find("forged/b.jsonl: note.seen is 2 in the recording"), std::string::npos)
+      << forged.err;
   // One that names no session is known by its text.
   const std::string nameless = sealed(replaced(text_, text_.substr(text_.find("\"session\""), 45), ""));
   for (const char* name : {"a.jsonl", "b.jsonl"}) spill(folder_ / "nameless" / name, nameless);
   EXPECT_EQ(Json::parse(score({"nameless", "--json"}).out)["recordings"][1]["copy_of"], "nameless/a.jsonl");
+  ASSERT_EQ(
+      calot({"replay", "nameless/a.jsonl", "--scenario", "small.lua", "--no-render", "-o", "nameless/again"})
+          .code,
+      0);
+  EXPECT_EQ(Json::parse(score({"nameless", "--json"}).out)["groups"][0]["scored"], 1)
+      << "a replay is no other session";
 }
 
 TEST_F(ScoredClass, PracticeAndExamAreAveragedApartAndWhoOperatedIsShown) {

@@ -78,8 +78,8 @@ class Documents : public ProgramTest {
       kill(pid, SIGINT);
     });
     ASSERT_EQ(outcome.code, 2) << outcome.err;
-    fs::create_directories(folder_ / "recordings");
-    fs::copy_file(recording, folder_ / "recordings" / "trainee.jsonl");
+    fs::create_directories(folder_ / "recordings" / "T-07-1");
+    fs::copy_file(recording, folder_ / "recordings" / "T-07-1" / "recording.jsonl");
   }
 
   /// A file that the document shows as a whole after naming it.

@@ -172,6 +172,29 @@ TEST_F(PageOfSmall, ABrowserFindsNothingBrokenAndAsksForNothingElse) {
   EXPECT_FALSE(found.said.empty()) << "a picture from elsewhere is refused, and that is said";
 }
 
+TEST_F(PageOfSmall, OfSeveralTraineesIsAClassAndOfOneItsAttemptsAsTheyBegan) {
+  const auto of = [&](const std::string& file, int session, const std::string& trainee,
+                      const std::string& began) {
+    std::string text = text_;
+    const std::size_t at = text.find("\"began\":\"");
+    text.replace(at, 30, fmt::format(R"("trainee":"{}","began":"{}")", trainee, began));
+    spill(folder_ / file, of_session(text, session));
+  };
+  of("a.jsonl", 1, "T-01", "2026-02-01T10:00:00Z");
+  of("b.jsonl", 2, "T-01", "2026-01-01T10:00:00Z");
+  EXPECT_EQ(calot({"page", "a.jsonl", "b.jsonl", "--no-pictures", "-o", "p.html"}).code, 0);
+  const std::string curve = slurp(folder_ / "p.html");
+  EXPECT_THAT(curve, HasSubstr("Learning curve"));
+  EXPECT_LT(curve.find("href=\"#r2-recording\""), curve.find("href=\"#r1-recording\""))
+      << "the earlier one is the first";
+  EXPECT_LT(curve.find("id=\"r2-recording\""), curve.find("id=\"r1-recording\""))
+      << "so do their sections stand";
+  of("b.jsonl", 2, "T-02", "2026-01-01T10:00:00Z");
+  const Outcome made = calot({"page", "a.jsonl", "b.jsonl", "--no-pictures", "-o", "p.html"});
+  EXPECT_THAT(made.err, HasSubstr("several trainees"));
+  EXPECT_THAT(slurp(folder_ / "p.html"), Not(HasSubstr("Learning curve")));
+}
+
 TEST_F(PageOfSmall, SaysWhereItsReplayMeasuresOtherwiseThanTheRecordingClaims) {
   EXPECT_EQ(calot({"page", "out/recording.jsonl", "-o", "p.html"}).code, 0);
   EXPECT_THAT(slurp(folder_ / "p.html"), Not(HasSubstr("is not what its replay measures")));

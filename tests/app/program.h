@@ -102,7 +102,6 @@ class ProgramTest : public ::testing::Test {
     return outcome;
   }
 
-  /// Waits until a file has so many lines; false after 30 s.
   /// The recording with the checksum of what it now is.
   static std::string sealed(const std::string& text) {
     const std::size_t last = text.rfind('\n', text.size() - 2) + 1,
@@ -118,6 +117,7 @@ class ProgramTest : public ::testing::Test {
     text.replace(at, 32, fmt::format("{:032x}", number));
     return text.find("\"checksum\":") == std::string::npos ? text : sealed(text);
   }
+  /// Waits until a file has so many lines; false after 30 s.
   static bool wait_for_lines(const fs::path& file, std::ptrdiff_t lines) {
     for (int i = 0; i < 3000; ++i) {
       const std::string text = slurp(file);

@@ -66,7 +66,7 @@ inline Page page_of(std::vector<PageRow> rows) {
   Page page;
   page.title = "Title", page.scenario = "id", page.file = "x.lua", page.benchmarks = "own";
   page.calibration = "uncalibrated";
-  page.groups = {{"exam", 80, {{"a", "A", "50.0"}, {"b", "B", "50.0"}}, std::move(rows)}};
+  page.groups = {{"exam", 80, {{"A", "50.0"}, {"B", "50.0"}}, std::move(rows)}};
   return page;
 }
 

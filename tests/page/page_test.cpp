@@ -86,7 +86,7 @@ TEST(ThePage, EscapesTextFromOutside) {
   Page page = page_of({row("r1-", 40), row("r2-", 50)});
   page.title = page.scenario = page.file = page.benchmarks = page.calibration = evil;
   page.groups[0].title = evil;
-  page.groups[0].parts = {{evil, evil, evil}, {evil, evil, evil}};
+  page.groups[0].parts = {{evil, evil}, {evil, evil}};
   for (PageRow& row : page.groups[0].rows)
     row.name = row.verdict = row.trainee = row.began = row.steps = evil;
   page.not_counted = {page.groups[0].rows[0]};
@@ -177,8 +177,7 @@ TEST(Overview, HasBestMedianAndWorstOfWhatWasFinished) {
 
 TEST(Overview, KeepsGroupsApartAndListsWhatIsNotCounted) {
   Page page = page_of({row("r1-", 40), row("r2-", 60)});
-  page.groups.push_back(
-      {"practice", 70, {{"c", "C", "100.0"}}, {row("r3-", 90, true), row("r4-", 100, true)}});
+  page.groups.push_back({"practice", 70, {{"C", "100.0"}}, {row("r3-", 90, true), row("r4-", 100, true)}});
   page.not_counted = {row("r5-", 0)};
   page.not_counted[0].problem = "the same session as another one";
   const std::string html = overview_html(page);

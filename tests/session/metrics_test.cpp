@@ -169,10 +169,14 @@ TEST(Metrics, ForcesArePeaksAndTheMeanOfWhatWasLoaded) {
     InstrumentSample sample = at(Vec3::Zero());
     sample.force = t < 1.99 ? 0 : t < 2.99 ? 2 : 4;
     sample.handle_force = 0.5 * sample.force;
+    sample.jaws_force = 3 * sample.force;
+    sample.shaft_force = 2 * sample.force;
     return sample;
   });
   EXPECT_EQ(measured(traces, "left.peak_force_N"), 4);
   EXPECT_EQ(measured(traces, "left.peak_handle_force_N"), 2);
+  EXPECT_EQ(measured(traces, "left.peak_jaws_force_N"), 12);
+  EXPECT_EQ(measured(traces, "left.peak_shaft_force_N"), 8);
   EXPECT_NEAR(measured(traces, "left.mean_force_N"), 3, 2.0 / 101);  // 50 samples at 2 N, 51 at 4 N
 }
 

@@ -383,7 +383,7 @@ TEST(StepTable, HasOneColumnCountThroughoutAndARowAState) {
   std::vector<std::ptrdiff_t> commas;
   while (std::getline(in, line)) commas.push_back(std::count(line.begin(), line.end(), ','));
   fs::remove_all(folder);
-  EXPECT_EQ(commas, std::vector<std::ptrdiff_t>(7, 12));  // header, rest, 5 steps; 11 columns
+  EXPECT_EQ(commas, std::vector<std::ptrdiff_t>(7, 12));  // header, rest, 5 steps; 13 columns
 }
 
 OrganDefinition held_tube(const std::string& name, double y) {
