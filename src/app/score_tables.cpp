@@ -326,7 +326,8 @@ std::string not_counted(const Entries& entries) {
     std::string why = failure_text(entry);
     for (std::size_t at = why.find('\n'); at != std::string::npos; at = why.find('\n', at))
       why.replace(at, 1, "; ");
-    text += fmt::format("  {}: {}\n", text_of(entry["file"]), why);
+    // A failure's text begins with its file.
+    text += fmt::format("  {}{}\n", entry.contains("failure") ? "" : text_of(entry["file"]) + ": ", why);
   }
   return text.empty() ? "" : "Not counted:\n" + text + '\n';
 }
