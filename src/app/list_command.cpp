@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/commands.h"
 #include "app/play.h"
 #include "app/terminal.h"
@@ -29,12 +31,17 @@ Listing ports(const std::vector<PortDefinition>& list) {
   return listing;
 }
 
-/// `prefix` is the organ's, "gallbladder.", or empty.
-void add_landmarks(Listing& listing, const std::string& prefix) {
-  for (const Landmark& landmark : landmark_rows()) {
-    listing.rows.push_back({prefix + landmark.name, landmark.doc});
-    listing.json.push_back({{"name", prefix + landmark.name}, {"doc", landmark.doc}});
-  }
+void add_landmark(Listing& listing, const std::string& name, const Landmark& landmark) {
+  listing.rows.push_back({name, landmark.doc});
+  listing.json.push_back({{"name", name}, {"doc", landmark.doc}});
+}
+
+/// Those that an organ of its shape has.
+void add_landmarks(Listing& listing, const OrganDefinition& organ) {
+  const std::vector<std::string> own = landmarks_of(organ.shape);
+  for (const Landmark& landmark : landmark_rows())
+    if (std::find(own.begin(), own.end(), landmark.name) != own.end())
+      add_landmark(listing, organ.name + "." + landmark.name, landmark);
 }
 
 Listing events() {
@@ -60,8 +67,9 @@ Listing names(const std::string& key, const std::string& title, const std::vecto
 }
 
 std::vector<Listing> of_every_scenario() {
-  Listing landmarks{"landmarks", "Landmarks, of every organ", {}}, metrics{"metrics", "Metrics", {}};
-  add_landmarks(landmarks, "");
+  Listing landmarks{"landmarks", "Landmarks, each of organs of its kind", {}},
+      metrics{"metrics", "Metrics", {}};
+  for (const Landmark& landmark : landmark_rows()) add_landmark(landmarks, landmark.name, landmark);
   for (const MetricRow& row : metric_rows()) {
     metrics.rows.push_back({pattern(row), row.doc});
     metrics.json.push_back({{"name", pattern(row)}, {"doc", row.doc}});
@@ -108,7 +116,7 @@ std::vector<Listing> of_scenario(const ExerciseDefinition& exercise) {
   const SceneDefinition& scene = exercise.scene;
   Listing landmarks{"landmarks", "Landmarks", {}};
   for (const auto* organs : {&scene.anatomy.organs, &exercise.later_organs})
-    for (const OrganDefinition& organ : *organs) add_landmarks(landmarks, organ.name + ".");
+    for (const OrganDefinition& organ : *organs) add_landmarks(landmarks, organ);
   return {parameters(exercise),
           ports(scene.ports.empty() ? default_ports() : scene.ports),
           instruments(scene),

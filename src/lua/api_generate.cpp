@@ -207,7 +207,7 @@ std::string describe_names() {
   std::string text = "\n## Ports\n\n| port | place |\n|---|---|\n";
   for (const PortDefinition& port : default_ports())
     text += fmt::format("| `{}` | `{}` |\n", port.name, in_mm(port.position));
-  text += "\n## Landmarks\n\nOf every organ: `gallbladder.fundus`.\n\n| landmark | |\n|---|---|\n";
+  text += "\n## Landmarks\n\nEach of organs of its kind; `calot list FILE` says which: `gallbladder.fundus`.\n\n| landmark | |\n|---|---|\n";
   for (const Landmark& landmark : landmark_rows())
     text += fmt::format("| `{}` | {} |\n", landmark.name, landmark.doc);
   text += "\n## Events\n\n| event | raised when | value |\n|---|---|---|\n";

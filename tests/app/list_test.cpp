@@ -37,6 +37,7 @@ TEST_F(List, NamesWhatOneScenarioHas) {
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(json["scenario"], "small");
   EXPECT_TRUE(has(json["landmarks"], "ball.free_side"));
+  EXPECT_FALSE(has(json["landmarks"], "ball.start")) << "a tube's";
   EXPECT_TRUE(has(json["instruments"], "left"));
   EXPECT_TRUE(has(json["metrics"], "left.peak_force_N"));
   EXPECT_TRUE(has(json["metrics"], "note.reach"));
