@@ -85,6 +85,7 @@ class RegisterReader {
 }  // namespace
 
 Result<NameRegister> read_names(const std::string& file) {
+  if (file.empty()) return NameRegister();
   constexpr std::size_t most_bytes = std::size_t{1} << 20;
   Result<std::string> text = read_text(file, most_bytes);
   if (!text)
@@ -92,10 +93,6 @@ Result<NameRegister> read_names(const std::string& file) {
                 fmt::format("cannot read {} as a register of names of up to {} bytes", file, most_bytes),
                 example);
   return RegisterReader(file, std::move(text).value()).read();
-}
-
-Result<NameRegister> names_of(const std::string& file) {
-  return file.empty() ? NameRegister() : read_names(file);
 }
 
 std::string with_name(const std::string& trainee, const NameRegister& names) {

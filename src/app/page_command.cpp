@@ -267,7 +267,7 @@ ExitCode page_command(const PageCommand& command) {
   if (!exercise) return print_failure(exercise.failure(), help);
   Result<ScoreRequest> request = read_page_request(command, exercise.value());
   if (!request) return print_failure(request.failure(), help);
-  const Result<NameRegister> names = names_of(command.names);
+  const Result<NameRegister> names = read_names(command.names);
   if (!names) return print_failure(names.failure(), help);
   const std::optional<BenchmarkTable> benchmarks = request->benchmarks;
   PageMaker maker(command, files);

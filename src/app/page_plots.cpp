@@ -16,11 +16,8 @@ using PerSample = std::function<double(const InstrumentSample&)>;
 
 constexpr const char* time_label = "time, s";
 
-/// Those of the instruments that are not far above the curves.
-void add_limits(const SceneDefinition& scene, PagePlot& plot) {
-  double most = 0;
-  for (const PageCurve& curve : plot.curves)
-    for (const auto& point : curve.points) most = std::max(most, point[1]);
+/// Those of the instruments that are not far above `most`, N, the largest force of the curves.
+void add_limits(const SceneDefinition& scene, double most, PagePlot& plot) {
   std::map<double, std::string> names;
   for (const InstrumentDefinition& instrument : scene.instruments) {
     std::string& all = names[instrument.force_limit];
@@ -54,9 +51,9 @@ void add_bands(const Progress& progress, double end, PagePlot& plot) {
                             step.ended < 0 ? end : step.ended});
 }
 
-/// None where it is never above zero.
-bool add_force(const ForceKind& kind, const ExerciseDefinition& exercise, const Traces& traces,
-               std::vector<PagePlot>& plots) {
+/// The largest force, N; where it is never above zero there is no plot.
+double add_force(const ForceKind& kind, const ExerciseDefinition& exercise, const Traces& traces,
+                 std::vector<PagePlot>& plots) {
   const SceneDefinition& scene = exercise.scene;
   PagePlot plot;
   plot.title = kind.title;
@@ -71,10 +68,10 @@ bool add_force(const ForceKind& kind, const ExerciseDefinition& exercise, const 
       most = std::max(most, curve.points.back()[1]);
     }
   }
-  if (!(most > 0)) return false;
+  if (!(most > 0)) return most;
   add_benchmarks(exercise, kind.metric, plot);
   plots.push_back(std::move(plot));
-  return true;
+  return most;
 }
 
 void add_way(const char* title, const char* across, const char* up, int x, int y,
@@ -122,10 +119,10 @@ std::vector<PagePlot> page_plots(const ExerciseDefinition& exercise, const Progr
   std::vector<PagePlot> plots;
   const ForceKind jaws{"Force on the jaws", "peak_jaws_force_N",
                        [](const InstrumentSample& s) { return s.jaws_force; }};
-  if (add_force(jaws, exercise, traces, plots)) {
+  if (const double most = add_force(jaws, exercise, traces, plots); most > 0) {
     PagePlot& plot = plots.back();
     add_bands(progress, traces.time.back(), plot);
-    add_limits(scene, plot);
+    add_limits(scene, most, plot);
   }
   const ForceKind others[] = {
       {"Force on the shaft", "peak_shaft_force_N", [](const InstrumentSample& s) { return s.shaft_force; }},

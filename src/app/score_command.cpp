@@ -75,15 +75,12 @@ class ClassScorer {
     if (interrupt_flag())
       return fail(FailureKind::interrupted,
                   fmt::format("interrupted when {} of {} recordings were done", done.value(), files_.size()));
+    mark_copies(entries_);
     return unwritten_;
   }
 
-  /// Copies are marked.
-  std::vector<OrderedJson> entries() const {
-    std::vector<OrderedJson> entries = entries_;
-    mark_copies(entries);
-    return entries;
-  }
+  /// Copies are marked once all were scored.
+  const std::vector<OrderedJson>& entries() const { return entries_; }
   int taken() const { return taken_; }
 
  private:
@@ -181,7 +178,7 @@ ExitCode score_command(const ScoreCommand& command) {
   }
   Result<ScoreRequest> request = read_request(command);
   if (!request) return print_failure(request.failure(), "calot score --help", command.json);
-  const Result<NameRegister> names = names_of(command.names);
+  const Result<NameRegister> names = read_names(command.names);
   if (!names) return print_failure(names.failure(), "calot score --help", command.json);
   const std::optional<BenchmarkTable> benchmarks = request->benchmarks;
   Result<RecordingScorer> scorer = RecordingScorer::create(std::move(request).value());
@@ -204,8 +201,7 @@ ExitCode score_command(const ScoreCommand& command) {
   }
   ClassScorer run(command, std::move(scorer).value(), std::move(files));
   std::optional<Failure> failure = run.run();
-  const std::vector<OrderedJson> entries = run.entries();
-  const ClassScores scores{exercise, benchmarks, entries, names.value()};
+  const ClassScores scores{exercise, benchmarks, run.entries(), names.value()};
   if (!failure) failure = write_scores(command.output, scores);
   if (failure) return print_failure(*failure, again, command.json);
   if (run.taken() > 0)

@@ -38,8 +38,7 @@ std::string end_of(const Recording& recording, const SessionResult& session) {
 /// Who, when, by what, and by which rules it was recorded.
 void add_attempt(const Recording& recording, OrderedJson& entry) {
   const RecordingHeader& header = recording.header;
-  for (const char* key : {"session", "source", "mode", "trainee", "attempt", "began", "machine"})
-    entry[key] = nullptr;
+  for (const std::string& key : attempt_keys()) entry[key] = nullptr;
   write_attempt(header.attempt, entry);
   entry["session"] = session_of(recording);
   entry["recorded"] = {

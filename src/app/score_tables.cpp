@@ -8,6 +8,7 @@
 #include <set>
 
 #include "app/terminal.h"
+#include "session/attempt.h"
 #include "session/csv.h"
 #include "session/scoring.h"
 
@@ -131,7 +132,6 @@ std::set<std::string> all_metrics(const Entries& entries) {
   return names;
 }
 
-constexpr std::array attempt_keys = {"session", "source", "mode", "trainee", "attempt", "began", "machine"};
 constexpr std::array session_keys = {"from", "end", "whole", "stopped_at_s", "measures"};
 constexpr std::array score_keys = {"scoring", "digest", "pass_mark", "outcome",    "verdict",
                                    "total",   "passed", "completed", "steps_done", "steps"};
@@ -155,7 +155,7 @@ class CsvTable {
  private:
   std::vector<std::string> head() const {
     std::vector<std::string> head{"file", "group"};
-    head.insert(head.end(), attempt_keys.begin(), attempt_keys.end());
+    head.insert(head.end(), attempt_keys().begin(), attempt_keys().end());
     if (!scores_.names.empty()) head.emplace_back("name");
     head.insert(head.end(), session_keys.begin(), session_keys.end());
     head.insert(head.end(), score_keys.begin(), score_keys.end());
@@ -173,13 +173,14 @@ class CsvTable {
     std::vector<std::string> row{csv_value(entry["file"])};
     if (!is_scored(entry)) {
       row.emplace_back();
-      for (const char* key : attempt_keys) row.push_back(entry.contains(key) ? csv_value(entry[key]) : "");
+      for (const std::string& key : attempt_keys())
+        row.push_back(entry.contains(key) ? csv_value(entry[key]) : "");
       row.resize(head().size());
       row.back() = csv_field(failure_text(entry));
       return row;
     }
     row.push_back(csv_field(group_of(index)));
-    for (const char* key : attempt_keys) row.push_back(csv_value(entry[key]));
+    for (const std::string& key : attempt_keys()) row.push_back(csv_value(entry[key]));
     if (!scores_.names.empty()) row.push_back(csv_field(name_of(entry)));
     for (const char* key : session_keys) row.push_back(csv_value(entry[key]));
     const OrderedJson& score = entry["score"];

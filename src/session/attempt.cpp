@@ -88,6 +88,12 @@ std::optional<Failure> check_pseudonym(const std::string& text) {
 
 std::string read_mode(JsonFields& fields) { return read_choice(fields, "mode", live_mode_names()); }
 
+const std::vector<std::string>& attempt_keys() {
+  static const std::vector<std::string> keys = {"session", "source", "mode",   "trainee",
+                                                "attempt", "began",  "machine"};
+  return keys;
+}
+
 void write_attempt(const Attempt& attempt, OrderedJson& json) {
   const auto add = [&](const char* key, const std::string& text) {
     if (!text.empty()) json[key] = text;

@@ -32,6 +32,8 @@ Attempt begin_attempt(Attempt attempt);
 /// Fails (usage) where a text is no pseudonym: 1 to 40 letters, digits, full stops, hyphens and underscores.
 std::optional<Failure> check_pseudonym(const std::string& text);
 
+/// The members that write_attempt may add, in their order.
+const std::vector<std::string>& attempt_keys();
 /// Adds what is known.
 void write_attempt(const Attempt& attempt, OrderedJson& json);
 /// Takes what is there; what does not fit is added to the reader's problems.

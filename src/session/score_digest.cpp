@@ -4,66 +4,56 @@
 namespace calot {
 namespace {
 
-/// Values one after another; a list begins with its length, and so does a text.
-class Digest {
+/// Values one after another; a list begins with its length, and so does a text. Every struct is taken apart by all of its
+/// members: one that gets another member is an error here until that is named.
+class ScoreHash {
  public:
-  void add(double value) { hash_.add(value); }
-  void add(const std::string& text) {
-    hash_.add(text.size());
-    hash_.add(std::string_view(text));
-  }
-  void add(EventKind kind) { add(to_text(kind)); }
-  void add(const std::optional<double>& value) {
-    hash_.add(value.has_value());
-    hash_.add(value.value_or(0));
-  }
-  void add(const ScorePart& part) {
-    add(part.name);
-    add(score_part_kinds()[static_cast<std::size_t>(part.kind)]);
-    add(part.metric);
-    add(part.event);
-    for (const double figure :
-         {part.novice, part.expert, part.each, part.minor_costs, part.major_costs, part.reference, part.limit,
-          part.each_s, part.satisfactory, part.full, part.weight})
-      add(figure);
-    add(part.steps);
-    add(part.minor);
-    add(part.major);
-    add(part.errors);
-  }
-  void add(const GateDefinition& gate) {
-    for (const std::string* text :
-         {&gate.event, &gate.organ, &gate.only_after, &gate.after_organ, &gate.metric, &gate.unless})
-      add(*text);
-    for (const std::optional<double>& figure : {gate.below, gate.above, gate.cap}) add(figure);
-    hash_.add(gate.fails);
-  }
-  template <class T>
-  void add(const std::vector<T>& list) {
-    hash_.add(list.size());
-    for (const T& entry : list) add(entry);
+  template <class... Each>
+  void put_all(const Each&... each) {
+    (put(each), ...);
   }
   std::uint64_t value() const { return hash_.value(); }
 
  private:
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void put(T value) { hash_.add(value); }
+  void put(const std::string& text) {
+    hash_.add(text.size());
+    hash_.add(std::string_view(text));
+  }
+  void put(EventKind kind) { put(to_text(kind)); }
+  void put(ScorePartKind kind) { put(score_part_kinds()[static_cast<std::size_t>(kind)]); }
+  void put(const std::optional<double>& value) { put_all(value.has_value(), value.value_or(0)); }
+  template <class T>
+  void put(const std::vector<T>& list) {
+    put(list.size());
+    for (const T& each : list) put(each);
+  }
+  void put(const ScorePart& part) {
+    const auto& [name, kind, metric, novice, expert, event, each, steps, minor, major, minor_costs,
+                 major_costs, reference, limit, errors, each_s, satisfactory, full, rule, weight, calibration,
+                 place] = part;
+    put_all(name, kind, metric, novice, expert, event, each, steps, minor, major, minor_costs, major_costs,
+            reference, limit, errors, each_s, satisfactory, full, weight);
+  }
+  void put(const GateDefinition& gate) {
+    const auto& [reason, event, organ, only_after, after_organ, metric, below, above, unless, cap, fails,
+                 place] = gate;
+    put_all(event, organ, only_after, after_organ, metric, below, above, unless, cap, fails);
+  }
+
   Hash hash_;
 };
 
 }  // namespace
 
 std::uint64_t score_digest(const ExerciseDefinition& exercise) {
-  const ScoreDefinition& score = exercise.score;
-  Digest digest;
-  digest.add(static_cast<double>(exercise.api));
-  digest.add(exercise.step_names);
-  digest.add(score.parts);
-  digest.add(score.critical);
-  digest.add(score.gates);
-  digest.add(score.cap);
-  digest.add(score.pass);
-  digest.add(static_cast<double>(score.bail_out_completes));
-  if (score.rules) digest.add(hex(exercise.source_hash));
-  return digest.value();
+  const auto& [parts, critical, gates, cap, pass, bail_out_completes, bail_out, rules] = exercise.score;
+  ScoreHash hash;
+  hash.put_all(exercise.api, exercise.step_names, parts, critical, gates, cap, pass, bail_out_completes);
+  if (rules) hash.put_all(hex(exercise.source_hash));
+  return hash.value();
 }
 
 }  // namespace calot

@@ -42,7 +42,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   state.touching = load.touches > 0;
   state.parts = load.parts;
   const bool closed = tool.pose.jaw <= 0.5 * grip_grid || tool.pressing;
-  const bool touches_jaws = load.parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0;
+  const bool touches_jaws = state.load_on(ToolPart::jaws).touches > 0;
   if (!state.holds.empty()) {
     state.grip = GripState::holding;
   } else if (tool.lost) {
