@@ -1,129 +1,21 @@
 #include "acts/advance.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "acts/blades.h"
 #include "acts/close_within_pinch.h"
+#include "acts/follow.h"
 #include "acts/jaw_acts.h"
 #include "field/field_tissues.h"
 #include "field/grip.h"
-#include "field/moving_bodies.h"
-#include "motion/predict.h"
-#include "motion/settle_field.h"
+#include "field/take_hold.h"
 #include "motion/structural_extension.h"
 
 namespace calot {
 namespace {
 
 using Poses = std::vector<InstrumentPose>;
-
-constexpr int max_parts = 100;
-/// No motion between two stops takes more: one that needs them is blocked, and says so within seconds.
-constexpr int step_iterations = 1000;
-/// A solve that takes more than this is broken off; where it got somewhere it goes on with fresh pairs, else the
-/// part is cut in two.
-constexpr int part_iterations = 30;
-constexpr double smallest_share = 1e-3;
-
-Failure cannot_follow(const Field& field, const std::string& why, double done) {
-  std::string tools;
-  for (const Tool& tool : field.tools) {
-    const Vec3 tip = 1e3 * tip_position(tool.trocar, tool.pose, tool.geometry);
-    tools += fmt::format("{}'{}' with its tip at ({:.1f}, {:.1f}, {:.1f}) mm", tools.empty() ? "" : ", ",
-                         tool.definition.name, tip.x(), tip.y(), tip.z());
-  }
-  return fail(
-      FailureKind::simulation,
-      fmt::format("the motion of {} could not be followed beyond {:.0f}% of a step: {}", tools, 100 * done,
-                  why),
-      "move more slowly or less far, keep the tool out of the tissue it already squeezes, or give the "
-      "organ more nodes where it is handled");
-}
-
-/// Which body a solve found no balance of, and how far it was from one.
-std::string out_of_balance(const Field& field, const NewtonResult& failed) {
-  return fmt::format("'{}' finds no balance: {} (residual {:.2g})", member_name(field, failed.part),
-                     to_text(failed.status), failed.residual);
-}
-
-/// Moves the organs by a share of what is predicted.
-void move_by(double share, const Prediction& prediction, Field& field) {
-  const BodyParts parts(field);
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    BodyState& state = field.organs[k].state;
-    state.x += share * parts.of(k, prediction.dx);
-    state.datum_pressure += share * prediction.dpressures[static_cast<Eigen::Index>(k)];
-  }
-  for (std::size_t k = field.organs.size(); k < moving_bodies(field); ++k)
-    state_of(field, k).x += share * parts.of(k, prediction.dx);
-}
-
-/// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
-/// of each part, in `duration` s where masses count.
-Result<bool> follow(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
-                    std::vector<WorldEvent>& events, SolveStatistics& statistics) {
-  int iterations_before = statistics.newton_iterations;
-  double done = 0;
-  NewtonResult last;  // of the solve that failed last, if any did in this part
-  std::string stuck;  // what failed last, in any part
-  for (int part = 0; done < 1.0; ++part) {
-    const Poses from = present_poses(field);
-    grow_damage(field);
-    const Result<std::vector<MotionPart>> parts = next_parts(field);
-    if (!parts) return parts.failure();
-    const double time_left = (1.0 - done) * duration;
-    begin_parts(parts.value(), time_left, field);
-    const bool fresh = !factor_serves(field.group);
-    Result<Prediction> answer = predict(field, from, to, fresh, statistics);
-    if (answer && answer->share < 1.0 && !fresh) answer = predict(field, from, to, true, statistics);
-    if (!answer) return answer.failure();
-    if (answer->share < smallest_share && from != to) answer = of_tools_alone(field, from, to, statistics);
-    const Prediction& prediction = answer.value();
-    // Organs that move by themselves have all the time there is: no tool stands where they begin to be looked for.
-    double share = from == to ? 1.0 : prediction.share;
-    const double left = 1.0 - done;
-    bool accepted = false;
-    while (!accepted) {
-      const int iterations = statistics.newton_iterations - iterations_before;
-      if (part >= max_parts || iterations > step_iterations)
-        return cannot_follow(field,
-                             fmt::format("not in {} parts and {} Newton iterations{}", part, iterations,
-                                         stuck.empty() ? "" : "; last, " + stuck),
-                             done);
-      if (share < smallest_share)
-        return cannot_follow(field, last.converged() ? "the tissue it touches leaves it no room" : stuck,
-                             done);
-      const double next = share >= 1.0 ? 1.0 : done + share * left;
-      const Poses poses = next >= 1.0 ? to : interpolate(from, to, share);
-      const GroupSnapshot before = snapshot(field);
-      const std::vector<VecX> places = present_places(field);
-      begin_parts(parts.value(), share * time_left, field);
-      move_by(std::min(share, prediction.share), prediction, field);
-      last = settle_group(field, poses, places, part_iterations, statistics);
-      accepted = last.converged();
-      if (accepted) {
-        field.group.missed = missed_by(prediction, share, before, field, last.by_last_factor);
-        for (std::size_t i = 0; i < field.tools.size(); ++i) field.tools[i].pose = poses[i];
-        for (Organ& organ : field.organs) follow_contacts(field, organ, statistics);
-        done = next;
-        last = {};
-        ++statistics.substeps;
-        const int iterations_moving = statistics.newton_iterations;
-        Result<bool> held = let_slip(field, slipped_before, events, statistics);
-        if (!held) return held;
-        iterations_before += statistics.newton_iterations - iterations_moving;
-      } else {
-        stuck = out_of_balance(field, last);
-        restore(field, before);
-        share *= 0.5;
-      }
-    }
-  }
-  return true;
-}
 
 /// Where the tools really go: jaws that rest on tissue close no further of themselves.
 Poses reachable(const Field& field, const Poses& targets) {

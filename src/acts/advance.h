@@ -2,16 +2,9 @@
 // Motion of the field: instruments go to their targets, organs stay in equilibrium, or, where masses count
 // (Field::step_time), move by them.
 //
-// Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
-// wall moves along), is cut where a skin point would come too near a shape or a node would move further than
-// a set share of its local edge, and ends in equilibrium; then what is drawn off its pad is let go, and
-// folds slip that are pulled or turned harder than they are held. How the motion was cut into steps matters nowhere
-// but to what slides or leaves its pad, a little, as friction follows the way in straight pieces; jaws take hold at
-// fixed angles, and stop where tissue carries their pinch.
-//
-// Where masses count each part is a step of implicit Euler (inertia.h) in its share of the step's time, begins from the
-// first Newton step from where the organs are, and is cut in time too. What is solved again at the end of a part, as
-// folds slip, grips are let go and details change, is solved again for that part: no time passes, and none is lost.
+// The way there is cut at the angles at which closing jaws may take hold, and each stretch of it into parts (follow.h).
+// How the motion was cut into steps matters nowhere but to what slides or leaves its pad, a little, as friction follows
+// the way in straight pieces; jaws take hold at fixed angles, and stop where tissue carries their pinch.
 
 #include <string>
 #include <vector>

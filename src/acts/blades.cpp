@@ -4,7 +4,7 @@
 
 #include "acts/injury.h"
 #include "field/between_jaws.h"
-#include "field/change_bodies.h"
+#include "field/divide_body.h"
 #include "field/grip.h"
 #include "motion/settle_field.h"
 

@@ -9,8 +9,9 @@
 #include "acts/injury.h"
 #include "field/between_jaws.h"
 #include "field/change_bodies.h"
+#include "field/divide_body.h"
 #include "field/grip.h"
-#include "liquid/spill.h"
+#include "liquid/drops.h"
 
 namespace calot {
 namespace {

@@ -5,7 +5,7 @@
 #include "base/units.h"
 #include "field/between_jaws.h"
 #include "field/field_tissues.h"
-#include "liquid/leak.h"
+#include "liquid/perforate.h"
 
 namespace calot {
 namespace {

@@ -10,6 +10,7 @@
 #include "acts/clips.h"
 #include "field/field_state.h"
 #include "field/grip.h"
+#include "field/take_hold.h"
 #include "field/teeth.h"
 #include "motion/settle_field.h"
 

@@ -183,14 +183,6 @@ Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment) {
   return axis * axis.dot(force) + moment.cross(axis) / arm.norm();
 }
 
-Vec3 port_drag(const Tool& tool, double way, double duration) {
-  constexpr double full_speed = 5e-3;  // m/s
-  const double share = std::clamp(way / duration / full_speed, -1.0, 1.0);
-  // The hinge frame's z points along the shaft, inwards.
-  return -share * tool.definition.port_friction *
-         hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
-}
-
 Result<Poses> bring_tools(Field& field, const Poses& commands, const std::vector<InstrumentState>& last) {
   Poses to;
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
@@ -223,8 +215,6 @@ void feel_roll_stiffness(Tool& tool, const InstrumentState& before, const Instru
   if (std::abs(back) >= shortest_turn) tool.roll_stiffness = std::max(least_roll_stiffness, more / back);
 }
 
-}  // namespace
-
 void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now) {
   feel_roll_stiffness(tool, before, now);
   const double force = now.at_tip.norm();
@@ -240,6 +230,32 @@ void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentS
     tool.stiffness_across = std::max(0.0, more.dot(across) / across.squaredNorm());
   if (std::abs(into) < shortest_way) return;
   tool.tissue_stiffness = std::max(least_stiffness, more.dot(away) / into);
+}
+
+/// N at the hand, of the port's seal on a shaft that was pushed in by `way` (m; negative: drawn out) in `duration` s:
+/// against the way, the whole friction from 5 mm/s on, and in proportion below.
+Vec3 port_drag(const Tool& tool, double way, double duration) {
+  constexpr double full_speed = 5e-3;  // m/s
+  const double share = std::clamp(way / duration / full_speed, -1.0, 1.0);
+  // The hinge frame's z points along the shaft, inwards.
+  return -share * tool.definition.port_friction *
+         hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);
+}
+
+}  // namespace
+
+void feel_ports(std::vector<Tool>& tools, const std::vector<InstrumentState>& before, double duration) {
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    Tool& tool = tools[i];
+    const bool slid = i < before.size() && !tool.waits && !before[i].waits;
+    tool.drag =
+        slid ? port_drag(tool, tool.pose.insertion - before[i].pose.insertion, duration) : Vec3(Vec3::Zero());
+  }
+}
+
+void feel_stiffness(std::vector<Tool>& tools, const std::vector<InstrumentState>& before,
+                    const std::vector<InstrumentState>& now) {
+  for (std::size_t i = 0; i < before.size(); ++i) feel_stiffness(tools[i], before[i], now[i]);
 }
 
 std::string tool_met(const Field& field, int instrument) {

@@ -18,19 +18,20 @@ namespace calot {
 /// shaft.
 Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment);
 
-/// N at the hand, of the port's seal on a shaft that was pushed in by `way` (m; negative: drawn out) in `duration` s:
-/// against the way, the whole friction from 5 mm/s on, and in proportion below.
-Vec3 port_drag(const Tool& tool, double way, double duration);
-
 /// Where tools come by the end of a step, one a tool, as commands and last states are. Waiting tools stay. Keeps each
 /// tool's command and what other tools press it with. Fails (simulation) where tools that meet find no balance.
 Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
                                                 const std::vector<InstrumentState>& last);
 
-/// Sets tissue_stiffness, stiffness_across and roll_stiffness: how the tissue's force on the tip and its torque about the
-/// shaft grew in a step, for the next one. The states are those at the step's begin and end; a tip that went less than
+/// Sets each tool's drag: what its port's seal drags at it after a step of `duration` s. `before`: the states at the step's
+/// begin, of which there may be none.
+void feel_ports(std::vector<Tool>& tools, const std::vector<InstrumentState>& before, double duration);
+
+/// Sets each tool's tissue_stiffness, stiffness_across and roll_stiffness: how the tissue's force on the tip and its torque
+/// about the shaft grew in a step, for the next one. The states are those at the step's begin, if any, and end; a tip that went less than
 /// 1 um, or a tool that rolled by less than 0.4 mrad, keeps what it felt before.
-void feel_stiffness(Tool& tool, const InstrumentState& before, const InstrumentState& now);
+void feel_stiffness(std::vector<Tool>& tools, const std::vector<InstrumentState>& before,
+                    const std::vector<InstrumentState>& now);
 
 /// The name of a tool that another one is in or as near to as contact reaches, where both are; empty: none. Not of those
 /// that wait.

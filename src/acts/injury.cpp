@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "field/between_jaws.h"
-#include "field/change_bodies.h"
+#include "field/roll.h"
 
 namespace calot {
 namespace {

@@ -9,7 +9,8 @@
 #include "acts/grip_slip.h"
 #include "acts/pads.h"
 #include "field/grip.h"
-#include "liquid/leak.h"
+#include "field/take_hold.h"
+#include "liquid/perforate.h"
 
 namespace calot {
 namespace {

@@ -61,7 +61,7 @@ struct TubeShape {
   PatientEnd patient_end = PatientEnd::held;
   Carries carries = Carries::bile;
   /// What drives it out of an end that is cut open where the patient feeds it, Pa, gauge, and what resists on the way
-  /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (liquid/leak.h).
+  /// there, whoever feeds it, Pa s/m^3. None: as what it carries and its width have it, feed_of() (liquid/leak_source.h).
   std::optional<double> feed_pressure = {}, feed_resistance = {};
   /// m, outer, one at each of its points and straight in between, by the way along them; empty: from `radius` to
   /// `end_radius`. Other bodies, but not instruments, feel a tube everywhere as thick as where it is thickest.

@@ -1,10 +1,10 @@
 #include <cstdio>
 
-#include "app/bench_report.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/project.h"
-#include "app/terminal.h"
+#include "paper/bench_report.h"
+#include "process/interrupt.h"
+#include "process/project.h"
+#include "process/terminal.h"
 
 namespace calot {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/play.h"
-#include "app/project.h"
-#include "app/result_files.h"
-#include "app/terminal.h"
+#include "play/play.h"
+#include "process/interrupt.h"
+#include "process/project.h"
+#include "process/result_files.h"
+#include "process/terminal.h"
 #include "session/json.h"
 #include "session/metrics.h"
 #include "session/rest_remarks.h"
@@ -119,6 +119,16 @@ std::string next_step(const Checked& checked, const std::string& command) {
   return checked.failure.kind == FailureKind::scenario ? "mend the lines named above, then: " + again : again;
 }
 
+/// Prints, of a file in which nothing is wrong, its title, what lies elsewhere at rest than it is drawn, and what its
+/// author should think about.
+void print_sound(const Checked& checked) {
+  const std::string what = checked.module ? "a module, for scenarios to require" : checked.exercise->title;
+  print(fmt::format("{}  {}: {}", green("ok"), checked.file, what));
+  for (const std::string& line : checked.rest) print("    " + line);
+  if (!checked.exercise) return;
+  for (const std::string& line : remarks(*checked.exercise)) print("    " + line);
+}
+
 /// Whether all scenarios load; nothing is said of those that do.
 ExitCode dry_check(const std::vector<Named>& files, const CheckCommand& command, const std::string& again) {
   for (const Named& file : files) {
@@ -151,13 +161,7 @@ ExitCode check_command(const CheckCommand& command) {
     ++done;
     json["scenarios"].push_back(checked_json(checked));
     if (checked.ok()) {
-      const std::string what =
-          checked.module ? "a module, for scenarios to require" : checked.exercise->title;
-      if (!command.json) print(fmt::format("{}  {}: {}", green("ok"), file.file, what));
-      for (const std::string& line : checked.rest)
-        if (!command.json) print("    " + line);
-      if (checked.exercise && !command.json)
-        for (const std::string& line : remarks(*checked.exercise)) print("    " + line);
+      if (!command.json) print_sound(checked);
       std::fflush(stdout);
       continue;
     }

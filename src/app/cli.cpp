@@ -9,9 +9,9 @@
 #include <functional>
 
 #include "app/commands.h"
-#include "app/terminal.h"
 #include "app/usage_error.h"
 #include "base/workers.h"
+#include "process/terminal.h"
 #include "session/build_info.h"
 #include "session/json_fields.h"
 

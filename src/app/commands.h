@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "app/exit_code.h"
-#include "app/golden_select.h"
 #include "base/workers.h"
+#include "goldens/select.h"
+#include "process/exit_code.h"
 
 namespace calot {
 
@@ -51,7 +51,7 @@ struct OperateCommand : SessionCommand {
   std::vector<std::string> params;  ///< "key=value"
   bool overwrite = false;           ///< see PlayRequest
   std::string input;  ///< of lines, see InputFeed::open; empty: the window's, or without one standard input
-  std::string igtl;   ///< where OpenIGTLink comes from instead, see app/sockets.h
+  std::string igtl;   ///< where OpenIGTLink comes from instead, see input/sockets.h
   std::string registration;  ///< file that says how its tools lie in the field; empty: as the field itself
   std::string device;        ///< file that says what a gamepad does; empty: the usual
   std::string trainee;       ///< a pseudonym; empty: not said
@@ -118,7 +118,7 @@ struct NewCommand : AnyCommand {
 ExitCode new_command(const NewCommand& command);
 
 struct GoldenCommand : AnyCommand {
-  std::vector<std::string> names;  ///< see app/golden_select.h
+  std::vector<std::string> names;  ///< see goldens/select.h
   std::string folder;              ///< of the goldens; empty: the project's golden/
   std::string output;              ///< report: the HTML file; test: the folder for what differs
   bool json = false;

@@ -4,9 +4,9 @@
 
 #include <charconv>
 
-#include "app/summary.h"
-#include "app/terminal.h"
 #include "base/log.h"
+#include "play/summary.h"
+#include "process/terminal.h"
 
 namespace calot {
 namespace {

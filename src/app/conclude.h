@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "app/commands.h"
-#include "app/play.h"
+#include "play/play.h"
 
 namespace calot {
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/play.h"
-#include "app/project.h"
-#include "app/terminal.h"
 #include "base/processor.h"
+#include "play/play.h"
+#include "process/project.h"
+#include "process/terminal.h"
 #include "render/offscreen.h"
 #include "session/build_info.h"
 

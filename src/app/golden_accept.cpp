@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "app/commands.h"
-#include "app/golden_compare.h"
-#include "app/golden_select.h"
-#include "app/golden_store.h"
-#include "app/interrupt.h"
-#include "app/play.h"
-#include "app/project.h"
-#include "app/terminal.h"
+#include "goldens/compare.h"
+#include "goldens/select.h"
+#include "goldens/store.h"
+#include "play/play.h"
+#include "process/interrupt.h"
+#include "process/project.h"
+#include "process/terminal.h"
 
 namespace calot {
 namespace {

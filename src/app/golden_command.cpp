@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/golden_compare.h"
-#include "app/interrupt.h"
-#include "app/project.h"
-#include "app/terminal.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "goldens/compare.h"
+#include "process/interrupt.h"
+#include "process/project.h"
+#include "process/terminal.h"
 #include "render/png.h"
 #include "session/json.h"
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/play.h"
-#include "app/project.h"
-#include "app/terminal.h"
 #include "lua/read_registration.h"
+#include "play/play.h"
+#include "process/project.h"
+#include "process/terminal.h"
 #include "session/json.h"
 
 namespace calot {

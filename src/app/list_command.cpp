@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "app/commands.h"
-#include "app/play.h"
-#include "app/terminal.h"
 #include "base/units.h"
+#include "play/play.h"
+#include "process/terminal.h"
 #include "session/json.h"
 #include "session/metrics.h"
 

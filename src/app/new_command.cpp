@@ -3,8 +3,8 @@
 #include <cctype>
 
 #include "app/commands.h"
-#include "app/project.h"
-#include "app/terminal.h"
+#include "process/project.h"
+#include "process/terminal.h"
 
 namespace calot {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "app/commands.h"
 #include "app/conclude.h"
-#include "app/play.h"
-#include "app/replay_checks.h"
-#include "app/terminal.h"
+#include "play/play.h"
+#include "play/replay_checks.h"
+#include "process/terminal.h"
 
 namespace calot {
 namespace {

@@ -3,18 +3,18 @@
 #include <set>
 
 #include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/output_folder.h"
-#include "app/play.h"
-#include "app/process_pool.h"
-#include "app/project.h"
-#include "app/score_recording.h"
-#include "app/score_tables.h"
-#include "app/score_verdicts.h"
-#include "app/terminal.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "grading/score_recording.h"
+#include "grading/score_tables.h"
+#include "grading/score_verdicts.h"
 #include "lua/read_benchmarks.h"
+#include "play/play.h"
+#include "process/interrupt.h"
+#include "process/output_folder.h"
+#include "process/process_pool.h"
+#include "process/project.h"
+#include "process/terminal.h"
 #include "session/json_fields.h"
 
 namespace calot {

@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/terminal.h"
 #include "base/suggest.h"
+#include "process/terminal.h"
 
 namespace calot {
 namespace {

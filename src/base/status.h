@@ -22,7 +22,7 @@ struct Problem {
   std::string hint;     ///< what to do next; may be empty
 };
 
-/// The kind of a failure; the program's exit codes follow from it (see app/exit_code.h).
+/// The kind of a failure; the program's exit codes follow from it (see process/exit_code.h).
 enum class FailureKind { usage, scenario, simulation, resource, interrupted, internal };
 
 struct Failure {

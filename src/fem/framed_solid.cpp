@@ -208,14 +208,10 @@ void FramedSolid::add_gradient(const VecX& x, VecX& gradient) const {
     }
 }
 
-void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
-  const Seen seen = see(x);
-  if (!seen.admissible) return matrix.add(nodes_[0], nodes_[0], Mat3::Constant(seen.energy));
+FramedSolid::TurnSlopes FramedSolid::turn_slopes(const Seen& seen) const {
   const auto pieces = static_cast<Eigen::Index>(parts_.pieces.size());
   const auto rows = [&](int p) { return 3 * first_[p]; };
-  const auto length = [&](int p) { return 3 * count(static_cast<std::size_t>(p)); };
-  // The forces that turns of each frame change, seen in the frames, and the energy's second derivative by two turns.
-  Eigen::MatrixXd mixed(3 * first_.back(), 3 * pieces), by_turns(3 * pieces, 3 * pieces);
+  TurnSlopes out{Eigen::MatrixXd(3 * first_.back(), 3 * pieces), Eigen::MatrixXd(3 * pieces, 3 * pieces)};
   for (int q = 0; q < pieces; ++q) {
     const Eigen::Matrix<double, 9, 3> turn = entries_by_turn(seen.frames[q]);
     for (int p = 0; p < pieces; ++p) {
@@ -223,41 +219,58 @@ void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
       const Eigen::MatrixX3d forces = seen.placed.forces[p].middleCols<9>(9 * q) * turn;
       for (Eigen::Index a = 0; a < count(p); ++a)
         for (Eigen::Index k = 0; k < 3; ++k)
-          mixed.block<1, 3>(rows(p) + 3 * a + k, 3 * q) = forces.row(k * count(p) + a);
-      by_turns.block<3, 3>(3 * p, 3 * q) =
+          out.forces.block<1, 3>(rows(p) + 3 * a + k, 3 * q) = forces.row(k * count(p) + a);
+      out.second.block<3, 3>(3 * p, 3 * q) =
           entries_by_turn(seen.frames[p]).transpose() * seen.placed.moments[p].middleCols<9>(9 * q) * turn;
     }
   }
   for (int p = 0; p < pieces; ++p) {
     const Piece& piece = parts_.pieces[static_cast<std::size_t>(p)];
     const Mat3 by_places = seen.forces[p].transpose() * seen.at[p];
-    by_turns.block<3, 3>(3 * p, 3 * p) += turning_hessian(piece.turning, seen.means[p], by_places);
+    out.second.block<3, 3>(3 * p, 3 * p) += turning_hessian(piece.turning, seen.means[p], by_places);
     const Mat3 left = change_of_left(seen.means[p]);
-    for (Eigen::Index a = 0; 3 * a < length(p); ++a)
-      mixed.block<3, 3>(rows(p) + 3 * a, 3 * p) -=
+    for (Eigen::Index a = 0; a < count(p); ++a)
+      out.forces.block<3, 3>(rows(p) + 3 * a, 3 * p) -=
           0.5 * piece.turning * cross_matrix(piece.slopes.col(a)) * left +
           cross_matrix(seen.forces[p].row(a));
   }
-  const auto unknowns = 3 * static_cast<Eigen::Index>(nodes_.size());
-  // Over all nodes in the world's directions: what pairs of pieces add, each but once, and what turns take away.
-  Eigen::MatrixXd paired = Eigen::MatrixXd::Zero(unknowns, unknowns), own = paired,
-                  turned = Eigen::MatrixXd::Zero(unknowns, 3 * pieces);
+  return out;
+}
+
+Eigen::MatrixXd FramedSolid::forces_on_nodes(const Seen& seen, const TurnSlopes& slopes) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(unknowns(), slopes.forces.cols());
+  for (std::size_t p = 0; p < parts_.pieces.size(); ++p)
+    for (Eigen::Index a = 0; a < count(p); ++a)
+      out.middleRows<3>(3 * place_[first_[p] + a]) +=
+          seen.frames[p] * slopes.forces.middleRows<3>(3 * (first_[p] + a));
+  return out;
+}
+
+FramedSolid::HeldStiffness FramedSolid::held_stiffness(const Seen& seen) const {
+  HeldStiffness out{Eigen::MatrixXd::Zero(unknowns(), unknowns()),
+                    Eigen::MatrixXd::Zero(unknowns(), unknowns())};
   for (const Stiffness& s : parts_.stiffness) {
     const int p = s.one, q = s.other;
     Eigen::MatrixXd block = s.block;
     if (p == q) add_turning(parts_.pieces[static_cast<std::size_t>(p)], block);
     block = columns_turned(columns_turned(std::move(block), seen.frames[q]).transpose(), seen.frames[p]);
-    Eigen::MatrixXd& sum = p == q ? own : paired;
-    for (Eigen::Index b = 0; 3 * b < length(p); ++b)
-      for (Eigen::Index a = 0; 3 * a < length(q); ++a)
+    Eigen::MatrixXd& sum = p == q ? out.own : out.paired;
+    for (Eigen::Index b = 0; b < count(p); ++b)
+      for (Eigen::Index a = 0; a < count(q); ++a)
         sum.block<3, 3>(3 * place_[first_[q] + a], 3 * place_[first_[p] + b]) +=
             block.block<3, 3>(3 * a, 3 * b);
   }
-  for (int p = 0; p < pieces; ++p)
-    for (Eigen::Index a = 0; 3 * a < length(p); ++a)
-      turned.middleRows<3>(3 * place_[first_[p] + a]) +=
-          seen.frames[p] * mixed.middleRows<3>(rows(p) + 3 * a);
-  own.noalias() -= turned * Eigen::PartialPivLU<Eigen::MatrixXd>(by_turns).solve(turned.transpose());
+  return out;
+}
+
+void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  const Seen seen = see(x);
+  if (!seen.admissible) return matrix.add(nodes_[0], nodes_[0], Mat3::Constant(seen.energy));
+  const TurnSlopes slopes = turn_slopes(seen);
+  auto [own, paired] = held_stiffness(seen);
+  // The frames follow to where the energy is least: by that the nodes' stiffness is less than with frames held.
+  const Eigen::MatrixXd turned = forces_on_nodes(seen, slopes);
+  own.noalias() -= turned * Eigen::PartialPivLU<Eigen::MatrixXd>(slopes.second).solve(turned.transpose());
   for (std::size_t b = 0; b < nodes_.size(); ++b)
     for (std::size_t a = b; a < nodes_.size(); ++a) {
       const auto i = 3 * static_cast<Eigen::Index>(a), j = 3 * static_cast<Eigen::Index>(b);

@@ -75,6 +75,26 @@ class FramedSolid {
   /// Energy and forces in the frames.
   void look(Seen& seen) const;
   Seen see(const VecX& x) const;
+  /// How forces and energy change with turns of the frames about their own axes: three columns a piece.
+  struct TurnSlopes {
+    /// N a rad, on the pieces' nodes (three rows a node of each piece), seen in the pieces' frames.
+    Eigen::MatrixXd forces;
+    Eigen::MatrixXd second;  ///< J a rad^2, the energy's second derivative by two turns
+  };
+  /// These slopes at fixed places of the nodes.
+  TurnSlopes turn_slopes(const Seen& seen) const;
+  /// The slopes' forces in the world's directions, N a rad, summed over the pieces: three rows a node of nodes_.
+  Eigen::MatrixXd forces_on_nodes(const Seen& seen, const TurnSlopes& slopes) const;
+  /// Stiffness of the nodes where no frame turns, N/m, in the world's directions: three rows and columns a node of
+  /// nodes_.
+  struct HeldStiffness {
+    Eigen::MatrixXd own;     ///< of pieces by themselves
+    Eigen::MatrixXd paired;  ///< of pairs of pieces, each but once: its transpose comes on top
+  };
+  /// This stiffness of all pieces and their pairs.
+  HeldStiffness held_stiffness(const Seen& seen) const;
+  /// The number of the nodes' coordinates: three a node of nodes_.
+  Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(nodes_.size()); }
 
   Parts parts_;
   std::vector<Eigen::Index> first_;  ///< column of each piece, and their number

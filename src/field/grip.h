@@ -1,5 +1,6 @@
 #pragma once
-// What jaws hold: skin points that keep their places along the pads until they slip, are drawn off or let go.
+// What jaws hold: skin points that keep their places along the pads until they slip, are drawn off or let go. How they take
+// hold is in take_hold.h.
 
 #include "field/field.h"
 
@@ -16,19 +17,8 @@ inline constexpr double pad_reach = 0.5e-3;
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 
-/// Skin points that touch a pad of a closing tool are held by it from here on; not of a wall after it has lost what it held.
-void take_hold(Field& field, int instrument);
-
-/// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to:
-/// others are let go, new ones held where they are. Returns whether it holds any.
-bool hold_by_clips(Field& field, int instrument);
-
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
 bool fold_fills_jaws(const Field& field, int instrument);
-
-/// Before jaws that hold some skin close further, to `jaw` (rad): each pad keeps what it holds within its half of the
-/// gap, out of the other's way.
-void make_room(Field& field, int instrument, double jaw);
 
 /// Area of the walls (m^2, at rest) that a tool's jaws hold between them: of the pad that holds less. A tube counts as
 /// wide as it is flat; what a clip keeps the pads off does not count.

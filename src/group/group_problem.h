@@ -5,14 +5,11 @@
 #include <memory>
 #include <span>
 
-#include "body/skin_bounds.h"
 #include "group/body_problem.h"
+#include "group/join.h"
 #include "numerics/newton_workspace.h"
 
 namespace calot {
-
-class Workers;
-class SkinJoin;
 
 /// A body, what acts on it and where it is. All must outlive the problem that is made of it.
 struct Member {
@@ -23,47 +20,6 @@ struct Member {
   Assembly* assembly =
       nullptr;  ///< several threads do the work, to the same bits; of a group the first one's
 };
-
-/// Where a body stands in a group.
-struct GroupPlace {
-  const Body* body = nullptr;
-  int first_node = 0;
-  Workers* workers = nullptr;  ///< who share what is asked about it; none: who asks, alone
-};
-
-/// What joins bodies: an energy over nodes of several of them, in the group's numbering. What it remembers is no part of
-/// any result.
-class Join {
- public:
-  virtual ~Join() = default;
-  /// Null: it is no contact of skins, which may rub on each other (body_rubbing.h).
-  virtual const SkinJoin* skins() const { return nullptr; }
-  /// A solve begins, of these bodies: they stay what they are until the next. Asked before anything else.
-  virtual void begin(std::span<const GroupPlace> /*bodies*/) const {}
-  /// Whether, while the bodies' skins are in these bounds, nothing acts, couples or stops them: then nothing else needs to
-  /// be asked.
-  virtual bool idle(std::span<const SkinBounds> /*bodies*/) const { return false; }
-  /// Finds what acts at x, which is then asked for; threads call it for several joins at a time.
-  virtual void find(const VecX& /*x*/) const {}
-  virtual double value(const VecX& x) const = 0;  ///< J
-  virtual void add_gradient(const VecX& x, VecX& gradient) const = 0;
-  /// Couplings that the pattern does not hold are left out: Newton then converges more slowly.
-  virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
-  /// Whether the last add_hessian() left some out.
-  virtual bool lacking() const { return false; }
-  /// Adds the groups of nodes that add_hessian() couples near x: with `close` those that a solve from here on may well
-  /// couple, else those that some later one may, too, so that a matrix made for these serves for long. Not asked for
-  /// where there is but one body: it is joined to nothing but itself, by nodes that its own pattern couples.
-  virtual void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const = 0;
-  /// The largest part of `share` of the step that is safe.
-  virtual double safe_share(const VecX& /*x*/, const VecX& /*step*/, double share) const { return share; }
-};
-
-using JoinPointer = std::shared_ptr<const Join>;
-
-/// The largest part of `share` of the step that all of these find safe; threads ask several at a time.
-double safe_share(std::span<const Join* const> joins, const VecX& x, const VecX& step, double share,
-                  Workers* workers);
 
 /// Matrices of the single bodies, with room for what couples each with itself, and the couplings that the joint one
 /// was made for. Of a body alone there is none: its matrix is the group's.

@@ -2,27 +2,19 @@
 // How one body grows out of another: points of the one are tied to places that the other carries along, so that the joint
 // holds position and direction.
 //
-// A place is carried by fixed weights of skin points, found at rest: they sum to 1 and give the place itself, so they go
-// along with any affine motion of those points, and of all such weights they are the smallest, near ones before far ones.
-// A body that is a line carries only places on it so. What stands off it is held by struts instead, to several points of
-// the line: springs that keep a length. They leave free only a turn about that line, which a rod does not resist either.
+// The places are carried by skin points (carried_place.h). A body that is a line carries only places on it so. What
+// stands off it is held by struts instead, to several points of the line: springs that keep a length. They leave free
+// only a turn about that line, which a rod does not resist either.
 //
 // Two lines in one, end to end, are a hinge: struts along them resist no bend.
 //
 // Nothing is loaded at rest, nor when all moves as one rigid body; a force and what answers it lie on one line.
 
 #include "base/status.h"
-#include "group/group_problem.h"
+#include "group/join.h"
+#include "joins/carried_place.h"
 
 namespace calot {
-
-/// A place by skin points of a body; the weights sum to 1.
-struct CarriedPlace {
-  std::vector<int> points;
-  std::vector<double> weights;
-};
-/// Adds a row of the nodes that it depends on, counted from `first_node`; `skin`: the body's.
-void append_place(const CarriedPlace& place, const StencilTable& skin, int first_node, StencilTable& rows);
 
 /// 1/2 stiffness (|one - other| - length)^2 a link.
 struct JointLinks {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fem/links.h"
+#include "group/body_problem.h"
 #include "group/self_contact.h"
 
 namespace calot {

@@ -15,7 +15,7 @@
 
 #include "collision/skin_contact.h"
 #include "collision/skin_edges.h"
-#include "group/group_problem.h"
+#include "group/join.h"
 #include "joins/met_skin.h"
 #include "joins/skin_rubbing.h"
 

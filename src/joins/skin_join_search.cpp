@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "group/body_problem.h"
 #include "group/self_contact.h"
 #include "joins/skin_join.h"
 

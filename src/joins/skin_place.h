@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "joins/joint.h"
+#include "joins/carried_place.h"
 
 namespace calot {
 

@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "collision/friction.h"
-#include "group/group_problem.h"
+#include "fem/links.h"
+#include "group/join.h"
 
 namespace calot {
 

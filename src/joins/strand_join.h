@@ -6,7 +6,8 @@
 // sheet of linked nodes takes several times as long.
 
 #include "fem/strand.h"
-#include "joins/joint.h"
+#include "group/join.h"
+#include "joins/carried_place.h"
 #include "joins/strand_touch.h"
 
 namespace calot {

@@ -12,27 +12,12 @@
 // Steps are cut into milliseconds: a pulse is known to 1e-5 so, and two openings of one organ share its pressure.
 
 #include "field/field.h"
-#include "liquid/outflow.h"
 
 namespace calot {
-
-inline constexpr double blood_density = 1060;  ///< kg/m^3
-
-/// As its definition has it; else what it carries, and of an artery its width, say.
-TubeFeed feed_of(const OrganDefinition& tube);
-
-/// Share of a tube's lumen that is open at its tightest between two of its places (skin points from its start), where
-/// clips and jaws are on it.
-double open_between(const Field& field, int organ, double one, double other);
 
 /// Lets out what leaves in `duration` s up to field.time: liquids' kept volumes fall, field.spill.lost grows, and drops
 /// begin to hang on openings; what needles are in is drawn out beside (aspirate.h). Returns the events bile_leak, bleeding
 /// and leak_stopped.
 std::vector<WorldEvent> leak(Field& field, double duration);
-
-/// Makes the holes that a tool's jaws, which hold them, cut or crush into hollow organs.
-void perforate(Field& field, int instrument);
-/// Makes one where current has burnt a wall, at the skin point nearest to `at`; what holds no liquid has nothing to lose.
-void perforate(Organ& organ, const Vec3& at, const std::string& instrument);
 
 }  // namespace calot

@@ -16,11 +16,4 @@ namespace calot {
 /// Moves all of it on by `duration` s, and makes drops of what hangs on openings.
 void spill(Field& field, double duration);
 
-/// Lets a clip fall from there straight down onto what a drop would meet; what meets nothing is not seen again. It falls
-/// in no time: 50 mm take a tenth of a second.
-void drop_clip(Field& field, ClipSize size, const Vec3& from, const Vec3& legs);
-
-/// The surface of a film that is `on` there; its mesh is null where the organ is gone.
-WetSurface wet_surface(const Field& field, int on);
-
 }  // namespace calot

@@ -6,7 +6,7 @@
 
 #include "anatomy/instruments.h"
 #include "base/suggest.h"
-#include "field/change_bodies.h"
+#include "field/divide_body.h"
 #include "lua/calot_module.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "session/registration.h"
+#include "input/registration.h"
 
 namespace calot {
 
@@ -15,7 +15,7 @@ namespace calot {
 ///     time_step = 1 / 30 * s,                      -- jigsaws: between rows
 ///     x_axis = { 1, 0, 0 }, y_axis = { 0, 1, 0 }, z_axis = { 0, 0, 1 },   -- theirs, in the patient's frame
 ///     longest_gap = 0.25 * s,
-///     columns = { time = "t", tip_x = "x" },       -- csv: what they are called there (session/foreign_motion.h)
+///     columns = { time = "t", tip_x = "x" },       -- csv: what they are called there (input/foreign_motion.h)
 ///     instruments = {
 ///       { name = "left", source = "slave_left", port = { 0.1, 0, 0.05 }, jaw_closed = -0.3, jaw_open = 1 },
 ///     },

@@ -10,7 +10,7 @@
 #include "base/suggest.h"
 #include "base/units.h"
 #include "field/between_jaws.h"
-#include "field/change_bodies.h"
+#include "field/roll.h"
 #include "lua/handles.h"
 #include "organs/strand_places.h"
 #include "script/lua_headers.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "field/change_bodies.h"
+#include "field/divide_body.h"
 #include "script/lua_headers.h"
 
 namespace calot {

@@ -132,6 +132,44 @@ void make_believable(const Field& field, VecX& dx) {
   }
 }
 
+/// The prediction that nothing moves.
+Prediction no_answer(const Field& field) {
+  Prediction out;
+  out.dx = out.first_order = VecX::Zero(BodyParts(field).total());
+  out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
+  return out;
+}
+
+/// Predicts into `out` how the bodies move to first order by `load`, N, the change of what the tools do to them, and by
+/// what moves them beside the tools, which is added to it. `joins`: all of the field's group. Fails (simulation) where
+/// the tangent answers nothing that can be believed.
+std::optional<Failure> answer_load(Field& field, const std::vector<ContactLoads>& loads,
+                                   const std::vector<JoinPointer>& joins, VecX& load, bool fresh,
+                                   SolveStatistics& statistics, Prediction& out) {
+  std::vector<Member> members = members_of(field, loads);
+  TissueMembers tissues(field);
+  tissues.add_to(members);
+  Group& group = field.group;
+  const std::vector<JoinPointer> with_rubbing = joins_with(joins, group.rubbing);
+  const GroupProblem problem(members, with_rubbing, group.patterns);
+  const VecX multipliers = problem.resting_multipliers();
+  VecX values;
+  if (field.step_time > 0) values = add_inertia(problem, multipliers, load);
+  FirstOrderAnswer answer = first_order_answer(problem, group.work, problem.coordinates(), multipliers, load,
+                                               all_edge_lengths(field), fresh, values);
+  count(field, answer.result, statistics);
+  if (!answer.result.converged())
+    return solve_failure(answer.result, member_name(field, answer.result.part), "under its instruments");
+  make_believable(field, answer.dx);
+  out.first_order = std::move(answer.dx);
+  out.first_order_pressures = problem.pressures(answer.dmultipliers);
+  out.share = answer.share;
+  out.dx = out.first_order;
+  out.dpressures = out.first_order_pressures;
+  if (field.step_time == 0) add_missed(group.missed, out);
+  return std::nullopt;
+}
+
 /// Limits a prediction to what keeps skins and tools apart.
 void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
                 const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
@@ -168,9 +206,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
 Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, bool fresh,
                            SolveStatistics& statistics) {
   const BodyParts parts(field);
-  Prediction out;
-  out.dx = out.first_order = VecX::Zero(parts.total());
-  out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
+  Prediction out = no_answer(field);
   const bool moving = !all_stand_still(field);
   if (from == to && !moving) return out;
   out.travel = largest_travel(field, to);
@@ -188,29 +224,9 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   const std::vector<JoinPointer> all = all_joins(field, from);
   add_strand_load(field, place_strands(field), from, to, load, out.loaded);
   out.loaded |= moving;
-  if (out.loaded) {
-    std::vector<Member> members = members_of(field, loads);
-    TissueMembers tissues(field);
-    tissues.add_to(members);
-    Group& group = field.group;
-    const std::vector<JoinPointer> joins = joins_with(all, group.rubbing);
-    const GroupProblem problem(members, joins, group.patterns);
-    const VecX multipliers = problem.resting_multipliers();
-    VecX values;
-    if (field.step_time > 0) values = add_inertia(problem, multipliers, load);
-    FirstOrderAnswer answer = first_order_answer(problem, group.work, problem.coordinates(), multipliers,
-                                                 load, all_edge_lengths(field), fresh, values);
-    count(field, answer.result, statistics);
-    if (!answer.result.converged())
-      return solve_failure(answer.result, member_name(field, answer.result.part), "under its instruments");
-    make_believable(field, answer.dx);
-    out.first_order = std::move(answer.dx);
-    out.first_order_pressures = problem.pressures(answer.dmultipliers);
-    out.share = answer.share;
-    out.dx = out.first_order;
-    out.dpressures = out.first_order_pressures;
-    if (field.step_time == 0) add_missed(group.missed, out);
-  }
+  if (out.loaded)
+    if (std::optional<Failure> failure = answer_load(field, loads, all, load, fresh, statistics, out))
+      return *failure;
   const Timed timed(statistics.contact_s);
   // What moves by itself may meet shapes that no tool brings near.
   for (std::size_t k = 0; moving && k < field.organs.size(); ++k) {
@@ -223,9 +239,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
 }
 
 Prediction of_tools_alone(Field& field, const Poses& from, const Poses& to, SolveStatistics& statistics) {
-  Prediction out;
-  out.dx = out.first_order = VecX::Zero(BodyParts(field).total());
-  out.dpressures = out.first_order_pressures = VecX::Zero(static_cast<Eigen::Index>(field.organs.size()));
+  Prediction out = no_answer(field);
   out.travel = largest_travel(field, to);
   const std::vector<ContactLoads> loads = solve_loads(field, from);
   std::vector<std::vector<ContactPair>> pairs;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "field/field_tissues.h"
+#include "tools/part_path.h"
 
 namespace calot {
 namespace {

@@ -157,6 +157,51 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
   return out;
 }
 
+/// What an organ's details are chosen by: where it lies, what holds it, how far its details have faded, and the tools'
+/// poses.
+ContactPlace contact_place(const Organ& organ, const ShellBody& shell,
+                           const std::vector<InstrumentPose>& poses) {
+  return {organ.state.x,      poses,           organ.grips,          organ.extensions,
+          organ.state.shares, shell.details(), organ.refused_details};
+}
+
+/// Refines the organ's shell by `details` instead of its own and brings the group to rest; `wanted`: those of them that
+/// do not fade. Where that cannot be, the organ keeps its own, and `details` are refused until others are wanted.
+void change_details(Field& field, Organ& organ, std::vector<int> details, const std::vector<int>& wanted,
+                    const ContactLoads& now, const std::vector<InstrumentPose>& poses,
+                    SolveStatistics& statistics) {
+  const BodyPointer present = organ.body;
+  const ShellBody& shell = *shell_of(organ);
+  organ.refused_details = details;
+  const Timed timed(statistics.extension_s);
+  Result<ShellBody> next = shell.with_details(std::move(details));
+  if (!next) {
+    ++statistics.extensions_refused;
+    return;
+  }
+  const GroupSnapshot before = snapshot(field);
+  const BodyState was = organ.state;
+  if (!motion_in(next.value(), shell, organ.state.motion)) {
+    ++statistics.extensions_refused;
+    return;
+  }
+  organ.state.x = shell.coordinates_in(next.value(), was.x);
+  organ.state.shares = shares_of(next->details(), wanted, shell, was.shares);
+  organ.state.fading_load = made_good(shell, was, next.value(), organ.state.x);
+  organ.body = std::make_shared<const ShellBody>(std::move(next).value());
+  field.group.forget_bodies();
+  ++statistics.extensions_changed;
+  if (clear_of_tools(organ, now) && clear_of_itself(organ, shell, was.x) &&
+      settle_group(field, poses, present_places(field), NewtonSettings{}.max_iterations, statistics)
+          .converged()) {
+    organ.refused_details.reset();
+    return;
+  }
+  restore(field, before);
+  --statistics.extensions_changed;
+  ++statistics.extensions_refused;
+}
+
 }  // namespace
 
 std::vector<int> details_around(const ShellBody& body, const std::vector<Extension>& extensions) {
@@ -180,15 +225,10 @@ std::vector<int> details_around(const ShellBody& body, const std::vector<Extensi
 }
 
 void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
-  const BodyPointer present = organ.body;
   const ShellBody* shell = shell_of(organ);
   if (shell == nullptr || shell->most_levels() == 0) return;
   const std::vector<InstrumentPose> poses = present_poses(field);
-  const auto place = [&] {
-    return ContactPlace{
-        organ.state.x,        poses, organ.grips, organ.extensions, organ.state.shares, shell->details(),
-        organ.refused_details};
-  };
+  const auto place = [&] { return contact_place(organ, *shell, poses); };
   if (organ.looked_at == place()) return;
   const ContactLoads now = contact_loads(field, organ, poses);
   std::vector<int> wanted, details;
@@ -210,35 +250,7 @@ void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
     organ.looked_at = place();
     return;
   }
-
-  organ.refused_details = details;
-  const Timed timed(statistics.extension_s);
-  Result<ShellBody> next = shell->with_details(std::move(details));
-  if (!next) {
-    ++statistics.extensions_refused;
-    return;
-  }
-  const GroupSnapshot before = snapshot(field);
-  const BodyState was = organ.state;
-  if (!motion_in(next.value(), *shell, organ.state.motion)) {
-    ++statistics.extensions_refused;
-    return;
-  }
-  organ.state.x = shell->coordinates_in(next.value(), was.x);
-  organ.state.shares = shares_of(next->details(), wanted, *shell, was.shares);
-  organ.state.fading_load = made_good(*shell, was, next.value(), organ.state.x);
-  organ.body = std::make_shared<const ShellBody>(std::move(next).value());
-  field.group.forget_bodies();
-  ++statistics.extensions_changed;
-  if (clear_of_tools(organ, now) && clear_of_itself(organ, *shell, was.x) &&
-      settle_group(field, poses, present_places(field), NewtonSettings{}.max_iterations, statistics)
-          .converged()) {
-    organ.refused_details.reset();
-    return;
-  }
-  restore(field, before);
-  --statistics.extensions_changed;
-  ++statistics.extensions_refused;
+  change_details(field, organ, std::move(details), wanted, now, poses, statistics);
 }
 
 }  // namespace calot

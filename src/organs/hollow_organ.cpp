@@ -259,6 +259,35 @@ std::function<double(const Vec3& x)> foundation_of(const std::vector<HeldRegion>
   };
 }
 
+/// The organ's wall and bile over its control mesh; `places`: of its landmarks, where it may be held.
+ShellBody::Setup shell_setup(const OrganDefinition& definition, const OrganSetting& setting,
+                             const TriMesh& control, const Places& places) {
+  ShellBody::Setup setup;
+  setup.name = definition.name;
+  setup.control = control;
+  setup.material = wall_material(definition);
+  setup.bile = definition.bile;
+  setup.up = setting.up;
+  setup.levels = setting.levels;
+  setup.wall_density = definition.wall.density;
+  setup.foundation = foundation_of(definition.held, places);
+  return setup;
+}
+
+/// Fails (scenario) where a region that is held has no point of the wall in it; `wall`: the points, m.
+std::optional<Failure> check_held_regions(const OrganDefinition& definition, const Places& places,
+                                          const std::vector<Vec3>& wall) {
+  for (const HeldRegion& region : definition.held)
+    if (std::none_of(wall.begin(), wall.end(),
+                     [&](const Vec3& x) { return (x - places.at(region.landmark)).norm() < region.radius; }))
+      return fail(FailureKind::scenario,
+                  fmt::format("held region '{}' of organ '{}' is too small to catch any of its wall",
+                              region.name, definition.name),
+                  "give it a larger radius, or the organ more nodes",
+                  {"", 0, fmt::format(".held[{}].radius", &region - definition.held.data() + 1)});
+  return std::nullopt;
+}
+
 /// Contact is felt at skin points: they must stand closer than half a jaw is wide, or it would slip in
 /// between.
 std::optional<Failure> check_skin_spacing(const ShellBody& body) {
@@ -271,6 +300,20 @@ std::optional<Failure> check_skin_spacing(const ShellBody& body) {
           "the skin of organ '{}' has points {:.1f} mm apart, more than half a jaw is wide ({:.1f} mm)",
           body.name(), 1e3 * widest, 1e3 * limit),
       "give the organ more nodes", {"", 0, ".nodes"});
+}
+
+/// Settings of the solves that fill an organ with `nodes` control nodes: each iteration takes `nodes` off the limits of
+/// the filling, and a solve stops where nothing is left of them.
+NewtonSettings filling_settings(const OrganSetting& setting, std::size_t nodes) {
+  NewtonSettings out;
+  out.tolerance = setting.tolerance;
+  if (setting.limits != nullptr)
+    out.stop = [limits = setting.limits, nodes = static_cast<std::int64_t>(nodes)] {
+      if (limits->stop != nullptr && *limits->stop) return true;
+      limits->node_iterations -= nodes;
+      return limits->node_iterations <= 0;
+    };
+  return out;
 }
 
 }  // namespace
@@ -308,34 +351,16 @@ std::vector<Problem> mesh_problems(const SceneDefinition& scene) {
 }
 
 Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting) {
-  const ContactLoads& loads = setting.loads;
-  FillingLimits* const limits = setting.limits;
   Result<TriMesh> control = control_mesh(definition);
   if (!control) return control.failure();
-  ShellBody::Setup setup;
-  setup.name = definition.name;
-  setup.control = control.value();
-  setup.material = wall_material(definition);
-  setup.bile = definition.bile;
-  setup.up = setting.up;
-  setup.levels = setting.levels;
-  setup.wall_density = definition.wall.density;
-  const Result<Places> found = places_on(definition, control.value());
-  if (!found) return of_organ(found.failure(), definition);
-  const Places& places = found.value();
-  setup.foundation = foundation_of(definition.held, places);
-  Result<ShellBody> body = ShellBody::create(setup);
+  const Result<Places> places = places_on(definition, control.value());
+  if (!places) return of_organ(places.failure(), definition);
+  Result<ShellBody> body =
+      ShellBody::create(shell_setup(definition, setting, control.value(), places.value()));
   if (!body) return of_organ(body.failure(), definition);
-  for (const HeldRegion& region : definition.held) {
-    const std::vector<Vec3>& wall = body->foundation().target;
-    if (std::none_of(wall.begin(), wall.end(),
-                     [&](const Vec3& x) { return (x - places.at(region.landmark)).norm() < region.radius; }))
-      return fail(FailureKind::scenario,
-                  fmt::format("held region '{}' of organ '{}' is too small to catch any of its wall",
-                              region.name, definition.name),
-                  "give it a larger radius, or the organ more nodes",
-                  {"", 0, fmt::format(".held[{}].radius", &region - definition.held.data() + 1)});
-  }
+  if (std::optional<Failure> failure =
+          check_held_regions(definition, places.value(), body->foundation().target))
+    return *failure;
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
   const auto shell = std::make_shared<ShellBody>(std::move(body).value());
@@ -345,17 +370,10 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   organ.state.volume = shell->bile()->volume(organ.state.x);
   for (const auto& [name, place] : landmark_places(definition, organ.body->skin_rest()))
     organ.landmarks[name] = nearest_of(organ.body->skin_rest(), place);
-  if (std::optional<Failure> failure = check_clear_of_ground(*shell, loads)) return *failure;
-  NewtonSettings settings;
-  settings.tolerance = setting.tolerance;
-  if (limits != nullptr)
-    settings.stop = [limits, nodes = static_cast<std::int64_t>(control->points.size())] {
-      if (limits->stop != nullptr && *limits->stop) return true;
-      limits->node_iterations -= nodes;
-      return limits->node_iterations <= 0;
-    };
+  if (std::optional<Failure> failure = check_clear_of_ground(*shell, setting.loads)) return *failure;
   organ.search.own.active = !swells(organ);
-  Result<bool> filled = fill(made, loads, settings, limits);
+  const NewtonSettings settings = filling_settings(setting, control->points.size());
+  Result<bool> filled = fill(made, setting.loads, settings, setting.limits);
   organ.search.own.active = true;
   if (!filled) return filled.failure();
   shell->keep_in_equilibrium(organ.state);

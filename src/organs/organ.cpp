@@ -26,6 +26,8 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.burns = snapshot.burns;
 }
 
+std::string quoted(const Organ& organ) { return "'" + organ.definition.name + "'"; }
+
 Failure at_organ(Failure failure, std::size_t index) {
   for (Problem& problem : failure.problems) {
     std::string& path = problem.place.path;

@@ -128,6 +128,9 @@ struct RestedOrgan {
   NewtonWorkspace work;
 };
 
+/// Its name in single quotes, for messages.
+std::string quoted(const Organ& organ);
+
 /// A failure of make_organ, whose problems' paths start at the organ (".bile"), as one of the scene's
 /// organ of that index.
 Failure at_organ(Failure failure, std::size_t index);

@@ -25,15 +25,38 @@ StrandLaw::Setup law_of(const TissueDefinition& definition, const StrandPlace& p
   return out;
 }
 
-std::shared_ptr<const TissueBody> nodes_of(const TissueDefinition& definition, std::vector<Vec3> at,
-                                           std::vector<double> masses, const Vec3& up, double strength) {
+/// The body of the strands' own nodes: each node halfway between its strand's ends, with the strand's mass, kg.
+std::shared_ptr<const TissueBody> nodes_of(const TissueDefinition& definition,
+                                           const std::vector<StrandPlace>& places, const Vec3& up) {
   TissueBody::Setup setup;
   setup.name = definition.name;
-  setup.nodes = std::move(at);
-  setup.masses = std::move(masses);
   setup.up = up;
-  setup.strength = strength;
+  setup.strength = 0;
+  for (const StrandPlace& place : places) {
+    const StrandLaw::Setup law = law_of(definition, place);
+    setup.strength = std::max(setup.strength, law.strength);
+    setup.nodes.push_back(0.5 * (place.from + place.to));
+    setup.masses.push_back(definition.density * place.area * law.length);
+  }
   return std::make_shared<const TissueBody>(setup);
+}
+
+/// Fails (scenario) where a strand of the tissue's strength takes more to tear, J/m^2, than the tissue's break energy.
+std::optional<Failure> check_break_energy(const TissueDefinition& definition,
+                                          const std::vector<StrandPlace>& places) {
+  double least = 0, longest = 0;
+  for (const StrandPlace& place : places) {
+    const StrandLaw::Setup law = law_of(definition, place);
+    least = std::max(least, StrandLaw::least_break_energy(law) / place.area);
+    longest = std::max(longest, law.length);
+  }
+  if (!(least > definition.break_energy)) return std::nullopt;
+  return fail(
+      FailureKind::scenario,
+      fmt::format("strands of '{}' are up to {:.3g} mm long: of this strength they take {:.3g} J/m^2 or "
+                  "more to tear, not {:.3g}",
+                  definition.name, 1e3 * longest, least, definition.break_energy),
+      "raise break_energy, or lower strength or within", {"", 0, ".break_energy"});
 }
 
 }  // namespace
@@ -106,25 +129,8 @@ Result<Tissue> make_tissue(const TissueDefinition& definition, const std::vector
   const Result<std::vector<StrandPlace>> places =
       strand_places(definition, organs[bodies[0]], organs[bodies[1]]);
   if (!places) return places.failure();
+  if (std::optional<Failure> failure = check_break_energy(definition, places.value())) return *failure;
   std::vector<PlacedStrand> strands;
-  std::vector<Vec3> at;
-  std::vector<double> masses;
-  double strength = 0, least = 0, longest = 0;
-  for (const StrandPlace& place : places.value()) {
-    const StrandLaw::Setup setup = law_of(definition, place);
-    least = std::max(least, StrandLaw::least_break_energy(setup) / place.area);
-    longest = std::max(longest, setup.length);
-    strength = std::max(strength, setup.strength);
-    at.push_back(0.5 * (place.from + place.to));
-    masses.push_back(definition.density * place.area * setup.length);
-  }
-  if (least > definition.break_energy)
-    return fail(
-        FailureKind::scenario,
-        fmt::format("strands of '{}' are up to {:.3g} mm long: of this strength they take {:.3g} J/m^2 or "
-                    "more to tear, not {:.3g}",
-                    definition.name, 1e3 * longest, least, definition.break_energy),
-        "raise break_energy, or lower strength or within", {"", 0, ".break_energy"});
   for (const StrandPlace& place : places.value()) {
     Result<StrandLaw> law = StrandLaw::create(law_of(definition, place));
     if (!law) return law.failure();
@@ -133,7 +139,7 @@ Result<Tissue> make_tissue(const TissueDefinition& definition, const std::vector
   }
   Tissue out;
   out.definition = definition;
-  out.body = nodes_of(definition, std::move(at), std::move(masses), up, strength);
+  out.body = nodes_of(definition, places.value(), up);
   out.now.state.x = out.body->rest();
   out.now.opened.assign(strands.size(), 0.0);
   out.now.heated.assign(strands.size(), 0.0);

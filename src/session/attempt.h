@@ -1,6 +1,6 @@
 #pragma once
 // Who operated a session, when, where and by what means. Nothing here decides a bit of a state, and no person's name stands
-// here: a trainee is known by a pseudonym, and a register that stays at home tells whose it is (app/name_register.h).
+// here: a trainee is known by a pseudonym, and a register that stays at home tells whose it is (grading/name_register.h).
 
 #include <optional>
 #include <string>

@@ -52,6 +52,21 @@ OrderedJson benchmark_json(const ScorePart& part) {
   return json;
 }
 
+/// A part of the score: what it is, what was measured for it, and the points that it earned.
+OrderedJson scored_part_json(const ScoredPart& part) {
+  OrderedJson json = {{"name", part.definition.name},
+                      {"title", part_title(part.definition)},
+                      {"kind", score_part_kinds()[static_cast<std::size_t>(part.definition.kind)]}};
+  json["measured"] = part.measured ? OrderedJson(*part.measured) : OrderedJson();
+  json["benchmark"] = benchmark_json(part.definition);
+  json["points"] = part.points;
+  json["weight"] = part.definition.weight;
+  json["share_of_steps_done"] = part.done;
+  json["event_times_s"] = part.times;
+  json["explanation"] = part.explanation;
+  return json;
+}
+
 OrderedJson timing_json(const SessionResult& session, double step, double start_to_first_frame) {
   const SessionTiming& timing = session.timing;
   const StepTimes times = step_times(timing.step_s, step);
@@ -140,19 +155,7 @@ OrderedJson score_json(const ExerciseDefinition& exercise, const Score& score, b
                              {"fails", gate.fails}});
   }
   json["parts"] = OrderedJson::array();
-  for (const ScoredPart& part : score.parts) {
-    OrderedJson entry = {{"name", part.definition.name},
-                         {"title", part_title(part.definition)},
-                         {"kind", score_part_kinds()[static_cast<std::size_t>(part.definition.kind)]}};
-    entry["measured"] = part.measured ? OrderedJson(*part.measured) : OrderedJson();
-    entry["benchmark"] = benchmark_json(part.definition);
-    entry["points"] = part.points;
-    entry["weight"] = part.definition.weight;
-    entry["share_of_steps_done"] = part.done;
-    entry["event_times_s"] = part.times;
-    entry["explanation"] = part.explanation;
-    json["parts"].push_back(std::move(entry));
-  }
+  for (const ScoredPart& part : score.parts) json["parts"].push_back(scored_part_json(part));
   return json;
 }
 

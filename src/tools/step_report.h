@@ -40,7 +40,8 @@ struct InstrumentState {
   PartLoads parts;                   ///< by ToolPart
   const PartLoad& load_on(ToolPart part) const { return parts[static_cast<std::size_t>(part)]; }
   bool touching = false;
-  std::string holds;  ///< organ's name, empty when nothing is held
+  std::string touches;  ///< name of the first organ, else tissue, that it touches; empty: none
+  std::string holds;    ///< organ's name, empty when nothing is held
   int grip_points = 0;
   GripState grip = GripState::open;
   InstrumentAction action = InstrumentAction::none;

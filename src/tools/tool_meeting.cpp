@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "group/body_problem.h"
+#include "tools/part_path.h"
 
 namespace calot {
 namespace {
@@ -201,54 +202,71 @@ bool on_all_of_way(double share, double travel, const Holds& holds) {
   return true;
 }
 
+/// How two tools that may meet go, each from one pose to another.
+struct MeetingWay {
+  std::array<const Tool*, 2> tools{};
+  std::array<InstrumentPose, 2> from, to;
+  double travel = 0;  ///< m, of both together at most
+  InstrumentPose pose(int side, double share) const { return interpolate(from[side], to[side], share); }
+};
+
+/// The share of the way, `share` at most, on which a point of tool `side` that is inside the core of the other's `part`
+/// goes no deeper; `gap`: its signed distance from the core before, m. Jaws that turned on what they hold may have come
+/// into the other tool.
+double share_no_deeper(const MeetingWay& way, int side, const ToolPoint& point, int part, double gap,
+                       double share) {
+  const auto stays = [&](double at_share) {
+    const Vec3 there =
+        PosedPart(*way.tools[side], way.pose(side, at_share), point.part).frame() * point.local;
+    const PosedTool then(*way.tools[1 - side], tool_coordinates(way.pose(1 - side, at_share)));
+    const Shape core_then = offset(core_of(contact_shape(then.shapes[part])), point.radius);
+    return signed_distance(core_then, there) >= gap - deeper;
+  };
+  while (share > 0 && !on_all_of_way(share, way.travel, stays)) share = share > 1e-6 ? 0.5 * share : 0;
+  return share;
+}
+
+/// The share of the way, `share` at most, that keeps a point of tool `side`, at `at` (m) before, off the core of the
+/// other's `part`, `gap` (m, above 0) away before. The point's own way is bent; what it may stray from the chord falls
+/// with the square of the share.
+double share_kept_off(const MeetingWay& way, int side, const ToolPoint& point, const Vec3& at, int part,
+                      const Shape& core, double gap, double share) {
+  const Tool &own = *way.tools[side], &other = *way.tools[1 - side];
+  for (int halvings = 0; halvings < 60; ++halvings) {
+    const InstrumentPose own_end = way.pose(side, share);
+    const double bend = path_bend(own, way.from[side], own_end, at);
+    if (bend > 0.25 * gap) {
+      share *= 0.5;
+      continue;
+    }
+    const Vec3 motion = PosedPart(own, own_end, point.part).frame() * point.local - at;
+    const PartPath path(other, part, way.from[1 - side], way.pose(1 - side, share));
+    return share * path.share_apart(offset(core, bend), at, motion, contact_keep);
+  }
+  return 0;
+}
+
 }  // namespace
 
 double ToolMeeting::safe_share(const VecX& x, const VecX& step, double share) const {
-  std::array<InstrumentPose, 2> from, to;
-  double travel = 0;
+  MeetingWay way;
   for (int side = 0; side < 2; ++side) {
-    from[side] = pose_at(unknowns(side, x));
-    to[side] = pose_at(unknowns(side, x) + unknowns(side, step));
-    travel += travel_bound(*sides_[side].tool, from[side], interpolate(from[side], to[side], share));
+    way.tools[side] = sides_[side].tool;
+    way.from[side] = pose_at(unknowns(side, x));
+    way.to[side] = pose_at(unknowns(side, x) + unknowns(side, step));
+    way.travel += travel_bound(*way.tools[side], way.from[side], way.pose(side, share));
   }
-  if (travel == 0) return share;
-  const double reach = travel / (1 - contact_keep);
-  for_near(
-      x, reach,
-      [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
-          const Shape& shape, int part) {
-        const Tool &own = *sides_[side].tool, &other = *sides_[1 - side].tool;
-        const Shape core = offset(core_of(shape), point.radius);
-        const double gap = signed_distance(core, at);
-        if ((1 - contact_keep) * gap > travel) return;
-        // Jaws that turned on what they hold may have come into the other tool: what is in it goes no deeper.
-        if (gap <= 0) {
-          const auto stays = [&](double at_share) {
-            const Vec3 there =
-                PosedPart(own, interpolate(from[side], to[side], at_share), point.part).frame() * point.local;
-            const PosedTool then(other,
-                                 tool_coordinates(interpolate(from[1 - side], to[1 - side], at_share)));
-            const Shape core_then = offset(core_of(contact_shape(then.shapes[part])), point.radius);
-            return signed_distance(core_then, there) >= gap - deeper;
-          };
-          while (share > 0 && !on_all_of_way(share, travel, stays)) share = share > 1e-6 ? 0.5 * share : 0;
-          return;
-        }
-        // The point's own way is bent; what it may stray from the chord falls with the square of the share.
-        for (int halvings = 0; halvings < 60; ++halvings) {
-          const InstrumentPose own_end = interpolate(from[side], to[side], share);
-          const double bend = path_bend(own, from[side], own_end, at);
-          if (bend > 0.25 * gap) {
-            share *= 0.5;
-            continue;
-          }
-          const Vec3 motion = PosedPart(own, own_end, point.part).frame() * point.local - at;
-          const PartPath path(other, part, from[1 - side], interpolate(from[1 - side], to[1 - side], share));
-          share *= path.share_apart(offset(core, bend), at, motion, contact_keep);
-          return;
-        }
-        share = 0;
-      });
+  if (way.travel == 0) return share;
+  const double reach = way.travel / (1 - contact_keep);
+  for_near(x, reach,
+           [&](int side, const ToolPoint& point, const Vec3& at, const PosedPart&, const PosedPart&,
+               const Shape& shape, int part) {
+             const Shape core = offset(core_of(shape), point.radius);
+             const double gap = signed_distance(core, at);
+             if ((1 - contact_keep) * gap > way.travel) return;
+             share = gap <= 0 ? share_no_deeper(way, side, point, part, gap, share)
+                              : share_kept_off(way, side, point, at, part, core, gap, share);
+           });
   return share;
 }
 

@@ -9,7 +9,7 @@
 // attitude. Both tools' points count, each for half, so neither is preferred. The tools' own parts do not meet.
 
 #include "group/contact_search.h"
-#include "group/group_problem.h"
+#include "group/join.h"
 #include "tools/posed_part.h"
 
 namespace calot {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "field/between_jaws.h"
-#include "liquid/spill.h"
+#include "liquid/films.h"
 #include "view/instrument_parts.h"
 #include "view/surfaces.h"
 

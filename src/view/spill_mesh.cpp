@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "field/between_jaws.h"
-#include "liquid/spill.h"
+#include "liquid/films.h"
 #include "view/surfaces.h"
 
 namespace calot {

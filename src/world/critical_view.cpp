@@ -136,6 +136,36 @@ int points_for(double share, const CriticalViewQuestion& question) {
   return share >= question.two_from ? 2 : share >= question.one_from ? 1 : 0;
 }
 
+/// Where a lens looks square at the middle of a triangle from the side that the eye is not on, m.
+Vec3 square_behind(const std::array<Vec3, 3>& corners, const Vec3& eye) {
+  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  const double side = normal.dot(eye - corners[0]) > 0 ? 1 : -1;
+  return (corners[0] + corners[1] + corners[2]) / 3 - side * lens_behind * normal;
+}
+
+/// Judges the third criterion: counts the tubes that enter the gallbladder and those of them that are free (seen from
+/// the front or from behind, no standing strand on them), and gives the points for structures.
+void judge_structures(const Field& field, const CriticalViewQuestion& question,
+                      const std::vector<Standing>& standing, const Sight& front, const Sight& back,
+                      CriticalView& out) {
+  const int gallbladder = organ_called(field, question.gallbladder);
+  if (gallbladder < 0) return;
+  const Organ& bladder = field.organs[static_cast<std::size_t>(gallbladder)];
+  const SkinFinder skin(*bladder.body, bladder.body->skin_positions(bladder.state.x));
+  for (std::size_t tube : tubes_of(field, gallbladder)) {
+    ++out.structures;
+    const Entering part = entering(field.organs[tube], skin, question.near);
+    const double thick = 2 * part.radius + on_surface;
+    const bool seen = std::any_of(part.places.begin(), part.places.end(), [&](const Vec3& place) {
+      return front.sees(place, thick) || back.sees(place, thick);
+    });
+    const bool free = std::none_of(standing.begin(), standing.end(),
+                                   [&](const Standing& strand) { return is_on(strand, part); });
+    out.free += seen && free ? 1 : 0;
+  }
+  if (out.structures == 2) out.structure_points = out.free;
+}
+
 }  // namespace
 
 CriticalView critical_view(const Field& field, const HepatocysticTriangle& triangle, const Vec3& eye,
@@ -151,11 +181,9 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
 
   CriticalView out;
   const std::array<Vec3, 3> corners{triangle.neck, triangle.junction, triangle.hilum};
-  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  const double side = normal.dot(eye - corners[0]) > 0 ? 1 : -1;
-  const Vec3 square = (corners[0] + corners[1] + corners[2]) / 3 - side * lens_behind * normal;
   const Sight front(field, eye);
-  const Sight back(field, question.behind.value_or(square), question.behind ? "" : question.liver);
+  const Sight back(field, question.behind.value_or(square_behind(corners, eye)),
+                   question.behind ? "" : question.liver);
   std::vector<Standing> fat;
   std::copy_if(standing.begin(), standing.end(), std::back_inserter(fat),
                [](const Standing& strand) { return !strand.of_plate; });
@@ -166,22 +194,7 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
   out.plate = lower == 0 ? 1.0 : static_cast<double>(lower_torn) / lower;
   out.plate_points = points_for(out.plate, question);
 
-  const int gallbladder = organ_called(field, question.gallbladder);
-  if (gallbladder < 0) return out;
-  const Organ& bladder = field.organs[static_cast<std::size_t>(gallbladder)];
-  const SkinFinder skin(*bladder.body, bladder.body->skin_positions(bladder.state.x));
-  for (std::size_t tube : tubes_of(field, gallbladder)) {
-    ++out.structures;
-    const Entering part = entering(field.organs[tube], skin, question.near);
-    const double thick = 2 * part.radius + on_surface;
-    const bool seen = std::any_of(part.places.begin(), part.places.end(), [&](const Vec3& place) {
-      return front.sees(place, thick) || back.sees(place, thick);
-    });
-    const bool free = std::none_of(standing.begin(), standing.end(),
-                                   [&](const Standing& strand) { return is_on(strand, part); });
-    out.free += seen && free ? 1 : 0;
-  }
-  if (out.structures == 2) out.structure_points = out.free;
+  judge_structures(field, question, standing, front, back, out);
   return out;
 }
 

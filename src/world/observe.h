@@ -1,18 +1,16 @@
 #pragma once
-// What a step is reported to have done: where instruments, organs and tissues are, and what began.
+// Which events a step's end shows to have begun.
 
 #include "field/field.h"
 #include "tools/step_report.h"
 
 namespace calot {
 
-/// Writes the states of all that is in the field, its events and time left as they are.
-void report_states(const Field& field, StepReport& report);
+/// What begins between two reports of the field's states: contact, current, too much force, tools that meet, walls that are
+/// stretched too far. A report without instruments is of a time before all of it. The events have no time yet.
+std::vector<WorldEvent> observe(const Field& field, const StepReport& before, const StepReport& now);
 
-/// After a step of `duration` s in which tools were asked for these actions (none: for nothing), at report.time: current
-/// flows, states are reported beside those of the step before, and what begins is an event, after those that the step
-/// raised already (without times).
-void observe(Field& field, const std::vector<InstrumentAction>& actions, double duration,
-             std::vector<WorldEvent> events, StepReport& report);
+/// Gives events the time of the report, and those without a place that of their instrument's tip.
+void place_events(const Field& field, const StepReport& report, std::vector<WorldEvent>& events);
 
 }  // namespace calot

@@ -8,16 +8,19 @@
 
 #include "acts/advance.h"
 #include "acts/clips.h"
+#include "acts/current.h"
 #include "acts/exchange.h"
 #include "acts/hands.h"
 #include "base/hash.h"
 #include "base/suggest.h"
 #include "fem/assembly.h"
 #include "field/change_bodies.h"
+#include "field/divide_body.h"
 #include "field/field_hash.h"
 #include "field/field_state.h"
 #include "field/field_tissues.h"
 #include "field/join_bodies.h"
+#include "field/roll.h"
 #include "group/vibration.h"
 #include "liquid/aspirate.h"
 #include "liquid/leak.h"
@@ -29,6 +32,7 @@
 #include "tools/laparoscope.h"
 #include "world/come_to_rest.h"
 #include "world/observe.h"
+#include "world/report_states.h"
 #include "world/sight.h"
 
 namespace calot {
@@ -69,9 +73,17 @@ struct World::Impl {
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
 
-  /// What happens on the way; on failure the field is to be given back.
+  /// Why a step with this input is refused; none: it is not.
+  std::optional<Failure> check(const StepInput& input) const;
+  /// What happens in a step; on failure the field is to be given back.
+  Result<std::vector<WorldEvent>> act(const StepInput& input);
+  /// What happens on the tools' way.
   Result<std::vector<WorldEvent>> move_tools(const std::vector<InstrumentPose>& commands);
   void place_laparoscope(const InstrumentPose& pose);
+  /// Reports all as it stands after a step of `duration` s that raised these events already (without times), and lets
+  /// current flow: what begins is an event, too.
+  void observe_step(const std::vector<InstrumentAction>& actions, double duration,
+                    std::vector<WorldEvent> events);
   void keep_hash();
   bool same_factors(const FieldState& state) const;
   std::uint64_t hash(std::uint64_t of_field) const;
@@ -104,6 +116,30 @@ Result<std::vector<WorldEvent>> World::Impl::move_tools(const std::vector<Instru
   const Result<std::vector<InstrumentPose>> brought = bring_tools(field, commands, report.instruments);
   if (!brought) return brought.failure();
   return advance(field, brought.value(), report.statistics);
+}
+
+void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, double duration,
+                               std::vector<WorldEvent> events) {
+  const StepReport before = report;
+  for (std::size_t i = 0; i < field.tools.size(); ++i)
+    field.tools[i].action = actions.empty() ? InstrumentAction::none : actions[i];
+  feel_ports(field.tools, before.instruments, duration);
+  report_states(field, report);
+  const std::vector<WorldEvent> begun = observe(field, before, report);
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    Tool& tool = field.tools[i];
+    tool.touched = report.instruments[i].touching;
+    tool.over_limit =
+        report.instruments[i].load_on(ToolPart::jaws).force.norm() > tool.definition.force_limit;
+    tool.met = !report.instruments[i].meets.empty();
+  }
+  feel_stiffness(field.tools, before.instruments, report.instruments);
+  const std::vector<WorldEvent> burnt = apply_current(field, report.instruments, duration);
+  report_tissues(field, report);
+  events.insert(events.end(), begun.begin(), begun.end());
+  events.insert(events.end(), burnt.begin(), burnt.end());
+  place_events(field, report, events);
+  report.events = std::move(events);
 }
 
 void World::Impl::keep_hash() {
@@ -167,29 +203,27 @@ std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinitio
   return out;
 }
 
-}  // namespace
+/// What a scene says of its field before there is anything in it.
+void set_field(const SceneDefinition& scene, Field& field) {
+  field.tolerance = scene.solver.tolerance;
+  if (scene.solver.motion == SolverMotion::dynamics) field.step_time = 1 / scene.solver.rate;
+  field.scheme = scene.solver.extension_scheme;
+  field.ground = ground_of(scene.anatomy);
+}
 
-Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads,
-                            KeptResults* kept) {
-  std::vector<Problem> problems = validate(scene);
-  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
-  auto impl = std::make_unique<Impl>(threads);
-  impl->scene = scene;
-  if (impl->scene.ports.empty()) impl->scene.ports = default_ports();
-  impl->up = up_direction(scene.anatomy);
-  impl->field.tolerance = scene.solver.tolerance;
-  if (scene.solver.motion == SolverMotion::dynamics) impl->field.step_time = 1 / scene.solver.rate;
-  impl->field.scheme = scene.solver.extension_scheme;
-  impl->field.ground = ground_of(scene.anatomy);
+/// Adds the organs of a scene, each at rest alone. Fails (scenario) with the problems of all of them.
+Result<bool> add_organs(const SceneDefinition& scene, const Vec3& up, const std::atomic<bool>* stop,
+                        KeptResults* kept, Workers& workers, Field& field) {
   ContactLoads still;
-  for (const Ground& ground : impl->field.ground) still.shapes.push_back(contact_shape(ground.shape));
+  for (const Ground& ground : field.ground) still.shapes.push_back(contact_shape(ground.shape));
   FillingLimits limits{stop};
   limits.sinks = scene.solver.motion == SolverMotion::dynamics;
-  auto organs = make_organs(scene, still, impl->up, limits, impl->workers, kept);
+  auto organs = make_organs(scene, still, up, limits, workers, kept);
+  std::vector<Problem> problems;
   for (std::size_t k = 0; k < organs.size(); ++k) {
     if (!organs[k]) continue;  // after what failed
     if (*organs[k]) {
-      impl->field.add(std::move(*organs[k]).value());
+      field.add(std::move(*organs[k]).value());
       continue;
     }
     Failure failure = at_organ(organs[k]->failure(), k);
@@ -197,72 +231,111 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
     problems.insert(problems.end(), failure.problems.begin(), failure.problems.end());
   }
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
-  if (Result<bool> joined = join_bodies(scene.anatomy, impl->field); !joined) return joined.failure();
-  if (Result<bool> made = add_tissues(scene.anatomy, impl->up, impl->field); !made) return made.failure();
-  if (Result<bool> rested = come_to_rest(scene, impl->field, kept); !rested) return rested.failure();
-  impl->rest_shifts = shifts_from_drawn(impl->field.organs);
-  impl->field.up = impl->up;
-  impl->field.heart_rate = scene.anatomy.heart_rate;
-  if (!impl->field.organs.empty())
-    impl->field.middle = impl->field.organs[0].body->skin_point(0, impl->field.organs[0].state.x);
-  World world(std::move(impl));
-  for (const InstrumentDefinition& definition : scene.instruments) {
-    Tool tool;
-    tool.definition = definition;
-    tool.waits = definition.waits;
-    tool.geometry = instrument_geometry(definition.type);
-    tool.trocar = world.port_position(definition.port);
-    if (has_action(definition.type, InstrumentAction::fire)) tool.clips = definition.clips;
-    // Waiting in the trocar, closed, pointing at the first organ, just far enough in to be seen to come.
-    const Vec3 aim = world.impl_->field.organs.empty() ? Vec3(tool.trocar - Vec3::UnitZ())
-                                                       : Vec3(world.skin_positions(0).front());
-    tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
-    tool.pose.insertion = port_depth;
-    tool.command = tool.pose;
-    world.impl_->field.tools.push_back(tool);
-  }
-  if (scene.laparoscope.distance < scene.solver.extension_view) {
-    const auto [organ, skin_point] = find_landmark(world.impl_->field.organs, scene.laparoscope.look_at);
-    if (skin_point >= 0) world.impl_->field.viewed = ViewedPlace{organ, skin_point};
-    SolveStatistics statistics;
-    for (Organ& each : world.impl_->field.organs) follow_contacts(world.impl_->field, each, statistics);
-  }
-  world.impl_->looked_at = world.landmark(scene.laparoscope.look_at);
-  world.impl_->laparoscope =
-      Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), world.impl_->looked_at);
-  world.impl_->place_laparoscope(world.impl_->laparoscope.start());
-  if (Result<bool> clear = check_clear(world.impl_->field); !clear) return clear.failure();
-  if (Result<bool> apart = check_apart(world.impl_->field); !apart) return apart.failure();
-  world.impl_->field.membership.of_scene = world.impl_->field.organs.size();
-  world.impl_->field.membership.scene_joints = world.impl_->field.membership.joints.size();
-  keep_members(world.impl_->field);
-  observe(world.impl_->field, {}, 1 / scene.solver.rate, {}, world.impl_->report);
-  world.impl_->keep_hash();
+  return true;
+}
+
+/// An instrument in its trocar (m) before the first step: closed, pointing at the first organ, just far enough in to be
+/// seen to come.
+Tool tool_at_port(const InstrumentDefinition& definition, const Vec3& trocar, const Field& field) {
+  Tool tool;
+  tool.definition = definition;
+  tool.waits = definition.waits;
+  tool.geometry = instrument_geometry(definition.type);
+  tool.trocar = trocar;
+  if (has_action(definition.type, InstrumentAction::fire)) tool.clips = definition.clips;
+  const Vec3 aim = field.organs.empty()
+                       ? Vec3(tool.trocar - Vec3::UnitZ())
+                       : Vec3(field.organs[0].body->skin_positions(field.organs[0].state.x).front());
+  tool.pose = pose_reaching(tool.trocar, aim, 0.0, 0.0, tool.geometry);
+  tool.pose.insertion = port_depth;
+  tool.command = tool.pose;
+  return tool;
+}
+
+/// Gives the organs the details that the laparoscope sees at a landmark.
+void look_closely(const std::string& landmark, Field& field) {
+  const auto [organ, skin_point] = find_landmark(field.organs, landmark);
+  if (skin_point >= 0) field.viewed = ViewedPlace{organ, skin_point};
+  SolveStatistics statistics;
+  for (Organ& each : field.organs) follow_contacts(field, each, statistics);
+}
+
+}  // namespace
+
+Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool>* stop, int threads,
+                            KeptResults* kept) {
+  std::vector<Problem> problems = validate(scene);
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  World world(std::make_unique<Impl>(threads));
+  Impl& self = *world.impl_;
+  self.scene = scene;
+  if (self.scene.ports.empty()) self.scene.ports = default_ports();
+  self.up = up_direction(scene.anatomy);
+  set_field(scene, self.field);
+  if (Result<bool> added = add_organs(scene, self.up, stop, kept, self.workers, self.field); !added)
+    return added.failure();
+  if (Result<bool> joined = join_bodies(scene.anatomy, self.field); !joined) return joined.failure();
+  if (Result<bool> made = add_tissues(scene.anatomy, self.up, self.field); !made) return made.failure();
+  if (Result<bool> rested = come_to_rest(scene, self.field, kept); !rested) return rested.failure();
+  self.rest_shifts = shifts_from_drawn(self.field.organs);
+  self.field.up = self.up;
+  self.field.heart_rate = scene.anatomy.heart_rate;
+  if (!self.field.organs.empty())
+    self.field.middle = self.field.organs[0].body->skin_point(0, self.field.organs[0].state.x);
+  for (const InstrumentDefinition& definition : scene.instruments)
+    self.field.tools.push_back(tool_at_port(definition, world.port_position(definition.port), self.field));
+  if (scene.laparoscope.distance < scene.solver.extension_view)
+    look_closely(scene.laparoscope.look_at, self.field);
+  self.looked_at = world.landmark(scene.laparoscope.look_at);
+  self.laparoscope =
+      Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), self.looked_at);
+  self.place_laparoscope(self.laparoscope.start());
+  if (Result<bool> clear = check_clear(self.field); !clear) return clear.failure();
+  if (Result<bool> apart = check_apart(self.field); !apart) return apart.failure();
+  self.field.membership.of_scene = self.field.organs.size();
+  self.field.membership.scene_joints = self.field.membership.joints.size();
+  keep_members(self.field);
+  self.observe_step({}, 1 / scene.solver.rate, {});
+  self.keep_hash();
   return world;
+}
+
+std::optional<Failure> World::Impl::check(const StepInput& input) const {
+  if (input.instruments.size() != field.tools.size())
+    return fail(FailureKind::internal, fmt::format("a step needs {} instrument poses, not {}",
+                                                   field.tools.size(), input.instruments.size()));
+  if (!input.actions.empty() && input.actions.size() != field.tools.size())
+    return fail(FailureKind::internal, fmt::format("a step needs {} actions or none, not {}",
+                                                   field.tools.size(), input.actions.size()));
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    const Tool& tool = field.tools[i];
+    if (std::optional<Failure> wrong = check_pose(tool.definition.name, tool.geometry, input.instruments[i]))
+      return wrong;
+    if (input.actions.empty()) continue;
+    if (std::optional<Failure> wrong = check_action(tool.definition, input.actions[i])) return wrong;
+  }
+  if (std::optional<Failure> wrong = check_waiting(field.tools, input)) return wrong;
+  if (!input.laparoscope) return std::nullopt;
+  return check_pose(laparoscope_name, laparoscope_geometry(), *input.laparoscope);
+}
+
+Result<std::vector<WorldEvent>> World::Impl::act(const StepInput& input) {
+  const double duration = 1 / scene.solver.rate;
+  const std::vector<WorldEvent> leaked = leak(field, duration);
+  Result<std::vector<WorldEvent>> events = move_tools(input.instruments);
+  if (!events) return events;
+  fire_clips(field, input.actions, events.value());
+  puncture(field, input.actions, events.value());
+  events->insert(events->begin(), leaked.begin(), leaked.end());
+  spill(field, duration);
+  exchange_tools(field, input.actions, events.value());
+  return events;
 }
 
 Result<StepReport> World::step(const StepInput& input) {
   Impl& self = *impl_;
   if (self.failed) return self.failure;
-  if (input.instruments.size() != self.field.tools.size())
-    return fail(FailureKind::internal, fmt::format("a step needs {} instrument poses, not {}",
-                                                   self.field.tools.size(), input.instruments.size()));
-  if (!input.actions.empty() && input.actions.size() != self.field.tools.size())
-    return fail(FailureKind::internal, fmt::format("a step needs {} actions or none, not {}",
-                                                   self.field.tools.size(), input.actions.size()));
-  for (std::size_t i = 0; i < self.field.tools.size(); ++i) {
-    const Tool& tool = self.field.tools[i];
-    if (std::optional<Failure> failure =
-            check_pose(tool.definition.name, tool.geometry, input.instruments[i]))
-      return *failure;
-    if (input.actions.empty()) continue;
-    if (std::optional<Failure> failure = check_action(tool.definition, input.actions[i])) return *failure;
-  }
-  if (std::optional<Failure> failure = check_waiting(self.field.tools, input)) return *failure;
-  if (input.laparoscope)
-    if (std::optional<Failure> failure =
-            check_pose(laparoscope_name, laparoscope_geometry(), *input.laparoscope))
-      return *failure;
+  if (std::optional<Failure> failure = self.check(input)) return *failure;
   self.report.statistics = {};
   if (self.scene.solver.skip_still && self.still == input) {
     ++self.steps;
@@ -274,27 +347,19 @@ Result<StepReport> World::step(const StepInput& input) {
   const FieldState before = state();
   const std::uint64_t hash_before = self.field_hash;
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
-  const double duration = 1 / self.scene.solver.rate;
-  const std::vector<WorldEvent> leaked = leak(self.field, duration);
-  Result<std::vector<WorldEvent>> events = self.move_tools(input.instruments);
+  Result<std::vector<WorldEvent>> events = self.act(input);
   if (!events) {
     self.failed = true;
     self.failure = events.failure();
     for (Problem& problem : self.failure.problems)
-      problem.message +=
-          fmt::format(", at {:.3f} s", static_cast<double>(self.steps + 1) / self.scene.solver.rate);
+      problem.message += fmt::format(", at {:.3f} s", self.field.time);
     calot::restore(self.field, before);
     return self.failure;
   }
-  fire_clips(self.field, input.actions, events.value());
-  puncture(self.field, input.actions, events.value());
-  events->insert(events->begin(), leaked.begin(), leaked.end());
-  spill(self.field, duration);
-  exchange_tools(self.field, input.actions, events.value());
   ++self.steps;
   if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
   self.report.time = self.time();
-  observe(self.field, input.actions, duration, std::move(events).value(), self.report);
+  self.observe_step(input.actions, 1 / self.scene.solver.rate, std::move(events).value());
   self.keep_hash();
   self.still.reset();
   if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))

@@ -5,8 +5,8 @@
 
 #include <set>
 
-#include "app/golden_store.h"
 #include "app/program.h"
+#include "goldens/store.h"
 #include "render/png.h"
 #include "session/json.h"
 #include "support/paths.h"

@@ -14,10 +14,10 @@
 #include <numbers>
 #include <thread>
 
-#include "app/igtl_messages.h"
-#include "app/input_feed.h"
 #include "app/program.h"
 #include "base/rng.h"
+#include "input/igtl_messages.h"
+#include "input/input_feed.h"
 #include "session/runner.h"
 #include "session/session_for_tests.h"
 

@@ -5,8 +5,8 @@
 #include <turbojpeg.h>
 
 #include "app/browser.h"
-#include "app/page_moments.h"
 #include "app/program.h"
+#include "grading/page_moments.h"
 #include "session/json.h"
 #include "session/recording.h"
 #include "support/long_run.h"

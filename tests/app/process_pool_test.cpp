@@ -1,4 +1,4 @@
-#include "app/process_pool.h"
+#include "process/process_pool.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

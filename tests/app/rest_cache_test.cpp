@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/loaded_code.h"
-#include "app/result_files.h"
+#include "process/loaded_code.h"
+#include "process/result_files.h"
 #include "program.h"
 
 namespace calot::test {

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "app/play.h"
 #include "app/program.h"
+#include "play/play.h"
 
 namespace calot::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/play.h"
+#include "play/play.h"
 #include "session/scoring.h"
 #include "support/long_run.h"
 #include "support/paths.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <optional>
 
-#include "app/play.h"
+#include "play/play.h"
 #include "render/offscreen.h"
 #include "support/long_run.h"
 #include "support/paths.h"

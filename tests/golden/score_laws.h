@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/play.h"
+#include "play/play.h"
 #include "session/metrics.h"
 #include "session/scoring.h"
 

@@ -8,8 +8,8 @@
 #include <set>
 #include <tuple>
 
-#include "app/golden_store.h"
-#include "app/play.h"
+#include "goldens/store.h"
+#include "play/play.h"
 #include "render/offscreen.h"
 #include "support/paths.h"
 

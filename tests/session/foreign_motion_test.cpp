@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "base/units.h"
-#include "session/registration.h"
+#include "input/registration.h"
 #include "session/session_for_tests.h"
 
 namespace calot {

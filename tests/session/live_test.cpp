@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "session/live_lines.h"
+#include "input/live_lines.h"
 #include "session/runner.h"
 #include "session/session_for_tests.h"
 #include "support/text_files.h"

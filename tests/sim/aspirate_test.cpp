@@ -9,7 +9,6 @@
 #include "act_rig.h"
 #include "base/units.h"
 #include "field/field_state.h"
-#include "liquid/leak.h"
 #include "rig.h"
 #include "support/long_run.h"
 

@@ -1,4 +1,3 @@
-#include "field/change_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include "base/rng.h"
 #include "base/units.h"
 #include "body/rod_body.h"
+#include "field/divide_body.h"
 #include "field/field_state.h"
 #include "motion/settle_field.h"
 #include "support/bodies.h"

@@ -8,7 +8,7 @@
 #include "acts/grip_slip.h"
 #include "field/between_jaws.h"
 #include "field/field_state.h"
-#include "liquid/spill.h"
+#include "liquid/films.h"
 
 namespace calot {
 namespace {

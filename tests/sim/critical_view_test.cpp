@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "field/change_bodies.h"
 #include "field/field_state.h"
 #include "organs/strand_places.h"
 #include "triangle_rig.h"

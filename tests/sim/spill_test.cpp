@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "field_rig.h"
-#include "liquid/leak.h"
+#include "liquid/films.h"
 #include "support/long_run.h"
 
 namespace calot {

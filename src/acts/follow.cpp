@@ -1,0 +1,177 @@
+#include "acts/follow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "acts/jaw_acts.h"
+#include "field/field_tissues.h"
+#include "field/moving_bodies.h"
+#include "motion/predict.h"
+#include "motion/settle_field.h"
+#include "motion/structural_extension.h"
+
+namespace calot {
+namespace {
+
+using Poses = std::vector<InstrumentPose>;
+
+constexpr int max_parts = 100;
+/// No motion between two stops takes more: one that needs them is blocked, and says so within seconds.
+constexpr int step_iterations = 1000;
+/// A solve that takes more than this is broken off; where it got somewhere it goes on with fresh pairs, else the
+/// part is cut in two.
+constexpr int part_iterations = 30;
+constexpr double smallest_share = 1e-3;
+
+Failure cannot_follow(const Field& field, const std::string& why, double done) {
+  std::string tools;
+  for (const Tool& tool : field.tools) {
+    const Vec3 tip = 1e3 * tip_position(tool.trocar, tool.pose, tool.geometry);
+    tools += fmt::format("{}'{}' with its tip at ({:.1f}, {:.1f}, {:.1f}) mm", tools.empty() ? "" : ", ",
+                         tool.definition.name, tip.x(), tip.y(), tip.z());
+  }
+  return fail(
+      FailureKind::simulation,
+      fmt::format("the motion of {} could not be followed beyond {:.0f}% of a step: {}", tools, 100 * done,
+                  why),
+      "move more slowly or less far, keep the tool out of the tissue it already squeezes, or give the "
+      "organ more nodes where it is handled");
+}
+
+/// Which body a solve found no balance of, and how far it was from one.
+std::string out_of_balance(const Field& field, const NewtonResult& failed) {
+  return fmt::format("'{}' finds no balance: {} (residual {:.2g})", member_name(field, failed.part),
+                     to_text(failed.status), failed.residual);
+}
+
+/// Moves the organs by a share of what is predicted.
+void move_by(double share, const Prediction& prediction, Field& field) {
+  const BodyParts parts(field);
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    BodyState& state = field.organs[k].state;
+    state.x += share * parts.of(k, prediction.dx);
+    state.datum_pressure += share * prediction.dpressures[static_cast<Eigen::Index>(k)];
+  }
+  for (std::size_t k = field.organs.size(); k < moving_bodies(field); ++k)
+    state_of(field, k).x += share * parts.of(k, prediction.dx);
+}
+
+/// A motion that is under way.
+class Following {
+ public:
+  Following(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
+            std::vector<WorldEvent>& events, SolveStatistics& statistics)
+      : field_(field),
+        to_(to),
+        duration_(duration),
+        slipped_before_(slipped_before),
+        events_(events),
+        statistics_(statistics),
+        iterations_before_(statistics.newton_iterations) {}
+
+  Result<bool> run() {
+    while (done_ < 1.0)
+      if (Result<bool> part = one_part(); !part) return part;
+    return true;
+  }
+
+ private:
+  Result<bool> one_part() {
+    const Poses from = present_poses(field_);
+    grow_damage(field_);
+    const Result<std::vector<MotionPart>> parts = next_parts(field_);
+    if (!parts) return parts.failure();
+    begin_parts(parts.value(), time_left(), field_);
+    const Result<Prediction> answer = answer_to(from);
+    if (!answer) return answer.failure();
+    // Organs that move by themselves have all the time there is: no tool stands where they begin to be looked for.
+    double share = from == to_ ? 1.0 : answer->share;
+    NewtonResult last;  // of the solve that failed last, if any did in this part
+    for (bool accepted = false; !accepted;) {
+      if (std::optional<Failure> failure = given_up(share, last)) return *failure;
+      const GroupSnapshot before = snapshot(field_);
+      const double next = share >= 1.0 ? 1.0 : done_ + share * (1.0 - done_);
+      const Poses poses = next >= 1.0 ? to_ : interpolate(from, to_, share);
+      last = settle_at(poses, share, parts.value(), answer.value());
+      accepted = last.converged();
+      if (accepted) {
+        field_.group.missed = missed_by(answer.value(), share, before, field_, last.by_last_factor);
+        if (Result<bool> kept = keep(poses, next); !kept) return kept;
+      } else {
+        stuck_ = out_of_balance(field_, last);
+        restore(field_, before);
+        share *= 0.5;
+      }
+    }
+    ++part_;
+    return true;
+  }
+
+  double time_left() const { return (1.0 - done_) * duration_; }  ///< s
+
+  /// What the organs answer to the rest of the motion: by the last factor where that serves and is safe all the way.
+  Result<Prediction> answer_to(const Poses& from) {
+    const bool fresh = !factor_serves(field_.group);
+    Result<Prediction> answer = predict(field_, from, to_, fresh, statistics_);
+    if (answer && answer->share < 1.0 && !fresh) answer = predict(field_, from, to_, true, statistics_);
+    if (answer && answer->share < smallest_share && from != to_)
+      answer = of_tools_alone(field_, from, to_, statistics_);
+    return answer;
+  }
+
+  /// That a share of what is left, after a solve that failed (or none), is not worth trying.
+  std::optional<Failure> given_up(double share, const NewtonResult& last) const {
+    const int iterations = statistics_.newton_iterations - iterations_before_;
+    if (part_ >= max_parts || iterations > step_iterations)
+      return cannot_follow(field_,
+                           fmt::format("not in {} parts and {} Newton iterations{}", part_, iterations,
+                                       stuck_.empty() ? "" : "; last, " + stuck_),
+                           done_);
+    if (share < smallest_share)
+      return cannot_follow(field_, last.converged() ? "the tissue it touches leaves it no room" : stuck_,
+                           done_);
+    return std::nullopt;
+  }
+
+  NewtonResult settle_at(const Poses& poses, double share, const std::vector<MotionPart>& parts,
+                         const Prediction& answer) {
+    const std::vector<VecX> places = present_places(field_);
+    begin_parts(parts, share * time_left(), field_);
+    move_by(std::min(share, answer.share), answer, field_);
+    return settle_group(field_, poses, places, part_iterations, statistics_);
+  }
+
+  /// The tools have come to `poses`, and `next` of the motion is done.
+  Result<bool> keep(const Poses& poses, double next) {
+    for (std::size_t i = 0; i < field_.tools.size(); ++i) field_.tools[i].pose = poses[i];
+    for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
+    done_ = next;
+    ++statistics_.substeps;
+    const int iterations = statistics_.newton_iterations;
+    Result<bool> held = let_slip(field_, slipped_before_, events_, statistics_);
+    iterations_before_ += statistics_.newton_iterations - iterations;
+    return held;
+  }
+
+  Field& field_;
+  const Poses& to_;
+  double duration_;
+  const std::vector<char>& slipped_before_;
+  std::vector<WorldEvent>& events_;
+  SolveStatistics& statistics_;
+  int iterations_before_;  ///< of Newton's method, that are not this motion's
+  int part_ = 0;
+  double done_ = 0;    ///< share of the motion
+  std::string stuck_;  ///< what failed last, in any part
+};
+
+}  // namespace
+
+Result<bool> follow(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
+                    std::vector<WorldEvent>& events, SolveStatistics& statistics) {
+  return Following(field, to, duration, slipped_before, events, statistics).run();
+}
+
+}  // namespace calot

@@ -1,0 +1,27 @@
+#pragma once
+// One motion of all tools in parts that are safe, organs in equilibrium at the end of each.
+//
+// Each part of the motion starts from the organs' first-order response to the tools (so a pushed or pulled
+// wall moves along), is cut where a skin point would come too near a shape or a node would move further than
+// a set share of its local edge, and ends in equilibrium; then what is drawn off its pad is let go, and
+// folds slip that are pulled or turned harder than they are held.
+//
+// Where masses count each part is a step of implicit Euler (inertia.h) in its share of the step's time, begins from the
+// first Newton step from where the organs are, and is cut in time too. What is solved again at the end of a part, as
+// folds slip, grips are let go and details change, is solved again for that part: no time passes, and none is lost.
+
+#include <vector>
+
+#include "field/field.h"
+
+namespace calot {
+
+/// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
+/// of each part, in `duration` s where masses count.
+/// `slipped_before`: one a tool, whether what it holds slid at the last step; events have no time yet. Fails (simulation)
+/// with the field as it was at the last part that came to rest.
+Result<bool> follow(Field& field, const std::vector<InstrumentPose>& to, double duration,
+                    const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
+                    SolveStatistics& statistics);
+
+}  // namespace calot

@@ -1,0 +1,148 @@
+#include "liquid/leak_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "field/between_jaws.h"
+#include "field/grip.h"
+
+namespace calot {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double of_folds = 5e9;  // Pa s/m^3, of a cystic duct's: 15 mL a minute at 10 mmHg (d)
+
+/// Where a joint is on a body, skin points from its start.
+double place_on(const JointLinks& links, int side) {
+  double sum = 0;
+  for (const JointLinks::Link& link : links.links) {
+    const CarriedPlace& place = side == 0 ? link.one : link.other;
+    for (int point : place.points)
+      sum += static_cast<double>(point) / static_cast<double>(place.points.size());
+  }
+  return sum / static_cast<double>(links.links.size());
+}
+
+/// Follows tubes from an opening to what feeds them.
+class SourceSearch {
+ public:
+  explicit SourceSearch(const Field& field) : field_(field) {}
+
+  LeakSource of(int organ, const Opening& opening) {
+    const RodBody* rod = rod_of(field_.organs[organ]);
+    if (rod == nullptr) return {LeakSource::Kind::organ, organ, {}, opening.area};
+    const double from = opening.point, to = rod->last_point() - from;
+    const double whole = lumen_area(*rod, from);
+    visited_.assign(field_.organs.size(), 0);
+    if (std::optional<LeakSource> found = along(organ, from, to, whole)) {
+      const OrganDefinition& tube = field_.organs[organ].definition;
+      found->feed.resistance = feed_of(tube).resistance;
+      if (found->kind == LeakSource::Kind::organ)
+        found->feed.resistance = std::get<TubeShape>(tube.shape).feed_resistance.value_or(of_folds);
+      return *found;
+    }
+    // What it holds runs out if nothing shuts it, by the tightest place.
+    return {LeakSource::Kind::rest, organ, {}, whole * open_between(field_, organ, from, to)};
+  }
+
+ private:
+  /// From a place on a tube to one of its ends.
+  std::optional<LeakSource> along(int organ, double from, double to, double area) {
+    const Organ& tube = field_.organs[organ];
+    const RodBody& rod = *rod_of(tube);
+    visited_[organ] = 1;
+    area = std::min(
+        area, std::min(lumen_area(rod, from), lumen_area(rod, to)) * open_between(field_, organ, from, to));
+    for (const Opening& opening : tube.openings)
+      if (opening.point == to) return std::nullopt;
+    for (const FieldJoint& joint : field_.membership.joints) {
+      const JointLinks& links = joint.joint->links();
+      const int side = links.bodies[0] == organ ? 0 : 1;
+      if (links.bodies[side] != organ || !is_at(rod, links, side, to)) continue;
+      if (std::optional<LeakSource> found = beyond(links, 1 - side, liquid_of(tube), area)) return found;
+      // It ends in something else that feeds it not.
+      return std::nullopt;
+    }
+    if (tube.of_specimen) return std::nullopt;
+    return LeakSource{LeakSource::Kind::patient, organ, feed_of(tube.definition), area};
+  }
+
+  /// Whether a joint is at that end of a tube: its own end is tied, or nearly that of another's side.
+  static bool is_at(const RodBody& rod, const JointLinks& links, int side, double end) {
+    const double away = std::abs(place_on(links, side) - end), last = rod.last_point();
+    return side == 0 ? away < 0.5 * last : away < std::min(3.0, 0.3 * last);
+  }
+
+  std::optional<LeakSource> beyond(const JointLinks& links, int side, Carries liquid, double area) {
+    const int organ = links.bodies[side];
+    const Organ& other = field_.organs[organ];
+    if (liquid == Carries::bile && shell_of(other) != nullptr && other.body->liquid() != nullptr)
+      return LeakSource{LeakSource::Kind::organ, organ, {}, area};
+    const RodBody* rod = rod_of(other);
+    if (rod == nullptr || liquid_of(other) != liquid || visited_[organ]) return std::nullopt;
+    std::optional<LeakSource> best;
+    for (double end : {0.0, rod->last_point()})
+      if (std::optional<LeakSource> found = along(organ, place_on(links, side), end, area))
+        if (!best || found->area > best->area) best = found;
+    return best;
+  }
+
+  const Field& field_;
+  std::vector<char> visited_;
+};
+
+}  // namespace
+
+Carries liquid_of(const Organ& organ) {
+  const auto* tube = std::get_if<TubeShape>(&organ.definition.shape);
+  return tube == nullptr ? Carries::bile : tube->carries;
+}
+
+double lumen_area(const RodBody& rod, double at) { return pi * std::pow(rod.lumen_radius(at), 2); }
+
+double lumen_volume(const RodBody& rod) {
+  const double first = lumen_area(rod, 0), last = lumen_area(rod, rod.last_point());
+  return rod.length() * (first + std::sqrt(first * last) + last) / 3;
+}
+
+LeakSource source_of(const Field& field, int organ, const Opening& opening) {
+  return SourceSearch(field).of(organ, opening);
+}
+
+TubeFeed feed_of(const OrganDefinition& tube) {
+  const auto& shape = std::get<TubeShape>(tube.shape);
+  TubeFeed out{1e3, 2e10};  // bile (d): the bile duct's 10 cm of water
+  if (shape.carries == Carries::blood) {
+    // Blood loses as much pressure on its way as along 35 mm of such a tube (d), by Poiseuille's law.
+    constexpr double viscosity = 3.5e-3, length = 35e-3;
+    const double radius = std::max(shape.start_radius() - tube.wall.thickness, 0.1e-3);
+    out = {12e3, 8 * viscosity * length / (pi * std::pow(radius, 4))};
+  }
+  return {shape.feed_pressure.value_or(out.pressure), shape.feed_resistance.value_or(out.resistance)};
+}
+
+double open_between(const Field& field, int index, double one, double other) {
+  constexpr double shut = 0.02;  // as of a clip (clips.cpp)
+  const Organ& organ = field.organs[index];
+  const RodBody& rod = *rod_of(organ);
+  const auto [low, high] = std::minmax(one, other);
+  double open = 1;
+  for (const Clip& clip : organ.clips)
+    if (clip.at >= low && clip.at <= high) open = std::min(open, clip.opening);
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    if (!has_jaws(field.tools[i].definition.type)) continue;
+    for (const TubeBetween& tube : tubes_between(field, static_cast<int>(i))) {
+      if (tube.organ != index || tube.at < low || tube.at > high) continue;
+      // Jaws that hold it have pressed it flat, to the angle that they stop at.
+      if (field.tools[i].jaws_rest() && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
+      const double lumen = 2 * rod.lumen_radius(tube.at);
+      const double left = (tube.gap - 2 * rod.setup().wall) / lumen;
+      open = std::min(open, left < shut ? 0.0 : left);
+    }
+  }
+  return open;
+}
+
+}  // namespace calot

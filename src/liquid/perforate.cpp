@@ -1,0 +1,49 @@
+#include "liquid/perforate.h"
+
+#include <algorithm>
+
+namespace calot {
+namespace {
+
+constexpr double gape = 0.5e-3;        // m, of a slit in a wall (d)
+constexpr double least_slit = 1.0e-3;  // m: blades that stand on a wall have cut it
+
+}  // namespace
+
+void perforate(Field& field, int instrument) {
+  for (Organ& organ : field.organs) {
+    if (shell_of(organ) == nullptr || organ.body->liquid() == nullptr) continue;
+    Vec3 sum = Vec3::Zero();
+    double low = 1, high = -1;  // m, along the jaws
+    std::vector<int> held;
+    for (const GripPoint& grip : organ.grips) {
+      if (grip.instrument != instrument) continue;
+      held.push_back(grip.skin_point);
+      sum += organ.body->skin_rest()[grip.skin_point];
+      low = std::min(low, grip.local.z());
+      high = std::max(high, grip.local.z());
+    }
+    if (held.empty()) continue;
+    const Vec3 middle = sum / static_cast<double>(held.size());
+    const auto nearer = [&](int a, int b) {
+      return (organ.body->skin_rest()[a] - middle).norm() < (organ.body->skin_rest()[b] - middle).norm();
+    };
+    Opening hole;
+    hole.point = *std::min_element(held.begin(), held.end(), nearer);
+    hole.area = gape * std::max(least_slit, high - low);
+    hole.cause = field.tools[instrument].definition.name;
+    organ.openings.push_back(hole);
+  }
+}
+
+void perforate(Organ& organ, const Vec3& at, const std::string& instrument) {
+  constexpr double burnt = 3e-6;  // m^2, 2 mm across (d)
+  if (shell_of(organ) == nullptr || organ.body->liquid() == nullptr) return;
+  Opening hole;
+  hole.point = nearest_of(organ.body->skin_positions(organ.state.x), at);
+  hole.area = burnt;
+  hole.cause = instrument;
+  organ.openings.push_back(hole);
+}
+
+}  // namespace calot
