@@ -28,11 +28,11 @@ std::vector<std::vector<Heated>> heated_strands(const Field& field) {
   const VecX x = place_strands_and_tools(field);
   for (std::size_t t = 0; t < field.tissues.size(); ++t)
     field.tissues[t].strands->for_contacts(x, [&](std::size_t strand, const StrandContact& contact) {
-      const std::size_t index = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
-      const Tool& tool = field.tools[index];
-      if (!is_active(tool) || !conducts(tool.geometry, contact.shape % shapes_per_tool)) return;
+      const FieldShape which = field.shape(contact.shape);
+      const Tool& tool = field.tools[which.tool];
+      if (!is_active(tool) || !conducts(tool.geometry, which.part)) return;
       const Heated one{t, strand};
-      std::vector<Heated>& of_tool = out[index];
+      std::vector<Heated>& of_tool = out[which.tool];
       if (std::find(of_tool.begin(), of_tool.end(), one) == of_tool.end()) of_tool.push_back(one);
     });
   return out;

@@ -152,9 +152,10 @@ PadLoad pad_load(const Field& field, int instrument) {
       add(at, now.grip.sample(g, at).gradient);
     }
     const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
-    for (const ContactForce& contact : contact_forces(touching))
-      if (contact.shape / shapes_per_tool == instrument && contact.shape % shapes_per_tool > 0)
-        add(contact.at, contact.on_shape);
+    for (const ContactForce& contact : contact_forces(touching)) {
+      const FieldShape which = field.shape(contact.shape);
+      if (which.tool == instrument && !which.is_shaft()) add(contact.at, contact.on_shape);
+    }
   }
   return load;
 }

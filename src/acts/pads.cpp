@@ -33,8 +33,9 @@ std::optional<Clasped> clasped(const Field& field, int instrument) {
     out.organ = static_cast<int>(k);
     ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : friction_load(field, organ, poses).points) {
-      if (rubbing.shape / shapes_per_tool != instrument || rubbing.shape % shapes_per_tool == 0) continue;
-      const auto jaw = static_cast<std::size_t>(rubbing.shape % shapes_per_tool - 1);
+      const FieldShape which = field.shape(rubbing.shape);
+      if (which.tool != instrument || which.is_shaft()) continue;
+      const auto jaw = static_cast<std::size_t>(which.jaw());
       const Vec3 at = places.at(rubbing.point), normal = to_jaw[jaw].linear() * rubbing.hold.normal;
       const double teeth = teeth_share(to_jaw[jaw] * at, normal, tool.geometry);
       if (teeth == 0) continue;

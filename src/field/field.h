@@ -10,6 +10,7 @@
 #include "field/spilled.h"
 #include "joins/skin_rubbing.h"
 #include "organs/tissue.h"
+#include "tools/field_shape.h"
 #include "tools/step_report.h"
 #include "tools/tool.h"
 
@@ -70,6 +71,8 @@ struct Field {
   std::shared_ptr<const FieldMembers> members;  ///< as it is now, for states; null before keep_members()
   std::uint64_t lives = 0;                      ///< that were given to bodies
 
+  /// What a body is touched by that has this place among its shapes.
+  FieldShape shape(int index) const { return FieldShape::at(index, tools.size()); }
   /// Null: one thread does all.
   Workers* workers() const { return workers_of(assembly); }
   /// The first one's last factor serves on.

@@ -31,12 +31,11 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
   VecX load = VecX::Zero(organ.state.x.size());
   ContactLoad pressed(organ.body->skin(), load);
   std::vector<std::optional<Pose>> motions;  // of the shapes; the ground stays
-  for (std::size_t shape = 0; shape < now.shapes.size(); ++shape) {
-    const std::size_t tool = shape / shapes_per_tool;
+  for (int shape = 0; shape < static_cast<int>(now.shapes.size()); ++shape) {
+    const auto [tool, part, ground] = field.shape(shape);
     motions.emplace_back();
-    if (tool < field.tools.size() && from[tool] != to[tool])
-      motions.back() =
-          part_motion(field.tools[tool], from[tool], to[tool], static_cast<int>(shape % shapes_per_tool));
+    if (ground < 0 && from[tool] != to[tool])
+      motions.back() = part_motion(field.tools[tool], from[tool], to[tool], part);
   }
   for (const Touch& touch : organ.search.touches.at(*organ.body, organ.state.x, now, pairs, 0.0)) {
     if (!motions[touch.shape]) continue;
@@ -70,10 +69,9 @@ void add_strand_load(const Field& field, const VecX& x, const Poses& from, const
   for (const Tissue& tissue : field.tissues) {
     const StrandJoin& strands = *tissue.strands;
     strands.for_contacts(x, [&](std::size_t strand, const StrandContact& contact) {
-      const std::size_t tool = static_cast<std::size_t>(contact.shape) / shapes_per_tool;
-      if (from[tool] == to[tool]) return;
-      const Pose motion =
-          part_motion(field.tools[tool], from[tool], to[tool], contact.shape % shapes_per_tool);
+      const FieldShape which = field.shape(contact.shape);
+      if (from[which.tool] == to[which.tool]) return;
+      const Pose motion = part_motion(field.tools[which.tool], from[which.tool], to[which.tool], which.part);
       strands.add_force(strand, contact.piece, contact.share,
                         strands.touch().hessian_at(contact) * carried(motion, contact.at), load);
       loaded = true;

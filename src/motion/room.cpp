@@ -18,16 +18,17 @@ class ShapePaths {
     for (std::size_t i = 0; i < from.size(); ++i)
       travel_.push_back(travel_bound(field.tools[i], from[i], to[i]));
   }
-  bool stays(int shape) const { return shape / shapes_per_tool >= static_cast<int>(field_.tools.size()); }
-  /// Bound on its way, m.
-  double travel(int shape) const { return stays(shape) ? 0.0 : travel_[shape / shapes_per_tool]; }
+  /// Bound on a shape's way, m.
+  double travel(int shape) const {
+    const FieldShape which = field_.shape(shape);
+    return which.is_ground() ? 0.0 : travel_[which.tool];
+  }
   /// Null: it stays. Valid until another one is asked for.
   const PartPath* of(int shape, double share) {
-    if (stays(shape)) return nullptr;
+    const auto [tool, part, ground] = field_.shape(shape);
+    if (ground >= 0) return nullptr;
     if (shape != shape_ || share != share_) {
-      const int tool = shape / shapes_per_tool;
-      path_.emplace(field_.tools[tool], shape % shapes_per_tool, from_[tool],
-                    interpolate(from_[tool], to_[tool], share));
+      path_.emplace(field_.tools[tool], part, from_[tool], interpolate(from_[tool], to_[tool], share));
       shape_ = shape, share_ = share;
     }
     return &*path_;

@@ -9,27 +9,25 @@ namespace {
 
 /// The frame that a shape's anchors are kept in; the ground's is the world's.
 Pose shape_frame(const Field& field, const std::vector<InstrumentPose>& poses, int shape) {
-  const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
-  if (tool >= field.tools.size()) return Pose::Identity();
-  return part_frame(field.tools[tool], poses[tool], shape % shapes_per_tool);
+  const FieldShape which = field.shape(shape);
+  if (which.is_ground()) return Pose::Identity();
+  return part_frame(field.tools[which.tool], poses[which.tool], which.part);
 }
 
 std::vector<Pose> shape_frames(const Field& field, const std::vector<InstrumentPose>& poses) {
   std::vector<Pose> frames;
-  const int shapes =
-      static_cast<int>(field.tools.size()) * shapes_per_tool + static_cast<int>(field.ground.size());
+  const int shapes = FieldShape::of_ground(static_cast<int>(field.ground.size())).index(field.tools.size());
   for (int shape = 0; shape < shapes; ++shape) frames.push_back(shape_frame(field, poses, shape));
   return frames;
 }
 
 /// At a place of a shape and by its normal there, both in the shape's frame.
 double coefficient(const Field& field, const Organ& organ, int shape, const Vec3& at, const Vec3& normal) {
-  const std::size_t index = static_cast<std::size_t>(shape) / shapes_per_tool;
-  if (index >= field.tools.size())
-    return field.ground[static_cast<std::size_t>(shape) - shapes_per_tool * field.tools.size()].friction;
-  const Tool& tool = field.tools[index];
+  const FieldShape which = field.shape(shape);
+  if (which.is_ground()) return field.ground[which.ground].friction;
+  const Tool& tool = field.tools[which.tool];
   const double smooth = tool.definition.friction;
-  if (shape % shapes_per_tool == 0 || is_bitten(organ) || !has_teeth(tool)) return smooth;
+  if (which.is_shaft() || is_bitten(organ) || !has_teeth(tool)) return smooth;
   return smooth + teeth_share(at, normal, tool.geometry) * (tool.definition.pad_friction - smooth);
 }
 
@@ -41,8 +39,8 @@ std::vector<bool> holding_tools(const Field& field, const Organ& organ) {
 }
 
 bool is_holding_jaw(const std::vector<bool>& holding, int shape) {
-  const std::size_t tool = static_cast<std::size_t>(shape) / shapes_per_tool;
-  return tool < holding.size() && holding[tool] && shape % shapes_per_tool > 0;
+  const FieldShape which = FieldShape::at(shape, holding.size());
+  return !which.is_ground() && !which.is_shaft() && holding[which.tool];
 }
 
 /// Sum of the changes of the points' limits along their normals, over the sum of the limits.

@@ -15,7 +15,7 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
     for (const Shape& shape : shapes_in_field(field.tools[i], poses[i]))
       out.shapes.push_back(contact_shape(shape));
   for (int tool : organ.unfelt)
-    for (int part : {1, 2}) out.shapes[static_cast<std::size_t>(tool) * shapes_per_tool + part] = nowhere;
+    for (int jaw : {0, 1}) out.shapes[FieldShape::of_jaw(tool, jaw).index(field.tools.size())] = nowhere;
   out.broad.assign(out.shapes.size(), 0);
   for (const Ground& ground : field.ground) {
     out.shapes.push_back(contact_shape(ground.shape));

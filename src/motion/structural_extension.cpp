@@ -28,8 +28,9 @@ constexpr double middle_depth = 1e-3;
 std::vector<NearPoint> points_near(int shape, const Field& field, const Organ& organ,
                                    const ContactLoads& loads) {
   std::vector<NearPoint> out;
+  const FieldShape which = field.shape(shape);
   for (const GripPoint& grip : organ.grips)
-    if (shapes_per_tool * grip.instrument + 1 + grip.jaw == shape) out.push_back({grip.skin_point, shape, 0});
+    if (FieldShape::of_jaw(grip.instrument, grip.jaw) == which) out.push_back({grip.skin_point, shape, 0});
   if (!out.empty()) return out;  // what is held does not slide: it alone says where
   const bool served = std::any_of(organ.extensions.begin(), organ.extensions.end(),
                                   [&](const Extension& e) { return e.shape == shape; });
@@ -133,7 +134,8 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
   std::vector<Extension> out;
   if (field.viewed && &field.organs[field.viewed->organ] == &organ)
     out.push_back({-1, field.viewed->skin_point});
-  for (int shape = 0; shape < shapes_per_tool * static_cast<int>(field.tools.size()); ++shape) {
+  const int first_ground = FieldShape::of_ground(0).index(field.tools.size());
+  for (int shape = 0; shape < first_ground; ++shape) {
     std::vector<NearPoint> points = points_near(shape, field, organ, loads);
     for (int k = 0; k < most_along_a_part && !points.empty(); ++k) {
       const NearPoint lead =

@@ -17,20 +17,19 @@ class LoadSum {
     for (const Tool& tool : field.tools) tips_.push_back(tip_position(tool.trocar, tool.pose, tool.geometry));
   }
 
-  /// False for the ground's shapes.
-  bool is_tool(int shape) const { return shape / shapes_per_tool < static_cast<int>(loads_.size()); }
-  /// A force (N) at a point (m) of a tool's shape; `touches`: the point counts, with its organ.
-  void add(int shape, const Vec3& at, const Vec3& force, bool touches, const std::string& organ) {
-    const Tool& tool = field_.tools[shape / shapes_per_tool];
-    ToolLoad& load = loads_[shape / shapes_per_tool];
+  /// A force (N) at a point (m) of a shape; the ground's are left out. `touches`: the point counts, with its organ.
+  void add(const FieldShape& shape, const Vec3& at, const Vec3& force, bool touches,
+           const std::string& organ) {
+    if (shape.is_ground()) return;
+    const Tool& tool = field_.tools[shape.tool];
+    ToolLoad& load = loads_[shape.tool];
     load.force += force;
     load.moment += (at - tool.trocar).cross(force);
     if (touches && load.touches++ == 0) load.organ = organ;
-    const bool is_shaft = shape % shapes_per_tool == 0;
-    if (!is_shaft) load.on_jaws[static_cast<std::size_t>(shape % shapes_per_tool - 1)] += force;
-    add(load.parts, is_shaft ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
-    const Vec3& tip = tips_[shape / shapes_per_tool];
-    if (!is_shaft && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)
+    if (!shape.is_shaft()) load.on_jaws[shape.jaw()] += force;
+    add(load.parts, shape.is_shaft() ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
+    const Vec3& tip = tips_[shape.tool];
+    if (!shape.is_shaft() && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)
       add(load.parts, ToolPart::tip, at, force, touches, organ);
   }
   std::vector<ToolLoad> take() { return std::move(loads_); }
@@ -62,26 +61,24 @@ std::vector<ToolLoad> tool_loads(const Field& field) {
     const ContactLoads now = contact_loads(field, organ, poses);
     const std::vector<Touch>& touching = organ.search.touching(*organ.body, organ.state.x, now);
     for (const ContactForce& contact : contact_forces(touching))
-      if (sum.is_tool(contact.shape)) sum.add(contact.shape, contact.at, contact.on_shape, true, name);
+      sum.add(field.shape(contact.shape), contact.at, contact.on_shape, true, name);
     ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points) {
-      if (!sum.is_tool(rubbing.shape)) continue;
       // The point is counted where it presses.
       const Vec3 at = places.at(rubbing.point);
-      sum.add(rubbing.shape, at, rubbing.hold.sample(at).gradient, false, name);
+      sum.add(field.shape(rubbing.shape), at, rubbing.hold.sample(at).gradient, false, name);
     }
     for (std::size_t g = 0; g < organ.grips.size(); ++g) {
       const GripPoint& grip = organ.grips[g];
       const Vec3 at = organ.body->skin_point(grip.skin_point, organ.state.x);
-      sum.add(shapes_per_tool * grip.instrument + 1 + grip.jaw, at, now.grip.sample(g, at).gradient, true,
-              name);
+      sum.add(FieldShape::of_jaw(grip.instrument, grip.jaw), at, now.grip.sample(g, at).gradient, true, name);
     }
   }
   if (field.tissues.empty()) return sum.take();
   const VecX x = place_strands_and_tools(field);
   for (const Tissue& tissue : field.tissues)
     tissue.strands->for_contacts(x, [&](std::size_t, const StrandContact& contact) {
-      sum.add(contact.shape, contact.at, contact.force_on_shape(), true, tissue.definition.name);
+      sum.add(field.shape(contact.shape), contact.at, contact.force_on_shape(), true, tissue.definition.name);
     });
   return sum.take();
 }

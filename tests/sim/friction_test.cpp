@@ -57,10 +57,10 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
     std::vector<std::tuple<int, int, Vec3, double>> out;
     ContactPlaces places(slide.organ().body->skin(), slide.organ().state.x);
     for (const RubbingPoint& rubbing : load.points)
-      out.emplace_back(
-          rubbing.shape, rubbing.point,
-          part_frame(tool, tool.pose, rubbing.shape % shapes_per_tool).inverse() * places.at(rubbing.point),
-          rubbing.hold.limit);
+      out.emplace_back(rubbing.shape, rubbing.point,
+                       part_frame(tool, tool.pose, slide.field.shape(rubbing.shape).part).inverse() *
+                           places.at(rubbing.point),
+                       rubbing.hold.limit);
     return out;
   };
   const auto before = in_the_jaws();
@@ -177,10 +177,11 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
     Vec3 rub = Vec3::Zero(), push = Vec3::Zero();
     ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : now.friction.points)
-      if (rubbing.shape == shapes_per_tool) rub += rubbing.hold.sample(places.at(rubbing.point)).gradient;
+      if (field.shape(rubbing.shape).is_ground())
+        rub += rubbing.hold.sample(places.at(rubbing.point)).gradient;
     for (const ContactForce& force :
          contact_forces(*organ.body, organ.state.x, now, gather_pairs(*organ.body, organ.state.x, now, 0.0)))
-      if (force.shape == shapes_per_tool) push += force.on_shape;
+      if (field.shape(force.shape).is_ground()) push += force.on_shape;
     EXPECT_GT(test::tool_force(field).norm(), 0.02);
     // Equilibrium to 1e-9 of the nodal forces (below 1 N), on some 60 nodes.
     const Vec3 on_organ = test::bed_force(organ) - test::bile_weight(organ) * up - test::tool_force(field);
