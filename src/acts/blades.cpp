@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "acts/injury.h"
+#include "body/rod_body.h"
 #include "field/between_jaws.h"
 #include "field/divide_body.h"
 #include "field/grip.h"
@@ -20,8 +21,8 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
                          std::vector<WorldEvent>& events) {
   Organ& whole = field.organs[tube.organ];
   const std::string name = whole.definition.name;
-  const Vec3 at = rod_of(whole)->place_at(tube.at, whole.state.x);
-  const double share = rod_of(whole)->share_at(tube.at);
+  const Vec3 at = whole.body->as_tube()->place_at(tube.at, whole.state.x);
+  const double share = whole.body->as_tube()->share_at(tube.at);
   const std::string cut = injury_at(field, whole, whole.definition.injury.cut, tube.at);
   const std::string leaking = injury_anywhere(field, whole, whole.definition.injury.unclipped);
   if (!can_be_divided(whole, share)) {

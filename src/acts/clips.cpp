@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "acts/injury.h"
+#include "body/rod_body.h"
 #include "field/between_jaws.h"
 #include "field/change_bodies.h"
 #include "field/divide_body.h"
@@ -34,7 +35,7 @@ void keep_to_clips(Field& field, int index) {
   Organ& organ = field.organs[index];
   std::vector<RodBody::Pinch> pinches;
   for (const Clip& clip : organ.clips) pinches.push_back({clip.at, clip.opening, clip.pressed});
-  organ.body = std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*organ.body).pinched(pinches));
+  organ.body = std::make_shared<const RodBody>(organ.body->as_tube()->pinched(pinches));
   finish_change(field);
 }
 
@@ -50,7 +51,7 @@ void set_clip(Field& field, int index, const Clip& clip) {
 
 Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
   const Organ& organ = field.organs[index];
-  const RodBody* rod = rod_of(organ);
+  const RodBody* rod = organ.body->as_tube();
   if (rod == nullptr) return no_tube(organ.definition, "clip", "clipped");
   if (!(share >= 0 && share <= 1))
     return fail(FailureKind::scenario,
@@ -76,7 +77,7 @@ void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
   bool holds = false;
   for (const TubeBetween& tube : tubes_between(field, instrument)) {
     const Organ& organ = field.organs[tube.organ];
-    const RodBody& rod = *rod_of(organ);
+    const RodBody& rod = *organ.body->as_tube();
     const double open = left_open(tool, tube, rod, row.leg);
     const Mat3 to_tube = rod.frame_at(tube.at, organ.state.x).transpose() * hinge;
     Clip clip{row.size, tube.at, open, to_tube.col(2), to_tube.col(0), tip - tube.place.z()};
@@ -108,14 +109,14 @@ double spacing(const RodBody& rod) { return rod.length() / rod.last_point(); }
 
 /// How near to each other two clips may come, middle to middle, in skin points.
 double least_apart(const Organ& organ, const Clip& one, const Clip& other) {
-  return 0.5 * (clip_row(one.size).wire + clip_row(other.size).wire) / spacing(*rod_of(organ));
+  return 0.5 * (clip_row(one.size).wire + clip_row(other.size).wire) / spacing(*organ.body->as_tube());
 }
 
 /// The clip of a tube that is next to one on the side of `towards`, in skin points; -1: there is none.
 int next_clip(const Organ& organ, int clip, double towards) {
   const int next = clip + (towards > 0 ? 1 : -1);
   const bool there = next >= 0 && next < static_cast<int>(organ.clips.size());
-  return there && rod_of(organ)->has(organ.clips[next].at) ? next : -1;
+  return there && organ.body->as_tube()->has(organ.clips[next].at) ? next : -1;
 }
 
 /// Moves a clip along its tube by so many skin points, and before it those in its way, as far as there is room: what a
@@ -130,14 +131,14 @@ void move_clip(Organ& organ, int index, double by) {
                  least = std::min(apart, least_apart(organ, clip, other));
     const double pushed = side * by - (apart - least);
     if (pushed > 0) move_clip(organ, next, side * pushed);
-    if (rod_of(organ)->has(other.at)) {
+    if (organ.body->as_tube()->has(other.at)) {
       clip.at = side * std::min(side * (clip.at + by), side * other.at - least);
       return;
     }
   }
   clip.at += by;
   constexpr double stop = 0.5;
-  const double last = rod_of(organ)->last_point();
+  const double last = organ.body->as_tube()->last_point();
   if (!is_open_at(organ, 0)) clip.at = std::max(clip.at, stop);
   if (!is_open_at(organ, last)) clip.at = std::min(clip.at, last - stop);
 }
@@ -150,7 +151,7 @@ struct Drawn {
 
 /// Of those between a tool's pads, as a tube slides along by `way`, m. The foremost come first.
 std::vector<Drawn> drawn_by(const Field& field, int instrument, const Organ& organ, const Vec3& way) {
-  const RodBody& rod = *rod_of(organ);
+  const RodBody& rod = *organ.body->as_tube();
   std::vector<Drawn> out;
   for (const ClipBetween& between : clips_between(field, instrument, organ)) {
     const Vec3 along =
@@ -211,7 +212,7 @@ void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& event
   const std::string& name = field.tools[instrument].definition.name;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     Organ& organ = field.organs[k];
-    const RodBody* rod = rod_of(organ);
+    const RodBody* rod = organ.body->as_tube();
     if (rod == nullptr) continue;
     const auto stays = [](const Clip& clip, const RodBody::Pinch& pinch) { return clip.at == pinch.at; };
     if (std::equal(organ.clips.begin(), organ.clips.end(), rod->pinches().begin(), rod->pinches().end(),

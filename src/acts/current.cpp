@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/units.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/field_tissues.h"
 #include "liquid/perforate.h"
 
@@ -61,7 +61,7 @@ double distance_to(const Tool& tool, const std::vector<Shape>& shapes, const Vec
 
 /// Where a shut clip's legs are: from their ends to what joins them, m.
 std::array<Vec3, 2> ends_of(const Organ& organ, const Clip& clip) {
-  const RodBody& rod = *rod_of(organ);
+  const RodBody& rod = *organ.body->as_tube();
   const Vec3 middle = rod.place_at(clip.at, organ.state.x);
   const Vec3 legs = rod.frame_at(clip.at, organ.state.x) * clip.legs;
   return {middle + clip.reach * legs, middle + (clip.reach - clip_row(clip.size).leg) * legs};
@@ -101,7 +101,7 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
     const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     const std::vector<double>& radii = organ.body->skin_radii();
     // Of a tube, whose points stand far apart, between them too.
-    const std::size_t parts = rod_of(organ) == nullptr ? 1 : 8;
+    const std::size_t parts = organ.body->is_line() ? 8 : 1;
     for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
       const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
       const Vec3 at =

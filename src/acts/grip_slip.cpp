@@ -175,7 +175,7 @@ Demand largest_demand(const Field& field, int instrument, bool turning) {
   const Demand pull{asked.normalized(), false, asked.norm(), holding_limit(field, instrument)};
   // A tube lies in the middle of both pads: it does not come out of a couple by turning about the shaft.
   const bool tube = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
-    return !organ.body->skin_radii().empty() && grip_count(organ, instrument) > 0;
+    return organ.body->is_line() && grip_count(organ, instrument) > 0;
   });
   if (clips || tube) return pull;
   const Vec3 shaft = hinge_frame(tool.trocar, tool.pose, tool.geometry).linear().col(2);

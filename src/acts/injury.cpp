@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/roll.h"
 
 namespace calot {
@@ -26,7 +26,7 @@ std::string injury_anywhere(const Field& field, const Organ& organ, const std::s
 }
 
 std::string injury_at(const Field& field, const Organ& tube, const std::string& usual, double at) {
-  const double way = way_from_start(*rod_of(tube), at);
+  const double way = tube.body->as_tube()->way_to(at);
   const InjuryNearStart* nearest = nullptr;
   for (const InjuryNearStart& near : tube.definition.injury.near_start)
     if (way < near.within && (nearest == nullptr || near.within < nearest->within)) nearest = &near;

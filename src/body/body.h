@@ -16,6 +16,8 @@
 namespace calot {
 
 class Assembly;
+class RodBody;
+class ShellBody;
 
 /// How freely a detail moves (detail_fading.h).
 struct DetailShare {
@@ -67,7 +69,8 @@ class Liquid {
   virtual LiquidMass mass(const FlowModes& flow, double kept, const LiquidMotion& begin, double h) const = 0;
   /// Its centroid, m, from a point of its own.
   virtual Vec3 centroid(const VecX& x, double kept) const = 0;
-  /// Gauge pressure at the surface's highest point, Pa.
+  /// Gauge pressure at a place (m), and at the surface's highest point, Pa.
+  virtual double pressure_at(const Vec3& place, double datum_pressure) const = 0;
   virtual double pressure_at_top(const VecX& x, double datum_pressure) const = 0;
 };
 
@@ -125,6 +128,8 @@ class Body {
   /// Of what the skin's points are the middles of, one a point, m: a rod's are on its centreline, and its triangles flat
   /// as lines. Empty: the skin itself is touched.
   virtual const std::vector<double>& skin_radii() const;
+  /// Whether its skin is a line with a radius about it.
+  bool is_line() const { return !skin_radii().empty(); }
   /// The largest of them, 0 without any.
   double thickest() const;
   /// Of the surface around a contact point, m.
@@ -180,6 +185,14 @@ class Body {
   virtual int level_of_detail(int /*index*/) const { return 0; }
   /// Levels that it can be refined by.
   virtual int most_levels() const { return 0; }
+
+  /// Whether teeth sink into it; they rub on what is hard.
+  virtual bool is_bitten() const { return true; }
+  /// Whether a bed holds any of it; none: that is as its definition says.
+  virtual std::optional<bool> bedded() const { return std::nullopt; }
+  /// The body as the one kind that has a lumen and takes clips, or that details refine; null: it is of another kind.
+  virtual const RodBody* as_tube() const { return nullptr; }
+  virtual const ShellBody* as_shell() const { return nullptr; }
 };
 
 using BodyPointer = std::shared_ptr<const Body>;

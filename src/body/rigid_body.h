@@ -46,6 +46,7 @@ class RigidBody : public Body {
   std::vector<Vec3> skin_normals(const VecX& x) const override;
 
   const BlockMatrix* mass() const override { return &mass_; }
+  bool is_bitten() const override { return false; }
   const AffineBody& affine() const { return *affine_; }
 
  private:

@@ -140,6 +140,13 @@ double RodBody::at_share(double share) const {
   return before + (share - low) / (high - low);
 }
 
+double RodBody::way_to(double at) const {
+  double way = 0;
+  for (std::size_t p = 0; p + 1 < skin_rest_.size() && static_cast<double>(p) < at; ++p)
+    way += std::min(1.0, at - static_cast<double>(p)) * (skin_rest_[p + 1] - skin_rest_[p]).norm();
+  return way;
+}
+
 Mat3 RodBody::frame_at(double at, const VecX& x) const {
   const std::vector<Vec3> line = skin_positions(x);
   const auto before = std::min(static_cast<std::size_t>(at), line.size() - 2);

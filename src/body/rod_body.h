@@ -85,8 +85,10 @@ class RodBody : public Body {
   /// Its end, skin points from its start; whether a place is on it.
   double last_point() const { return static_cast<double>(skin_rest_.size() - 1); }
   bool has(double at) const { return at >= 0 && at <= last_point(); }
-  /// Whether anything of it lies bedded.
-  bool bedded() const { return !bed_.row.empty(); }
+  /// Along it at rest from its start to a place, m.
+  double way_to(double at) const;
+  std::optional<bool> bedded() const override { return !bed_.row.empty(); }
+  const RodBody* as_tube() const override { return this; }
 
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }

@@ -52,6 +52,9 @@ struct ShellBile : Liquid {
   Vec3 centroid(const VecX& x, double kept) const override {
     return bile.moments(x).first / (kept + kept_volume);
   }
+  double pressure_at(const Vec3& place, double datum_pressure) const override {
+    return bile.pressure_at(place, datum_pressure);
+  }
   double pressure_at_top(const VecX& x, double datum_pressure) const override {
     return bile.pressure_at_top(x, datum_pressure);
   }
@@ -104,6 +107,7 @@ class ShellBody : public Body {
   int level_of_detail(int index) const override { return levels().level_of(details()[index]); }
   int most_levels() const override { return base_->levels.levels(); }
   double largest_motion(const VecX& dx) const override;
+  const ShellBody* as_shell() const override { return this; }
 
   const std::string& name() const override { return base_->setup.name; }
   int coarse_nodes() const override { return refined_->surface.basis.coarse_nodes(); }

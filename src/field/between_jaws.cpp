@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "body/rod_body.h"
+
 namespace calot {
 namespace {
 
@@ -30,16 +32,6 @@ bool is_between_pads(const Tool& tool, const Vec3& at) {
 
 }  // namespace
 
-const RodBody* rod_of(const Organ& organ) { return dynamic_cast<const RodBody*>(organ.body.get()); }
-
-double way_from_start(const RodBody& rod, double at) {
-  const std::vector<Vec3>& rest = rod.skin_rest();
-  double way = 0;
-  for (std::size_t p = 0; p + 1 < rest.size() && static_cast<double>(p) < at; ++p)
-    way += std::min(1.0, at - static_cast<double>(p)) * (rest[p + 1] - rest[p]).norm();
-  return way;
-}
-
 bool feels(const Organ& organ, int instrument) {
   return !std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument);
 }
@@ -50,7 +42,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   std::vector<TubeBetween> out;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
-    const RodBody* rod = rod_of(organ);
+    const RodBody* rod = organ.body->as_tube();
     if (rod == nullptr || !feels(organ, instrument)) continue;
     std::vector<Vec3> line = rod->skin_positions(organ.state.x);
     for (Vec3& p : line) p = to_hinge * p;
@@ -70,7 +62,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
 std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ) {
   std::vector<ClipBetween> out;
   if (!feels(organ, instrument)) return out;
-  const RodBody* rod = rod_of(organ);
+  const RodBody* rod = organ.body->as_tube();
   for (std::size_t c = 0; c < organ.clips.size(); ++c) {
     const Clip& clip = organ.clips[c];
     if (!rod->has(clip.at)) continue;

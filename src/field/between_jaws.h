@@ -1,7 +1,6 @@
 #pragma once
 // What lies across open jaws: in the plane in which they open, y = 0 of the hinge's frame, between their pads.
 
-#include "body/rod_body.h"
 #include "field/field.h"
 
 namespace calot {
@@ -35,11 +34,5 @@ struct ClipBetween {
 };
 /// Of an organ, in the order of their places; of one that does not feel the jaws there are none.
 std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ);
-
-/// The organ as a tube; null: it is none.
-const RodBody* rod_of(const Organ& organ);
-
-/// Along a tube at rest from its start to a place (skin points from there), m.
-double way_from_start(const RodBody& rod, double at);
 
 }  // namespace calot

@@ -68,7 +68,7 @@ std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
   for (const Tool& tool : field.tools)
     for (const Shape& shape : shapes_in_field(tool, tool.pose))
       for (std::size_t p = 0; p < fresh.body->skin_rest().size(); ++p) {
-        const double radius = fresh.body->skin_radii().empty() ? 0.0 : fresh.body->skin_radii()[p];
+        const double radius = fresh.body->is_line() ? fresh.body->skin_radii()[p] : 0.0;
         if (signed_distance(shape, fresh.body->skin_point(static_cast<int>(p), fresh.state.x)) > radius)
           continue;
         return fail(FailureKind::scenario,

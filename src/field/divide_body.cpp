@@ -23,8 +23,7 @@ using Halves = std::array<int, 2>;
 std::vector<char> held_bodies(const Field& field) {
   std::vector<char> held;
   for (const Organ& organ : field.organs) {
-    const auto* rod = dynamic_cast<const RodBody*>(organ.body.get());
-    held.push_back(rod ? rod->bedded() : !organ.definition.held.empty());
+    held.push_back(organ.body->bedded().value_or(!organ.definition.held.empty()));
   }
   for (bool more = true; std::exchange(more, false);)
     for (const FieldJoint& joint : field.membership.joints) {
@@ -62,8 +61,7 @@ std::vector<Burn> burns_of_piece(const Organ& whole, const RodBody& piece) {
 Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool first, RodBody body) {
   Organ piece{whole.definition, nullptr, {}, {}, {}, {}, {}, {}, {}, {}};
   if (!first)
-    for (InjuryNearStart& near : piece.definition.injury.near_start)
-      near.within -= way_from_start(rod, cut.point);
+    for (InjuryNearStart& near : piece.definition.injury.near_start) near.within -= rod.way_to(cut.point);
   auto& shape = std::get<TubeShape>(piece.definition.shape);
   shape.points = body.skin_rest();
   shape.nodes = body.nodes();
@@ -314,7 +312,7 @@ std::array<std::string, 2> piece_names(const std::string& body) {
 
 Result<Division> divide_body(Field& field, int index, double share, double time) {
   const Organ whole = field.organs[index];
-  const auto* rod = dynamic_cast<const RodBody*>(whole.body.get());
+  const RodBody* rod = whole.body->as_tube();
   if (rod == nullptr) return no_tube(whole.definition, "divide", "divided");
   const Cut cut{rod->point_to_divide_at(share), static_cast<int>(rod->skin_rest().size()), rod->skin_rest()};
   if (cut.point < 0)
@@ -334,8 +332,7 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
     const std::string& name = names[patients ? 0 : 1];
     pieces[half].of_specimen = whole.of_specimen || !patients;
     pieces[half].definition.name = name;
-    pieces[half].body =
-        std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*pieces[half].body).called(name));
+    pieces[half].body = std::make_shared<const RodBody>(pieces[half].body->as_tube()->called(name));
   }
   note_departure(field, whole, {time, "was divided", {names[0], names[1]}, {}});
   field.enrol(pieces[start_first ? 0 : 1]);
@@ -347,7 +344,7 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
 }
 
 bool can_be_divided(const Organ& organ, double share) {
-  const auto* rod = dynamic_cast<const RodBody*>(organ.body.get());
+  const RodBody* rod = organ.body->as_tube();
   const int point = rod == nullptr ? -1 : rod->point_to_divide_at(share);
   return point >= 0 && !check_lengths(organ, *rod, point);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "body/rod_body.h"
 #include "field/between_jaws.h"
 
 namespace calot {
@@ -17,7 +18,7 @@ double held_area(const Field& field, int instrument) {
   std::array<double, 2> area{};
   for (const Organ& organ : field.organs) {
     if (!clips_between(field, instrument, organ).empty()) continue;
-    const RodBody* rod = rod_of(organ);
+    const RodBody* rod = organ.body->as_tube();
     for (const GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
       double own = organ.body->skin_areas()[grip.skin_point];
@@ -75,7 +76,7 @@ bool fold_fills_jaws(const Field& field, int instrument) {
     }
     if (count[0] == 0 || count[1] == 0) continue;
     const double reach = 2.0 * depth / (count[0] + count[1]);
-    if (!organ.body->skin_radii().empty()) {
+    if (organ.body->is_line()) {
       // A tube is pressed flat where the next angle leaves it no room.
       const double next = reach * std::sin(0.5 * std::max(0.0, tool.pose.jaw - grip_grid));
       if (next + 2 * contact_inset <= 2 * flat_radius(field, instrument, organ)) return true;

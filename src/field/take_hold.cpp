@@ -79,9 +79,8 @@ void take_hold(Field& field, int instrument) {
   const bool teeth = instrument_row(tool.definition.type).jaws == JawUse::hold;
   for (Organ& organ : field.organs) {
     // What has slipped out bulges before the jaws that lost it: they catch none again until they have opened.
-    if (tool.lost && organ.body->skin_radii().empty()) continue;
-    if (!feels(organ, instrument) || (!teeth && !organ.body->skin_radii().empty()) || !is_bitten(organ))
-      continue;
+    if (tool.lost && !organ.body->is_line()) continue;
+    if (!feels(organ, instrument) || (!teeth && organ.body->is_line()) || !is_bitten(organ)) continue;
     const std::vector<ClipBetween> clips = clips_between(field, instrument, organ);
     if (clips.empty()) {
       hold(tool, instrument, organ);

@@ -10,7 +10,7 @@ bool has_teeth(const Tool& tool) {
          tool.definition.pad_friction > 0;
 }
 
-bool is_bitten(const Organ& organ) { return !std::holds_alternative<RigidShape>(organ.definition.shape); }
+bool is_bitten(const Organ& organ) { return organ.body->is_bitten(); }
 
 bool before_pad(const Vec3& local, const InstrumentGeometry& g) {
   return std::abs(local.y()) < 0.5 * g.jaw_width && local.z() > g.jaw_rounding && local.z() < g.jaw_length;

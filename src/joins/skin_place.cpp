@@ -36,7 +36,7 @@ NearestSkin SkinFinder::nearest(const Vec3& to, double within) const {
         if (found.weight[c] == 0) continue;
         out.place.points.push_back(t[c]);
         out.place.weights.push_back(found.weight[c]);
-        if (!body_.skin_radii().empty()) out.radius += found.weight[c] * body_.skin_radii()[t[c]];
+        if (body_.is_line()) out.radius += found.weight[c] * body_.skin_radii()[t[c]];
       }
     }
   }

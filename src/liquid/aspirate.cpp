@@ -101,7 +101,7 @@ void puncture(Field& field, const std::vector<InstrumentAction>& actions, std::v
     if (!draws || needle.record >= 0) continue;
     const PushedOn wall = pushed_on_by(field, tip_of(tool), pushed_on);
     Organ* organ = wall.organ < 0 ? nullptr : &field.organs[wall.organ];
-    if (organ != nullptr && shell_of(*organ) != nullptr && organ->body->liquid() != nullptr) {
+    if (organ != nullptr && organ->body->liquid() != nullptr) {
       go_in(*organ, wall.point, tool);
       events.push_back({EventKind::puncture, 0, name, organ->definition.name});
       continue;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/units.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "geometry/triangle_crossing.h"
 #include "liquid/films.h"
 
@@ -31,13 +31,13 @@ std::optional<double> crosses(const std::array<Vec3, 3>& t, const Vec3& from, co
 std::pair<Vec3, Vec3> mouth_of(const Organ& organ, const Opening& opening) {
   const VecX& x = organ.state.x;
   const Vec3 at = organ.body->skin_point(opening.point, x);
-  if (rod_of(organ) == nullptr) return {at, organ.body->skin_normals(x)[opening.point]};
+  if (!organ.body->is_line()) return {at, organ.body->skin_normals(x)[opening.point]};
   const int inner = opening.point == 0 ? 1 : opening.point - 1;
   return {at, (at - organ.body->skin_point(inner, x)).normalized()};
 }
 
 double width_of(const Organ& organ, const Opening& opening) {
-  const RodBody* rod = rod_of(organ);
+  const RodBody* rod = organ.body->as_tube();
   if (rod == nullptr) return opening.area;
   return std::numbers::pi * std::pow(std::max(rod->lumen_radius(opening.point), 1e-4), 2);
 }
@@ -57,7 +57,7 @@ std::optional<Landing> lands(Field& field, const FallenOn& skins, const Vec3& fr
 FallenOn::FallenOn(const Field& field) {
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
-    if (rod_of(organ) != nullptr) continue;
+    if (organ.body->is_line()) continue;
     Skin skin{static_cast<int>(k), organ.body->skin_positions(organ.state.x), {}, {}, {}};
     skin.triangles = &organ.body->skin().triangles;
     skin.each = static_cast<std::size_t>(organ.body->triangles_each());

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "base/units.h"
-#include "field/between_jaws.h"
 #include "liquid/aspirate.h"
 #include "liquid/leak_source.h"
 #include "liquid/spill_surface.h"

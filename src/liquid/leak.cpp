@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "body/rod_body.h"
 #include "liquid/aspirate.h"
 #include "liquid/leak_source.h"
 
@@ -79,7 +80,7 @@ class Leaking {
         if (outlet.source.kind == LeakSource::Kind::organ) {
           const Organ& from = field.organs[outlet.source.organ];
           const Vec3 at = organ.body->skin_point(organ.openings[i].point, organ.state.x);
-          outlet.pressure = shell_of(from)->bile()->pressure_at(at, from.state.datum_pressure);
+          outlet.pressure = from.body->liquid()->pressure_at(at, from.state.datum_pressure);
           reservoir(outlet.source.organ);
         }
         outlets_.push_back(outlet);
@@ -90,7 +91,7 @@ class Leaking {
       if (from < 0) continue;
       const Organ& organ = field.organs[from];
       const Vec3 mouth = organ.body->skin_point(field.tools[i].needle.point, organ.state.x);
-      draughts_.push_back({i, from, shell_of(organ)->bile()->pressure_at(mouth, organ.state.datum_pressure)});
+      draughts_.push_back({i, from, organ.body->liquid()->pressure_at(mouth, organ.state.datum_pressure)});
       reservoir(from);
     }
   }
@@ -156,7 +157,7 @@ class Leaking {
         return;
       }
       case LeakSource::Kind::rest: {
-        const RodBody& rod = *rod_of(organ);
+        const RodBody& rod = *organ.body->as_tube();
         const double full = lumen_volume(rod),
                      share = source.area / lumen_area(rod, organ.openings[outlet.opening].point);
         const double left = organ.left_in.value_or(full);

@@ -31,7 +31,7 @@ class SourceSearch {
   explicit SourceSearch(const Field& field) : field_(field) {}
 
   LeakSource of(int organ, const Opening& opening) {
-    const RodBody* rod = rod_of(field_.organs[organ]);
+    const RodBody* rod = field_.organs[organ].body->as_tube();
     if (rod == nullptr) return {LeakSource::Kind::organ, organ, {}, opening.area};
     const double from = opening.point, to = rod->last_point() - from;
     const double whole = lumen_area(*rod, from);
@@ -51,7 +51,7 @@ class SourceSearch {
   /// From a place on a tube to one of its ends.
   std::optional<LeakSource> along(int organ, double from, double to, double area) {
     const Organ& tube = field_.organs[organ];
-    const RodBody& rod = *rod_of(tube);
+    const RodBody& rod = *tube.body->as_tube();
     visited_[organ] = 1;
     area = std::min(
         area, std::min(lumen_area(rod, from), lumen_area(rod, to)) * open_between(field_, organ, from, to));
@@ -78,9 +78,9 @@ class SourceSearch {
   std::optional<LeakSource> beyond(const JointLinks& links, int side, Carries liquid, double area) {
     const int organ = links.bodies[side];
     const Organ& other = field_.organs[organ];
-    if (liquid == Carries::bile && shell_of(other) != nullptr && other.body->liquid() != nullptr)
+    if (liquid == Carries::bile && other.body->liquid() != nullptr)
       return LeakSource{LeakSource::Kind::organ, organ, {}, area};
-    const RodBody* rod = rod_of(other);
+    const RodBody* rod = other.body->as_tube();
     if (rod == nullptr || liquid_of(other) != liquid || visited_[organ]) return std::nullopt;
     std::optional<LeakSource> best;
     for (double end : {0.0, rod->last_point()})
@@ -126,7 +126,7 @@ TubeFeed feed_of(const OrganDefinition& tube) {
 double open_between(const Field& field, int index, double one, double other) {
   constexpr double shut = 0.02;  // as of a clip (clips.cpp)
   const Organ& organ = field.organs[index];
-  const RodBody& rod = *rod_of(organ);
+  const RodBody& rod = *organ.body->as_tube();
   const auto [low, high] = std::minmax(one, other);
   double open = 1;
   for (const Clip& clip : organ.clips)

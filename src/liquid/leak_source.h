@@ -1,6 +1,7 @@
 #pragma once
 // What drives liquid out of an opening, and how wide its way there is (leak.h has the laws).
 
+#include "body/rod_body.h"
 #include "field/field.h"
 #include "liquid/outflow.h"
 

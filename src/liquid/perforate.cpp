@@ -12,7 +12,7 @@ constexpr double least_slit = 1.0e-3;  // m: blades that stand on a wall have cu
 
 void perforate(Field& field, int instrument) {
   for (Organ& organ : field.organs) {
-    if (shell_of(organ) == nullptr || organ.body->liquid() == nullptr) continue;
+    if (organ.body->liquid() == nullptr) continue;
     Vec3 sum = Vec3::Zero();
     double low = 1, high = -1;  // m, along the jaws
     std::vector<int> held;
@@ -38,7 +38,7 @@ void perforate(Field& field, int instrument) {
 
 void perforate(Organ& organ, const Vec3& at, const std::string& instrument) {
   constexpr double burnt = 3e-6;  // m^2, 2 mm across (d)
-  if (shell_of(organ) == nullptr || organ.body->liquid() == nullptr) return;
+  if (organ.body->liquid() == nullptr) return;
   Opening hole;
   hole.point = nearest_of(organ.body->skin_positions(organ.state.x), at);
   hole.area = burnt;

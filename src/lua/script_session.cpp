@@ -9,7 +9,7 @@
 #include "anatomy/instruments.h"
 #include "base/suggest.h"
 #include "base/units.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/roll.h"
 #include "lua/handles.h"
 #include "organs/strand_places.h"
@@ -244,7 +244,7 @@ std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name
       return {tube->points.front(), (tube->points.back() - tube->points.front()).normalized()};
   } else if (const Result<int> there = world(L).organ(name)) {
     const Organ& organ = world(L).field().organs[static_cast<std::size_t>(there.value())];
-    if (const RodBody* rod = rod_of(organ)) {
+    if (const RodBody* rod = organ.body->as_tube()) {
       const double at = rod->at_share(share);
       return {rod->place_at(at, organ.state.x), rod->frame_at(at, organ.state.x).col(0)};
     }

@@ -23,7 +23,8 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
   }
   out.grip = grip_springs(organ, field.tools, poses);
   out.friction = friction_load(field, organ, poses);
-  if (const ShellBody* shell = shell_of(organ)) out.detail_holds = detail_holds(*shell, organ.state.shares);
+  if (const ShellBody* shell = organ.body->as_shell())
+    out.detail_holds = detail_holds(*shell, organ.state.shares);
   out.load = organ.state.fading_load;
   return out;
 }

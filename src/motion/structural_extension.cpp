@@ -106,7 +106,7 @@ bool clear_of_tools(const Organ& organ, const ContactLoads& loads) {
 
 /// Whether no wall passes through another as the details that are left out go. Those that are new move nothing yet.
 bool clear_of_itself(Organ& organ, const ShellBody& before, const VecX& x) {
-  const VecX going = shell_of(organ)->coordinates_in(before, organ.state.x) - x;
+  const VecX going = organ.body->as_shell()->coordinates_in(before, organ.state.x) - x;
   return organ.search.own.safe_share(before, x, going, contact_keep, 1.0) == 1.0;
 }
 
@@ -173,7 +173,7 @@ void change_details(Field& field, Organ& organ, std::vector<int> details, const 
                     const ContactLoads& now, const std::vector<InstrumentPose>& poses,
                     SolveStatistics& statistics) {
   const BodyPointer present = organ.body;
-  const ShellBody& shell = *shell_of(organ);
+  const ShellBody& shell = *organ.body->as_shell();
   organ.refused_details = details;
   const Timed timed(statistics.extension_s);
   Result<ShellBody> next = shell.with_details(std::move(details));
@@ -227,7 +227,7 @@ std::vector<int> details_around(const ShellBody& body, const std::vector<Extensi
 }
 
 void follow_contacts(Field& field, Organ& organ, SolveStatistics& statistics) {
-  const ShellBody* shell = shell_of(organ);
+  const ShellBody* shell = organ.body->as_shell();
   if (shell == nullptr || shell->most_levels() == 0) return;
   const std::vector<InstrumentPose> poses = present_poses(field);
   const auto place = [&] { return contact_place(organ, *shell, poses); };

@@ -26,7 +26,7 @@ std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoad
     double least = std::numeric_limits<double>::infinity();
     Vec3 place = Vec3::Zero();
     for (std::size_t row = 0; row < body.skin_rest().size(); ++row) {
-      const double radius = body.skin_radii().empty() ? 0 : body.skin_radii()[row];
+      const double radius = body.is_line() ? body.skin_radii()[row] : 0;
       const double distance = signed_distance(shape, body.skin_rest()[row]) - radius;
       if (distance < least) least = distance, place = 1e3 * body.skin_rest()[row];
     }

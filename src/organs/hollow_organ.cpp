@@ -189,7 +189,7 @@ Result<bool> fill(RestedOrgan& filled, const ContactLoads& loads, const NewtonSe
                   const FillingLimits* limits) {
   Organ& organ = filled.organ;
   const BileDefinition& bile = organ.definition.bile;
-  const Bile& liquid = *shell_of(organ)->bile();
+  const Bile& liquid = *organ.body->as_shell()->bile();
   const Member member{*organ.body, loads, organ.search, organ.state};
   const double unstressed = liquid.volume(organ.state.x);
   if (bile.fill_pressure) {
@@ -383,7 +383,7 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
 Result<bool> release_filled(Organ& organ) {
   std::vector<HeldRegion> left = organ.definition.held;
   if (std::erase_if(left, [](const HeldRegion& region) { return region.while_filled; }) == 0) return false;
-  const ShellBody& shell = *shell_of(organ);
+  const ShellBody& shell = *organ.body->as_shell();
   const Result<Places> places = places_on(organ.definition, shell.control());
   if (!places) return places.failure();
   Result<ShellBody> released = shell.with_foundation(foundation_of(left, places.value()));

@@ -4,8 +4,6 @@
 
 namespace calot {
 
-const ShellBody* shell_of(const Organ& organ) { return dynamic_cast<const ShellBody*>(organ.body.get()); }
-
 OrganSnapshot snapshot(const Organ& organ) {
   return {organ.body,     organ.state, organ.grips,  organ.extensions, organ.refused_details,
           organ.friction, organ.clips, organ.unfelt, organ.openings,   organ.left_in,

@@ -102,9 +102,6 @@ struct Organ {
   }
 };
 
-/// The body as a shell, which alone is refined; null: it is none.
-const ShellBody* shell_of(const Organ& organ);
-
 /// All that moves of an organ. `search` only remembers.
 struct OrganSnapshot {
   BodyPointer body;

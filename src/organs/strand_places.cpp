@@ -29,7 +29,7 @@ std::vector<Candidate> candidates_of(const Organ& organ, int strands) {
   std::vector<int> around(skin.size(), 0);  // triangles at each point
   for (const Triangle& t : triangles)
     for (int corner : t) ++around[corner];
-  const bool line = !body.skin_radii().empty();
+  const bool line = body.is_line();
   std::vector<Vec3> rule{Vec3::Constant(1.0 / 3)};
   // A region may be a small part of the skin: as if it were a twentieth.
   if (triangles.size() < 20 * fewest_each * static_cast<std::size_t>(strands))
@@ -114,7 +114,7 @@ std::vector<int> spread_out(const std::vector<Facing>& places, int count) {
 }  // namespace
 
 double share_along(const Organ& organ, const CarriedPlace& place) {
-  if (const auto* rod = dynamic_cast<const RodBody*>(organ.body.get())) {
+  if (const RodBody* rod = organ.body->as_tube()) {
     double share = 0;
     for (std::size_t i = 0; i < place.points.size(); ++i)
       share += place.weights[i] * rod->share_of_length(place.points[i]);

@@ -58,7 +58,7 @@ SceneBuilder::SceneBuilder(const World& world, SceneDetail detail)
     if (k >= organs_.size()) organs_.resize(k + 1);
     SceneMesh mesh = organ_mesh(world, world.organ(organ.definition.name).value());
     // Of what is drawn around a line no point is a skin's, and there are few.
-    if (!coarse || !organ.body->skin_radii().empty()) {
+    if (!coarse || organ.body->is_line()) {
       organs_[k].mesh = std::move(mesh);
       continue;
     }
@@ -142,8 +142,8 @@ Scene SceneBuilder::build(const World& world) const {
   if (SceneMesh leaf = leaf_mesh(world); !leaf.triangles.empty()) scene.meshes.push_back(std::move(leaf));
   for (SceneMesh& mesh : spill_meshes(world)) scene.meshes.push_back(std::move(mesh));
   for (const Organ& organ : world.field().organs) {
-    if (!definition.laparoscope.show_structure || shell_of(organ) == nullptr) continue;
-    for (SceneMesh& mesh : structure_meshes(draw_structure(*shell_of(organ), organ.state.x)))
+    if (!definition.laparoscope.show_structure || organ.body->as_shell() == nullptr) continue;
+    for (SceneMesh& mesh : structure_meshes(draw_structure(*organ.body->as_shell(), organ.state.x)))
       scene.meshes.push_back(std::move(mesh));
   }
   scene.meshes.insert(scene.meshes.end(), still_.begin(), still_.end());

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "liquid/films.h"
 #include "view/instrument_parts.h"
 #include "view/surfaces.h"
@@ -27,7 +27,7 @@ SceneMesh clip_mesh(double apart, double leg, double reach, double wire) {
 
 std::vector<SceneMesh> clip_meshes(const Organ& organ) {
   std::vector<SceneMesh> out;
-  const RodBody* rod = rod_of(organ);
+  const RodBody* rod = organ.body->as_tube();
   for (const Clip& clip : organ.clips) {
     const ClipRow& row = clip_row(clip.size);
     const double apart = rod->flat_half_height(clip.at, clip.opening) + 0.5 * row.wire;

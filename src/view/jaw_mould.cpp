@@ -182,7 +182,7 @@ DrawnSkin JawMoulds::skin(const World& world, int organ) const {
   DrawnSurface surface = world.drawn(organ);
   DrawnSkin skin{std::move(surface.positions), std::move(surface.normals)};
   // What is drawn around a line has no skin points to be moulded by.
-  if (!world.field().organs[static_cast<std::size_t>(organ)].body->skin_radii().empty()) return skin;
+  if (world.field().organs[static_cast<std::size_t>(organ)].body->is_line()) return skin;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
     moulds_[i].apply(world.field(), static_cast<int>(i), organ, nullptr, skin);
   return skin;

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "field/between_jaws.h"
 #include "field/field.h"
 #include "joins/skin_place.h"
 #include "view/surfaces.h"
@@ -73,7 +72,7 @@ Fibre mean_about(double at, double reach, const std::vector<Fibre>& fibres) {
 class TubeMiddle {
  public:
   explicit TubeMiddle(const Organ& organ) {
-    if (rod_of(organ)) finder_.emplace(*organ.body, organ.body->skin_positions(organ.state.x));
+    if (organ.body->is_line()) finder_.emplace(*organ.body, organ.body->skin_positions(organ.state.x));
   }
   /// Of what is no tube: the place itself.
   Vec3 nearest(const Vec3& place) const {

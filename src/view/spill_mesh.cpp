@@ -5,7 +5,6 @@
 #include <map>
 #include <numbers>
 
-#include "field/between_jaws.h"
 #include "liquid/films.h"
 #include "view/surfaces.h"
 
@@ -100,7 +99,7 @@ std::map<int, double> depths_of(const Film& film, const WetMesh& mesh, int liqui
 
 Vec3 hanging_place(const Organ& organ, const Opening& opening) {
   const Vec3 at = organ.body->skin_point(opening.point, organ.state.x);
-  if (rod_of(organ) == nullptr) return at + 0.5e-3 * organ.body->skin_normals(organ.state.x)[opening.point];
+  if (!organ.body->is_line()) return at + 0.5e-3 * organ.body->skin_normals(organ.state.x)[opening.point];
   const Vec3 inner = organ.body->skin_point(opening.point == 0 ? 1 : opening.point - 1, organ.state.x);
   return at + 0.4e-3 * (at - inner).normalized();
 }

@@ -67,7 +67,7 @@ Result<bool> come_to_rest(const SceneDefinition& scene, Field& field, KeptResult
   field.group.friction = scene.anatomy.friction;
   if (!rested) return rested;
   for (Organ& organ : field.organs) {
-    const ShellBody* shell = shell_of(organ);
+    const ShellBody* shell = organ.body->as_shell();
     if (shell == nullptr) continue;
     ShellBody at_rest = *shell;
     at_rest.keep_in_equilibrium(organ.state);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "body/rod_body.h"
 #include "collision/edge_distance.h"
 #include "collision/simplex_distance.h"
 #include "field/field.h"
@@ -109,7 +108,7 @@ bool is_on(const Standing& strand, const Entering& tube) {
 /// A tube that is whole: what is left of a divided one ends blind.
 bool is_whole_tube(const Field& field, const Organ& organ) {
   const std::vector<BodyRecord>& roll = field.membership.roll;
-  return dynamic_cast<const RodBody*>(organ.body.get()) != nullptr &&
+  return organ.body->as_tube() != nullptr &&
          std::none_of(roll.begin(), roll.end(), [&](const BodyRecord& record) {
            if (!record.gone) return false;
            const std::vector<std::string>& pieces = record.gone->pieces;

@@ -5,7 +5,7 @@
 
 #include "acts/hands.h"
 #include "acts/pads.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/grip.h"
 #include "motion/tool_loads.h"
 #include "organs/body_kinds.h"
@@ -61,7 +61,7 @@ OrganState organ_state(const Organ& organ) {
     state.pressure = liquid->pressure_at_top(x, organ.state.datum_pressure);
     state.volume = liquid->volume(x);
   }
-  if (const RodBody* rod = rod_of(organ))
+  if (const RodBody* rod = organ.body->as_tube())
     for (const Clip& clip : organ.clips)
       state.clips.push_back({clip.size, rod->share_at(clip.at), clip.opening});
   state.energy = organ.body->strain_energy(x);

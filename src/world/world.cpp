@@ -456,7 +456,7 @@ DrawnSurface World::drawn(int organ) const {
 
 Result<double> World::lowest_frequency(int index) const {
   const Organ& organ = impl_->field.organs[index];
-  const ShellBody* shell = shell_of(organ);
+  const ShellBody* shell = organ.body->as_shell();
   if (shell == nullptr)
     return fail(
         FailureKind::simulation,

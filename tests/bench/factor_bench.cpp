@@ -20,7 +20,7 @@ using Cliques = std::vector<std::vector<int>>;
 Cliques faces(int nodes) {
   OrganDefinition definition = named_anatomy("standard")->organs[0];
   definition.nodes = nodes;
-  return shell_of(make_organ(definition, {}, Vec3::UnitZ(), 1e-6).value().organ)->shell().cliques();
+  return make_organ(definition, {}, Vec3::UnitZ(), 1e-6).value().organ.body->as_shell()->shell().cliques();
 }
 
 struct Group {

@@ -20,7 +20,7 @@ void shell_hessian(benchmark::State& state) {
   auto [organ, work] = gallbladder(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     work.matrix.set_zero();
-    shell_of(organ)->shell().add_hessian(organ.state.x, work.matrix);
+    organ.body->as_shell()->shell().add_hessian(organ.state.x, work.matrix);
   }
 }
 
@@ -30,7 +30,7 @@ void shared_shell_hessian(benchmark::State& state) {
   Assembly assembly(workers);
   for (auto _ : state) {
     work.matrix.set_zero();
-    shell_of(organ)->shell().add_hessian(organ.state.x, work.matrix, &assembly);
+    organ.body->as_shell()->shell().add_hessian(organ.state.x, work.matrix, &assembly);
   }
 }
 
@@ -38,7 +38,7 @@ void bile_hessian(benchmark::State& state) {
   auto [organ, work] = gallbladder(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     work.matrix.set_zero();
-    shell_of(organ)->bile()->add_hessian(organ.state.x, organ.state.datum_pressure, work.matrix);
+    organ.body->as_shell()->bile()->add_hessian(organ.state.x, organ.state.datum_pressure, work.matrix);
   }
 }
 
@@ -86,8 +86,8 @@ void laying_an_extension(benchmark::State& state) {
   const Organ organ = gallbladder(static_cast<int>(state.range(0)), 1).organ;
   const int fundus = organ.landmarks.at("fundus"), neck = organ.landmarks.at("neck");
   const ShellBody one =
-      shell_of(organ)->with_details(details_around(*shell_of(organ), {{0, fundus}})).value();
-  const std::vector<int> both = details_around(*shell_of(organ), {{0, fundus}, {1, neck}});
+      organ.body->as_shell()->with_details(details_around(*organ.body->as_shell(), {{0, fundus}})).value();
+  const std::vector<int> both = details_around(*organ.body->as_shell(), {{0, fundus}, {1, neck}});
   for (auto _ : state) {
     const ShellBody two = one.with_details(both).value();
     benchmark::DoNotOptimize(NewtonWorkspace(two.pattern(), two.coarse_nodes()));

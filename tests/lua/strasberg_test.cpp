@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
+#include "field/field.h"
 #include "lua/scenario_files.h"
 #include "session/runner.h"
 #include "sim/act_rig.h"
@@ -45,7 +46,7 @@ Aim aim_at(const SceneDefinition& scene, const std::string& duct, double share, 
   EXPECT_TRUE(made) << to_text(made.failure());
   const World& world = made.value();
   const Organ& organ = world.field().organs[world.organ(duct).value()];
-  const RodBody& rod = *rod_of(organ);
+  const RodBody& rod = *organ.body->as_tube();
   const double at = rod.at_share(share);
   const Vec3 along = rod.frame_at(at, organ.state.x).col(0), front = Vec3::UnitZ();
   Aim aim;

@@ -9,6 +9,7 @@
 #include "act_rig.h"
 #include "base/units.h"
 #include "field/field_state.h"
+#include "liquid/outflow.h"
 #include "rig.h"
 #include "support/long_run.h"
 
@@ -184,13 +185,13 @@ TEST(Needle, DrawsByItsLawAtThePressureThere) {
   const Field& field = needling.world.field();
   const Organ& ball = field.organs[0];
   const Vec3 mouth = ball.body->skin_point(field.tools[0].needle.point, ball.state.x);
-  const double pressure = shell_of(ball)->bile()->pressure_at(mouth, ball.state.datum_pressure);
+  const double pressure = ball.body->as_shell()->bile()->pressure_at(mouth, ball.state.datum_pressure);
   const double density = ball.definition.bile.density;
   ASSERT_TRUE(needling.draw(1));
   const double duration = 1 / needling.world.scene().solver.rate;
   // Its pressure falls in that step: so much less than with none of its wall's give, and more than from its end.
   const double stiff = drawn_by(needling.world.scene().instruments[0], pressure, 0, density, duration);
-  const double now = shell_of(ball)->bile()->pressure_at(mouth, ball.state.datum_pressure);
+  const double now = ball.body->as_shell()->bile()->pressure_at(mouth, ball.state.datum_pressure);
   const double least = drawn_by(needling.world.scene().instruments[0], now, 0, density, duration);
   EXPECT_LT(needling.booked().aspirated, stiff);
   EXPECT_GT(needling.booked().aspirated, least);

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "act_rig.h"
-#include "field/between_jaws.h"
 #include "field/field_state.h"
 #include "rig.h"
 

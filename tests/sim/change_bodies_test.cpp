@@ -76,7 +76,7 @@ const Organ& organ_of(const World& world, const std::string& name) {
 }
 
 const RodBody& rod_of(const World& world, const std::string& name) {
-  return dynamic_cast<const RodBody&>(*organ_of(world, name).body);
+  return *organ_of(world, name).body->as_tube();
 }
 
 double mass_of(const RodBody& rod) {
@@ -106,7 +106,7 @@ TEST_F(ChangedBodies, APieceIsTheSameCurveWithTheSameVelocities) {
   const Result<Division> done = world.divide("cystic_duct", 0.37);
   ASSERT_TRUE(done) << why(done.failure());
   EXPECT_NEAR(done->share, 0.37, 0.04);  // off the knots, one every 5 mm
-  const auto& rod = dynamic_cast<const RodBody&>(*whole.body);
+  const RodBody& rod = *whole.body->as_tube();
   const std::vector<Vec3> before = rod.skin_positions(whole.state.x);
   EXPECT_EQ(organ_of(world, "cystic_duct.patient").body->name(), "cystic_duct.patient");
   // The specimen's first: it hangs on the stone.
@@ -137,7 +137,7 @@ TEST_F(ChangedBodies, APieceIsTheSameCurveWithTheSameVelocities) {
 TEST_F(ChangedBodies, PiecesShareMassRestLengthAndEnergyOfTheWhole) {
   shake(world);
   const Organ whole = organ_of(world, "cystic_duct");
-  const auto& rod = dynamic_cast<const RodBody&>(*whole.body);
+  const RodBody& rod = *whole.body->as_tube();
   ASSERT_TRUE(world.divide("cystic_duct", 0.6));
   const RodBody &patient = rod_of(world, "cystic_duct.patient"),
                 &specimen = rod_of(world, "cystic_duct.specimen");
@@ -166,7 +166,7 @@ TEST_F(ChangedBodies, TheCutCarriesNoForce) {
   const auto between = [&](const VecX& at) {
     double most = 0;
     for (const JoinPointer& join : field.group.joins) {
-      const auto* skins = dynamic_cast<const SkinJoin*>(join.get());
+      const SkinJoin* skins = join->skins();
       const auto* joint = dynamic_cast<const Joint*>(join.get());
       const std::array<int, 2> bodies = skins ? skins->bodies() : joint->links().bodies;
       if (std::minmax(bodies[0], bodies[1]) != std::minmax(patient, specimen)) continue;

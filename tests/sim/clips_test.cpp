@@ -6,8 +6,9 @@
 
 #include "act_rig.h"
 #include "acts/grip_slip.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/field_state.h"
+#include "field/grip.h"
 #include "liquid/films.h"
 
 namespace calot {
@@ -40,7 +41,8 @@ std::pair<OrganState, double> clipped_at(double reach, ClipSize size = ClipSize:
   }
   const Organ& organ = acting.world.field().organs[0];
   const double middle = 0.5 * static_cast<double>(organ.body->skin_rest().size() - 1);
-  return {acting.world.report().organs[0], -tube_depth - rod_of(organ)->place_at(middle, organ.state.x).z()};
+  return {acting.world.report().organs[0],
+          -tube_depth - organ.body->as_tube()->place_at(middle, organ.state.x).z()};
 }
 
 TEST(Clips, ShutATubeThatIsWhollyBetweenTheirLegs) {
@@ -128,7 +130,7 @@ TEST(Clips, ATubeIsFlatUnderThemAndRoundAside) {
   ASSERT_TRUE(acting.go(about(applier_jaw, tube_depth - 20e-3), 2) && acting.go(past(5e-3), 6) &&
               acting.fire());
   const Organ& organ = acting.world.field().organs[0];
-  const RodBody& rod = *rod_of(organ);
+  const RodBody& rod = *organ.body->as_tube();
   const auto height = [&](double from, double to) {  // across the legs, along x
     double most = 0;
     for (const Vec3& p : rod.drawn(organ.state.x).positions)
@@ -208,7 +210,7 @@ TEST(Clips, GoWithThePieceOfADividedTubeThatTheyAreOn) {
     places.clear();
     for (const Organ& organ : hands.world.field().organs)
       for (const Clip& clip : organ.clips)
-        places.push_back(rod_of(organ)->place_at(clip.at, organ.body->rest()));
+        places.push_back(organ.body->as_tube()->place_at(clip.at, organ.body->rest()));
     return places;
   };
   const std::vector<Vec3> before = note();
@@ -223,8 +225,8 @@ TEST(Clips, GoWithThePieceOfADividedTubeThatTheyAreOn) {
   for (std::size_t i = 0; i < before.size(); ++i)
     EXPECT_LT((after[i] - before[i]).norm(), 1e-9) << "where it was on the tube";
   for (const Organ& organ : hands.world.field().organs) {
-    const auto least =
-        *std::min_element(rod_of(organ)->skin_radii().begin(), rod_of(organ)->skin_radii().end());
+    const auto least = *std::min_element(organ.body->as_tube()->skin_radii().begin(),
+                                         organ.body->as_tube()->skin_radii().end());
     EXPECT_NEAR(least, 0.8e-3, 1e-9) << "it is flat there still";
   }
 }
@@ -288,7 +290,7 @@ TEST(Clips, DrawnAlongTheirTubeHarderThanTheyHoldTheySlipOffItsEnd) {
   });
   EXPECT_EQ(fell->cause, EventCause::slipping);
   EXPECT_TRUE(hands.stump().clips.empty());
-  EXPECT_TRUE(rod_of(hands.stump())->pinches().empty());
+  EXPECT_TRUE(hands.stump().body->as_tube()->pinches().empty());
 }
 
 TEST(Clips, PushTheNextOneAlongWithWhatBothHoldAndFallOneAfterTheOther) {
@@ -302,8 +304,8 @@ TEST(Clips, PushTheNextOneAlongWithWhatBothHoldAndFallOneAfterTheOther) {
   ASSERT_EQ(hands.stump().clips.size(), 2u);
   const auto apart = [&] {
     const std::vector<Clip>& clips = hands.stump().clips;
-    const RodBody& rod = *rod_of(hands.stump());
-    return way_from_start(rod, clips[1].at) - way_from_start(rod, clips[0].at);
+    const RodBody& rod = *hands.stump().body->as_tube();
+    return rod.way_to(clips[1].at) - rod.way_to(clips[0].at);
   };
   const double wire = clip_row(hands.stump().clips[0].size).wire, stood = hands.stump().clips[1].at;
   constexpr double alone = 3e-3;  // m, on which the first one does not come to the other yet
@@ -349,7 +351,7 @@ TEST(Clips, AreSetAtSharesOfATubeAlone) {
   for (const double share : {0.0, 1.0}) {
     ASSERT_TRUE(acting.world.clip("duct", share, ClipSize::m));
     const Organ& organ = acting.world.field().organs[0];
-    EXPECT_TRUE(rod_of(organ)->has(organ.clips.back().at)) << share;
+    EXPECT_TRUE(organ.body->as_tube()->has(organ.clips.back().at)) << share;
   }
 }
 

@@ -161,7 +161,7 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
 
 TEST(Equilibrium, EveryPointThatCanTouchIsGatheredWhereverTheSkinGoes) {
   Touched touched(4);
-  const ShellBody& body = *shell_of(touched.organ);
+  const ShellBody& body = *touched.organ.body->as_shell();
   const std::vector<ContactPair> pairs = gather_pairs(body, touched.x, touched.around, 0.0);
   ContactPlaces places(body.skin(), touched.x);
   std::size_t gathered = 0, near = 0;

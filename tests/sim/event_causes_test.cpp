@@ -4,7 +4,7 @@
 
 #include "act_rig.h"
 #include "base/units.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/field_state.h"
 #include "rig.h"
 
@@ -134,7 +134,7 @@ TEST(EventCauses, CurrentNearerThanItShouldBeIsSaidOnceWithTheDistance) {
   const WorldEvent event = only(near.scene, EventKind::activation_beside);
   const Organ& duct = near.scene.world.field().organs[0];
   const double middle = 0.5 * static_cast<double>(duct.body->skin_rest().size() - 1);
-  const double sags = -tube_depth - rod_of(duct)->place_at(middle, duct.state.x).z();
+  const double sags = -tube_depth - duct.body->as_tube()->place_at(middle, duct.state.x).z();
   EXPECT_NEAR(event.value, 3 + sags / units::mm, 0.02) << "mm; between looks along the tube";
   EXPECT_EQ(event.organ, "duct");
   EXPECT_EQ(event.cause, EventCause::current);

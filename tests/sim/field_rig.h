@@ -44,7 +44,7 @@ inline void extend(Field& field, const std::vector<int>& centres) {
   Organ& organ = field.organs[0];
   organ.extensions.clear();
   for (int row : centres) organ.extensions.push_back({0, row});
-  const ShellBody& shell = *shell_of(organ);
+  const ShellBody& shell = *organ.body->as_shell();
   ShellBody next = shell.with_details(details_around(shell, organ.extensions)).value();
   organ.state.x = shell.coordinates_in(next, organ.state.x);
   organ.state.shares.clear();  // free at once
@@ -100,8 +100,8 @@ struct FundusField {
 
 /// Force of the bed and other held regions on the organ, N.
 inline Vec3 bed_force(const Organ& organ) {
-  const Links& bed = shell_of(organ)->foundation();
-  const StencilTable& table = shell_of(organ)->bed_points();
+  const Links& bed = organ.body->as_shell()->foundation();
+  const StencilTable& table = organ.body->as_shell()->bed_points();
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < bed.row.size(); ++i)
     sum += bed.stiffness[i] * (bed.target[i] - blend(table, table.value, bed.row[i], organ.state.x));
@@ -110,7 +110,8 @@ inline Vec3 bed_force(const Organ& organ) {
 
 /// Weight of the organ's bile, N.
 inline double bile_weight(const Organ& organ) {
-  return shell_of(organ)->bile()->specific_weight() * shell_of(organ)->bile()->volume(organ.state.x);
+  return organ.body->as_shell()->bile()->specific_weight() *
+         organ.body->as_shell()->bile()->volume(organ.state.x);
 }
 
 /// Force of the tissue on the first tool, N.

@@ -123,7 +123,7 @@ TEST(Joint, ADuctHangsOnWhatItGrowsOutOf) {
 TEST(Joint, DetailsTakePart) {
   GroupRig rig({test::straight_duct(Grown::top, Grown::top + Vec3(0, 0, 30e-3)),
                 test::soft_ball(Vec3::Zero(), 20e-3, 61, 1)});
-  const auto& ball = dynamic_cast<const ShellBody&>(*rig.bodies[1].body);
+  const ShellBody& ball = *rig.bodies[1].body->as_shell();
   const Joint joint(joint_links(*rig.bodies[0].body, ball, {0, 1}, Grown::top, Grown::radius, 800.0).value());
   const auto distance = [&](int node) { return (ball.node_rest()[node] - Grown::top).norm(); };
   int nearest = ball.levels().nodes(0);

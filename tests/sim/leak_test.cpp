@@ -8,7 +8,7 @@
 
 #include "act_rig.h"
 #include "acts/clips.h"
-#include "field/between_jaws.h"
+#include "body/rod_body.h"
 #include "field/change_bodies.h"
 #include "field/divide_body.h"
 #include "field/field_state.h"
@@ -112,16 +112,14 @@ struct Bodies {
   }
   Division cut(int organ, double share = 0.5) { return divide_body(field, organ, share, 0).value(); }
   void clip(int organ, double share, double opening) {
-    const RodBody& rod = *rod_of(field.organs[organ]);
+    const RodBody& rod = *field.organs[organ].body->as_tube();
     set_clip(field, organ, {ClipSize::ml, rod.at_share(share), opening, Vec3::UnitZ(), Vec3::UnitY(), 0});
   }
   double pressure(int of, int organ, bool at_end) const {
     const Organ& open = field.organs[organ];
     const int last = static_cast<int>(open.body->skin_rest().size()) - 1;
-    return shell_of(field.organs[of])
-        ->bile()
-        ->pressure_at(open.body->skin_point(at_end ? last : 0, open.state.x),
-                      field.organs[of].state.datum_pressure);
+    return field.organs[of].body->as_shell()->bile()->pressure_at(
+        open.body->skin_point(at_end ? last : 0, open.state.x), field.organs[of].state.datum_pressure);
   }
   std::vector<WorldEvent> run(double duration, int steps = 1) {
     std::vector<WorldEvent> events;
@@ -180,8 +178,8 @@ TEST(Leaks, AHoleInTheWallLeaksByItsArea) {
   bodies.field.organs[0].openings.push_back(hole);
   bodies.field.group.work.factored = false;
   const Organ& bag = bodies.field.organs[0];
-  const double pressure =
-      shell_of(bag)->bile()->pressure_at(bag.body->skin_point(0, bag.state.x), bag.state.datum_pressure);
+  const double pressure = bag.body->as_shell()->bile()->pressure_at(bag.body->skin_point(0, bag.state.x),
+                                                                    bag.state.datum_pressure);
   const std::vector<WorldEvent> events = bodies.run(0.01);
   EXPECT_NEAR(bodies.lost(Carries::bile, "ball"), 0.01 * orifice(pressure, 2e-6), 1e-15);
   ASSERT_EQ(events.size(), 1u);
@@ -351,7 +349,7 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   test::Acting acting(scene);
   const double deep = test::tube_depth + 14e-3;
   const auto open = [&] {
-    const RodBody& rod = *rod_of(acting.world.field().organs[0]);
+    const RodBody& rod = *acting.world.field().organs[0].body->as_tube();
     return open_between(acting.world.field(), 0, 0, static_cast<double>(rod.skin_rest().size() - 1));
   };
   ASSERT_TRUE(acting.go(test::about(0.7, test::tube_depth - 20e-3), 2) &&

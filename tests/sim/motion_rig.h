@@ -19,7 +19,7 @@ inline Field free_ball(double height, double step_time, const std::optional<Plan
   held.held = {{"base", "neck", 10e-3, 1e6}};
   const Field like = make_field(held, 1e-6, Vec3::UnitZ());
   ShellBody::Setup setup;
-  setup.control = shell_of(like.organs[0])->control();
+  setup.control = like.organs[0].body->as_shell()->control();
   setup.material.membrane = {definition.wall.shear_modulus, definition.wall.thickness};
   setup.material.bending = {definition.wall.shear_modulus, definition.wall.thickness};
   setup.bile = definition.bile;

@@ -167,8 +167,8 @@ TEST(Motion, AFilledBallThatHangsFromItsBaseSwaysWithItsLowestNaturalFrequency) 
   definition.bile.fill_pressure = 1000;
   const Field rest = test::make_field(definition, 1e-8, -Vec3::UnitZ());
   const Organ& at = rest.organs[0];
-  const BodyMass mass(*shell_of(at), at.state.x, definition.wall.thickness, definition.bile.density);
-  const double lowest = lowest_frequency(*shell_of(at), {}, at.state, mass).value();
+  const BodyMass mass(*at.body->as_shell(), at.state.x, definition.wall.thickness, definition.bile.density);
+  const double lowest = lowest_frequency(*at.body->as_shell(), {}, at.state, mass).value();
   // The few points of its bed are no even round: it sways more slowly this way than across, by 3 %.
   const Vec3 softest(std::cos(1.97), std::sin(1.97), 0);
   const auto found = [&](double h) {

@@ -113,7 +113,7 @@ Field ball_with_details() {
 
 TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
   Field field = ball_with_details();
-  const ShellBody& body = *shell_of(field.organs[0]);
+  const ShellBody& body = *field.organs[0].body->as_shell();
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   const std::vector<SelfTouch> touches = own.touching(body, x);
@@ -178,7 +178,7 @@ VecX crossed(const Organ& organ, const SkinNet& net, double gap) {
 TEST(SelfContact, EdgesThatCrossPressOnEachOther) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
   const Organ& organ = field.organs[0];
-  const ShellBody& body = *shell_of(organ);
+  const ShellBody& body = *organ.body->as_shell();
   const SkinNet net(body);
   const VecX x = crossed(organ, net, 0.5 * self_edge_barrier.range);
   ASSERT_GT(x.size(), 0);
@@ -229,7 +229,7 @@ TEST(SelfContact, NoStepTakesCrossingEdgesThroughEachOther) {
 
 TEST(SelfContact, ForcesOnTheSkinHaveNoMoment) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
-  const ShellBody& body = *shell_of(field.organs[0]);
+  const ShellBody& body = *field.organs[0].body->as_shell();
   const VecX x = dented(field.organs[0], 0.15e-3);
   SelfContact own;
   VecX g = VecX::Zero(x.size());

@@ -356,7 +356,7 @@ TEST(SkinJoin, NothingIsAskedOfAnIdleJoin) {
 TEST(SkinJoin, BallsPressedTogetherMeetAndDoNotOverlap) {
   CALOT_SLOW_WHEN_SANITIZED("two balls pressed together");
   GroupRig rig = held_balls(0.3e-3);
-  const auto& join = dynamic_cast<const SkinJoin&>(*rig.joins[0]);
+  const SkinJoin& join = *rig.joins[0]->skins();
   for (int step = 0; step < 5; ++step) {
     for (Vec3& target : rig.bodies[1].loads.grip.target) target.z() -= 2.4e-3;
     ASSERT_TRUE(rig.settle().converged()) << step;
@@ -477,7 +477,7 @@ void draw_across(GroupRig& rig, int duct, const Vec3& by, int steps) {
     for (Vec3& target : rig.bodies[duct].loads.grip.target) target += by;
     ASSERT_TRUE(rig.settle(1e-6).converged()) << step;
     ASSERT_EQ(crossings(rig), 0U) << step;
-    ASSERT_GT(dynamic_cast<const SkinJoin&>(*rig.joins[0]).gap(rig.x()), 0) << step;
+    ASSERT_GT(rig.joins[0]->skins()->gap(rig.x()), 0) << step;
   }
 }
 void hold_ends(GroupRig& rig, int body, double stiffness) {
@@ -551,7 +551,7 @@ TEST(SkinJoin, MemoryLeavesNoTrace) {
 TEST(SkinJoin, DetailsTakePart) {
   const BodyPointer plain = test::soft_ball(Vec3::Zero(), radius, 61, 1),
                     duct = duct_along_x(radius + thin + apart);
-  const auto& shell = dynamic_cast<const ShellBody&>(*plain);
+  const ShellBody& shell = *plain->as_shell();
   const Vec3 top(0, 0, radius);
   const auto distance = [&](int node) { return (shell.node_rest()[node] - top).norm(); };
   int nearest = shell.levels().nodes(0);

@@ -101,7 +101,7 @@ std::vector<double> fingerprint(const ShellBody& body, const BodyState& rest) {
 TEST(StructuralExtension, LaidFromAnotherOneItIsTheSameToTheBit) {
   Field field = test::make_field(test::bedded_ball(), 1e-9, Vec3::UnitZ(), {}, 2);
   const Organ& organ = field.organs[0];
-  const ShellBody& bare = *shell_of(organ);
+  const ShellBody& bare = *organ.body->as_shell();
   const auto about = [&](const std::vector<int>& rows) {
     std::vector<Extension> extensions;
     for (int row : rows) extensions.push_back({0, row});
@@ -140,7 +140,7 @@ TEST(StructuralExtension, BileBearsOnAnExtendedWallWithItsWeight) {
   VecX& x = pulled.organ.state.x;
   for (Eigen::Index i = 3 * pulled.organ.body->coarse_nodes(); i < x.size(); ++i)
     x[i] = rng.uniform(-1e-3, 1e-3);
-  const Bile& bile = *shell_of(pulled.organ)->bile();
+  const Bile& bile = *pulled.organ.body->as_shell()->bile();
   VecX load = VecX::Zero(x.size());
   bile.add_load(x, pulled.organ.state.datum_pressure, load);
   // The coarse functions sum to one everywhere: their loads are all there are.
@@ -177,7 +177,7 @@ TEST(StructuralExtension, APulledWallIsTwiceAsTrueWithItAsWithout) {
   EXPECT_EQ(extended.organ.body->details().size(), 12u);
   extended.rest();
   std::vector<int> all;
-  const ShellBody& bare = *shell_of(fine.organ);
+  const ShellBody& bare = *fine.organ.body->as_shell();
   for (int node = bare.levels().nodes(0); node < bare.levels().nodes(2); ++node) all.push_back(node);
   const auto finest = std::make_shared<const ShellBody>(bare.with_details(all).value());
   fine.organ.state.x = bare.coordinates_in(*finest, fine.organ.state.x);

@@ -237,7 +237,7 @@ TEST(Tissue, HoldsAnOrganWhereItWasFilled) {
   tissue.break_energy = 500;
   scene.anatomy.tissue = {tissue};
   World world = world_of(scene);
-  EXPECT_TRUE(shell_of(world.field().organs[0])->foundation().row.empty());
+  EXPECT_TRUE(world.field().organs[0].body->as_shell()->foundation().row.empty());
   const Vec3 begin = world.landmark("ball.fundus");
   wait(world, 3);
   EXPECT_LT((world.landmark("ball.fundus") - begin).norm(), 0.5e-3) << "at rest on its strands";

@@ -105,7 +105,7 @@ TEST_P(TouchedPoints, LieOnTheJawsThatGraspThem) {
 
 TEST(ContactPoints, StandForAllOfTheSkin) {
   const Field field = Handled::make(0);
-  const ShellBody& body = *shell_of(field.organs[0]);
+  const ShellBody& body = *field.organs[0].body->as_shell();
   double skin = 0, felt = 0;
   for (const Triangle& t : body.skin().triangles)
     skin += 0.5 * (body.skin_rest()[t[1]] - body.skin_rest()[t[0]])
@@ -127,7 +127,7 @@ TEST(ContactPoints, LieEvenlyOnTheirTriangles) {
   const std::vector<Vec3> skin = organ.body->skin_positions(x);
   ContactPlaces places(organ.body->skin(), x);
   // Half as far apart as the corners of the equal triangles that they are the middles of, at most.
-  const double apart = 0.5 * shell_of(organ)->widest_skin_gap() / contact_parts;
+  const double apart = 0.5 * organ.body->as_shell()->widest_skin_gap() / contact_parts;
   for (int triangle : {0, 777, static_cast<int>(organ.body->skin().triangles.size()) - 1}) {
     const Triangle& t = organ.body->skin().triangles[triangle];
     Vec3 sum = Vec3::Zero();

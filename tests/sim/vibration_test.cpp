@@ -41,7 +41,7 @@ VecX along_normal(const ShellBody& body, const std::function<double(const Vec3&)
 
 TEST(Vibration, BileInASphereHasTheMassOfItsHarmonicOverItsDegree) {
   const Field field = test::make_field(ball(1e6), 1e-6, Vec3::UnitZ());
-  const ShellBody& body = *shell_of(field.organs[0]);
+  const ShellBody& body = *field.organs[0].body->as_shell();
   const BodyMass mass(body, body.rest(), 1e-9, bile_density);  // no wall to speak of
   // Potential flow in a sphere (Lamb, Hydrodynamics, art. 262): phi = (r/R)^n R/n q, so that the kinetic energy
   // of normal velocity q, a harmonic of degree n, is 1/2 density R/n times the integral of q^2.
@@ -65,7 +65,7 @@ TEST(Vibration, BileMovesAsARigidBodyWithAWallThatTranslates) {
   const SceneDefinition scene = test::grasper_scene();
   const Field field = test::make_field(scene.anatomy.organs[0], 1e-6, Vec3::UnitZ());
   const Organ& organ = field.organs[0];
-  const BodyMass mass(*shell_of(organ), organ.state.x, 1e-9, bile_density);
+  const BodyMass mass(*organ.body->as_shell(), organ.state.x, 1e-9, bile_density);
   for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.6, 0, 0.8)}) {
     VecX motion(organ.state.x.size());
     for (Eigen::Index i = 0; i < motion.size(); i += 3) motion.segment<3>(i) = direction;
@@ -80,11 +80,11 @@ TEST(Vibration, AStiffBallOnSpringsSwaysAtTheRootOfSpringOverMass) {
     const Field field = test::make_field(ball(stiffness), 1e-9, Vec3::UnitZ());
     const Organ& organ = field.organs[0];
     const double thickness = organ.definition.wall.thickness;
-    const BodyMass mass(*shell_of(organ), organ.state.x, thickness, bile_density);
-    const Result<double> found = lowest_frequency(*shell_of(organ), {}, organ.state, mass);
+    const BodyMass mass(*organ.body->as_shell(), organ.state.x, thickness, bile_density);
+    const Result<double> found = lowest_frequency(*organ.body->as_shell(), {}, organ.state, mass);
     ASSERT_TRUE(found) << to_text(found.failure());
     // Ideal bile does not turn with its wall, so the ball rolls at a higher frequency than it sways: wall alone.
-    const double springs = stiffness * test::rest_area(shell_of(organ)->shell());
+    const double springs = stiffness * test::rest_area(organ.body->as_shell()->shell());
     const double all = mass.wall() + bile_density * organ.state.volume;
     const double swaying = std::sqrt(springs / all) / (2 * std::numbers::pi);
     EXPECT_NEAR(found.value() / swaying, 1, 0.01) << "the wall gives a little";
@@ -137,10 +137,11 @@ TEST(Vibration, ABallThatItsKeptVolumeAloneMakesStableHasTheFrequencyOfMotionsTh
     balloon.bile.fill_volume = times * volume;
     const Field field = test::make_field(balloon, 1e-6, Vec3::UnitZ());
     const Organ& organ = field.organs[0];
-    const BodyMass mass(*shell_of(organ), organ.state.x, organ.definition.wall.thickness, bile_density);
+    const BodyMass mass(*organ.body->as_shell(), organ.state.x, organ.definition.wall.thickness,
+                        bile_density);
     const FullMatrices full(organ, mass);
     EXPECT_EQ(FullMatrices::positive(full.stiffness), !beyond) << "unstable if its filling could leave";
-    const Result<double> found = lowest_frequency(*shell_of(organ), {}, organ.state, mass);
+    const Result<double> found = lowest_frequency(*organ.body->as_shell(), {}, organ.state, mass);
     ASSERT_TRUE(found) << to_text(found.failure());
     // The iteration's own tolerance is 1e-8 of the square.
     EXPECT_FALSE(full.some_below(found.value() * (1 - 1e-6)));
@@ -159,7 +160,7 @@ TEST(Vibration, TheGallbladderMayBeTreatedAsStaticAtASurgeonsPace) {
   // And it is the lowest there is.
   const Field field = test::make_field(scene.anatomy.organs[0], 1e-6, world.up());
   const Organ& organ = field.organs[0];
-  const BodyMass mass(*shell_of(organ), organ.state.x, organ.definition.wall.thickness,
+  const BodyMass mass(*organ.body->as_shell(), organ.state.x, organ.definition.wall.thickness,
                       organ.definition.bile.density);
   const FullMatrices full(organ, mass);
   EXPECT_FALSE(full.some_below(lowest.value() * (1 - 1e-6)));
