@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/tri_mesh.h"
 #include "numerics/parts.h"
 
 namespace calot {
@@ -43,6 +44,12 @@ double Body::radius_at_contact(int point) const {
     sum += contact_weights(point)[c] *
            skin_radii()[static_cast<std::size_t>(skin().triangles[point / contacts_each][c])];
   return sum;
+}
+
+std::map<std::string, int> Body::nearest_points(const std::map<std::string, Vec3>& places) const {
+  std::map<std::string, int> out;
+  for (const auto& [name, place] : places) out[name] = nearest_of(skin_rest(), place);
+  return out;
 }
 
 double Body::thickest() const {

@@ -2,6 +2,7 @@
 // A body of the group: its nodes, its energies, perhaps a liquid, and the skin that is touched and drawn. Everything
 // here is fixed once built; what moves is in BodyState. Coordinates x are the body's own: 3 a node, m.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -170,6 +171,8 @@ class Body {
     return blend(skin().stencils, skin().stencils.value, row, x);
   }
   virtual std::vector<Vec3> skin_normals(const VecX& x) const = 0;  ///< unit, outward
+  /// Of places where it is at rest, m.
+  std::map<std::string, int> nearest_points(const std::map<std::string, Vec3>& places) const;
   /// Where the surface is at a skin point, along its normal there.
   Vec3 surface_point(int row, const VecX& x) const;
 
@@ -186,6 +189,8 @@ class Body {
   /// Levels that it can be refined by.
   virtual int most_levels() const { return 0; }
 
+  /// Skin points of its landmarks.
+  virtual std::map<std::string, int> landmarks() const { return {}; }
   /// Whether teeth sink into it; they rub on what is hard.
   virtual bool is_bitten() const { return true; }
   /// Whether a bed holds any of it; none: that is as its definition says.

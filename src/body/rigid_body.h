@@ -19,6 +19,7 @@ class RigidBody : public Body {
     /// take many short steps to roll to rest, and so does tissue that turns them.
     double stiffness = RigidShape{}.stiffness;
     Vec3 up = Vec3::UnitZ();
+    std::vector<std::string> landmarks = {};  ///< names of its first skin point
   };
   /// Fails (scenario) where the surface encloses nothing.
   static Result<RigidBody> create(const Setup& setup);
@@ -46,6 +47,11 @@ class RigidBody : public Body {
   std::vector<Vec3> skin_normals(const VecX& x) const override;
 
   const BlockMatrix* mass() const override { return &mass_; }
+  std::map<std::string, int> landmarks() const override {
+    std::map<std::string, int> out;
+    for (const std::string& name : setup_.landmarks) out[name] = 0;
+    return out;
+  }
   bool is_bitten() const override { return false; }
   const AffineBody& affine() const { return *affine_; }
 

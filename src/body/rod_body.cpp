@@ -140,6 +140,13 @@ double RodBody::at_share(double share) const {
   return before + (share - low) / (high - low);
 }
 
+std::map<std::string, int> RodBody::landmarks() const {
+  std::map<std::string, int> out;
+  for (const auto& [name, share] : setup_.landmarks)
+    out[name] = static_cast<int>(std::lround(share * last_point()));
+  return out;
+}
+
 double RodBody::way_to(double at) const {
   double way = 0;
   for (std::size_t p = 0; p + 1 < skin_rest_.size() && static_cast<double>(p) < at; ++p)

@@ -33,6 +33,7 @@ class RodBody : public Body {
     std::vector<HeldPart> held;
     /// m, outer, one at each point and straight in between by the way along them; empty: from radius to end_radius.
     std::vector<double> radii = {};
+    std::map<std::string, double> landmarks = {};  ///< share of the way from its first skin point to its last
   };
   /// A place at which something holds it flat.
   struct Pinch {
@@ -88,6 +89,7 @@ class RodBody : public Body {
   /// Along it at rest from its start to a place, m.
   double way_to(double at) const;
   std::optional<bool> bedded() const override { return !bed_.row.empty(); }
+  std::map<std::string, int> landmarks() const override;
   const RodBody* as_tube() const override { return this; }
 
   const std::string& name() const override { return setup_.name; }

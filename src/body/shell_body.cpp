@@ -162,6 +162,11 @@ VecX ShellBody::own_forces(const VecX& x, double datum_pressure) const {
   return out;
 }
 
+std::map<std::string, int> ShellBody::landmarks() const {
+  if (!base_->setup.landmarks) return {};
+  return nearest_points(base_->setup.landmarks(skin_rest()));
+}
+
 VecX ShellBody::forces(const VecX& x, double datum_pressure) const {
   VecX out = own_forces(x, datum_pressure);
   if (refined_->kept_load.size() > 0) out -= refined_->kept_load;

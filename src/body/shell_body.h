@@ -77,6 +77,8 @@ class ShellBody : public Body {
     std::function<double(const Vec3& x)> foundation;
     std::vector<QuadraturePoint> rule = three_point_rule();
     int levels = 0;  ///< of details that it can be extended by
+    /// Places of its landmarks, m, where its skin lies so at rest: the nearest skin points.
+    std::function<std::map<std::string, Vec3>(const std::vector<Vec3>& skin)> landmarks = {};
   };
   static Result<ShellBody> create(const Setup& setup);
 
@@ -107,6 +109,7 @@ class ShellBody : public Body {
   int level_of_detail(int index) const override { return levels().level_of(details()[index]); }
   int most_levels() const override { return base_->levels.levels(); }
   double largest_motion(const VecX& dx) const override;
+  std::map<std::string, int> landmarks() const override;
   const ShellBody* as_shell() const override { return this; }
 
   const std::string& name() const override { return base_->setup.name; }

@@ -31,6 +31,7 @@ class SolidBody : public Body {
     std::array<int, 2> strips{1, 4};
     /// Elastic foundation at a skin point, on a triangle of the control mesh, at rest, N/m per m^2 (0: none).
     std::function<double(const Vec3& x, int triangle)> foundation = {};
+    std::map<std::string, Vec3> landmarks = {};  ///< m, at rest: the nearest skin points
   };
   /// Fails (scenario) where the shape folds over itself. `kept` as of World::create: for its reduction.
   static Result<SolidBody> create(const Setup& setup, KeptResults* kept = nullptr);
@@ -60,6 +61,7 @@ class SolidBody : public Body {
   int skin_parts() const override { return parts_of(triangles_each()); }
   const std::vector<std::vector<int>>& face_nodes() const override { return face_nodes_; }
   std::vector<Vec3> skin_normals(const VecX& x) const override;
+  std::map<std::string, int> landmarks() const override { return nearest_points(setup_.landmarks); }
 
   const FramedSolid& solid() const { return solid_; }
   const SolidMesh& mesh() const { return mesh_; }

@@ -110,7 +110,7 @@ Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool firs
   if (whole.left_in)
     piece.left_in = *whole.left_in * std::abs(rod.share_of_length(last) - rod.share_of_length(first_point));
   piece.burns = burns_of_piece(whole, body);
-  piece.landmarks = tube_landmarks(shape, body);
+  piece.landmarks = body.landmarks();
   piece.body = std::make_shared<const RodBody>(std::move(body));
   return piece;
 }

@@ -14,10 +14,17 @@ const std::vector<BodyKind>& body_kinds() {
   return kinds;
 }
 
+Result<RestedOrgan> make_organ(const BodyKind& kind, const OrganDefinition& definition,
+                               const OrganSetting& setting) {
+  Result<RestedOrgan> made = kind.make(definition, setting);
+  if (made) made->organ.landmarks = made->organ.body->landmarks();
+  return made;
+}
+
 Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
                                double tolerance, int levels, FillingLimits* limits, KeptResults* kept) {
-  return body_kinds()[definition.shape.index()].make(definition,
-                                                     {loads, up, tolerance, levels, limits, kept});
+  return make_organ(body_kinds()[definition.shape.index()], definition,
+                    {loads, up, tolerance, levels, limits, kept});
 }
 
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads) {

@@ -29,20 +29,24 @@ struct OrganSetting {
 
 struct BodyKind {
   const char* shape;  ///< its name in a scene, in the order of OrganShape
-  /// Builds the organ and, where it can be in equilibrium alone, brings it to rest. Failures: scenario (a definition that
-  /// cannot be built), simulation (no rest state found), resource or interrupted (`limits`); see at_organ.
+  /// Builds the organ, but for its landmarks (Body::landmarks), and brings it to rest where it can be in equilibrium
+  /// alone. Failures: scenario (a definition that cannot be built), simulation (no rest state found), resource or
+  /// interrupted (`limits`); see at_organ.
   Result<RestedOrgan> (*make)(const OrganDefinition& definition, const OrganSetting& setting);
 };
 const std::vector<BodyKind>& body_kinds();
 
+Result<RestedOrgan> make_organ(const BodyKind& kind, const OrganDefinition& definition,
+                               const OrganSetting& setting);
+/// Of the kind that its shape names.
 Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactLoads& loads, const Vec3& up,
                                double tolerance, int levels = 0, FillingLimits* limits = nullptr,
                                KeptResults* kept = nullptr);
 
 /// Fails (scenario) where an organ at rest is inside the ground.
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads);
-/// An organ of what is not solved for alone, where it was drawn: its landmarks are still to come. Its skin does not meet
-/// itself. Failures of the body are of its shape.
+/// An organ of what is not solved for alone, where it was drawn. Its skin does not meet itself. Failures of the body are
+/// of its shape.
 template <class Kind>
 Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kind> body,
                                    const OrganSetting& setting) {
@@ -66,8 +70,6 @@ std::vector<Problem> mesh_problems(const SceneDefinition& scene);
 Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting);
 /// Takes away what held an organ only while it was filled, and leaves it where it is; whether there was any.
 Result<bool> release_filled(Organ& organ);
-/// Where a tube's landmarks lie on the line at rest: skin points.
-std::map<std::string, int> tube_landmarks(const OrganShape& shape, const Body& body);
 Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting);
 Result<RestedOrgan> make_rigid_organ(const OrganDefinition& definition, const OrganSetting& setting);
 Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSetting& setting);

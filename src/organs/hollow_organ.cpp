@@ -271,6 +271,7 @@ ShellBody::Setup shell_setup(const OrganDefinition& definition, const OrganSetti
   setup.levels = setting.levels;
   setup.wall_density = definition.wall.density;
   setup.foundation = foundation_of(definition.held, places);
+  setup.landmarks = [definition](const std::vector<Vec3>& skin) { return landmark_places(definition, skin); };
   return setup;
 }
 
@@ -368,8 +369,6 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   Organ& organ = made.organ;
   organ.state.x = shell->rest();
   organ.state.volume = shell->bile()->volume(organ.state.x);
-  for (const auto& [name, place] : landmark_places(definition, organ.body->skin_rest()))
-    organ.landmarks[name] = nearest_of(organ.body->skin_rest(), place);
   if (std::optional<Failure> failure = check_clear_of_ground(*shell, setting.loads)) return *failure;
   organ.search.own.active = !swells(organ);
   const NewtonSettings settings = filling_settings(setting, control->points.size());

@@ -45,24 +45,19 @@ Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSett
   setup.density = shape.density;
   setup.up = setting.up;
   setup.sags = shape.sags;
-  const auto place = [&](const Landmark& landmark) {
-    return Vec3(frame * lobe_place(form, {0.5, landmark.along, 0.5 * (landmark.side + 1)}));
-  };
+  for (const Landmark& landmark : landmark_rows())
+    if (has_landmark(definition.shape, landmark))
+      setup.landmarks[landmark.name] =
+          frame * lobe_place(form, {0.5, landmark.along, 0.5 * (landmark.side + 1)});
   setup.foundation = [&](const Vec3& x, int triangle) {
     double stiffness = setup.box.on_side(triangle, 1, 0) ? shape.hold : 0.0;
     for (const HeldRegion& held : definition.held)
-      for (const Landmark& landmark : landmark_rows())
-        if (held.landmark == landmark.name && has_landmark(definition.shape, landmark) &&
-            (x - place(landmark)).norm() < held.radius)
-          stiffness += held.stiffness;
+      if (const auto at = setup.landmarks.find(held.landmark);
+          at != setup.landmarks.end() && (x - at->second).norm() < held.radius)
+        stiffness += held.stiffness;
     return stiffness;
   };
-  Result<RestedOrgan> made = organ_as_drawn(definition, SolidBody::create(setup, setting.kept), setting);
-  if (made)
-    for (const Landmark& landmark : landmark_rows())
-      if (has_landmark(definition.shape, landmark))
-        made->organ.landmarks[landmark.name] = nearest_of(made->organ.body->skin_rest(), place(landmark));
-  return made;
+  return organ_as_drawn(definition, SolidBody::create(setup, setting.kept), setting);
 }
 
 }  // namespace calot
