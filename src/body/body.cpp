@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "body/body_cut.h"
 #include "geometry/tri_mesh.h"
 #include "numerics/parts.h"
 
@@ -50,6 +51,11 @@ std::map<std::string, int> Body::nearest_points(const std::map<std::string, Vec3
   std::map<std::string, int> out;
   for (const auto& [name, place] : places) out[name] = nearest_of(skin_rest(), place);
   return out;
+}
+
+Result<BodyCut> Body::divide(double /*share*/) const {
+  return fail(FailureKind::scenario, "'" + name() + "' cannot be divided",
+              "divide a tube: a duct or a vessel");
 }
 
 double Body::thickest() const {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "anatomy/definitions.h"
 #include "body/contact_points.h"
 #include "collision/barrier.h"
 #include "fem/liquid_mass.h"
@@ -19,6 +20,7 @@ namespace calot {
 class Assembly;
 class RodBody;
 class ShellBody;
+struct BodyCut;
 
 /// How freely a detail moves (detail_fading.h).
 struct DetailShare {
@@ -191,6 +193,13 @@ class Body {
 
   /// Skin points of its landmarks.
   virtual std::map<std::string, int> landmarks() const { return {}; }
+  /// The two that it becomes, divided at about a share of its length from its start. Fails (scenario) where it cannot
+  /// be, as most kinds never can.
+  virtual Result<BodyCut> divide(double share) const;
+  /// A piece under another name; null: it keeps the whole's.
+  virtual std::shared_ptr<const Body> called(const std::string& /*name*/) const { return nullptr; }
+  /// The shape that a piece's definition has, where the whole's has this.
+  virtual OrganShape shape_of_piece(const OrganShape& whole) const { return whole; }
   /// Whether teeth sink into it; they rub on what is hard.
   virtual bool is_bitten() const { return true; }
   /// Whether a bed holds any of it; none: that is as its definition says.

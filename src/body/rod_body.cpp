@@ -68,25 +68,6 @@ Result<RodBody> RodBody::create(const Setup& setup) {
   return body;
 }
 
-Result<RodBody> RodBody::part(int first, int last) const {
-  RodBody body(setup_, line_.part(skin_parameters_[first], skin_parameters_[last]));
-  body.setup_.nodes = body.line_.nodes();
-  body.rest_ = line_.in_part(body.line_, rest_);
-  body.part_ = {skin_shares_[first], skin_shares_[last]};
-  body.held_at_ = held_at_;
-  body.radius_shares_ = radius_shares_;
-  body.least_edge_ = *std::min_element(edge_lengths_.begin(), edge_lengths_.end());
-  body.skin_parameters_.assign(skin_parameters_.begin() + first, skin_parameters_.begin() + last + 1);
-  body.skin_shares_.assign(skin_shares_.begin() + first, skin_shares_.begin() + last + 1);
-  if (Result<bool> built = body.build(); !built) return built.failure();
-  for (Pinch pinch : pinches_) {
-    pinch.at -= first;
-    if (pinch.at < 0 || pinch.at > last - first) continue;
-    body.hold_flat(pinch);
-  }
-  return body;
-}
-
 RodBody RodBody::pinched(const std::vector<Pinch>& pinches) const {
   RodBody out = *this;
   out.pinches_.clear();
@@ -172,20 +153,6 @@ double RodBody::share_of_length(int point) const {
     if (static_cast<int>(k) == point) before = all;
   }
   return before / all;
-}
-
-int RodBody::point_to_divide_at(double share) const {
-  constexpr double on_knot = 1e-9, least_span = 0.2;  // of a span of the whole
-  int nearest = -1;
-  double least = 2;
-  for (int point = 1; point + 1 < static_cast<int>(skin_rest_.size()); ++point) {
-    const double off = line_.to_knot(skin_parameters_[point]);
-    const double away = std::abs(share_of_length(point) - share);
-    if ((off > on_knot && off < least_span) || away >= least) continue;
-    nearest = point;
-    least = away;
-  }
-  return nearest;
 }
 
 Result<bool> RodBody::build() {

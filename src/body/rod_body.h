@@ -12,6 +12,8 @@
 
 namespace calot {
 
+struct BodyPiece;
+
 class RodBody : public Body {
  public:
   /// An elastic foundation around a place on it.
@@ -47,11 +49,6 @@ class RodBody : public Body {
   /// Its part between two of its skin points, first < last: the same curve with the same sections, bed and skin points
   /// there.
   Result<RodBody> part(int first, int last) const;
-  RodBody called(const std::string& name) const {
-    RodBody out = *this;
-    out.setup_.name = name;
-    return out;
-  }
   /// The same held flat at these places and at no others: there it does not give way to what presses, and is drawn
   /// flat.
   RodBody pinched(const std::vector<Pinch>& pinches) const;
@@ -76,8 +73,6 @@ class RodBody : public Body {
   }
   double share_at(double at) const;     ///< of its length at rest
   double at_share(double share) const;  ///< the other way round
-  /// Places or velocities of a part's nodes for which it moves as this body with its nodes at x does there.
-  VecX in_part(const RodBody& part, const VecX& x) const { return line_.in_part(part.line_, x); }
   /// Of its skin points that which lies nearest to a share of the length at rest and can be divided at: at a knot, or
   /// far enough from one to leave no span that would hold the solver up. None but at its ends: -1.
   int point_to_divide_at(double share) const;
@@ -90,6 +85,10 @@ class RodBody : public Body {
   double way_to(double at) const;
   std::optional<bool> bedded() const override { return !bed_.row.empty(); }
   std::map<std::string, int> landmarks() const override;
+  /// Its skin points lie a mm apart. Fails (scenario) where a piece would be shorter than it is thick.
+  Result<BodyCut> divide(double share) const override;
+  std::shared_ptr<const Body> called(const std::string& name) const override;
+  OrganShape shape_of_piece(const OrganShape& whole) const override;
   const RodBody* as_tube() const override { return this; }
 
   const std::string& name() const override { return setup_.name; }
@@ -143,6 +142,9 @@ class RodBody : public Body {
   FlatRing ring_of(double radius) const;  ///< of lumen 0 where it is solid
   FlatRing ring_at(double at) const;
   void hold_flat(const Pinch& pinch);
+  /// Of those that a cut at a skin point leaves.
+  std::optional<Failure> check_pieces(int cut) const;
+  Result<BodyPiece> piece(int first, int last) const;
   /// At a share of the whole line, by its parameter.
   double radius_along(double share) const;
 

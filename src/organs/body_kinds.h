@@ -45,8 +45,8 @@ Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactL
 
 /// Fails (scenario) where an organ at rest is inside the ground.
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads);
-/// An organ of what is not solved for alone, where it was drawn. Its skin does not meet itself. Failures of the body are
-/// of its shape.
+/// An organ of what is not solved for alone, where it was drawn. Its skin does not meet itself. Failures of the body
+/// are of its shape.
 template <class Kind>
 Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kind> body,
                                    const OrganSetting& setting) {

@@ -1,0 +1,103 @@
+#include "field/organ_piece.h"
+
+#include "geometry/tri_mesh.h"
+
+namespace calot {
+namespace {
+
+OrganDefinition definition_of(const OrganDefinition& whole, const BodyPiece& piece) {
+  OrganDefinition out = whole;
+  for (InjuryNearStart& near : out.injury.near_start) near.within -= piece.begins;
+  out.shape = piece.body->shape_of_piece(whole.shape);
+  return out;
+}
+
+BodyState state_on(const BodyState& whole, const BodyPiece& piece) {
+  BodyState out;
+  out.x = piece.nodes(whole.x);
+  if (whole.motion.begin.x.size() == 0) return out;
+  out.motion = whole.motion;
+  out.motion.begin.x = piece.nodes(whole.motion.begin.x);
+  out.motion.begin.velocity = piece.nodes(whole.motion.begin.velocity);
+  return out;
+}
+
+std::vector<GripPoint> grips_of(const Organ& whole, const BodyCut& cut, int side) {
+  std::vector<GripPoint> out;
+  for (GripPoint grip : whole.grips) {
+    if (cut.side_of(grip.skin_point) != side) continue;
+    grip.skin_point = cut.pieces[side].points[grip.skin_point];
+    out.push_back(grip);
+  }
+  return out;
+}
+
+FrictionLoad friction_of(const Organ& whole, const BodyPiece& piece) {
+  FrictionLoad out;
+  for (RubbingPoint rubbing : whole.friction.points) {
+    const int triangle = piece.triangles[rubbing.point / contacts_each];
+    if (triangle < 0) continue;
+    rubbing.point = triangle * contacts_each + rubbing.point % contacts_each;
+    out.points.push_back(rubbing);
+  }
+  return out;
+}
+
+/// Clips are on tubes, along which skin points follow each other.
+std::vector<Clip> clips_of(const Organ& whole, const BodyCut& cut, int side) {
+  std::vector<Clip> out;
+  for (Clip clip : whole.clips) {
+    if ((clip.at <= cut.point) != (side == 0)) continue;
+    if (side == 1) clip.at -= cut.point;
+    out.push_back(clip);
+  }
+  return out;
+}
+
+std::vector<Opening> openings_of(const Organ& whole, const BodyCut& cut, int side) {
+  const std::vector<int>& points = cut.pieces[side].points;
+  std::vector<Opening> out;
+  for (Opening opening : whole.openings) {
+    if (cut.side_of(opening.point) != side) continue;
+    opening.point = points[opening.point];
+    out.push_back(std::move(opening));
+  }
+  if (!cut.open) return out;
+  Opening cut_open;
+  cut_open.point = points[cut.point];
+  out.insert(side == 0 ? out.end() : out.begin(), cut_open);
+  return out;
+}
+
+/// Those that at rest are as near to one of the piece's drawn points as these are to each other.
+std::vector<Burn> burns_of(const Organ& whole, const Body& piece) {
+  constexpr double near = 1e-3;  // m
+  std::vector<Burn> out;
+  const std::vector<Vec3>& rest = piece.drawn_rest();
+  for (const Burn& burn : whole.burns) {
+    const Vec3& at = whole.body->drawn_rest()[burn.point];
+    const int nearest = nearest_of(rest, at);
+    if ((rest[nearest] - at).norm() < near) out.push_back({nearest, burn.energy});
+  }
+  return out;
+}
+
+}  // namespace
+
+Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {
+  const BodyPiece& piece = cut.pieces[side];
+  Organ out{definition_of(whole.definition, piece), piece.body, {}, {}, {}, {}, {}, {}, {}, {}};
+  out.state = state_on(whole.state, piece);
+  out.search.own.active = whole.search.own.active;
+  out.landmarks = piece.body->landmarks();
+  out.grips = grips_of(whole, cut, side);
+  out.friction = friction_of(whole, piece);
+  out.unfelt = whole.unfelt;
+  out.clips = clips_of(whole, cut, side);
+  out.openings = openings_of(whole, cut, side);
+  if (whole.left_in) out.left_in = *whole.left_in * piece.share;
+  out.burns = burns_of(whole, *piece.body);
+  return out;
+}
+
+}  // namespace calot

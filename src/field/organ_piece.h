@@ -1,0 +1,14 @@
+#pragma once
+// What of an organ's state goes with a piece of it when it is divided.
+
+#include "body/body_cut.h"
+#include "organs/organ.h"
+
+namespace calot {
+
+/// One of the pieces of an organ, the start's (0) or the end's (1), where and as it moves: with the skin that is held,
+/// rubs or is burnt on it, and the clips and openings there. What is just at the cut is the start's; where what it
+/// carries can leave it at the cut, it has an opening there.
+Organ piece_of(const Organ& whole, const BodyCut& cut, int side);
+
+}  // namespace calot
