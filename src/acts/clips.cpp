@@ -17,17 +17,13 @@
 namespace calot {
 namespace {
 
-/// What is left open of less than that is shut: legs are not measured more finely.
-constexpr double shut = 0.02;
-
 /// Share of a flat tube's width that is not between the legs.
 double left_open(const Tool& tool, const TubeBetween& tube, const RodBody& rod, double leg) {
   const double slant = std::max(0.2, std::abs(tube.along.y()) / std::hypot(tube.along.y(), tube.along.z()));
   const double half = 0.5 * rod.flat_width(tube.at) / slant;
   const double tip = tool.geometry.jaw_length * std::cos(0.5 * tool.pose.jaw), crown = tip - leg;
   const double held = std::min(tube.place.z() + half, tip) - std::max(tube.place.z() - half, crown);
-  const double open = 1 - std::clamp(held / (2 * half), 0.0, 1.0);
-  return open < shut ? 0 : open;
+  return open_share(1 - std::clamp(held / (2 * half), 0.0, 1.0));
 }
 
 /// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.

@@ -100,7 +100,7 @@ class MetTools {
     tools_.erase(std::unique(tools_.begin(), tools_.end()), tools_.end());
     for (std::size_t tool : tools_) {
       const Tool& one = field.tools[tool];
-      bodies_.emplace_back(one, commands[tool], hand_of(one, one.definition.hand_force));
+      bodies_.emplace_back(one, commands[tool], hand_of(one));
       states_.push_back(ToolBody::at(one.pose));
     }
     for (const Pair& pair : pairs) {

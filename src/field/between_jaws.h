@@ -5,6 +5,12 @@
 
 namespace calot {
 
+/// Share of a tube's width or lumen that is left open: none (0) where it is less than can be told from shut.
+inline double open_share(double left) {
+  constexpr double shut = 0.02;
+  return left < shut ? 0.0 : left;
+}
+
 /// Where a duct or a vessel passes between the pads.
 struct TubeBetween {
   int organ = 0;

@@ -124,7 +124,6 @@ TubeFeed feed_of(const OrganDefinition& tube) {
 }
 
 double open_between(const Field& field, int index, double one, double other) {
-  constexpr double shut = 0.02;  // as of a clip (clips.cpp)
   const Organ& organ = field.organs[index];
   const RodBody& rod = *organ.body->as_tube();
   const auto [low, high] = std::minmax(one, other);
@@ -138,8 +137,7 @@ double open_between(const Field& field, int index, double one, double other) {
       // Jaws that hold it have pressed it flat, to the angle that they stop at.
       if (field.tools[i].jaws_rest() && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
       const double lumen = 2 * rod.lumen_radius(tube.at);
-      const double left = (tube.gap - 2 * rod.setup().wall) / lumen;
-      open = std::min(open, left < shut ? 0.0 : left);
+      open = std::min(open, open_share((tube.gap - 2 * rod.setup().wall) / lumen));
     }
   }
   return open;

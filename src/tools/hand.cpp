@@ -32,9 +32,9 @@ void add_spring(const ToolVector& by, double way, double stiffness, double force
 
 }  // namespace
 
-HandStrength hand_of(const Tool& tool, double force) {
+HandStrength hand_of(const Tool& tool) {
   HandStrength out;
-  out.force = force;
+  out.force = tool.definition.hand_force;
   out.pinch = tool.definition.pinch_force;
   if (tool.geometry.has_jaws()) out.pad_lever = 0.5 * tool.geometry.jaw_length;
   return out;

@@ -13,17 +13,17 @@
 
 namespace calot {
 
-/// All but the pinch are uncalibrated.
+/// Force and pinch are those of an instrument's definition; the others are uncalibrated.
 struct HandStrength {
   double stiffness = 60e3;  ///< N/m at the tip and between the pads: 1 N moves a tip by 0.017 mm
-  double force = 20;        ///< N, at the tip, whatever its direction
+  double force = InstrumentDefinition().hand_force;  ///< N, at the tip, whatever its direction
   double roll_arm =
-      roll_lever;      ///< m, at which the same stiffness and force act about the shaft: 0.2 N m at most
-  double pinch = 6.8;  ///< N, of each pad
-  double pad_lever = 10e-3;  ///< m from the hinge, where that is
+      roll_lever;  ///< m, at which the same stiffness and force act about the shaft: 0.2 N m at most
+  double pinch = InstrumentDefinition().pinch_force;  ///< N, of each pad
+  double pad_lever = 10e-3;                           ///< m from the hinge, where that is
 };
-/// The pinch of the tool's definition, in the middle of its pads.
-HandStrength hand_of(const Tool& tool, double force = HandStrength().force);
+/// Of the tool's definition, its pinch in the middle of its pads.
+HandStrength hand_of(const Tool& tool);
 
 class Hand {
  public:

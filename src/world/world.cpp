@@ -211,13 +211,25 @@ void set_field(const SceneDefinition& scene, Field& field) {
   field.ground = ground_of(scene.anatomy);
 }
 
+/// What organs rest on alone.
+ContactLoads loads_of_ground(const Field& field) {
+  ContactLoads out;
+  for (const Ground& ground : field.ground) out.shapes.push_back(contact_shape(ground.shape));
+  return out;
+}
+
+/// `stop`: may be null.
+FillingLimits filling_limits(const SolverDefinition& solver, const std::atomic<bool>* stop) {
+  FillingLimits out{stop};
+  out.sinks = solver.motion == SolverMotion::dynamics;
+  return out;
+}
+
 /// Adds the organs of a scene, each at rest alone. Fails (scenario) with the problems of all of them.
 Result<bool> add_organs(const SceneDefinition& scene, const Vec3& up, const std::atomic<bool>* stop,
                         KeptResults* kept, Workers& workers, Field& field) {
-  ContactLoads still;
-  for (const Ground& ground : field.ground) still.shapes.push_back(contact_shape(ground.shape));
-  FillingLimits limits{stop};
-  limits.sinks = scene.solver.motion == SolverMotion::dynamics;
+  const ContactLoads still = loads_of_ground(field);
+  FillingLimits limits = filling_limits(scene.solver, stop);
   auto organs = make_organs(scene, still, up, limits, workers, kept);
   std::vector<Problem> problems;
   for (std::size_t k = 0; k < organs.size(); ++k) {
@@ -521,10 +533,8 @@ Result<int> World::add(const OrganDefinition& definition) {
   if (std::vector<Problem> problems = validate(definition); !problems.empty())
     return Failure{FailureKind::scenario, std::move(problems)};
   const SolverDefinition& solver = impl_->scene.solver;
-  ContactLoads still;
-  for (const Ground& ground : impl_->field.ground) still.shapes.push_back(contact_shape(ground.shape));
-  FillingLimits limits;
-  limits.sinks = solver.motion == SolverMotion::dynamics;
+  const ContactLoads still = loads_of_ground(impl_->field);
+  FillingLimits limits = filling_limits(solver, nullptr);
   const OrganSetting setting{still, impl_->up, solver.tolerance,
                              definition.extensions ? solver.extension_levels : 0, &limits};
   Result<int> added = impl_->change(fmt::format("after '{}' came", definition.name),
