@@ -86,6 +86,9 @@ struct DrawnSurface {
 /// Longest edge of triangles, m.
 double widest_gap(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
 
+/// What a kind of body has to say of itself is what is pure here: its rest, its energy with derivatives, its skin. All
+/// else it may: a mass where it moves in time, a liquid, radii that make a line of its skin, details; landmarks, how it
+/// is divided, whether teeth sink into it and a bed holds it. No other room has to know a new kind (organs/body_kinds.h).
 class Body {
  public:
   virtual ~Body() = default;
