@@ -59,7 +59,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     const Poses from = present_poses(field);
     const auto go = [&](const Poses& poses) {
       for (std::size_t i = 0; i < poses.size(); ++i)
-        if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, static_cast<int>(i), poses[i].jaw);
+        if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, ToolIndex(i), poses[i].jaw);
       return follow(field, poses, duration, slipped_before, events, statistics);
     };
     if (Result<bool> moved = close_within_pinch(field, here, targets, go, events, statistics); !moved)
@@ -69,7 +69,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       const bool at_stop = std::binary_search(own.begin(), own.end(), stop);
       const bool closed_on = rested[i] && field.tools[i].pose.jaw < from[i].jaw;
       if (field.tools[i].pressing ? !closed_on : field.tools[i].jaw_stopped || !at_stop) continue;
-      Result<bool> closed = close_jaws(field, static_cast<int>(i), tears, events, statistics);
+      Result<bool> closed = close_jaws(field, ToolIndex(i), tears, events, statistics);
       if (!closed) return closed.failure();
     }
   }

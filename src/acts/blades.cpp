@@ -12,12 +12,12 @@
 namespace calot {
 namespace {
 
-void slide_out(Organ& organ, int instrument) {
+void slide_out(Organ& organ, ToolIndex instrument) {
   organ.unfelt.insert(std::lower_bound(organ.unfelt.begin(), organ.unfelt.end(), instrument), instrument);
 }
 
 /// What is too short to be divided slides out of the blades.
-Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
+Result<bool> divide_tube(Field& field, ToolIndex instrument, const TubeBetween& tube,
                          std::vector<WorldEvent>& events) {
   Organ& whole = field.organs[tube.organ];
   const std::string name = whole.definition.name;
@@ -31,7 +31,7 @@ Result<bool> divide_tube(Field& field, int instrument, const TubeBetween& tube,
   }
   const Result<Division> done = divide_body(field, tube.organ, share, field.time);
   if (!done) return done.failure();
-  const std::string& tool = field.tools[instrument].definition.name;
+  const std::string& tool = field.tool(instrument).definition.name;
   for (int piece : {done->patient, done->specimen}) {
     slide_out(field.organs[piece], instrument);
     for (Opening& opening : field.organs[piece].openings)
@@ -75,10 +75,10 @@ int cut_strands(const Field& field, const Tool& tool, Tissue& tissue) {
 
 }  // namespace
 
-Result<bool> close_blades(Field& field, int instrument, std::vector<WorldEvent>& events,
+Result<bool> close_blades(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events,
                           SolveStatistics& statistics) {
   bool divided = false;
-  Tool& tool = field.tools[instrument];
+  Tool& tool = field.tool(instrument);
   for (bool more = true; std::exchange(more, false);)
     for (const TubeBetween& tube : tubes_between(field, instrument)) {
       if (tube.gap > 2 * tube.radius) continue;
@@ -112,8 +112,8 @@ void feel_again(Field& field) {
     if (organ.unfelt.empty()) continue;
     const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
     const std::vector<double>& radii = organ.body->skin_radii();
-    std::erase_if(organ.unfelt, [&](int instrument) {
-      const Tool& tool = field.tools[instrument];
+    std::erase_if(organ.unfelt, [&](ToolIndex instrument) {
+      const Tool& tool = field.tool(instrument);
       const std::vector<Shape> shapes = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
       for (std::size_t p = 0; p < skin.size(); ++p)
         for (int part : {1, 2})

@@ -13,7 +13,7 @@ namespace calot {
 /// At one of the angles at which jaws may take hold, with blade `instrument` where it is. Adds the events cut and
 /// cut_unclipped. In statics the pieces have come to rest; fails (simulation) where they cannot, or (resource) where the
 /// field has no room for more organs.
-Result<bool> close_blades(Field& field, int instrument, std::vector<WorldEvent>& events,
+Result<bool> close_blades(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events,
                           SolveStatistics& statistics);
 
 /// Tubes feel the jaws again that they have come clear of.

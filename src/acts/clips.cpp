@@ -63,8 +63,8 @@ Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
 
 namespace {
 
-void fire(Field& field, int instrument, std::vector<WorldEvent>& events) {
-  Tool& tool = field.tools[instrument];
+void fire(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
+  Tool& tool = field.tool(instrument);
   if (tool.clips == 0) return;
   --tool.clips;
   const ClipRow& row = clip_row(tool.definition.clip);
@@ -146,7 +146,7 @@ struct Drawn {
 };
 
 /// Of those between a tool's pads, as a tube slides along by `way`, m. The foremost come first.
-std::vector<Drawn> drawn_by(const Field& field, int instrument, const Organ& organ, const Vec3& way) {
+std::vector<Drawn> drawn_by(const Field& field, ToolIndex instrument, const Organ& organ, const Vec3& way) {
   const RodBody& rod = *organ.body->as_tube();
   std::vector<Drawn> out;
   for (const ClipBetween& between : clips_between(field, instrument, organ)) {
@@ -161,7 +161,7 @@ std::vector<Drawn> drawn_by(const Field& field, int instrument, const Organ& org
 }
 
 /// N, on a tool, of the springs of its grip on an organ.
-Vec3 grip_pull(const Field& field, int instrument, const Organ& organ) {
+Vec3 grip_pull(const Field& field, ToolIndex instrument, const Organ& organ) {
   const GripSprings grip = grip_springs(organ, field.tools, present_poses(field));
   Vec3 pull = Vec3::Zero();
   for (std::size_t g = 0; g < organ.grips.size(); ++g)
@@ -172,7 +172,7 @@ Vec3 grip_pull(const Field& field, int instrument, const Organ& organ) {
 
 /// How many clips of a tube that it grips a tool would have to draw along: those between its pads, and those that touch
 /// them before them, on the side to which they are pulled.
-int clips_to_draw(const Field& field, int instrument, const Organ& organ) {
+int clips_to_draw(const Field& field, ToolIndex instrument, const Organ& organ) {
   constexpr double touching = 1e-3;  // of their thickness: they have been pushed to just there
   std::vector<int> drawn;
   for (const Drawn& one : drawn_by(field, instrument, organ, grip_pull(field, instrument, organ)))
@@ -190,7 +190,7 @@ int clips_to_draw(const Field& field, int instrument, const Organ& organ) {
 
 }  // namespace
 
-double hold_of_clips(const Field& field, int instrument) {
+double hold_of_clips(const Field& field, ToolIndex instrument) {
   int clips = 0;
   for (const Organ& organ : field.organs)
     if (grip_count(organ, instrument) > 0 && !organ.clips.empty())
@@ -198,14 +198,14 @@ double hold_of_clips(const Field& field, int instrument) {
   return clips > 0 ? clips * clip_hold : std::numeric_limits<double>::infinity();
 }
 
-void draw_clips(Field& field, int instrument, const Vec3& way) {
+void draw_clips(Field& field, ToolIndex instrument, const Vec3& way) {
   for (Organ& organ : field.organs)
     if (grip_count(organ, instrument) > 0 && !organ.clips.empty())
       for (const Drawn& one : drawn_by(field, instrument, organ, way)) move_clip(organ, one.clip, one.by);
 }
 
-void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& events) {
-  const std::string& name = field.tools[instrument].definition.name;
+void let_clips_fall(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
+  const std::string& name = field.tool(instrument).definition.name;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     Organ& organ = field.organs[k];
     const RodBody* rod = organ.body->as_tube();
@@ -232,7 +232,7 @@ void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& event
 void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events) {
   for (std::size_t i = 0; i < actions.size(); ++i)
     if (actions[i] == InstrumentAction::fire && field.tools[i].action != InstrumentAction::fire)
-      fire(field, static_cast<int>(i), events);
+      fire(field, ToolIndex(i), events);
 }
 
 }  // namespace calot

@@ -32,13 +32,13 @@ void fire_clips(Field& field, const std::vector<InstrumentAction>& actions, std:
 
 /// Pull that the clips hold which a tool has between its pads, and those that touch them where the pull draws them, on
 /// what it holds, N: clip_hold each; infinite without any between them.
-double hold_of_clips(const Field& field, int instrument);
+double hold_of_clips(const Field& field, ToolIndex instrument);
 
 /// Keeps the clips between a tool's pads there, as the tubes slide along the pads by `way` (m, patient's frame). The
 /// bodies are told by let_clips_fall().
-void draw_clips(Field& field, int instrument, const Vec3& way);
+void draw_clips(Field& field, ToolIndex instrument, const Vec3& way);
 
 /// Holds tubes flat where their clips have been drawn to. Those that have come off an end fall: adds clip_dropped.
-void let_clips_fall(Field& field, int instrument, std::vector<WorldEvent>& events);
+void let_clips_fall(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events);
 
 }  // namespace calot

@@ -53,7 +53,7 @@ class Trials {
   }
   /// Where the motion was tried last.
   double excess(std::size_t tool) const {
-    return pressed_apart(field_, static_cast<int>(tool)) / field_.tools[tool].definition.pinch_force - 1;
+    return pressed_apart(field_, ToolIndex(tool)) / field_.tools[tool].definition.pinch_force - 1;
   }
   const Result<bool>& last() const { return last_; }
   /// Before it, of jaws that tissue had not stopped.
@@ -124,7 +124,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Tool& tool = field.tools[i];
     // Clips between the pads carry whatever presses: jaws rest on the metal.
-    if (std::isfinite(hold_of_clips(field, static_cast<int>(i)))) continue;
+    if (std::isfinite(hold_of_clips(field, ToolIndex(i)))) continue;
     if (has_teeth(tool) && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
   }
   if (pressing.empty()) return go(to);

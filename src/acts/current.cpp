@@ -29,10 +29,10 @@ std::vector<std::vector<Heated>> heated_strands(const Field& field) {
   for (std::size_t t = 0; t < field.tissues.size(); ++t)
     field.tissues[t].strands->for_contacts(x, [&](std::size_t strand, const StrandContact& contact) {
       const FieldShape which = field.shape(contact.shape);
-      const Tool& tool = field.tools[which.tool];
+      const Tool& tool = field.tool(which.tool);
       if (!is_active(tool) || !conducts(tool.geometry, which.part)) return;
       const Heated one{t, strand};
-      std::vector<Heated>& of_tool = out[which.tool];
+      std::vector<Heated>& of_tool = out[which.tool.value];
       if (std::find(of_tool.begin(), of_tool.end(), one) == of_tool.end()) of_tool.push_back(one);
     });
   return out;

@@ -20,9 +20,9 @@ bool alike(const InstrumentPose& a, const InstrumentPose& b) {
 }
 
 /// Why a tool that waits cannot come in for the one (`index`) that is in its port; empty: it can, and is in.
-std::string bring_in(Field& field, int coming, int index) {
-  Tool& tool = field.tools[coming];
-  Tool& leaving = field.tools[index];
+std::string bring_in(Field& field, ToolIndex coming, ToolIndex index) {
+  Tool& tool = field.tool(coming);
+  Tool& leaving = field.tool(index);
   const std::string& name = leaving.definition.name;
   if (const std::string held = held_organ(field, index); !held.empty())
     return fmt::format("{} holds {}", name, held);
@@ -51,11 +51,11 @@ std::string bring_in(Field& field, int coming, int index) {
 
 bool is_in_trocar(const Tool& tool) { return tool.pose.insertion <= port_depth + slack; }
 
-int tool_in_port(const std::vector<Tool>& tools, int waiting) {
+ToolIndex tool_in_port(const std::vector<Tool>& tools, const Tool& waiting) {
   const auto there = std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) {
-    return !tool.waits && tool.definition.port == tools[static_cast<std::size_t>(waiting)].definition.port;
+    return !tool.waits && tool.definition.port == waiting.definition.port;
   });
-  return static_cast<int>(there - tools.begin());
+  return ToolIndex(there - tools.begin());
 }
 
 std::optional<Failure> check_waiting(const std::vector<Tool>& tools, const StepInput& input) {
@@ -63,7 +63,7 @@ std::optional<Failure> check_waiting(const std::vector<Tool>& tools, const StepI
     const bool acts = !input.actions.empty() && input.actions[i] != InstrumentAction::none &&
                       input.actions[i] != InstrumentAction::exchange;
     if (!tools[i].waits || (alike(tools[i].pose, input.instruments[i]) && !acts)) continue;
-    const Tool& there = tools[static_cast<std::size_t>(tool_in_port(tools, static_cast<int>(i)))];
+    const Tool& there = tools[tool_in_port(tools, tools[i]).value];
     return fail(FailureKind::scenario,
                 fmt::format("instrument '{}' cannot {}: it waits outside, and '{}' is in the port \"{}\"",
                             tools[i].definition.name, acts ? "act" : "move", there.definition.name,
@@ -82,11 +82,11 @@ void exchange_tools(Field& field, const std::vector<InstrumentAction>& actions,
     WorldEvent event{EventKind::blocked_exchange, 0, field.tools[i].definition.name, {}, 0};
     event.text = "it is in its port";
     if (field.tools[i].waits) {
-      const int coming = static_cast<int>(i), there = tool_in_port(field.tools, coming);
+      const ToolIndex coming(i), there = tool_in_port(field.tools, field.tools[i]);
       event.text = bring_in(field, coming, there);
       if (event.text.empty()) {
         event.kind = EventKind::exchange;
-        event.text = field.tools[there].definition.name;
+        event.text = field.tool(there).definition.name;
       }
     }
     events.push_back(std::move(event));

@@ -15,8 +15,8 @@ inline constexpr double port_depth = 30e-3;
 /// Whether it is no further in than that: what its jaws do there is no act.
 bool is_in_trocar(const Tool& tool);
 
-/// Place of the tool that is in the port of one that waits: there always is one.
-int tool_in_port(const std::vector<Tool>& tools, int waiting);
+/// The tool that is in the port of one that waits: there always is one.
+ToolIndex tool_in_port(const std::vector<Tool>& tools, const Tool& waiting);
 
 /// Fails (scenario) where a tool that waits is to act otherwise than to come in, or to be elsewhere by more than
 /// rounding.

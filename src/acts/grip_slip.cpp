@@ -24,16 +24,16 @@ struct Budget {
   bool spent() const { return statistics.newton_iterations >= last; }
 };
 
-Failure without_end(const Field& field, int instrument, const std::string& what) {
+Failure without_end(const Field& field, ToolIndex instrument, const std::string& what) {
   return fail(
       FailureKind::simulation,
-      fmt::format("{} the jaws of '{}' finds no rest", what, field.tools[instrument].definition.name),
+      fmt::format("{} the jaws of '{}' finds no rest", what, field.tool(instrument).definition.name),
       "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
 }
 
 /// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
 /// equilibria; then they are let go.
-Result<bool> fade(Field& field, int instrument, const std::function<bool(const GripPoint&)>& leaves,
+Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(const GripPoint&)>& leaves,
                   double weaken, const Budget& budget, SolveStatistics& statistics) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
@@ -48,7 +48,7 @@ Result<bool> fade(Field& field, int instrument, const std::function<bool(const G
   return settle_field(field, when, statistics);
 }
 
-auto held_by(int instrument) {
+auto held_by(ToolIndex instrument) {
   return [instrument](const GripPoint& grip) { return grip.instrument == instrument; };
 }
 
@@ -71,9 +71,9 @@ Vec3 given_way(const Tool& tool, const Demand& demand, double way, const Vec3& a
 }
 
 /// Moves what a tool holds along its pads by `way` (m) and lets go what leaves them.
-Result<bool> slide(Field& field, int instrument, const Demand& demand, double way, const Budget& budget,
+Result<bool> slide(Field& field, ToolIndex instrument, const Demand& demand, double way, const Budget& budget,
                    SolveStatistics& statistics) {
-  const Tool& tool = field.tools[instrument];
+  const Tool& tool = field.tool(instrument);
   const bool draws = hold_of_clips(field, instrument) < holding_limit(tool);
   if (draws) draw_clips(field, instrument, way * demand.towards);
   const auto off_the_pads = [&](const GripPoint& grip) {
@@ -101,7 +101,7 @@ Result<bool> slide(Field& field, int instrument, const Demand& demand, double wa
 
 }  // namespace
 
-Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) {
+Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const FieldState before = field_state(field);
   const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics);
@@ -109,9 +109,9 @@ Result<bool> release(Field& field, int instrument, SolveStatistics& statistics) 
   return faded;
 }
 
-Result<bool> leave_pads(Field& field, int instrument, SolveStatistics& statistics) {
+Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
-  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+  const Tool& tool = field.tool(instrument);
   const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
                             jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
   std::vector<GripPoint> off;
@@ -134,8 +134,8 @@ Result<bool> leave_pads(Field& field, int instrument, SolveStatistics& statistic
   return left;
 }
 
-PadLoad pad_load(const Field& field, int instrument) {
-  const Tool& tool = field.tools[instrument];
+PadLoad pad_load(const Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
   const Pose hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry);
   const Vec3 across = hinge.linear().col(0), shaft = hinge.linear().col(2);
   PadLoad load;
@@ -166,8 +166,8 @@ namespace {
 
 /// Of the pull and the couple that which comes nearer to what is held of it, or goes further beyond. A fold that is
 /// `turning` is held by turning_share of the couple.
-Demand largest_demand(const Field& field, int instrument, bool turning) {
-  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+Demand largest_demand(const Field& field, ToolIndex instrument, bool turning) {
+  const Tool& tool = field.tool(instrument);
   const PadLoad load = pad_load(field, instrument);
   // Clips, which the pads hold across, are drawn along by the pull alone.
   const bool clips = hold_of_clips(field, instrument) < holding_limit(tool);
@@ -197,11 +197,11 @@ double holding_limit(const Tool& tool) {
   return 2.0 * tool.definition.pad_friction * tool.definition.pinch_force;
 }
 
-double holding_limit(const Field& field, int instrument) {
-  return std::min(holding_limit(field.tools[instrument]), hold_of_clips(field, instrument));
+double holding_limit(const Field& field, ToolIndex instrument) {
+  return std::min(holding_limit(field.tool(instrument)), hold_of_clips(field, instrument));
 }
 
-Result<Slipped> slip(Field& field, int instrument, SolveStatistics& statistics) {
+Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
   constexpr double above = 1.001, below = 0.95;  // of the limit
   // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
   // slide but the jump of a fold that a leaving point frees.

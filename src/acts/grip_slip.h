@@ -11,7 +11,7 @@ inline constexpr int hold_iterations = 1500;
 
 /// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish. On
 /// failure (simulation) the grip holds as before.
-Result<bool> release(Field& field, int instrument, SolveStatistics& statistics);
+Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 /// What the held tissue does to a tool along its pads: the held points, and what presses on the jaws, as a squeezed fold
 /// that pushes on the jaws' edges and is held back by their pads pulls on nothing. What presses across the pads is carried
@@ -20,7 +20,7 @@ struct PadLoad {
   Vec3 pull = Vec3::Zero();  ///< N, patient's frame
   double couple = 0;         ///< N m, about the shaft, right-handed about its direction
 };
-PadLoad pad_load(const Field& field, int instrument);
+PadLoad pad_load(const Field& field, ToolIndex instrument);
 
 /// The largest couple about the shaft that the pads hold of what is between them, N m: each presses with its pinch on the
 /// half of its width at least, evenly, a quarter of the width from its middle. More turns what they hold between them,
@@ -38,11 +38,11 @@ Vec3 asked_of_friction(const Tool& tool, const Vec3& pull);
 /// 2 pinch (friction cos a - sin a).
 double holding_limit(const Tool& tool);
 /// The same of what the tool holds now: clips between its pads may give way before these do.
-double holding_limit(const Field& field, int instrument);
+double holding_limit(const Field& field, ToolIndex instrument);
 
 /// What has been drawn off its pad by more than the teeth reach is let go, step by step. Fails (simulation) where it
 /// finds no rest; the grip holds as before then.
-Result<bool> leave_pads(Field& field, int instrument, SolveStatistics& statistics);
+Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 /// What a fold did between its pads.
 struct Slipped {
@@ -56,6 +56,6 @@ struct Slipped {
 /// (clips.h). Does nothing where no more is asked for than holding_limit and couple_limit. Afterwards friction is asked for
 /// at most 100.1% of its limit, and near it unless part of the fold has left the pads. On failure (simulation) the grip
 /// holds as before.
-Result<Slipped> slip(Field& field, int instrument, SolveStatistics& statistics);
+Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 }  // namespace calot

@@ -258,8 +258,8 @@ void feel_stiffness(std::vector<Tool>& tools, const std::vector<InstrumentState>
   for (std::size_t i = 0; i < before.size(); ++i) feel_stiffness(tools[i], before[i], now[i]);
 }
 
-std::string tool_met(const Field& field, int instrument) {
-  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+std::string tool_met(const Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
   for (const Tool& other : field.tools) {
     if (&other == &tool || other.waits) continue;
     if (gap_between(tool, other, field.barrier.range) < field.barrier.range) return other.definition.name;
@@ -270,7 +270,7 @@ std::string tool_met(const Field& field, int instrument) {
 Result<bool> check_apart(const Field& field) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     const Tool& tool = field.tools[i];
-    const std::string met = tool.waits ? std::string() : tool_met(field, static_cast<int>(i));
+    const std::string met = tool.waits ? std::string() : tool_met(field, ToolIndex(i));
     if (met.empty()) continue;
     const std::string& name = tool.definition.name;
     return fail(

@@ -35,7 +35,7 @@ void feel_stiffness(std::vector<Tool>& tools, const std::vector<InstrumentState>
 
 /// The name of a tool that another one is in or as near to as contact reaches, where both are; empty: none. Not of those
 /// that wait.
-std::string tool_met(const Field& field, int instrument);
+std::string tool_met(const Field& field, ToolIndex instrument);
 
 /// Fails (scenario) where tools that do not wait meet at the start.
 Result<bool> check_apart(const Field& field);

@@ -33,8 +33,8 @@ void judge_tearing(Tissue& tissue, int torn_before, std::vector<WorldEvent>& eve
 }
 
 /// What it is that jaws close on what they hold.
-EventKind closed_on(const Field& field, int instrument) {
-  if (instrument_row(field.tools[instrument].definition.type).jaws != JawUse::cut) return EventKind::grasp;
+EventKind closed_on(const Field& field, ToolIndex instrument) {
+  if (instrument_row(field.tool(instrument).definition.type).jaws != JawUse::cut) return EventKind::grasp;
   const bool liver = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
     return grip_count(organ, instrument) > 0 && std::holds_alternative<LobeShape>(organ.definition.shape);
   });
@@ -42,8 +42,8 @@ EventKind closed_on(const Field& field, int instrument) {
 }
 
 /// A wall that jaws pinch harder than it bears is opened; so is one that blades stand on.
-void note_hold(Field& field, int instrument, std::vector<WorldEvent>& events) {
-  const InstrumentDefinition& tool = field.tools[instrument].definition;
+void note_hold(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
+  const InstrumentDefinition& tool = field.tool(instrument).definition;
   const EventKind kind = closed_on(field, instrument);
   const bool cuts = kind != EventKind::grasp;
   events.push_back({kind, 0, tool.name, between_pads(field, instrument), 0, std::nullopt,
@@ -84,7 +84,7 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
     const bool closing = targets[i].jaw < tool.pose.jaw;
     if (targets[i].jaw > tool.pose.jaw) tool.lost = tool.beside = tool.has_cut = false;
     if (closing || (tool.jaws_rest() && targets[i].jaw == tool.pose.jaw)) continue;
-    const int index = static_cast<int>(i);
+    const ToolIndex index(i);
     const std::string organ = between_pads(field, index);
     const bool held = tool.jaw_stopped && closed_on(field, index) == EventKind::grasp;
     if (!held_organ(field, index).empty())
@@ -101,7 +101,7 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
                       SolveStatistics& statistics) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    const int index = static_cast<int>(i);
+    const ToolIndex index(i);
     const std::string organ = held_organ(field, index);
     if (organ.empty() || !tool.jaws_rest()) continue;
     if (Result<bool> left = leave_pads(field, index, statistics); !left) return left.failure();
@@ -126,9 +126,9 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
   return true;
 }
 
-Result<bool> close_jaws(Field& field, int instrument, TearWatch& tears, std::vector<WorldEvent>& events,
+Result<bool> close_jaws(Field& field, ToolIndex instrument, TearWatch& tears, std::vector<WorldEvent>& events,
                         SolveStatistics& statistics) {
-  Tool& tool = field.tools[instrument];
+  Tool& tool = field.tool(instrument);
   const JawUse use = instrument_row(tool.definition.type).jaws;
   if (use == JawUse::cut) {
     tears.judge(field, events);
@@ -154,7 +154,7 @@ Result<bool> close_jaws(Field& field, int instrument, TearWatch& tears, std::vec
 void judge_clasps(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    const int index = static_cast<int>(i);
+    const ToolIndex index(i);
     if (!tool.pressing) continue;
     const std::string organ = between_pads(field, index);
     const bool before = std::exchange(tool.jaw_stopped, !organ.empty());

@@ -33,7 +33,7 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
 
 /// At an angle at which closing jaws may take hold (closing_stops()): blades divide what is between them, and jaws that
 /// a fold fills hold it and stop. Adds what comes of it. Fails as close_blades() and release() do.
-Result<bool> close_jaws(Field& field, int instrument, TearWatch& tears, std::vector<WorldEvent>& events,
+Result<bool> close_jaws(Field& field, ToolIndex instrument, TearWatch& tears, std::vector<WorldEvent>& events,
                         SolveStatistics& statistics);
 
 /// After a step: what tissue that stopped the jaws is to both pads. Adds grasp, slip and release.

@@ -9,10 +9,9 @@
 
 namespace calot {
 
-double pressed_apart(const Field& field, int instrument) {
-  const auto i = static_cast<std::size_t>(instrument);
-  const Tool& tool = field.tools[i];
-  const ToolLoad load = tool_loads(field)[i];
+double pressed_apart(const Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
+  const ToolLoad load = tool_loads(field)[instrument.value];
   double sum = 0;
   for (int jaw : {0, 1})
     sum += load.on_jaws[static_cast<std::size_t>(jaw)].dot(
@@ -20,8 +19,8 @@ double pressed_apart(const Field& field, int instrument) {
   return 0.5 * sum;
 }
 
-std::optional<Clasped> clasped(const Field& field, int instrument) {
-  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+std::optional<Clasped> clasped(const Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
   if (!has_teeth(tool)) return std::nullopt;
   const std::array<Pose, 2> to_jaw = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
                                       jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
@@ -50,15 +49,15 @@ std::optional<Clasped> clasped(const Field& field, int instrument) {
   return std::nullopt;
 }
 
-double pad_pressure(const Field& field, int instrument) {
-  const Tool& tool = field.tools[static_cast<std::size_t>(instrument)];
+double pad_pressure(const Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
   if (!tool.jaw_stopped) return 0;
   const std::optional<Clasped> rubbed = clasped(field, instrument);
   const double area = rubbed ? std::min(rubbed->area[0], rubbed->area[1]) : held_area(field, instrument);
   return area > 0 ? tool.definition.pinch_force / area : 0.0;
 }
 
-std::string between_pads(const Field& field, int instrument) {
+std::string between_pads(const Field& field, ToolIndex instrument) {
   const std::string bitten = held_organ(field, instrument);
   if (!bitten.empty() && both_pads_hold(field, instrument)) return bitten;
   const std::optional<Clasped> rubbed = clasped(field, instrument);

@@ -20,7 +20,7 @@ inline constexpr double pinch_tolerance = 0.02;
 
 /// N, by which all that touches a tool's jaws presses them apart, each across its pad: the mean of both, as one hand
 /// closes both.
-double pressed_apart(const Field& field, int instrument);
+double pressed_apart(const Field& field, ToolIndex instrument);
 
 /// What both pads press on that their teeth do not sink into.
 struct Clasped {
@@ -31,13 +31,13 @@ struct Clasped {
                             Vec3::Zero()};  ///< N, of the skin on each pad, by friction; patient's frame
 };
 /// The first organ between a tool's pads that both press on; none: what is there is held by one at most.
-std::optional<Clasped> clasped(const Field& field, int instrument);
+std::optional<Clasped> clasped(const Field& field, ToolIndex instrument);
 
 /// Pa, mean, of the pads on what they hold: their pinch on its area; 0: they hold nothing that has one.
-double pad_pressure(const Field& field, int instrument);
+double pad_pressure(const Field& field, ToolIndex instrument);
 
 /// Name of the organ of which a tool's pads hold something between them, by their teeth or by friction alone; empty:
 /// none.
-std::string between_pads(const Field& field, int instrument);
+std::string between_pads(const Field& field, ToolIndex instrument);
 
 }  // namespace calot

@@ -32,12 +32,12 @@ bool is_between_pads(const Tool& tool, const Vec3& at) {
 
 }  // namespace
 
-bool feels(const Organ& organ, int instrument) {
+bool feels(const Organ& organ, ToolIndex instrument) {
   return !std::binary_search(organ.unfelt.begin(), organ.unfelt.end(), instrument);
 }
 
-std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
-  const Tool& tool = field.tools[instrument];
+std::vector<TubeBetween> tubes_between(const Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
   const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   std::vector<TubeBetween> out;
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
@@ -59,7 +59,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   return out;
 }
 
-std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ) {
+std::vector<ClipBetween> clips_between(const Field& field, ToolIndex instrument, const Organ& organ) {
   std::vector<ClipBetween> out;
   if (!feels(organ, instrument)) return out;
   const RodBody* rod = organ.body->as_tube();
@@ -67,7 +67,7 @@ std::vector<ClipBetween> clips_between(const Field& field, int instrument, const
     const Clip& clip = organ.clips[c];
     if (!rod->has(clip.at)) continue;
     const Vec3 place = rod->place_at(clip.at, organ.state.x);
-    if (!is_between_pads(field.tools[instrument], place)) continue;
+    if (!is_between_pads(field.tool(instrument), place)) continue;
     const double half = rod->flat_half_height(clip.at, clip.opening) + clip_row(clip.size).wire;
     const int before = std::min(static_cast<int>(clip.at), static_cast<int>(rod->last_point()) - 1);
     out.push_back({static_cast<int>(c), place, half, {before, before + 1}});

@@ -22,10 +22,10 @@ struct TubeBetween {
 };
 
 /// Whether an organ feels the jaws of a tool: not while it lies between blades that have cut it.
-bool feels(const Organ& organ, int instrument);
+bool feels(const Organ& organ, ToolIndex instrument);
 
 /// Of all tubes that feel the jaws, in the order of organs and places.
-std::vector<TubeBetween> tubes_between(const Field& field, int instrument);
+std::vector<TubeBetween> tubes_between(const Field& field, ToolIndex instrument);
 
 /// Whether a line from one place to another (m) passes between the pads of a tool now, and no longer when its jaws have
 /// closed by an angle (rad) more: an edge passes it.
@@ -39,6 +39,6 @@ struct ClipBetween {
   std::array<int, 2> points = {};  ///< skin points of the tube before and behind it
 };
 /// Of an organ, in the order of their places; of one that does not feel the jaws there are none.
-std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ);
+std::vector<ClipBetween> clips_between(const Field& field, ToolIndex instrument, const Organ& organ);
 
 }  // namespace calot

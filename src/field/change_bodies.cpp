@@ -46,7 +46,7 @@ Result<bool> remove_body(Field& field, int index, const std::string& why, double
                          [&](const GripPoint& g) { return g.instrument == grip.instrument; });
     };
     if (std::none_of(field.organs.begin(), field.organs.end(), holds))
-      field.tools[grip.instrument].jaw_stopped = false;
+      field.tool(grip.instrument).jaw_stopped = false;
   }
   finish_change(field);
   return true;

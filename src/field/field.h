@@ -73,6 +73,8 @@ struct Field {
 
   /// What a body is touched by that has this place among its shapes.
   FieldShape shape(int index) const { return FieldShape::at(index, tools.size()); }
+  Tool& tool(ToolIndex at) { return tools[at.value]; }
+  const Tool& tool(ToolIndex at) const { return tools[at.value]; }
   /// Null: one thread does all.
   Workers* workers() const { return workers_of(assembly); }
   /// The first one's last factor serves on.

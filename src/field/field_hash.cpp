@@ -62,7 +62,7 @@ void add_acts(Hash& hash, const Organ& organ) {
     add_point(hash, clip.legs);
     add_point(hash, clip.pressed);
   }
-  for (int instrument : organ.unfelt) hash.add(instrument);
+  for (ToolIndex instrument : organ.unfelt) hash.add(instrument.value);
   for (const Opening& opening : organ.openings) {
     hash.add(opening.point);
     for (double v : {opening.area, opening.rate, opening.lost, opening.drop}) hash.add(v);
@@ -112,7 +112,7 @@ void add_stick_slip(Hash& hash, const StickSlip& hold) {
 
 void add_holds(Hash& hash, const Organ& organ) {
   for (const GripPoint& grip : organ.grips) {
-    hash.add(grip.instrument);
+    hash.add(grip.instrument.value);
     hash.add(grip.jaw);
     hash.add(grip.skin_point);
     add_point(hash, grip.local);

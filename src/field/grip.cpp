@@ -9,12 +9,12 @@
 
 namespace calot {
 
-int grip_count(const Organ& organ, int instrument) {
+int grip_count(const Organ& organ, ToolIndex instrument) {
   return static_cast<int>(std::count_if(organ.grips.begin(), organ.grips.end(),
                                         [&](const GripPoint& g) { return g.instrument == instrument; }));
 }
 
-double held_area(const Field& field, int instrument) {
+double held_area(const Field& field, ToolIndex instrument) {
   std::array<double, 2> area{};
   for (const Organ& organ : field.organs) {
     if (!clips_between(field, instrument, organ).empty()) continue;
@@ -30,13 +30,13 @@ double held_area(const Field& field, int instrument) {
   return std::min(area[0], area[1]);
 }
 
-std::string held_organ(const Field& field, int instrument) {
+std::string held_organ(const Field& field, ToolIndex instrument) {
   for (const Organ& organ : field.organs)
     if (grip_count(organ, instrument) > 0) return organ.definition.name;
   return {};
 }
 
-bool both_pads_hold(const Field& field, int instrument) {
+bool both_pads_hold(const Field& field, ToolIndex instrument) {
   for (const Organ& organ : field.organs) {
     bool holds[2] = {false, false};
     for (const GripPoint& grip : organ.grips)
@@ -49,7 +49,7 @@ bool both_pads_hold(const Field& field, int instrument) {
 namespace {
 
 /// Half the height of a tube pressed flat, m: of the thickest place that a tool holds, or of a clip on it.
-double flat_radius(const Field& field, int instrument, const Organ& organ) {
+double flat_radius(const Field& field, ToolIndex instrument, const Organ& organ) {
   double thickest = 0;
   for (const GripPoint& grip : organ.grips)
     if (grip.instrument == instrument)
@@ -62,10 +62,10 @@ double flat_radius(const Field& field, int instrument, const Organ& organ) {
 
 }  // namespace
 
-bool fold_fills_jaws(const Field& field, int instrument) {
+bool fold_fills_jaws(const Field& field, ToolIndex instrument) {
   constexpr double fold_squeeze =
       0.6;  // share of their thickness to which two walls are squeezed between the pads
-  const Tool& tool = field.tools[instrument];
+  const Tool& tool = field.tool(instrument);
   for (const Organ& organ : field.organs) {
     int count[2] = {0, 0};
     double depth = 0;  // along the jaws
@@ -94,9 +94,9 @@ GripSprings grip_springs(const Organ& organ, const std::vector<Tool>& tools,
   Pose jaw = Pose::Identity();
   const GripPoint* last = nullptr;  // those of one jaw follow each other
   for (const GripPoint& grip : organ.grips) {
-    const Tool& tool = tools[grip.instrument];
+    const Tool& tool = tools[grip.instrument.value];
     if (!last || last->instrument != grip.instrument || last->jaw != grip.jaw)
-      jaw = jaw_frame(tool.trocar, poses[grip.instrument], tool.geometry, grip.jaw);
+      jaw = jaw_frame(tool.trocar, poses[grip.instrument.value], tool.geometry, grip.jaw);
     last = &grip;
     springs.row.push_back(grip.skin_point);
     springs.target.push_back(jaw * grip.local);

@@ -18,20 +18,20 @@ inline constexpr double pad_reach = 0.5e-3;
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
 
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
-bool fold_fills_jaws(const Field& field, int instrument);
+bool fold_fills_jaws(const Field& field, ToolIndex instrument);
 
 /// Area of the walls (m^2, at rest) that a tool's jaws hold between them: of the pad that holds less. A tube counts as
 /// wide as it is flat; what a clip keeps the pads off does not count.
-double held_area(const Field& field, int instrument);
+double held_area(const Field& field, ToolIndex instrument);
 
 /// Skin points of the organ that tool `instrument` grips.
-int grip_count(const Organ& organ, int instrument);
+int grip_count(const Organ& organ, ToolIndex instrument);
 
 /// Name of the first organ of which a tool holds something; empty: none.
-std::string held_organ(const Field& field, int instrument);
+std::string held_organ(const Field& field, ToolIndex instrument);
 
 /// True while skin of one organ is held by both pads.
-bool both_pads_hold(const Field& field, int instrument);
+bool both_pads_hold(const Field& field, ToolIndex instrument);
 
 /// What holds an organ's points to the tools at `poses`.
 GripSprings grip_springs(const Organ& organ, const std::vector<Tool>& tools,

@@ -23,7 +23,7 @@ void sort_grips(Organ& organ) {
 }
 
 /// Both pads take hold of a tube's point where it is.
-void hold_point(const Tool& tool, int instrument, Organ& organ, int point) {
+void hold_point(const Tool& tool, ToolIndex instrument, Organ& organ, int point) {
   for (int jaw : {0, 1}) {
     const auto held = [&](const GripPoint& grip) {
       return grip.instrument == instrument && grip.jaw == jaw && grip.skin_point == point;
@@ -43,7 +43,7 @@ bool both_face(const Tool& tool, const Vec3& place, double range) {
   return true;
 }
 
-void hold(const Tool& tool, int instrument, Organ& organ) {
+void hold(const Tool& tool, ToolIndex instrument, Organ& organ) {
   const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
   const std::vector<double>& radii = organ.body->skin_radii();
   std::array<std::vector<char>, 2> held{std::vector<char>(skin.size(), 0), std::vector<char>(skin.size(), 0)};
@@ -64,7 +64,7 @@ void hold(const Tool& tool, int instrument, Organ& organ) {
 }
 
 /// Clips keep the pads off the wall beside them.
-void hold_clips(const Tool& tool, int instrument, Organ& organ, const std::vector<ClipBetween>& clips) {
+void hold_clips(const Tool& tool, ToolIndex instrument, Organ& organ, const std::vector<ClipBetween>& clips) {
   for (const ClipBetween& clip : clips) {
     if (!both_face(tool, clip.place, pad_reach + clip.half_height)) continue;
     for (int point : clip.points) hold_point(tool, instrument, organ, point);
@@ -73,8 +73,8 @@ void hold_clips(const Tool& tool, int instrument, Organ& organ, const std::vecto
 
 }  // namespace
 
-void take_hold(Field& field, int instrument) {
-  const Tool& tool = field.tools[instrument];
+void take_hold(Field& field, ToolIndex instrument) {
+  const Tool& tool = field.tool(instrument);
   // Blades divide a tube, and a clip applier lets it be: neither has teeth.
   const bool teeth = instrument_row(tool.definition.type).jaws == JawUse::hold;
   for (Organ& organ : field.organs) {
@@ -91,7 +91,7 @@ void take_hold(Field& field, int instrument) {
   }
 }
 
-bool hold_by_clips(Field& field, int instrument) {
+bool hold_by_clips(Field& field, ToolIndex instrument) {
   bool any = false;
   for (Organ& organ : field.organs) {
     if (grip_count(organ, instrument) == 0) continue;
@@ -104,13 +104,13 @@ bool hold_by_clips(Field& field, int instrument) {
       return grip.instrument == instrument &&
              std::find(points.begin(), points.end(), grip.skin_point) == points.end();
     });
-    for (int point : points) hold_point(field.tools[instrument], instrument, organ, point);
+    for (int point : points) hold_point(field.tool(instrument), instrument, organ, point);
     sort_grips(organ);
   }
   return any;
 }
 
-void make_room(Field& field, int instrument, double jaw) {
+void make_room(Field& field, ToolIndex instrument, double jaw) {
   for (Organ& organ : field.organs)
     for (GripPoint& grip : organ.grips)
       if (grip.instrument == instrument)

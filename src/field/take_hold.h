@@ -6,14 +6,14 @@
 namespace calot {
 
 /// Skin points that touch a pad of a closing tool are held by it from here on; not of a wall after it has lost what it held.
-void take_hold(Field& field, int instrument);
+void take_hold(Field& field, ToolIndex instrument);
 
 /// Where a tool holds clips, it holds their tubes by the points beside each clip, wherever that has been drawn to:
 /// others are let go, new ones held where they are. Returns whether it holds any.
-bool hold_by_clips(Field& field, int instrument);
+bool hold_by_clips(Field& field, ToolIndex instrument);
 
 /// Before jaws that hold some skin close further, to `jaw` (rad): each pad keeps what it holds within its half of the
 /// gap, out of the other's way.
-void make_room(Field& field, int instrument, double jaw);
+void make_room(Field& field, ToolIndex instrument, double jaw);
 
 }  // namespace calot

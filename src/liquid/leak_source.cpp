@@ -132,10 +132,10 @@ double open_between(const Field& field, int index, double one, double other) {
     if (clip.at >= low && clip.at <= high) open = std::min(open, clip.opening);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     if (!has_jaws(field.tools[i].definition.type)) continue;
-    for (const TubeBetween& tube : tubes_between(field, static_cast<int>(i))) {
+    for (const TubeBetween& tube : tubes_between(field, ToolIndex(i))) {
       if (tube.organ != index || tube.at < low || tube.at > high) continue;
       // Jaws that hold it have pressed it flat, to the angle that they stop at.
-      if (field.tools[i].jaws_rest() && grip_count(organ, static_cast<int>(i)) > 0) open = 0;
+      if (field.tools[i].jaws_rest() && grip_count(organ, ToolIndex(i)) > 0) open = 0;
       const double lumen = 2 * rod.lumen_radius(tube.at);
       open = std::min(open, open_share((tube.gap - 2 * rod.setup().wall) / lumen));
     }

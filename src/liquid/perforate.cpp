@@ -10,7 +10,7 @@ constexpr double least_slit = 1.0e-3;  // m: blades that stand on a wall have cu
 
 }  // namespace
 
-void perforate(Field& field, int instrument) {
+void perforate(Field& field, ToolIndex instrument) {
   for (Organ& organ : field.organs) {
     if (organ.body->liquid() == nullptr) continue;
     Vec3 sum = Vec3::Zero();
@@ -31,7 +31,7 @@ void perforate(Field& field, int instrument) {
     Opening hole;
     hole.point = *std::min_element(held.begin(), held.end(), nearer);
     hole.area = gape * std::max(least_slit, high - low);
-    hole.cause = field.tools[instrument].definition.name;
+    hole.cause = field.tool(instrument).definition.name;
     organ.openings.push_back(hole);
   }
 }

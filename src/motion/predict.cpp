@@ -34,8 +34,8 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
   for (int shape = 0; shape < static_cast<int>(now.shapes.size()); ++shape) {
     const auto [tool, part, ground] = field.shape(shape);
     motions.emplace_back();
-    if (ground < 0 && from[tool] != to[tool])
-      motions.back() = part_motion(field.tools[tool], from[tool], to[tool], part);
+    if (ground < 0 && from[tool.value] != to[tool.value])
+      motions.back() = part_motion(field.tool(tool), from[tool.value], to[tool.value], part);
   }
   for (const Touch& touch : organ.search.touches.at(*organ.body, organ.state.x, now, pairs, 0.0)) {
     if (!motions[touch.shape]) continue;
@@ -44,7 +44,7 @@ VecX motion_load(const Field& field, const Organ& organ, const ContactLoads& now
   }
   const GripSprings target = grip_springs(organ, field.tools, to);
   for (std::size_t i = 0; i < target.row.size(); ++i) {
-    const int tool = organ.grips[i].instrument;
+    const int tool = organ.grips[i].instrument.value;
     if (from[tool] == to[tool]) continue;
     const Vec3 at = organ.body->skin_point(target.row[i], organ.state.x);
     spread(organ.body->skin().stencils, target.row[i],
@@ -70,8 +70,9 @@ void add_strand_load(const Field& field, const VecX& x, const Poses& from, const
     const StrandJoin& strands = *tissue.strands;
     strands.for_contacts(x, [&](std::size_t strand, const StrandContact& contact) {
       const FieldShape which = field.shape(contact.shape);
-      if (from[which.tool] == to[which.tool]) return;
-      const Pose motion = part_motion(field.tools[which.tool], from[which.tool], to[which.tool], which.part);
+      const InstrumentPose &before = from[which.tool.value], &after = to[which.tool.value];
+      if (before == after) return;
+      const Pose motion = part_motion(field.tool(which.tool), before, after, which.part);
       strands.add_force(strand, contact.piece, contact.share,
                         strands.touch().hessian_at(contact) * carried(motion, contact.at), load);
       loaded = true;

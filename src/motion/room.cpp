@@ -21,14 +21,15 @@ class ShapePaths {
   /// Bound on a shape's way, m.
   double travel(int shape) const {
     const FieldShape which = field_.shape(shape);
-    return which.is_ground() ? 0.0 : travel_[which.tool];
+    return which.is_ground() ? 0.0 : travel_[which.tool.value];
   }
   /// Null: it stays. Valid until another one is asked for.
   const PartPath* of(int shape, double share) {
     const auto [tool, part, ground] = field_.shape(shape);
     if (ground >= 0) return nullptr;
     if (shape != shape_ || share != share_) {
-      path_.emplace(field_.tools[tool], part, from_[tool], interpolate(from_[tool], to_[tool], share));
+      const InstrumentPose& from = from_[tool.value];
+      path_.emplace(field_.tool(tool), part, from, interpolate(from, to_[tool.value], share));
       shape_ = shape, share_ = share;
     }
     return &*path_;

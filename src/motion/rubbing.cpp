@@ -11,7 +11,7 @@ namespace {
 Pose shape_frame(const Field& field, const std::vector<InstrumentPose>& poses, int shape) {
   const FieldShape which = field.shape(shape);
   if (which.is_ground()) return Pose::Identity();
-  return part_frame(field.tools[which.tool], poses[which.tool], which.part);
+  return part_frame(field.tool(which.tool), poses[which.tool.value], which.part);
 }
 
 std::vector<Pose> shape_frames(const Field& field, const std::vector<InstrumentPose>& poses) {
@@ -25,7 +25,7 @@ std::vector<Pose> shape_frames(const Field& field, const std::vector<InstrumentP
 double coefficient(const Field& field, const Organ& organ, int shape, const Vec3& at, const Vec3& normal) {
   const FieldShape which = field.shape(shape);
   if (which.is_ground()) return field.ground[which.ground].friction;
-  const Tool& tool = field.tools[which.tool];
+  const Tool& tool = field.tool(which.tool);
   const double smooth = tool.definition.friction;
   if (which.is_shaft() || is_bitten(organ) || !has_teeth(tool)) return smooth;
   return smooth + teeth_share(at, normal, tool.geometry) * (tool.definition.pad_friction - smooth);
@@ -34,13 +34,13 @@ double coefficient(const Field& field, const Organ& organ, int shape, const Vec3
 /// Whether each tool's jaws hold a part of the organ.
 std::vector<bool> holding_tools(const Field& field, const Organ& organ) {
   std::vector<bool> out(field.tools.size(), false);
-  for (const GripPoint& grip : organ.grips) out[grip.instrument] = true;
+  for (const GripPoint& grip : organ.grips) out[grip.instrument.value] = true;
   return out;
 }
 
 bool is_holding_jaw(const std::vector<bool>& holding, int shape) {
   const FieldShape which = FieldShape::at(shape, holding.size());
-  return !which.is_ground() && !which.is_shaft() && holding[which.tool];
+  return !which.is_ground() && !which.is_shaft() && holding[which.tool.value];
 }
 
 /// Sum of the changes of the points' limits along their normals, over the sum of the limits.

@@ -14,7 +14,7 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     for (const Shape& shape : shapes_in_field(field.tools[i], poses[i]))
       out.shapes.push_back(contact_shape(shape));
-  for (int tool : organ.unfelt)
+  for (ToolIndex tool : organ.unfelt)
     for (int jaw : {0, 1}) out.shapes[FieldShape::of_jaw(tool, jaw).index(field.tools.size())] = nowhere;
   out.broad.assign(out.shapes.size(), 0);
   for (const Ground& ground : field.ground) {

@@ -21,14 +21,14 @@ class LoadSum {
   void add(const FieldShape& shape, const Vec3& at, const Vec3& force, bool touches,
            const std::string& organ) {
     if (shape.is_ground()) return;
-    const Tool& tool = field_.tools[shape.tool];
-    ToolLoad& load = loads_[shape.tool];
+    const Tool& tool = field_.tool(shape.tool);
+    ToolLoad& load = loads_[shape.tool.value];
     load.force += force;
     load.moment += (at - tool.trocar).cross(force);
     if (touches && load.touches++ == 0) load.organ = organ;
     if (!shape.is_shaft()) load.on_jaws[shape.jaw()] += force;
     add(load.parts, shape.is_shaft() ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
-    const Vec3& tip = tips_[shape.tool];
+    const Vec3& tip = tips_[shape.tool.value];
     if (!shape.is_shaft() && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)
       add(load.parts, ToolPart::tip, at, force, touches, organ);
   }
@@ -130,9 +130,9 @@ double deepest_penetration(const Field& field) {
   return deepest;
 }
 
-bool touches_nothing(const Field& field, int instrument) {
-  const auto i = static_cast<std::size_t>(instrument);
-  return tool_loads(field)[i].touches == 0 && deepest_penetration(field, field.tools[i]) <= 0;
+bool touches_nothing(const Field& field, ToolIndex instrument) {
+  return tool_loads(field)[instrument.value].touches == 0 &&
+         deepest_penetration(field, field.tool(instrument)) <= 0;
 }
 
 }  // namespace calot

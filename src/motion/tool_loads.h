@@ -23,7 +23,7 @@ std::vector<ToolLoad> tool_loads(const Field& field);
 Result<bool> check_clear(const Field& field);
 
 /// Whether no organ and no strand is met by a tool where it is.
-bool touches_nothing(const Field& field, int instrument);
+bool touches_nothing(const Field& field, ToolIndex instrument);
 
 /// Deepest point of any skin inside a tool as it is made, m, on the skin's triangles split into four along each edge.
 double deepest_penetration(const Field& field, const Tool& tool);

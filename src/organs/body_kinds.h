@@ -1,9 +1,9 @@
 #pragma once
 // The kinds of bodies: a row and a file each. Keys and limits of their definitions stand in anatomy/scene_keys.cpp.
 //
-// A new kind is a class (body/body.h), a row with what makes it of its definition, and, to be named in scenarios, a shape
-// of its own in OrganShape. What the definition's shape alone decides is asked of that: is_hollow(), what events call a
-// cut (acts/jaw_acts.cpp), and how it is drawn (room view).
+// A new kind is a class (body/body.h), a row with what makes it of its definition, and, to be named in scenarios, a
+// shape of its own in OrganShape. What the definition's shape alone decides is asked of that: is_hollow(), what events
+// call a cut (acts/jaw_acts.cpp), and how it is drawn (room view).
 
 #include <atomic>
 #include <cstdint>

@@ -11,12 +11,14 @@
 #include "body/shell_body.h"
 #include "group/equilibrium.h"
 #include "tools/instrument.h"
+#include "tools/tool_index.h"
 
 namespace calot {
 
 /// A skin point that a pad holds: it keeps its place along the pad until it slips, is drawn off or the jaw opens.
 struct GripPoint {
-  int instrument = 0, jaw = 0;
+  ToolIndex instrument;
+  int jaw = 0;
   int skin_point = 0;
   Vec3 local = Vec3::Zero();  ///< m, in the jaw's frame
   double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
@@ -91,7 +93,7 @@ struct Organ {
   int record = -1;               ///< on the field's roll (members.h)
   std::vector<Clip> clips = {};  ///< ordered by place
   /// Instruments whose jaws it does not feel, increasing: they cut it, and it is between them still.
-  std::vector<int> unfelt = {};
+  std::vector<ToolIndex> unfelt = {};
   bool of_specimen = false;            ///< a piece that the patient's was cut off from
   std::vector<Opening> openings = {};  ///< ordered as they were made, but a tube's by their points
   /// m^3, what is left in a tube that nothing feeds; none: it is full.
@@ -111,7 +113,7 @@ struct OrganSnapshot {
   std::optional<std::vector<int>> refused_details;
   FrictionLoad friction;
   std::vector<Clip> clips;
-  std::vector<int> unfelt;
+  std::vector<ToolIndex> unfelt;
   std::vector<Opening> openings;
   std::optional<double> left_in;
   std::vector<Burn> burns;

@@ -4,18 +4,20 @@
 
 #include <cstddef>
 
+#include "tools/tool_index.h"
+
 namespace calot {
 
 /// A part of a tool, or a piece of ground.
 struct FieldShape {
-  int tool = -1;    ///< place among the field's tools; -1: it is ground
-  int part = 0;     ///< of the tool: 0 its shaft, 1 and 2 its jaws, or what a rod ends in
-  int ground = -1;  ///< place among the field's pieces of ground; -1: it is a tool's
+  ToolIndex tool{-1};  ///< -1: it is ground
+  int part = 0;        ///< of the tool: 0 its shaft, 1 and 2 its jaws, or what a rod ends in
+  int ground = -1;     ///< place among the field's pieces of ground; -1: it is a tool's
 
-  static FieldShape of_tool(int tool, int part) { return {tool, part, -1}; }
+  static FieldShape of_tool(ToolIndex tool, int part) { return {tool, part, -1}; }
   /// `jaw`: 0 or 1.
-  static FieldShape of_jaw(int tool, int jaw) { return {tool, jaw + 1, -1}; }
-  static FieldShape of_ground(int ground) { return {-1, 0, ground}; }
+  static FieldShape of_jaw(ToolIndex tool, int jaw) { return {tool, jaw + 1, -1}; }
+  static FieldShape of_ground(int ground) { return {ToolIndex(-1), 0, ground}; }
   /// What has this place among the shapes of a field with so many tools.
   static FieldShape at(int index, std::size_t tools);
   /// Its place there.

@@ -85,8 +85,8 @@ std::optional<Vec3> Solids::pushed_out(Vec3 x, double least) const {
   return std::nullopt;
 }
 
-void JawMould::follow(const Field& field, int instrument, double dt) {
-  const Tool& tool = field.tools[instrument];
+void JawMould::follow(const Field& field, ToolIndex instrument, double dt) {
+  const Tool& tool = field.tool(instrument);
   std::vector<Held> held;
   for (std::size_t k = 0; tool.jaws_rest() && k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
@@ -150,12 +150,12 @@ std::optional<FreeForm> JawMould::fitted(const InstrumentGeometry& g, const Orga
   return form;
 }
 
-void JawMould::apply(const Field& field, int instrument, int organ, const std::vector<int>* points,
+void JawMould::apply(const Field& field, ToolIndex instrument, int organ, const std::vector<int>* points,
                      DrawnSkin& skin) const {
   const Organ& moulded = field.organs[organ];
   if (!holds(moulded)) return;
   const std::optional<FreeForm> form =
-      fitted(field.tools[instrument].geometry, moulded, points, skin.positions);
+      fitted(field.tool(instrument).geometry, moulded, points, skin.positions);
   if (!form) return;
   const Solids solids(field);
   for (std::size_t p = 0; p < skin.positions.size(); ++p) {
@@ -175,7 +175,7 @@ void JawMoulds::follow(const World& world) {
   if (world.report().time == time_) return;
   time_ = world.report().time;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
-    moulds_[i].follow(world.field(), static_cast<int>(i), 1.0 / world.scene().solver.rate);
+    moulds_[i].follow(world.field(), ToolIndex(i), 1.0 / world.scene().solver.rate);
 }
 
 DrawnSkin JawMoulds::skin(const World& world, int organ) const {
@@ -184,7 +184,7 @@ DrawnSkin JawMoulds::skin(const World& world, int organ) const {
   // What is drawn around a line has no skin points to be moulded by.
   if (world.field().organs[static_cast<std::size_t>(organ)].body->is_line()) return skin;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
-    moulds_[i].apply(world.field(), static_cast<int>(i), organ, nullptr, skin);
+    moulds_[i].apply(world.field(), ToolIndex(i), organ, nullptr, skin);
   return skin;
 }
 
@@ -194,7 +194,7 @@ DrawnSkin JawMoulds::skin(const World& world, int organ, const std::vector<int>&
   DrawnSkin out;
   for (const int point : points) out.positions.push_back(drawn.body->skin_point(point, drawn.state.x));
   for (std::size_t i = 0; i < moulds_.size(); ++i)
-    moulds_[i].apply(world.field(), static_cast<int>(i), organ, &points, out);
+    moulds_[i].apply(world.field(), ToolIndex(i), organ, &points, out);
   out.normals = mean_normals(out.positions, triangles);
   return out;
 }

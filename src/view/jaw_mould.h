@@ -50,12 +50,12 @@ struct DrawnSkin {
 class JawMould {
  public:
   /// Looks at the tool after a step of dt, s.
-  void follow(const Field& field, int instrument, double dt);
+  void follow(const Field& field, ToolIndex instrument, double dt);
   bool active() const { return weight_ > 0; }
 
   /// Moves an organ's drawn skin, or of it these points (null: all), and its normals where there are some. A point that would
   /// come nearer to a solid than the pad's clearance, or than it already is, slides along it.
-  void apply(const Field& field, int instrument, int organ, const std::vector<int>* points,
+  void apply(const Field& field, ToolIndex instrument, int organ, const std::vector<int>* points,
              DrawnSkin& skin) const;
 
  private:

@@ -30,7 +30,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   state.roll_lag = std::abs(tool.command.roll - tool.pose.roll);
   state.meets = tool.meeting.with;
   state.meeting_force = tool.meeting.force.norm();
-  const int number = static_cast<int>(index);
+  const ToolIndex number(index);
   for (const Organ& organ : field.organs) state.grip_points += grip_count(organ, number);
   if (tool.jaw_stopped) state.holds = between_pads(field, number);
   state.pad_pressure = pad_pressure(field, number);

@@ -148,8 +148,8 @@ struct Slope {
     for (const int jaw : {0, 1}) {
       const Pose frame = part_frame(field.tools[0], field.tools[0].pose, 1 + jaw);
       for (std::size_t row = 0; row < of.body->skin_rest().size(); row += 7)
-        of.grips.push_back(
-            {0, jaw, static_cast<int>(row), frame.inverse() * of.body->skin_rest()[row] - pressed, 0});
+        of.grips.push_back({ToolIndex(0), jaw, static_cast<int>(row),
+                            frame.inverse() * of.body->skin_rest()[row] - pressed, 0});
     }
     for (GripPoint& grip : of.grips) grip.stiffness = stiffness / static_cast<double>(of.grips.size());
   }

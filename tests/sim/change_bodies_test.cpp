@@ -254,7 +254,8 @@ TEST_F(ChangedBodies, HoldsAndPulledAnchorsStayAtTheirPlacesOnThePieces) {
   Field field = world.field();
   Organ& whole = field.organs[0];
   const auto points = static_cast<int>(whole.body->skin_rest().size());
-  for (int row : {2, points / 2, points - 3}) whole.grips.push_back({0, row % 2, row, Vec3::Zero(), 4e4});
+  for (int row : {2, points / 2, points - 3})
+    whole.grips.push_back({ToolIndex(0), row % 2, row, Vec3::Zero(), 4e4});
   std::vector<Vec3> held;
   for (const GripPoint& grip : whole.grips)
     held.push_back(whole.body->skin_point(grip.skin_point, whole.state.x));

@@ -266,9 +266,9 @@ struct DrawnClip : ClipAndCut {
     double largest = 0;
     for (double y = 0; y < way && !stump().clips.empty(); y += 0.2e-3) {
       EXPECT_TRUE(step(at(grasped + y, 0)));
-      const Vec3 pull = pad_load(world.field(), 1).pull;
+      const Vec3 pull = pad_load(world.field(), ToolIndex(1)).pull;
       largest = std::max(largest, pull.norm());
-      if (grip_count(stump(), 1) > 0)
+      if (grip_count(stump(), ToolIndex(1)) > 0)
         asked = std::max(asked, asked_of_friction(world.field().tools[1], pull).norm());
     }
     return largest;
@@ -317,7 +317,7 @@ TEST(Clips, PushTheNextOneAlongWithWhatBothHoldAndFallOneAfterTheOther) {
   std::vector<std::size_t> left;
   for (double y = alone; y < 12e-3 && !hands.stump().clips.empty(); y += 0.2e-3) {
     ASSERT_TRUE(hands.step(DrawnClip::at(hands.grasped + y, 0)));
-    largest = std::max(largest, pad_load(hands.world.field(), 1).pull.norm());
+    largest = std::max(largest, pad_load(hands.world.field(), ToolIndex(1)).pull.norm());
     const std::size_t now = hands.stump().clips.size();
     if (left.empty() || left.back() != now) left.push_back(now);
     if (now == 2) nearest = std::min(nearest, apart());

@@ -26,9 +26,9 @@ TEST(FieldShape, NamesEachShapeOfABodyAsItsLoadsHaveIt) {
   ASSERT_EQ(loads.shapes.size(), 8u);
   for (int index = 0; index < 8; ++index) {
     const FieldShape which = field.shape(index);
-    const Shape made = which.is_ground() ? field.ground[which.ground].shape
-                                         : shapes_in_field(field.tools[which.tool],
-                                                           field.tools[which.tool].pose)[which.part];
+    const Tool& tool = field.tool(which.is_ground() ? ToolIndex(0) : which.tool);
+    const Shape made =
+        which.is_ground() ? field.ground[which.ground].shape : shapes_in_field(tool, tool.pose)[which.part];
     EXPECT_EQ(loads.shapes[index], contact_shape(made)) << index;
     EXPECT_EQ(loads.is_broad(index), which.is_ground()) << index;
     EXPECT_EQ(which.index(field.tools.size()), index);
@@ -38,12 +38,12 @@ TEST(FieldShape, NamesEachShapeOfABodyAsItsLoadsHaveIt) {
 TEST(FieldShape, IsAShaftAJawOrGround) {
   const Field field = field_of_all();
   for (int jaw : {0, 1}) {
-    const FieldShape of_second = field.shape(FieldShape::of_jaw(1, jaw).index(field.tools.size()));
-    EXPECT_EQ(of_second, FieldShape::of_tool(1, jaw + 1));
+    const FieldShape of_second = field.shape(FieldShape::of_jaw(ToolIndex(1), jaw).index(field.tools.size()));
+    EXPECT_EQ(of_second, FieldShape::of_tool(ToolIndex(1), jaw + 1));
     EXPECT_EQ(of_second.jaw(), jaw);
     EXPECT_FALSE(of_second.is_shaft() || of_second.is_ground());
   }
-  EXPECT_TRUE(field.shape(FieldShape::of_tool(1, 0).index(field.tools.size())).is_shaft());
+  EXPECT_TRUE(field.shape(FieldShape::of_tool(ToolIndex(1), 0).index(field.tools.size())).is_shaft());
   const FieldShape second_floor = field.shape(7);
   EXPECT_EQ(second_floor, FieldShape::of_ground(1));
   EXPECT_TRUE(second_floor.is_ground() && !second_floor.is_shaft());

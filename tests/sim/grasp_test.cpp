@@ -178,7 +178,7 @@ TEST(Grasp, PadsPressTheirPinchOnTheAreaThatTheyHold) {
     const InstrumentState& tool = path.world.report().instruments[0];
     ASSERT_EQ(tool.holds, "ball");
     const double pinch = path.world.scene().instruments[0].pinch_force;
-    EXPECT_NEAR(tool.pad_pressure * held_area(path.world.field(), 0), pinch, 1e-9);
+    EXPECT_NEAR(tool.pad_pressure * held_area(path.world.field(), ToolIndex(0)), pinch, 1e-9);
     ASSERT_TRUE(path.release());
     EXPECT_EQ(tool.pad_pressure, 0);
   }

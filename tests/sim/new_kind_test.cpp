@@ -175,8 +175,8 @@ TEST(NewKind, HasItsLandmarks) {
 TEST(NewKind, IsDividedIntoPiecesThatLieAsItDidWithTheirHoldsAndLandmarks) {
   Field field = strap_field();
   ASSERT_EQ(press(field, -4e-3), "");
-  field.organs[0].grips.push_back({0, 1, 4, Vec3(1e-3, 0, 0), 10});
-  field.organs[0].grips.push_back({0, 0, 28, Vec3(2e-3, 0, 0), 10});
+  field.organs[0].grips.push_back({ToolIndex(0), 1, 4, Vec3(1e-3, 0, 0), 10});
+  field.organs[0].grips.push_back({ToolIndex(0), 0, 28, Vec3(2e-3, 0, 0), 10});
   const Organ whole = field.organs[0];
   ASSERT_FALSE(can_be_divided(whole, 0));
   ASSERT_TRUE(can_be_divided(whole, 0.3));

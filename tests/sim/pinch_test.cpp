@@ -117,7 +117,7 @@ TEST(Pinch, AWedgeIsLiftedByWhatFrictionHoldsOfItAndNoMore) {
       Wedge wedge(angle, friction, share * least);
       ASSERT_EQ(wedge.go(0, 0, 10), "");
       EXPECT_NEAR(wedge.field.tools[0].pose.jaw / 2, angle, 0.2 * deg);
-      EXPECT_NEAR(pressed_apart(wedge.field, 0) / (share * least), 1, pinch_tolerance);
+      EXPECT_NEAR(pressed_apart(wedge.field, ToolIndex(0)) / (share * least), 1, pinch_tolerance);
       ASSERT_EQ(wedge.go(0, 1e-3, 20), "");
       // What sticks gives by up to a third of a millimetre where so little of the teeth's friction is left.
       if (share > 1) {
@@ -150,7 +150,7 @@ TEST(Pinch, StopsTheJawsOnAWallWhateverTheBilesPressure) {
     const double pinch = scene.instruments[0].pinch_force;
     double most = 0;
     path.driver.watch = [&](const StepReport&) {
-      most = std::max(most, pressed_apart(path.world.field(), 0) / pinch);
+      most = std::max(most, pressed_apart(path.world.field(), ToolIndex(0)) / pinch);
     };
     ASSERT_TRUE(path.grasp()) << path.driver.why();
     const InstrumentState& tool = path.world.report().instruments[0];
@@ -158,13 +158,14 @@ TEST(Pinch, StopsTheJawsOnAWallWhateverTheBilesPressure) {
     EXPECT_LT(most, 1 + pinch_tolerance);
     // Two walls of 2 mm hardly squeezed, which the skin's own stretch round the pads carries: bile of 30 mmHg presses on
     // pads of 20 by 5 mm with 0.4 N.
-    EXPECT_NEAR(pressed_apart(path.world.field(), 0) / pinch, 1, pinch_tolerance);
+    EXPECT_NEAR(pressed_apart(path.world.field(), ToolIndex(0)) / pinch, 1, pinch_tolerance);
     EXPECT_GT(tool.pose.jaw, 8 * deg);
     EXPECT_LT(tool.pose.jaw, 12 * deg);
     if (pressure == 0) angles[0] = tool.pose.jaw;
     angles[1] = tool.pose.jaw;
     fmt::print("{:4.1f} mmHg: {:.1f} deg, {:.2f} of the pinch, {} points held\n", pressure,
-               tool.pose.jaw / deg, pressed_apart(path.world.field(), 0) / pinch, tool.grip_points);
+               tool.pose.jaw / deg, pressed_apart(path.world.field(), ToolIndex(0)) / pinch,
+               tool.grip_points);
   }
   EXPECT_NEAR(angles[1], angles[0], 1.5 * deg);
 }
@@ -191,12 +192,12 @@ TEST(Pinch, JawsCloseOnAsWhatTheyPressOnGivesWay) {
   field.organs[0].state.volume *= 0.9;  // some of the bile is gone
   wait(10);
   EXPECT_LT(tool.pose.jaw, before - 0.1 * deg);
-  EXPECT_NEAR(pressed_apart(field, 0) / pinch, 1, pinch_tolerance);
+  EXPECT_NEAR(pressed_apart(field, ToolIndex(0)) / pinch, 1, pinch_tolerance);
   tool.definition.pinch_force = 0.7 * pinch;  // a weaker hand
   const double closed = tool.pose.jaw;
   wait(10);
   EXPECT_GT(tool.pose.jaw, closed + 0.5 * deg);
-  EXPECT_NEAR(pressed_apart(field, 0) / tool.definition.pinch_force, 1, pinch_tolerance);
+  EXPECT_NEAR(pressed_apart(field, ToolIndex(0)) / tool.definition.pinch_force, 1, pinch_tolerance);
 }
 
 }  // namespace

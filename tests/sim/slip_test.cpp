@@ -99,12 +99,12 @@ TEST(Slip, TheLimitDoesNotDependOnTheMesh) {
     if (nodes != 61) fine.emplace(nodes);
     test::FundusField& grasped = fine ? *fine : held_fold();
     const Field& field = grasped.field;
-    int sliding = 0, held = grip_count(field.organs[0], 0);
+    int sliding = 0, held = grip_count(field.organs[0], ToolIndex(0));
     for (int k = 1; k <= 60 && field.tools[0].jaw_stopped; ++k) {
       ASSERT_EQ(grasped.reach((0.2 * k - 4) * 1e-3, 0.0, 1), "");
-      const double force = asked_of_friction(field.tools[0], pad_load(field, 0).pull).norm();
+      const double force = asked_of_friction(field.tools[0], pad_load(field, ToolIndex(0)).pull).norm();
       EXPECT_LE(force, 1.001 * limit) << nodes << " nodes: the friction cone is never left";
-      const int before = std::exchange(held, grip_count(field.organs[0], 0));
+      const int before = std::exchange(held, grip_count(field.organs[0], ToolIndex(0)));
       if (!field.tools[0].slipping || !field.tools[0].jaw_stopped) continue;
       ++sliding;
       // Skin that has slid off the pads took its share of the pull with it.
@@ -138,7 +138,7 @@ Turned turned(HeldFold& fold, int degrees) {
       out.releases += event.kind == EventKind::release;
       out.grasps += event.kind == EventKind::grasp;
     }
-    out.largest = std::max(out.largest, std::abs(pad_load(fold.field, 0).couple));
+    out.largest = std::max(out.largest, std::abs(pad_load(fold.field, ToolIndex(0)).couple));
     const Organ& organ = fold.field.organs[0];
     const GripSprings springs = grip_springs(organ, fold.field.tools, present_poses(fold.field));
     double adhering = 0;
@@ -155,13 +155,13 @@ Turned turned(HeldFold& fold, int degrees) {
 TEST(Slip, NothingAdheresToThePadsAndWhatIsDrawnOffLeavesThem) {
   CALOT_SLOW_WHEN_SANITIZED("a fold turned");
   HeldFold& fold = held_fold(100);
-  const int held = grip_count(fold.field.organs[0], 0);
+  const int held = grip_count(fold.field.organs[0], ToolIndex(0));
   const Turned seen = turned(fold, 80);
   EXPECT_LT(seen.adhering, 1e-9);
   EXPECT_GT(seen.drawn_off, 0.05e-3) << "else nothing asks for it";
   EXPECT_LT(seen.drawn_off, 1.01 * pad_reach);
-  EXPECT_LT(grip_count(fold.field.organs[0], 0), held);
-  EXPECT_TRUE(both_pads_hold(fold.field, 0));
+  EXPECT_LT(grip_count(fold.field.organs[0], ToolIndex(0)), held);
+  EXPECT_TRUE(both_pads_hold(fold.field, ToolIndex(0)));
 }
 
 TEST(Slip, AFoldTurnsBetweenThePadsBeyondTheirCoupleAndIsLostByAWholeTurn) {
@@ -184,7 +184,7 @@ TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {
     HeldFold& fold = held_fold(pinch, friction);
     EXPECT_EQ(fold.pull(0.2e-3, steps), "");
     grips = fold.field.organs[0].grips;
-    return pad_load(fold.field, 0).pull.norm();
+    return pad_load(fold.field, ToolIndex(0)).pull.norm();
   };
   // 4.2 mm at 30 mm/s: 7 steps at 50 Hz, 28 at 200 Hz.
   std::vector<GripPoint> a, b;
@@ -231,11 +231,11 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
     SolveStatistics statistics;
     std::string why;
     if (slips) {
-      const Result<Slipped> slipped = slip(field, 0, statistics);
+      const Result<Slipped> slipped = slip(field, ToolIndex(0), statistics);
       ASSERT_FALSE(slipped);
       why = to_text(slipped.failure());
     } else {
-      const Result<bool> released = release(field, 0, statistics);
+      const Result<bool> released = release(field, ToolIndex(0), statistics);
       ASSERT_FALSE(released);
       why = to_text(released.failure());
     }
@@ -248,7 +248,7 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
       EXPECT_EQ(field.organs[0].grips[i].stiffness, held[i].stiffness);
     }
     field.tolerance = 1e-6;
-    EXPECT_TRUE(release(field, 0, statistics)) << "and can still be let go";
+    EXPECT_TRUE(release(field, ToolIndex(0), statistics)) << "and can still be let go";
     EXPECT_TRUE(field.organs[0].grips.empty());
   }
 }

@@ -77,7 +77,7 @@ TEST(TubeGrasp, PulledHarderThanThePadsHoldItSlides) {
   for (int k = 1; k <= 14 && acting.count(EventKind::slip) == 0; ++k) {
     ASSERT_TRUE(acting.go(lifted(k * 1e-3), 2));
     const Field& field = acting.world.field();
-    largest = std::max(largest, asked_of_friction(field.tools[0], pad_load(field, 0).pull).norm());
+    largest = std::max(largest, asked_of_friction(field.tools[0], pad_load(field, ToolIndex(0)).pull).norm());
   }
   EXPECT_EQ(acting.count(EventKind::slip), 1);
   EXPECT_GT(largest, 0.9 * limit);
