@@ -19,7 +19,7 @@ void slide_out(Organ& organ, ToolIndex instrument) {
 /// What is too short to be divided slides out of the blades.
 Result<bool> divide_tube(Field& field, ToolIndex instrument, const TubeBetween& tube,
                          std::vector<WorldEvent>& events) {
-  Organ& whole = field.organs[tube.organ];
+  Organ& whole = field.organ(tube.organ);
   const std::string name = whole.definition.name;
   const Vec3 at = whole.body->as_tube()->place_at(tube.at, whole.state.x);
   const double share = whole.body->as_tube()->share_at(tube.at);
@@ -32,13 +32,13 @@ Result<bool> divide_tube(Field& field, ToolIndex instrument, const TubeBetween& 
   const Result<Division> done = divide_body(field, tube.organ, share, field.time);
   if (!done) return done.failure();
   const std::string& tool = field.tool(instrument).definition.name;
-  for (int piece : {done->patient, done->specimen}) {
-    slide_out(field.organs[piece], instrument);
-    for (Opening& opening : field.organs[piece].openings)
+  for (OrganIndex piece : {done->patient, done->specimen}) {
+    slide_out(field.organ(piece), instrument);
+    for (Opening& opening : field.organ(piece).openings)
       if (opening.cause.empty()) opening.cause = tool;
   }
   events.push_back({EventKind::cut, 0, tool, name, done->share, at, EventCause::blades});
-  const Organ& left = field.organs[done->patient];
+  const Organ& left = field.organ(done->patient);
   const bool unclipped = !left.of_specimen && !left.is_shut();
   if (unclipped)
     events.push_back({EventKind::cut_unclipped, 0, tool, name, done->share, at, EventCause::blades});

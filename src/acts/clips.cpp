@@ -27,8 +27,8 @@ double left_open(const Tool& tool, const TubeBetween& tube, const RodBody& rod, 
 }
 
 /// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
-void keep_to_clips(Field& field, int index) {
-  Organ& organ = field.organs[index];
+void keep_to_clips(Field& field, OrganIndex index) {
+  Organ& organ = field.organ(index);
   std::vector<RodBody::Pinch> pinches;
   for (const Clip& clip : organ.clips) pinches.push_back({clip.at, clip.opening, clip.pressed});
   organ.body = std::make_shared<const RodBody>(organ.body->as_tube()->pinched(pinches));
@@ -37,16 +37,16 @@ void keep_to_clips(Field& field, int index) {
 
 }  // namespace
 
-void set_clip(Field& field, int index, const Clip& clip) {
-  std::vector<Clip>& clips = field.organs[index].clips;
+void set_clip(Field& field, OrganIndex index, const Clip& clip) {
+  std::vector<Clip>& clips = field.organ(index).clips;
   const auto behind =
       std::find_if(clips.begin(), clips.end(), [&](const Clip& other) { return other.at > clip.at; });
   clips.insert(behind, clip);
   keep_to_clips(field, index);
 }
 
-Result<bool> clip_body(Field& field, int index, double share, ClipSize size) {
-  const Organ& organ = field.organs[index];
+Result<bool> clip_body(Field& field, OrganIndex index, double share, ClipSize size) {
+  const Organ& organ = field.organ(index);
   const RodBody* rod = organ.body->as_tube();
   if (rod == nullptr) return no_tube(organ.definition, "clip", "clipped");
   if (!(share >= 0 && share <= 1))
@@ -72,7 +72,7 @@ void fire(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
   const double tip = tool.geometry.jaw_length * std::cos(0.5 * tool.pose.jaw);
   bool holds = false;
   for (const TubeBetween& tube : tubes_between(field, instrument)) {
-    const Organ& organ = field.organs[tube.organ];
+    const Organ& organ = field.organ(tube.organ);
     const RodBody& rod = *organ.body->as_tube();
     const double open = left_open(tool, tube, rod, row.leg);
     const Mat3 to_tube = rod.frame_at(tube.at, organ.state.x).transpose() * hinge;
@@ -225,7 +225,7 @@ void let_clips_fall(Field& field, ToolIndex instrument, std::vector<WorldEvent>&
     std::erase_if(organ.clips, [&](const Clip& clip) { return !rod->has(clip.at); });
     std::sort(organ.clips.begin(), organ.clips.end(),
               [](const Clip& a, const Clip& b) { return a.at < b.at; });
-    keep_to_clips(field, static_cast<int>(k));
+    keep_to_clips(field, OrganIndex(k));
   }
 }
 

@@ -21,10 +21,10 @@ namespace calot {
 inline constexpr double clip_hold = 4.4;
 
 /// Sets a clip on a tube, which is held flat there from now on.
-void set_clip(Field& field, int organ, const Clip& clip);
+void set_clip(Field& field, OrganIndex organ, const Clip& clip);
 /// Sets one that shuts it at a share of its length, 0 to 1, with its legs across. Fails (scenario) where it is no tube,
 /// or the share is none.
-Result<bool> clip_body(Field& field, int organ, double share, ClipSize size);
+Result<bool> clip_body(Field& field, OrganIndex organ, double share, ClipSize size);
 
 /// Of each tool in which the action begins (`actions`: one a tool, or none) one clip, while it has some. Adds the
 /// events clip and clip_dropped.

@@ -122,8 +122,8 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
 /// The organ whose skin what current flows through touches; null: none.
 Organ* touched_wall(Field& field, const Tool& tool, const PartLoad& load) {
   if (!is_active(tool) || load.touches == 0) return nullptr;
-  const int touched = organ_called(field, load.organ);
-  return touched < 0 ? nullptr : &field.organs[touched];
+  const std::optional<OrganIndex> touched = organ_called(field, load.organ);
+  return touched ? &field.organ(*touched) : nullptr;
 }
 
 /// Leaves a mark, which grows as long as the current stays there.

@@ -29,7 +29,7 @@ std::optional<Clasped> clasped(const Field& field, ToolIndex instrument) {
     const Organ& organ = field.organs[k];
     if (is_bitten(organ)) continue;
     Clasped out;
-    out.organ = static_cast<int>(k);
+    out.organ = OrganIndex(k);
     ContactPlaces places(organ.body->skin(), organ.state.x);
     for (const RubbingPoint& rubbing : friction_load(field, organ, poses).points) {
       const FieldShape which = field.shape(rubbing.shape);
@@ -61,7 +61,7 @@ std::string between_pads(const Field& field, ToolIndex instrument) {
   const std::string bitten = held_organ(field, instrument);
   if (!bitten.empty() && both_pads_hold(field, instrument)) return bitten;
   const std::optional<Clasped> rubbed = clasped(field, instrument);
-  return rubbed ? field.organs[static_cast<std::size_t>(rubbed->organ)].definition.name : std::string();
+  return rubbed ? field.organ(rubbed->organ).definition.name : std::string();
 }
 
 }  // namespace calot

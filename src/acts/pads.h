@@ -24,7 +24,7 @@ double pressed_apart(const Field& field, ToolIndex instrument);
 
 /// What both pads press on that their teeth do not sink into.
 struct Clasped {
-  int organ = 0;
+  OrganIndex organ;
   std::array<double, 2> pressed{};  ///< N, of each pad across itself
   std::array<double, 2> area{};     ///< m^2, of the skin that touches each
   std::array<Vec3, 2> along{Vec3::Zero(),

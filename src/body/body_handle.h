@@ -1,9 +1,19 @@
 #pragma once
 // Which body, in a field whose bodies come and go.
 
+#include <compare>
+#include <concepts>
 #include <cstdint>
 
 namespace calot {
+
+/// An organ by its place among the field's. A number becomes one only where that is said.
+struct OrganIndex {
+  int value = 0;
+  constexpr OrganIndex() = default;
+  constexpr explicit OrganIndex(std::integral auto place) : value(static_cast<int>(place)) {}
+  auto operator<=>(const OrganIndex&) const = default;
+};
 
 /// One body, for as long as it is in the field.
 struct BodyHandle {
@@ -13,9 +23,9 @@ struct BodyHandle {
   bool operator==(const BodyHandle&) const = default;
 };
 
-/// The two pieces of a body, by their places in the field.
+/// The two pieces of a body.
 struct Division {
-  int patient = 0, specimen = 0;
+  OrganIndex patient, specimen;
   double share = 0;  ///< of its length, from its start, where it was divided
 };
 

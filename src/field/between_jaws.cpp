@@ -52,7 +52,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, ToolIndex instrument)
       const Vec3 at = line[p] + *share * (line[p + 1] - line[p]);
       if (!before_both(tool, tool.pose.jaw, at)) continue;
       const double place = static_cast<double>(p) + *share;
-      out.push_back({static_cast<int>(k), place, at, (line[p + 1] - line[p]).normalized(),
+      out.push_back({OrganIndex(k), place, at, (line[p + 1] - line[p]).normalized(),
                      gap_at(at.z(), tool.pose.jaw), rod->outer_radius(place)});
     }
   }

@@ -13,7 +13,7 @@ inline double open_share(double left) {
 
 /// Where a duct or a vessel passes between the pads.
 struct TubeBetween {
-  int organ = 0;
+  OrganIndex organ;
   double at = 0;              ///< skin points from its start
   Vec3 place = Vec3::Zero();  ///< m, in the hinge's frame
   Vec3 along = Vec3::Zero();  ///< unit, the tube's way, in the hinge's frame

@@ -28,7 +28,8 @@ void finish_change(Field& field) {
   keep_members(field);
 }
 
-Result<bool> remove_body(Field& field, int index, const std::string& why, double time) {
+Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why, double time) {
+  const int index = organ.value;
   if (field.organs.size() == 1)
     return fail(FailureKind::scenario, fmt::format("{} is the last organ", quoted(field.organs[0])),
                 "leave one in the field");
@@ -80,7 +81,7 @@ std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
 
 }  // namespace
 
-Result<int> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting) {
+Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting) {
   for (const Organ& organ : field.organs)
     if (organ.definition.name == definition.name)
       return fail(FailureKind::scenario, fmt::format("there is {} already", quoted(organ)),
@@ -93,7 +94,7 @@ Result<int> add_body(Field& field, const OrganDefinition& definition, const Orga
   field.enrol(made->organ);
   field.organs.push_back(std::move(made->organ));
   finish_change(field);
-  return static_cast<int>(field.organs.size()) - 1;
+  return OrganIndex(field.organs.size() - 1);
 }
 
 Result<bool> tie_bodies(Field& field, const JointDefinition& joint) {
@@ -102,14 +103,14 @@ Result<bool> tie_bodies(Field& field, const JointDefinition& joint) {
   return true;
 }
 
-Result<bool> untie_bodies(Field& field, int one, int other) {
+Result<bool> untie_bodies(Field& field, OrganIndex one, OrganIndex other) {
   const auto ties = [&](const FieldJoint& joint) {
     const std::array<int, 2>& bodies = joint.joint->links().bodies;
-    return bodies == std::array{one, other} || bodies == std::array{other, one};
+    return bodies == std::array{one.value, other.value} || bodies == std::array{other.value, one.value};
   };
   if (std::erase_if(field.membership.joints, ties) == 0)
     return fail(FailureKind::scenario, fmt::format("{} and {} are not tied to each other",
-                                                   quoted(field.organs[one]), quoted(field.organs[other])));
+                                                   quoted(field.organ(one)), quoted(field.organ(other))));
   finish_change(field);
   return true;
 }

@@ -14,16 +14,16 @@ namespace calot {
 std::optional<Failure> check_room(const Field& field, int more_nodes);
 
 /// The joints of a body go with it, and tools let it go.
-Result<bool> remove_body(Field& field, int organ, const std::string& why, double time);
+Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why, double time);
 
 /// Adds an organ, where its definition has it, at rest; as make_organ() where that fails, and where it would be in
-/// another body or a tool. Returns its place, behind all others.
-Result<int> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting);
+/// another body or a tool. It stands behind all others.
+Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting);
 
 /// Ties "organ.landmark" to another where they are now: without a load. The names are the field's.
 Result<bool> tie_bodies(Field& field, const JointDefinition& joint);
 /// Undoes all joints between two bodies. Where they were tied they never press on each other.
-Result<bool> untie_bodies(Field& field, int one, int other);
+Result<bool> untie_bodies(Field& field, OrganIndex one, OrganIndex other);
 
 /// After a change of bodies that is not made here: nothing that was made for those there were serves.
 void finish_change(Field& field);

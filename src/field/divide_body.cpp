@@ -28,14 +28,14 @@ std::vector<char> held_bodies(const Field& field) {
 }
 
 /// Whether the piece at the start is the patient's.
-bool start_is_patients(const Field& field, int organ, const BodyCut& cut,
+bool start_is_patients(const Field& field, OrganIndex whole, const BodyCut& cut,
                        const std::array<Organ, 2>& pieces) {
   const auto* tube = std::get_if<TubeShape>(&pieces[0].definition.shape);
   if (tube != nullptr && tube->patient_end != PatientEnd::held) return tube->patient_end == PatientEnd::start;
   // As if the start stood where the body stands and the end behind all others.
   Field divided;
   divided.organs = field.organs;
-  const int end = static_cast<int>(divided.organs.size());
+  const int organ = whole.value, end = static_cast<int>(divided.organs.size());
   divided.organs[organ] = pieces[0];
   divided.organs.push_back(pieces[1]);
   const std::vector<Vec3>& rest = field.organs[organ].body->skin_rest();
@@ -67,8 +67,8 @@ std::array<std::string, 2> piece_names(const std::string& body) {
   return {body + ".patient", body + ".specimen"};
 }
 
-Result<Division> divide_body(Field& field, int index, double share, double time) {
-  const Organ& whole = field.organs[index];
+Result<Division> divide_body(Field& field, OrganIndex index, double share, double time) {
+  const Organ& whole = field.organ(index);
   const Result<BodyCut> cut = whole.body->divide(share);
   if (!cut) return cut.failure();
   if (std::optional<Failure> failure = check_room(field, more_nodes(*whole.body, cut.value())))
@@ -88,7 +88,7 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
   field.enrol(pieces[start_first ? 1 : 0]);
   replace_body(field, index, std::move(pieces), start_first, cut.value());
   finish_change(field);
-  return Division{index, index + 1, cut->share};
+  return Division{index, OrganIndex(index.value + 1), cut->share};
 }
 
 bool can_be_divided(const Organ& organ, double share) { return static_cast<bool>(organ.body->divide(share)); }

@@ -22,7 +22,7 @@ std::array<std::string, 2> piece_names(const std::string& body);
 /// (TubeShape::patient_end), or else that which is held, itself or by what it is tied to; where both are, or neither,
 /// its end. The pieces stand where the body stood, the patient's first. `time`, s: when. Fails as Body::divide does,
 /// and where the field would have too many organs or nodes.
-Result<Division> divide_body(Field& field, int organ, double share, double time);
+Result<Division> divide_body(Field& field, OrganIndex organ, double share, double time);
 
 /// Whether the body can be.
 bool can_be_divided(const Organ& organ, double share);

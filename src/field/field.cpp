@@ -2,16 +2,16 @@
 
 namespace calot {
 
-int organ_of_record(const Field& field, int record) {
+std::optional<OrganIndex> organ_of_record(const Field& field, int record) {
   for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (field.organs[k].record == record) return static_cast<int>(k);
-  return -1;
+    if (field.organs[k].record == record) return OrganIndex(k);
+  return std::nullopt;
 }
 
-int organ_called(const Field& field, const std::string& name) {
+std::optional<OrganIndex> organ_called(const Field& field, const std::string& name) {
   for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (field.organs[k].definition.name == name) return static_cast<int>(k);
-  return -1;
+    if (field.organs[k].definition.name == name) return OrganIndex(k);
+  return std::nullopt;
 }
 
 std::vector<InstrumentPose> present_poses(const Field& field) {

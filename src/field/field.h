@@ -63,8 +63,8 @@ struct Field {
   Spill spill;            ///< what has left the organs
   double heart_rate = 0;  ///< a minute
   Vec3 up = Vec3::UnitZ();
-  Vec3 middle = Vec3::Zero();  ///< m, of the first organ at rest
-  std::optional<ViewedPlace> viewed;
+  Vec3 middle = Vec3::Zero();        ///< m, of the first organ at rest
+  std::optional<OrganPoint> viewed;  ///< what the laparoscope looks at from near by
   ExtensionScheme scheme = ExtensionScheme::condensed;
   Assembly* assembly = nullptr;  ///< the world's threads; null: one does all
   Membership membership;
@@ -73,6 +73,8 @@ struct Field {
 
   /// What a body is touched by that has this place among its shapes.
   FieldShape shape(int index) const { return FieldShape::at(index, tools.size()); }
+  Organ& organ(OrganIndex at) { return organs[at.value]; }
+  const Organ& organ(OrganIndex at) const { return organs[at.value]; }
   Tool& tool(ToolIndex at) { return tools[at.value]; }
   const Tool& tool(ToolIndex at) const { return tools[at.value]; }
   /// Null: one thread does all.
@@ -83,9 +85,9 @@ struct Field {
   void enrol(Organ& organ);
 };
 
-/// Place of the organ that has this place on the roll, or of the one of this name; -1: it is not in the field.
-int organ_of_record(const Field& field, int record);
-int organ_called(const Field& field, const std::string& name);
+/// The organ that has this place on the roll, or that of this name; none: it is not in the field.
+std::optional<OrganIndex> organ_of_record(const Field& field, int record);
+std::optional<OrganIndex> organ_called(const Field& field, const std::string& name);
 
 std::vector<InstrumentPose> present_poses(const Field& field);
 /// Where the nodes of each organ are, m.

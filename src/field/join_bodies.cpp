@@ -30,9 +30,10 @@ std::optional<Failure> ends_nowhere(const JointDefinition& joint, const Vec3& en
 }  // namespace
 
 Result<bool> add_joint(const JointDefinition& joint, bool at_rest, Field& field) {
-  const auto [one, from] = find_landmark(field.organs, joint.from);  // both are known to be there
-  const auto [other, to] = find_landmark(field.organs, joint.to);
-  const Organ &first = field.organs[one], &second = field.organs[other];
+  const OrganPoint at = *find_landmark(field.organs, joint.from);  // both are known to be there
+  const OrganPoint to = *find_landmark(field.organs, joint.to);
+  const Organ &first = field.organ(at.organ), &second = field.organ(to.organ);
+  const int one = at.organ.value, other = to.organ.value, from = at.skin_point;
   std::array<std::vector<Vec3>, 2> skins{first.body->skin_rest(), second.body->skin_rest()};
   if (at_rest)
     if (std::optional<Failure> failure = ends_nowhere(joint, skins[0][from], second)) return *failure;

@@ -16,11 +16,6 @@
 
 namespace calot {
 
-/// What the laparoscope looks at from near by.
-struct ViewedPlace {
-  int organ = 0, skin_point = 0;
-};
-
 struct SkinPlace {
   Vec3 at = Vec3::Zero();      ///< m
   Vec3 normal = Vec3::Zero();  ///< unit, outward
@@ -66,7 +61,7 @@ struct FieldMembers {
   std::vector<Organ> organs;    ///< as they were when it began
   std::vector<Tissue> tissues;  ///< likewise
   std::vector<JoinPointer> joins;
-  std::optional<ViewedPlace> viewed;
+  std::optional<OrganPoint> viewed;
   Membership membership;
   std::shared_ptr<const int> world;  ///< whose it is
 };

@@ -36,7 +36,10 @@ class Renumbering {
       if (apply(bodies)) tissues.push_back(tissue.between(bodies));
     }
     field.tissues = std::move(tissues);
-    if (field.viewed && (field.viewed->organ = now_[field.viewed->organ]) < 0) field.viewed.reset();
+    if (!field.viewed) return;
+    const int viewed = now_[field.viewed->organ.value];
+    field.viewed->organ = OrganIndex(viewed);
+    if (viewed < 0) field.viewed.reset();
   }
 
  private:

@@ -167,9 +167,10 @@ std::vector<FieldJoint> divide_joint(const FieldJoint& joint, int side, const Bo
   return made;
 }
 
-void replace_body(Field& field, int organ, std::array<Organ, 2> pieces, bool start_first,
+void replace_body(Field& field, OrganIndex replaced, std::array<Organ, 2> pieces, bool start_first,
                   const BodyCut& cut) {
-  const BodyPointer whole = field.organs[organ].body;
+  const int organ = replaced.value;
+  const BodyPointer whole = field.organ(replaced).body;
   const std::vector<Vec3>& rest = whole->skin_rest();
   const Replaced places{organ, start_first ? PiecePlaces{organ, organ + 1} : PiecePlaces{organ + 1, organ}};
   const auto at = field.organs.begin() + organ;
@@ -182,13 +183,13 @@ void replace_body(Field& field, int organ, std::array<Organ, 2> pieces, bool sta
   const double within = within_of_cut(field.organs[organ], field.organs[organ + 1], place);
   field.membership.tied.push_back({{organ, organ + 1}, {place, within}});
   if (!field.viewed) return;
-  ViewedPlace& viewed = *field.viewed;
-  if (viewed.organ != organ) {
-    viewed.organ = places.now(viewed.organ);
+  OrganPoint& viewed = *field.viewed;
+  if (viewed.organ != replaced) {
+    viewed.organ = OrganIndex(places.now(viewed.organ.value));
     return;
   }
   const int side = cut.side_of(viewed.skin_point);
-  viewed = {places.pieces[side], cut.pieces[side].points[viewed.skin_point]};
+  viewed = {OrganIndex(places.pieces[side]), cut.pieces[side].points[viewed.skin_point]};
 }
 
 }  // namespace calot

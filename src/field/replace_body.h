@@ -21,6 +21,7 @@ std::vector<FieldJoint> divide_joint(const FieldJoint& joint, int side, const Bo
 
 /// Puts the pieces of a body in its place, the start's first where `start_first`, with what it was tied by: joints,
 /// tissue and where it was looked at. Near the cut they do not press on each other.
-void replace_body(Field& field, int organ, std::array<Organ, 2> pieces, bool start_first, const BodyCut& cut);
+void replace_body(Field& field, OrganIndex organ, std::array<Organ, 2> pieces, bool start_first,
+                  const BodyCut& cut);
 
 }  // namespace calot

@@ -32,19 +32,19 @@ Failure gone(const BodyRecord& record) {
 
 }  // namespace
 
-Result<int> find_body(const Field& field, const std::string& name) {
+Result<OrganIndex> find_body(const Field& field, const std::string& name) {
   std::vector<std::string> names;
   for (const Organ& organ : field.organs) {
-    if (organ.definition.name == name) return static_cast<int>(names.size());
+    if (organ.definition.name == name) return OrganIndex(names.size());
     names.push_back(organ.definition.name);
   }
   if (const BodyRecord* record = gone_body(field, name)) return gone(*record);
   return fail(FailureKind::scenario, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
 }
 
-Result<int> find_body(const Field& field, const BodyHandle& handle) {
+Result<OrganIndex> find_body(const Field& field, const BodyHandle& handle) {
   for (std::size_t k = 0; k < field.organs.size(); ++k)
-    if (handle_of(field, static_cast<int>(k)) == handle) return static_cast<int>(k);
+    if (handle_of(field, OrganIndex(k)) == handle) return OrganIndex(k);
   const std::vector<BodyRecord>& roll = field.membership.roll;
   const auto index = static_cast<std::size_t>(handle.record);
   if (index < roll.size() && roll[index].life == handle.life && roll[index].gone) return gone(roll[index]);
@@ -52,8 +52,8 @@ Result<int> find_body(const Field& field, const BodyHandle& handle) {
               "ask for it anew, by its name");
 }
 
-BodyHandle handle_of(const Field& field, int organ) {
-  const int record = field.organs[organ].record;
+BodyHandle handle_of(const Field& field, OrganIndex organ) {
+  const int record = field.organ(organ).record;
   return {record, field.membership.roll[record].life};
 }
 

@@ -6,10 +6,10 @@
 
 namespace calot {
 
-/// Place of a body that is in the field. Fails (scenario) where it never was, or says when and why it went.
-Result<int> find_body(const Field& field, const std::string& name);
-Result<int> find_body(const Field& field, const BodyHandle& handle);
-BodyHandle handle_of(const Field& field, int organ);
+/// A body that is in the field. Fails (scenario) where it never was, or says when and why it went.
+Result<OrganIndex> find_body(const Field& field, const std::string& name);
+Result<OrganIndex> find_body(const Field& field, const BodyHandle& handle);
+BodyHandle handle_of(const Field& field, OrganIndex organ);
 /// The last one of that name that went; null: none did.
 const BodyRecord* gone_body(const Field& field, const std::string& name);
 

@@ -19,7 +19,8 @@ using std::numbers::pi;
 constexpr double pushed_on = 0.4e-3;
 
 struct PushedOn {
-  int organ = -1, point = 0;
+  std::optional<OrganIndex> organ;
+  int point = 0;
   double distance = std::numeric_limits<double>::infinity();  ///< m
 };
 
@@ -34,7 +35,7 @@ PushedOn pushed_on_by(const Field& field, const Vec3& place, double reach) {
     if (near.place.points.empty() || distance > reach || distance >= best.distance) continue;
     const std::vector<double>& weights = near.place.weights;
     const auto heaviest = std::max_element(weights.begin(), weights.end()) - weights.begin();
-    best = {k, near.place.points[static_cast<std::size_t>(heaviest)], distance};
+    best = {OrganIndex(k), near.place.points[static_cast<std::size_t>(heaviest)], distance};
   }
   return best;
 }
@@ -42,9 +43,9 @@ PushedOn pushed_on_by(const Field& field, const Vec3& place, double reach) {
 Vec3 tip_of(const Tool& tool) { return tip_position(tool.trocar, tool.pose, tool.geometry); }
 
 bool still_in(const Field& field, const Tool& tool, bool draws) {
-  const int organ = punctured_organ(field, tool);
-  if (organ < 0 || !draws) return false;
-  const Organ& in = field.organs[organ];
+  const std::optional<OrganIndex> organ = punctured_organ(field, tool);
+  if (!organ || !draws) return false;
+  const Organ& in = field.organ(*organ);
   return (in.body->skin_point(tool.needle.point, in.state.x) - tip_of(tool)).norm() <= needle_depth;
 }
 
@@ -80,8 +81,9 @@ double drawn_by(const InstrumentDefinition& needle, double pressure, double comp
   return std::min(by_suction, elastic_outflow(pressure, compliance, mouth, density, time));
 }
 
-int punctured_organ(const Field& field, const Tool& tool) {
-  return tool.needle.record < 0 ? -1 : organ_of_record(field, tool.needle.record);
+std::optional<OrganIndex> punctured_organ(const Field& field, const Tool& tool) {
+  if (tool.needle.record < 0) return std::nullopt;
+  return organ_of_record(field, tool.needle.record);
 }
 
 void puncture(Field& field, const std::vector<InstrumentAction>& actions, std::vector<WorldEvent>& events) {
@@ -100,7 +102,7 @@ void puncture(Field& field, const std::vector<InstrumentAction>& actions, std::v
     const bool was_empty = std::exchange(needle.empty, false);
     if (!draws || needle.record >= 0) continue;
     const PushedOn wall = pushed_on_by(field, tip_of(tool), pushed_on);
-    Organ* organ = wall.organ < 0 ? nullptr : &field.organs[wall.organ];
+    Organ* organ = wall.organ ? &field.organ(*wall.organ) : nullptr;
     if (organ != nullptr && organ->body->liquid() != nullptr) {
       go_in(*organ, wall.point, tool);
       events.push_back({EventKind::puncture, 0, name, organ->definition.name});

@@ -26,8 +26,8 @@ double bore_resistance(double bore, double length, double viscosity);
 double drawn_by(const InstrumentDefinition& needle, double pressure, double compliance, double density,
                 double time);
 
-/// The organ that a tool is in, its place in the field; -1: in none.
-int punctured_organ(const Field& field, const Tool& tool);
+/// The organ that a tool is in; none: it is in none.
+std::optional<OrganIndex> punctured_organ(const Field& field, const Tool& tool);
 
 /// Lets needles in and out by what they are asked to do, where they are now. Adds the events puncture, aspirated and
 /// empty_aspiration.

@@ -45,7 +45,7 @@ double width_of(const Organ& organ, const Opening& opening) {
 /// Where what falls from one place to another lands; none: it falls on.
 std::optional<Landing> lands(Field& field, const FallenOn& skins, const Vec3& from, const Vec3& to) {
   if (const std::optional<FallenOn::Met> met = skins.meets(from, to))
-    return land_on_skin(field, field.organs[met->organ], met->point);
+    return land_on_skin(field, field.organ(met->organ), met->point);
   for (std::size_t k = 0; k < field.ground.size(); ++k)
     if (signed_distance(field.ground[k].shape, to) <= 0)
       return land_on_ground(field, static_cast<int>(k), to);
@@ -58,7 +58,7 @@ FallenOn::FallenOn(const Field& field) {
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     if (organ.body->is_line()) continue;
-    Skin skin{static_cast<int>(k), organ.body->skin_positions(organ.state.x), {}, {}, {}};
+    Skin skin{OrganIndex(k), organ.body->skin_positions(organ.state.x), {}, {}, {}};
     skin.triangles = &organ.body->skin().triangles;
     skin.each = static_cast<std::size_t>(organ.body->triangles_each());
     skin.patches.resize(skin.triangles->size() / skin.each);

@@ -14,14 +14,15 @@ class FallenOn {
  public:
   explicit FallenOn(const Field& field);
   struct Met {
-    int organ = -1, point = 0;
+    OrganIndex organ;
+    int point = 0;
   };
   /// Organ and nearest skin point that are met first from outside on the way between two places, m; none: no skin is.
   std::optional<Met> meets(const Vec3& from, const Vec3& to) const;
 
  private:
   struct Skin {
-    int organ;
+    OrganIndex organ;
     std::vector<Vec3> at;
     std::vector<Eigen::AlignedBox3d> patches;  ///< around `each` triangles that follow each other
     const std::vector<Triangle>* triangles;

@@ -26,8 +26,8 @@ constexpr std::array<double, liquids> viscosities{bile_viscosity, 4e-3};  // Pa 
 double volume_of(const WetPoint& wet) { return std::accumulate(wet.volume.begin(), wet.volume.end(), 0.0); }
 
 const Organ* organ_on(const Field& field, int record) {
-  const int organ = organ_of_record(field, record);
-  return organ < 0 ? nullptr : &field.organs[organ];
+  const std::optional<OrganIndex> organ = organ_of_record(field, record);
+  return organ ? &field.organ(*organ) : nullptr;
 }
 
 Film& film_on(Spill& spill, int on) {

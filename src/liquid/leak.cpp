@@ -22,7 +22,7 @@ double density_of(const Organ& organ) {
 }
 
 struct Outlet {
-  int organ = 0;
+  OrganIndex organ;
   std::size_t opening = 0;
   LeakSource source;
   double pressure = 0;  ///< Pa, of an organ's filling at the opening, at the beginning
@@ -30,13 +30,13 @@ struct Outlet {
 };
 
 /// How much a hollow organ's volume grows with its pressure, m^3/Pa; 0: not known yet.
-double compliance_of(const Field& field, int organ) {
+double compliance_of(const Field& field, OrganIndex organ) {
   const NewtonWorkspace& work = field.group.work;
   int liquids = 0, before = 0;
   for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) {
     if (field.organs[k].body->liquid() == nullptr) continue;
     ++liquids;
-    if (k < organ) ++before;
+    if (k < organ.value) ++before;
   }
   const int constraints = static_cast<int>(work.border.complement.rows());
   if (!work.factored || constraints == 0 || constraints % liquids != 0) return 0;
@@ -48,7 +48,7 @@ double compliance_of(const Field& field, int organ) {
 /// A tool that draws out of an organ.
 struct Draught {
   std::size_t tool = 0;
-  int organ = 0;
+  OrganIndex organ;
   double pressure = 0;  ///< Pa, at its mouth, at the beginning
 };
 
@@ -62,7 +62,7 @@ bool is_plugged(const Field& field, const Organ& organ, const Opening& opening) 
 
 /// Several openings share it.
 struct Reservoir {
-  int organ = 0;
+  OrganIndex organ;
   double compliance = 0;
   double taken = 0;  ///< m^3, in this step
   /// Pa, by how much its pressure has.
@@ -75,10 +75,10 @@ class Leaking {
     for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) {
       const Organ& organ = field.organs[k];
       for (std::size_t i = 0; i < organ.openings.size(); ++i) {
-        Outlet outlet{k, i, source_of(field, k, organ.openings[i])};
+        Outlet outlet{OrganIndex(k), i, source_of(field, OrganIndex(k), organ.openings[i])};
         if (is_plugged(field, organ, organ.openings[i])) outlet.source.area = 0;
         if (outlet.source.kind == LeakSource::Kind::organ) {
-          const Organ& from = field.organs[outlet.source.organ];
+          const Organ& from = field.organ(outlet.source.organ);
           const Vec3 at = organ.body->skin_point(organ.openings[i].point, organ.state.x);
           outlet.pressure = from.body->liquid()->pressure_at(at, from.state.datum_pressure);
           reservoir(outlet.source.organ);
@@ -87,12 +87,12 @@ class Leaking {
       }
     }
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
-      const int from = punctured_organ(field, field.tools[i]);
-      if (from < 0) continue;
-      const Organ& organ = field.organs[from];
+      const std::optional<OrganIndex> from = punctured_organ(field, field.tools[i]);
+      if (!from) continue;
+      const Organ& organ = field.organ(*from);
       const Vec3 mouth = organ.body->skin_point(field.tools[i].needle.point, organ.state.x);
-      draughts_.push_back({i, from, organ.body->liquid()->pressure_at(mouth, organ.state.datum_pressure)});
-      reservoir(from);
+      draughts_.push_back({i, *from, organ.body->liquid()->pressure_at(mouth, organ.state.datum_pressure)});
+      reservoir(*from);
     }
   }
 
@@ -104,14 +104,14 @@ class Leaking {
       for (Outlet& outlet : outlets_) let_out(outlet, field_.time - duration_ + (k + 0.5) * part, part);
       for (const Draught& draught : draughts_) draw(draught, part);
     }
-    for (const Reservoir& from : reservoirs_) field_.organs[from.organ].state.volume -= from.taken;
+    for (const Reservoir& from : reservoirs_) field_.organ(from.organ).state.volume -= from.taken;
     std::vector<WorldEvent> events;
     for (const Outlet& outlet : outlets_) note(outlet, events);
     return events;
   }
 
  private:
-  Reservoir& reservoir(int organ) {
+  Reservoir& reservoir(OrganIndex organ) {
     for (Reservoir& known : reservoirs_)
       if (known.organ == organ) return known;
     return reservoirs_.emplace_back(Reservoir{organ, compliance_of(field_, organ)});
@@ -120,7 +120,7 @@ class Leaking {
   void draw(const Draught& draught, double part) {
     NeedleState& needle = field_.tools[draught.tool].needle;
     const InstrumentDefinition& definition = field_.tools[draught.tool].definition;
-    const Organ& organ = field_.organs[draught.organ];
+    const Organ& organ = field_.organ(draught.organ);
     Reservoir& from = reservoir(draught.organ);
     const double out = std::min(
         organ.state.volume - from.taken,
@@ -134,12 +134,12 @@ class Leaking {
   /// In a part of the step about `time`.
   void let_out(Outlet& outlet, double time, double part) {
     const LeakSource& source = outlet.source;
-    Organ& organ = field_.organs[outlet.organ];
+    Organ& organ = field_.organ(outlet.organ);
     if (!(source.area > 0)) return;
     switch (source.kind) {
       case LeakSource::Kind::organ: {
         Reservoir& from = reservoir(source.organ);
-        const double left = field_.organs[source.organ].state.volume - from.taken;
+        const double left = field_.organ(source.organ).state.volume - from.taken;
         const double out =
             std::min(left, elastic_outflow(outlet.pressure - from.fallen(), from.compliance, source.area,
                                            density_of(organ), part, source.feed.resistance));
@@ -171,7 +171,7 @@ class Leaking {
   }
 
   void note(const Outlet& outlet, std::vector<WorldEvent>& events) {
-    Organ& organ = field_.organs[outlet.organ];
+    Organ& organ = field_.organ(outlet.organ);
     Opening& opening = organ.openings[outlet.opening];
     const Carries liquid = liquid_of(organ);
     const std::string& name = organ.definition.name;

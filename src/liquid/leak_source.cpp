@@ -30,14 +30,14 @@ class SourceSearch {
  public:
   explicit SourceSearch(const Field& field) : field_(field) {}
 
-  LeakSource of(int organ, const Opening& opening) {
-    const RodBody* rod = field_.organs[organ].body->as_tube();
+  LeakSource of(OrganIndex organ, const Opening& opening) {
+    const RodBody* rod = field_.organ(organ).body->as_tube();
     if (rod == nullptr) return {LeakSource::Kind::organ, organ, {}, opening.area};
     const double from = opening.point, to = rod->last_point() - from;
     const double whole = lumen_area(*rod, from);
     visited_.assign(field_.organs.size(), 0);
     if (std::optional<LeakSource> found = along(organ, from, to, whole)) {
-      const OrganDefinition& tube = field_.organs[organ].definition;
+      const OrganDefinition& tube = field_.organ(organ).definition;
       found->feed.resistance = feed_of(tube).resistance;
       if (found->kind == LeakSource::Kind::organ)
         found->feed.resistance = std::get<TubeShape>(tube.shape).feed_resistance.value_or(of_folds);
@@ -49,18 +49,18 @@ class SourceSearch {
 
  private:
   /// From a place on a tube to one of its ends.
-  std::optional<LeakSource> along(int organ, double from, double to, double area) {
-    const Organ& tube = field_.organs[organ];
+  std::optional<LeakSource> along(OrganIndex organ, double from, double to, double area) {
+    const Organ& tube = field_.organ(organ);
     const RodBody& rod = *tube.body->as_tube();
-    visited_[organ] = 1;
+    visited_[organ.value] = 1;
     area = std::min(
         area, std::min(lumen_area(rod, from), lumen_area(rod, to)) * open_between(field_, organ, from, to));
     for (const Opening& opening : tube.openings)
       if (opening.point == to) return std::nullopt;
     for (const FieldJoint& joint : field_.membership.joints) {
       const JointLinks& links = joint.joint->links();
-      const int side = links.bodies[0] == organ ? 0 : 1;
-      if (links.bodies[side] != organ || !is_at(rod, links, side, to)) continue;
+      const int side = links.bodies[0] == organ.value ? 0 : 1;
+      if (links.bodies[side] != organ.value || !is_at(rod, links, side, to)) continue;
       if (std::optional<LeakSource> found = beyond(links, 1 - side, liquid_of(tube), area)) return found;
       // It ends in something else that feeds it not.
       return std::nullopt;
@@ -76,12 +76,12 @@ class SourceSearch {
   }
 
   std::optional<LeakSource> beyond(const JointLinks& links, int side, Carries liquid, double area) {
-    const int organ = links.bodies[side];
-    const Organ& other = field_.organs[organ];
+    const OrganIndex organ(links.bodies[side]);
+    const Organ& other = field_.organ(organ);
     if (liquid == Carries::bile && other.body->liquid() != nullptr)
       return LeakSource{LeakSource::Kind::organ, organ, {}, area};
     const RodBody* rod = other.body->as_tube();
-    if (rod == nullptr || liquid_of(other) != liquid || visited_[organ]) return std::nullopt;
+    if (rod == nullptr || liquid_of(other) != liquid || visited_[organ.value]) return std::nullopt;
     std::optional<LeakSource> best;
     for (double end : {0.0, rod->last_point()})
       if (std::optional<LeakSource> found = along(organ, place_on(links, side), end, area))
@@ -107,7 +107,7 @@ double lumen_volume(const RodBody& rod) {
   return rod.length() * (first + std::sqrt(first * last) + last) / 3;
 }
 
-LeakSource source_of(const Field& field, int organ, const Opening& opening) {
+LeakSource source_of(const Field& field, OrganIndex organ, const Opening& opening) {
   return SourceSearch(field).of(organ, opening);
 }
 
@@ -123,8 +123,8 @@ TubeFeed feed_of(const OrganDefinition& tube) {
   return {shape.feed_pressure.value_or(out.pressure), shape.feed_resistance.value_or(out.resistance)};
 }
 
-double open_between(const Field& field, int index, double one, double other) {
-  const Organ& organ = field.organs[index];
+double open_between(const Field& field, OrganIndex index, double one, double other) {
+  const Organ& organ = field.organ(index);
   const RodBody& rod = *organ.body->as_tube();
   const auto [low, high] = std::minmax(one, other);
   double open = 1;

@@ -12,12 +12,12 @@ inline constexpr double blood_density = 1060;  ///< kg/m^3
 /// What drives the liquid out of an opening.
 struct LeakSource {
   enum class Kind { organ, patient, rest } kind = Kind::rest;
-  int organ = -1;   ///< whose filling it is
-  TubeFeed feed;    ///< of the patient
-  double area = 0;  ///< m^2, smallest on the way
+  OrganIndex organ;  ///< whose filling it is
+  TubeFeed feed;     ///< of the patient
+  double area = 0;   ///< m^2, smallest on the way
 };
 /// Follows the tubes that an opening of an organ is fed by, joint by joint, to what feeds them.
-LeakSource source_of(const Field& field, int organ, const Opening& opening);
+LeakSource source_of(const Field& field, OrganIndex organ, const Opening& opening);
 
 /// What an organ holds: a tube what it carries, all else bile.
 Carries liquid_of(const Organ& organ);
@@ -32,6 +32,6 @@ TubeFeed feed_of(const OrganDefinition& tube);
 
 /// Share of a tube's lumen that is open at its tightest between two of its places (skin points from its start), where
 /// clips and jaws are on it.
-double open_between(const Field& field, int organ, double one, double other);
+double open_between(const Field& field, OrganIndex organ, double one, double other);
 
 }  // namespace calot

@@ -89,8 +89,8 @@ void ScriptSession::complain(lua_State* L, const std::string& message, const std
 
 int ScriptSession::organ(lua_State* L, const std::string& name) {
   if (!checking()) {
-    const Result<int> found = world(L).organ(name);
-    if (found) return found.value();
+    const Result<OrganIndex> found = world(L).organ(name);
+    if (found) return found->value;
     complain(L, found.failure());
     return -1;
   }
@@ -242,8 +242,8 @@ std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name
     const OrganShape shape = known_organ(index).shape;
     if (const auto* tube = std::get_if<TubeShape>(&shape))
       return {tube->points.front(), (tube->points.back() - tube->points.front()).normalized()};
-  } else if (const Result<int> there = world(L).organ(name)) {
-    const Organ& organ = world(L).field().organs[static_cast<std::size_t>(there.value())];
+  } else if (const Result<OrganIndex> there = world(L).organ(name)) {
+    const Organ& organ = world(L).field().organ(there.value());
     if (const RodBody* rod = organ.body->as_tube()) {
       const double at = rod->at_share(share);
       return {rod->place_at(at, organ.state.x), rod->frame_at(at, organ.state.x).col(0)};

@@ -335,7 +335,7 @@ void StepsScript::add(lua_State* L, const OrganDefinition& organ) {
       return complain(L, Failure{FailureKind::scenario, std::move(problems)});
     return bring_later(organ);
   }
-  if (const Result<int> done = changing_->add(organ); !done) complain(L, done.failure());
+  if (const Result<OrganIndex> done = changing_->add(organ); !done) complain(L, done.failure());
 }
 
 void StepsScript::tie(lua_State* L, const JointDefinition& joint) {

@@ -132,7 +132,7 @@ std::vector<Extension> wanted_extensions(const Field& field, const Organ& organ,
                                          const ContactLoads& loads) {
   constexpr int most_along_a_part = 2;
   std::vector<Extension> out;
-  if (field.viewed && &field.organs[field.viewed->organ] == &organ)
+  if (field.viewed && &field.organ(field.viewed->organ) == &organ)
     out.push_back({-1, field.viewed->skin_point});
   const int first_ground = FieldShape::of_ground(0).index(field.tools.size());
   for (int shape = 0; shape < first_ground; ++shape) {

@@ -35,14 +35,14 @@ Failure at_organ(Failure failure, std::size_t index) {
   return failure;
 }
 
-std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
+std::optional<OrganPoint> find_landmark(const std::vector<Organ>& organs, const std::string& name) {
   const std::size_t dot = name.rfind('.');  // a piece's name has one, too
   for (std::size_t k = 0; k < organs.size() && dot != std::string::npos; ++k) {
     if (organs[k].definition.name != name.substr(0, dot)) continue;
     const auto found = organs[k].landmarks.find(name.substr(dot + 1));
-    if (found != organs[k].landmarks.end()) return {static_cast<int>(k), found->second};
+    if (found != organs[k].landmarks.end()) return OrganPoint{OrganIndex(k), found->second};
   }
-  return {0, -1};
+  return std::nullopt;
 }
 
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {

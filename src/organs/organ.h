@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "body/body_handle.h"
 #include "body/shell_body.h"
 #include "group/equilibrium.h"
 #include "tools/instrument.h"
@@ -134,8 +135,13 @@ std::string quoted(const Organ& organ);
 /// organ of that index.
 Failure at_organ(Failure failure, std::size_t index);
 
-/// Organ index and skin point of "organ.landmark"; (0, -1) when there is none.
-std::pair<int, int> find_landmark(const std::vector<Organ>& organs, const std::string& name);
+/// A skin point of an organ of a field.
+struct OrganPoint {
+  OrganIndex organ;
+  int skin_point = 0;
+};
+/// Of "organ.landmark"; none: there is none.
+std::optional<OrganPoint> find_landmark(const std::vector<Organ>& organs, const std::string& name);
 
 /// A failed solve in words: what happened, and what to change.
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);

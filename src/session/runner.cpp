@@ -179,7 +179,7 @@ class Session {
     for (std::size_t i = 0; i < organs.size(); ++i) {
       if (!is_hollow(organs[i].shape)) continue;
       const std::string name = organs[i].name + ".lowest_frequency_Hz";
-      const Result<double> found = world_.lowest_frequency(static_cast<int>(i));
+      const Result<double> found = world_.lowest_frequency(OrganIndex(i));
       if (found)
         result_.progress.set_metric(name, found.value());
       else

@@ -88,8 +88,8 @@ std::vector<double> burnt_shares(const Organ& organ, const std::vector<int>* poi
 
 }  // namespace
 
-SceneMesh SceneBuilder::organ_mesh(const World& world, int organ) {
-  const OrganDefinition& definition = world.field().organs[organ].definition;
+SceneMesh SceneBuilder::organ_mesh(const World& world, OrganIndex organ) {
+  const OrganDefinition& definition = world.field().organ(organ).definition;
   const Pose to_organ = organ_frame(definition).inverse();
   std::vector<Vec3> rest = world.drawn_rest(organ);
   for (Vec3& p : rest) p = to_organ * p;
@@ -126,7 +126,7 @@ Scene SceneBuilder::build(const World& world) const {
     for (SceneMesh& mesh : clip_meshes(organ)) scene.meshes.push_back(std::move(mesh));
   for (SceneMesh& mesh : fallen_clips(world.field())) scene.meshes.push_back(std::move(mesh));
   for (std::size_t i = 0; i < world.field().organs.size(); ++i) {
-    const int index = static_cast<int>(i);
+    const OrganIndex index(i);
     const auto record = static_cast<std::size_t>(world.field().organs[i].record);
     // One that came since is laid out anew for each picture: a duct or a stone takes no time.
     OrganMesh drawn = record < organs_.size() ? organs_[record] : OrganMesh{organ_mesh(world, index), {}};

@@ -25,7 +25,7 @@ class SceneBuilder {
   SceneDetail detail_;
   std::vector<SceneMesh> still_;  // liver and surroundings, or the support
   /// All that does not move of an organ: material, rest positions, triangles, vessels.
-  static SceneMesh organ_mesh(const World& world, int organ);
+  static SceneMesh organ_mesh(const World& world, OrganIndex organ);
   struct OrganMesh {
     SceneMesh mesh;
     std::optional<std::vector<int>> kept;  // of its skin's points; none: it has them all

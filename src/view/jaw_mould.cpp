@@ -150,9 +150,9 @@ std::optional<FreeForm> JawMould::fitted(const InstrumentGeometry& g, const Orga
   return form;
 }
 
-void JawMould::apply(const Field& field, ToolIndex instrument, int organ, const std::vector<int>* points,
-                     DrawnSkin& skin) const {
-  const Organ& moulded = field.organs[organ];
+void JawMould::apply(const Field& field, ToolIndex instrument, OrganIndex organ,
+                     const std::vector<int>* points, DrawnSkin& skin) const {
+  const Organ& moulded = field.organ(organ);
   if (!holds(moulded)) return;
   const std::optional<FreeForm> form =
       fitted(field.tool(instrument).geometry, moulded, points, skin.positions);
@@ -178,19 +178,19 @@ void JawMoulds::follow(const World& world) {
     moulds_[i].follow(world.field(), ToolIndex(i), 1.0 / world.scene().solver.rate);
 }
 
-DrawnSkin JawMoulds::skin(const World& world, int organ) const {
+DrawnSkin JawMoulds::skin(const World& world, OrganIndex organ) const {
   DrawnSurface surface = world.drawn(organ);
   DrawnSkin skin{std::move(surface.positions), std::move(surface.normals)};
   // What is drawn around a line has no skin points to be moulded by.
-  if (world.field().organs[static_cast<std::size_t>(organ)].body->is_line()) return skin;
+  if (world.field().organ(organ).body->is_line()) return skin;
   for (std::size_t i = 0; i < moulds_.size(); ++i)
     moulds_[i].apply(world.field(), ToolIndex(i), organ, nullptr, skin);
   return skin;
 }
 
-DrawnSkin JawMoulds::skin(const World& world, int organ, const std::vector<int>& points,
+DrawnSkin JawMoulds::skin(const World& world, OrganIndex organ, const std::vector<int>& points,
                           const std::vector<Triangle>& triangles) const {
-  const Organ& drawn = world.field().organs[static_cast<std::size_t>(organ)];
+  const Organ& drawn = world.field().organ(organ);
   DrawnSkin out;
   for (const int point : points) out.positions.push_back(drawn.body->skin_point(point, drawn.state.x));
   for (std::size_t i = 0; i < moulds_.size(); ++i)

@@ -55,7 +55,7 @@ class JawMould {
 
   /// Moves an organ's drawn skin, or of it these points (null: all), and its normals where there are some. A point that would
   /// come nearer to a solid than the pad's clearance, or than it already is, slides along it.
-  void apply(const Field& field, ToolIndex instrument, int organ, const std::vector<int>* points,
+  void apply(const Field& field, ToolIndex instrument, OrganIndex organ, const std::vector<int>* points,
              DrawnSkin& skin) const;
 
  private:
@@ -80,10 +80,10 @@ class JawMoulds {
   /// To be told of every step, drawn or not: moulds come and go in time. Twice after one step is once.
   void follow(const World& world);
   /// An organ's skin as it is drawn. Some milliseconds a holding tool.
-  DrawnSkin skin(const World& world, int organ) const;
+  DrawnSkin skin(const World& world, OrganIndex organ) const;
   /// The same of some of its points alone, whose triangles are these: a quarter of the time for a quarter of the points. For
   /// organs whose skin is what is drawn.
-  DrawnSkin skin(const World& world, int organ, const std::vector<int>& points,
+  DrawnSkin skin(const World& world, OrganIndex organ, const std::vector<int>& points,
                  const std::vector<Triangle>& triangles) const;
 
  private:

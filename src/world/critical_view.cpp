@@ -35,16 +35,15 @@ struct Standing {
 /// Calls use(strand, torn) for all strands of all tissues.
 template <class Use>
 void for_strands(const Field& field, const CriticalViewQuestion& question, const Use& use) {
-  const int gallbladder = organ_called(field, question.gallbladder);
+  const std::optional<OrganIndex> gallbladder = organ_called(field, question.gallbladder);
   for (const Tissue& tissue : field.tissues) {
     const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const PlacedStrand& strand = tissue.strands->strands()[i];
       Standing one{lines[i], lobule_radius(strand), 0, tissue.definition.name == question.plate};
       for (int end = 0; end < 2; ++end)
-        if (tissue.strands->bodies()[end] == gallbladder)
-          one.share = share_along(field.organs[static_cast<std::size_t>(gallbladder)],
-                                  end == 0 ? strand.one : strand.other);
+        if (gallbladder && tissue.strands->bodies()[end] == gallbladder->value)
+          one.share = share_along(field.organ(*gallbladder), end == 0 ? strand.one : strand.other);
       use(one, tissue.torn(i));
     }
   }
@@ -116,15 +115,15 @@ bool is_whole_tube(const Field& field, const Organ& organ) {
          });
 }
 
-/// Tubes that are joined to it and have not been divided, by their places.
-std::vector<std::size_t> tubes_of(const Field& field, int gallbladder) {
-  std::vector<std::size_t> out;
+/// Tubes that are joined to it and have not been divided, in their order.
+std::vector<OrganIndex> tubes_of(const Field& field, OrganIndex gallbladder) {
+  std::vector<OrganIndex> out;
   for (const FieldJoint& joint : field.membership.joints)
     for (int k = 0; k < 2; ++k) {
       const std::array<int, 2>& bodies = joint.joint->links().bodies;
-      if (bodies[k] != gallbladder) continue;
-      const auto other = static_cast<std::size_t>(bodies[1 - k]);
-      if (is_whole_tube(field, field.organs[other])) out.push_back(other);
+      if (bodies[k] != gallbladder.value) continue;
+      const OrganIndex other(bodies[1 - k]);
+      if (is_whole_tube(field, field.organ(other))) out.push_back(other);
     }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -147,13 +146,13 @@ Vec3 square_behind(const std::array<Vec3, 3>& corners, const Vec3& eye) {
 void judge_structures(const Field& field, const CriticalViewQuestion& question,
                       const std::vector<Standing>& standing, const Sight& front, const Sight& back,
                       CriticalView& out) {
-  const int gallbladder = organ_called(field, question.gallbladder);
-  if (gallbladder < 0) return;
-  const Organ& bladder = field.organs[static_cast<std::size_t>(gallbladder)];
+  const std::optional<OrganIndex> gallbladder = organ_called(field, question.gallbladder);
+  if (!gallbladder) return;
+  const Organ& bladder = field.organ(*gallbladder);
   const SkinFinder skin(*bladder.body, bladder.body->skin_positions(bladder.state.x));
-  for (std::size_t tube : tubes_of(field, gallbladder)) {
+  for (OrganIndex tube : tubes_of(field, *gallbladder)) {
     ++out.structures;
-    const Entering part = entering(field.organs[tube], skin, question.near);
+    const Entering part = entering(field.organ(tube), skin, question.near);
     const double thick = 2 * part.radius + on_surface;
     const bool seen = std::any_of(part.places.begin(), part.places.end(), [&](const Vec3& place) {
       return front.sees(place, thick) || back.sees(place, thick);

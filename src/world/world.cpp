@@ -266,8 +266,7 @@ Tool tool_at_port(const InstrumentDefinition& definition, const Vec3& trocar, co
 
 /// Gives the organs the details that the laparoscope sees at a landmark.
 void look_closely(const std::string& landmark, Field& field) {
-  const auto [organ, skin_point] = find_landmark(field.organs, landmark);
-  if (skin_point >= 0) field.viewed = ViewedPlace{organ, skin_point};
+  field.viewed = find_landmark(field.organs, landmark);
   SolveStatistics statistics;
   for (Organ& each : field.organs) follow_contacts(field, each, statistics);
 }
@@ -426,15 +425,15 @@ const SkinPlace& last_place(const Field& field, const std::string& name) {
 }  // namespace
 
 Vec3 World::landmark(const std::string& name) const {
-  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
-  if (skin_point < 0) return last_place(impl_->field, name).at;
-  const Organ& at = impl_->field.organs[organ];
-  return at.body->surface_point(skin_point, at.state.x);
+  const std::optional<OrganPoint> there = find_landmark(impl_->field.organs, name);
+  if (!there) return last_place(impl_->field, name).at;
+  const Organ& organ = impl_->field.organ(there->organ);
+  return organ.body->surface_point(there->skin_point, organ.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
-  const auto [organ, skin_point] = find_landmark(impl_->field.organs, name);
-  return skin_point < 0 ? last_place(impl_->field, name).normal : skin_normals(organ)[skin_point];
+  const std::optional<OrganPoint> there = find_landmark(impl_->field.organs, name);
+  return there ? skin_normals(there->organ)[there->skin_point] : last_place(impl_->field, name).normal;
 }
 
 double World::seen_area(const std::array<Vec3, 3>& corners) const {
@@ -449,25 +448,25 @@ CriticalView World::critical_view(const CriticalViewQuestion& question) const {
   return calot::critical_view(impl_->field, triangle, impl_->report.laparoscope.view.position, question);
 }
 
-const Tessellation& World::skin(int organ) const { return impl_->field.organs[organ].body->skin(); }
-std::vector<Vec3> World::skin_positions(int organ) const {
-  return impl_->field.organs[organ].body->skin_positions(impl_->field.organs[organ].state.x);
+const Tessellation& World::skin(OrganIndex organ) const { return impl_->field.organ(organ).body->skin(); }
+std::vector<Vec3> World::skin_positions(OrganIndex organ) const {
+  return impl_->field.organ(organ).body->skin_positions(impl_->field.organ(organ).state.x);
 }
-std::vector<Vec3> World::skin_normals(int organ) const {
-  return impl_->field.organs[organ].body->skin_normals(impl_->field.organs[organ].state.x);
+std::vector<Vec3> World::skin_normals(OrganIndex organ) const {
+  return impl_->field.organ(organ).body->skin_normals(impl_->field.organ(organ).state.x);
 }
-const std::vector<Triangle>& World::drawn_triangles(int organ) const {
-  return impl_->field.organs[organ].body->drawn_triangles();
+const std::vector<Triangle>& World::drawn_triangles(OrganIndex organ) const {
+  return impl_->field.organ(organ).body->drawn_triangles();
 }
-const std::vector<Vec3>& World::drawn_rest(int organ) const {
-  return impl_->field.organs[organ].body->drawn_rest();
+const std::vector<Vec3>& World::drawn_rest(OrganIndex organ) const {
+  return impl_->field.organ(organ).body->drawn_rest();
 }
-DrawnSurface World::drawn(int organ) const {
-  return impl_->field.organs[organ].body->drawn(impl_->field.organs[organ].state.x);
+DrawnSurface World::drawn(OrganIndex organ) const {
+  return impl_->field.organ(organ).body->drawn(impl_->field.organ(organ).state.x);
 }
 
-Result<double> World::lowest_frequency(int index) const {
-  const Organ& organ = impl_->field.organs[index];
+Result<double> World::lowest_frequency(OrganIndex index) const {
+  const Organ& organ = impl_->field.organ(index);
   const ShellBody* shell = organ.body->as_shell();
   if (shell == nullptr)
     return fail(
@@ -504,32 +503,32 @@ auto World::Impl::change(const std::string& what, const Change& change) -> declt
   return done;
 }
 
-Result<int> World::organ(const std::string& name) const { return find_body(impl_->field, name); }
-Result<int> World::organ(const BodyHandle& handle) const { return find_body(impl_->field, handle); }
-BodyHandle World::handle(int organ) const { return handle_of(impl_->field, organ); }
+Result<OrganIndex> World::organ(const std::string& name) const { return find_body(impl_->field, name); }
+Result<OrganIndex> World::organ(const BodyHandle& handle) const { return find_body(impl_->field, handle); }
+BodyHandle World::handle(OrganIndex organ) const { return handle_of(impl_->field, organ); }
 
 Result<Division> World::divide(const std::string& name, double share) {
-  const Result<int> organ = this->organ(name);
+  const Result<OrganIndex> organ = this->organ(name);
   if (!organ) return organ.failure();
   return impl_->change(fmt::format("after '{}' was divided", name),
                        [&] { return divide_body(impl_->field, organ.value(), share, impl_->time()); });
 }
 
 Result<bool> World::clip(const std::string& name, double share, ClipSize size) {
-  const Result<int> organ = this->organ(name);
+  const Result<OrganIndex> organ = this->organ(name);
   if (!organ) return organ.failure();
   return impl_->change(fmt::format("after '{}' was clipped", name),
                        [&] { return clip_body(impl_->field, organ.value(), share, size); });
 }
 
 Result<bool> World::remove(const std::string& name, const std::string& why) {
-  const Result<int> organ = this->organ(name);
+  const Result<OrganIndex> organ = this->organ(name);
   if (!organ) return organ.failure();
   return impl_->change(fmt::format("after '{}' was removed", name),
                        [&] { return remove_body(impl_->field, organ.value(), why, impl_->time()); });
 }
 
-Result<int> World::add(const OrganDefinition& definition) {
+Result<OrganIndex> World::add(const OrganDefinition& definition) {
   if (std::vector<Problem> problems = validate(definition); !problems.empty())
     return Failure{FailureKind::scenario, std::move(problems)};
   const SolverDefinition& solver = impl_->scene.solver;
@@ -537,8 +536,8 @@ Result<int> World::add(const OrganDefinition& definition) {
   FillingLimits limits = filling_limits(solver, nullptr);
   const OrganSetting setting{still, impl_->up, solver.tolerance,
                              definition.extensions ? solver.extension_levels : 0, &limits};
-  Result<int> added = impl_->change(fmt::format("after '{}' came", definition.name),
-                                    [&] { return add_body(impl_->field, definition, setting); });
+  Result<OrganIndex> added = impl_->change(fmt::format("after '{}' came", definition.name),
+                                           [&] { return add_body(impl_->field, definition, setting); });
   if (added) return added;
   Failure failure = added.failure();
   for (Problem& problem : failure.problems)  // of its definition
@@ -556,7 +555,7 @@ Result<bool> World::tie(const JointDefinition& joint) {
 }
 
 Result<bool> World::untie(const std::string& one, const std::string& other) {
-  const Result<int> first = organ(one), second = organ(other);
+  const Result<OrganIndex> first = organ(one), second = organ(other);
   if (!first) return first.failure();
   if (!second) return second.failure();
   return impl_->change(fmt::format("after '{}' and '{}' were untied", one, other),
@@ -565,9 +564,9 @@ Result<bool> World::untie(const std::string& one, const std::string& other) {
 
 Result<Vec3> World::place(const std::string& name) const {
   const std::size_t dot = name.rfind('.');
-  if (find_landmark(impl_->field.organs, name).second >= 0) return landmark(name);
+  if (find_landmark(impl_->field.organs, name)) return landmark(name);
   if (dot != std::string::npos && gone_body(impl_->field, name.substr(0, dot)) != nullptr)
-    if (const Result<int> there = organ(name.substr(0, dot)); !there) return there.failure();
+    if (const Result<OrganIndex> there = organ(name.substr(0, dot)); !there) return there.failure();
   return fail(FailureKind::scenario, fmt::format("unknown landmark \"{}\"", name),
               suggestion(name, landmarks()));
 }

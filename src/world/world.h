@@ -60,17 +60,16 @@ class World {
   // masses do not count all come to rest at once. Each fails (scenario; simulation where no rest was found) with the world
   // as it was; what is asked for by a name or handle that is gone is told when it went and why.
 
-  /// Place of an organ among those that are there.
-  Result<int> organ(const std::string& name) const;
-  Result<int> organ(const BodyHandle& handle) const;
-  BodyHandle handle(int organ) const;
+  Result<OrganIndex> organ(const std::string& name) const;
+  Result<OrganIndex> organ(const BodyHandle& handle) const;
+  BodyHandle handle(OrganIndex organ) const;
   /// At about this share of a tube's length, from its start.
   Result<Division> divide(const std::string& organ, double share);
   /// Sets a clip that shuts a tube, at this share of its length, 0 to 1.
   Result<bool> clip(const std::string& organ, double share, ClipSize size);
   Result<bool> remove(const std::string& organ, const std::string& why);
-  /// Its place, the last; problems have paths as of validate(organ).
-  Result<int> add(const OrganDefinition& definition);
+  /// It stands behind all others; problems have paths as of validate(organ).
+  Result<OrganIndex> add(const OrganDefinition& definition);
   /// Where they are now.
   Result<bool> tie(const JointDefinition& joint);
   /// Undoes all joints of two organs.
@@ -99,17 +98,17 @@ class World {
   const Field& field() const;
   /// The skin that is touched, and drawn but for the mould of jaws (view/jaw_mould.h): triangles fixed, positions present; rest
   /// positions for texture.
-  const Tessellation& skin(int organ) const;
-  std::vector<Vec3> skin_positions(int organ) const;  ///< m, one a skin point
-  std::vector<Vec3> skin_normals(int organ) const;    ///< unit, outward
+  const Tessellation& skin(OrganIndex organ) const;
+  std::vector<Vec3> skin_positions(OrganIndex organ) const;  ///< m, one a skin point
+  std::vector<Vec3> skin_normals(OrganIndex organ) const;    ///< unit, outward
   /// What is drawn of an organ: triangles fixed, places now, and at rest for texture.
-  const std::vector<Triangle>& drawn_triangles(int organ) const;
-  const std::vector<Vec3>& drawn_rest(int organ) const;
-  DrawnSurface drawn(int organ) const;
+  const std::vector<Triangle>& drawn_triangles(OrganIndex organ) const;
+  const std::vector<Vec3>& drawn_rest(OrganIndex organ) const;
+  DrawnSurface drawn(OrganIndex organ) const;
   /// Lowest natural frequency, Hz, of an organ at its present equilibrium, its bile's mass included: what shakes
   /// it below a third of that may be treated as static (the paper, section 4). Fails (simulation) where the
   /// equilibrium is not stable, its volume kept.
-  Result<double> lowest_frequency(int organ) const;
+  Result<double> lowest_frequency(OrganIndex organ) const;
   /// Deepest penetration of any instrument part into the skin (m, 0 when none), tested on a finer
   /// tessellation than contact uses: for tests and reports.
   double deepest_penetration() const;

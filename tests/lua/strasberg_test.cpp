@@ -45,7 +45,7 @@ Aim aim_at(const SceneDefinition& scene, const std::string& duct, double share, 
   const Result<World> made = World::create(scene);
   EXPECT_TRUE(made) << to_text(made.failure());
   const World& world = made.value();
-  const Organ& organ = world.field().organs[world.organ(duct).value()];
+  const Organ& organ = world.field().organ(world.organ(duct).value());
   const RodBody& rod = *organ.body->as_tube();
   const double at = rod.at_share(share);
   const Vec3 along = rod.frame_at(at, organ.state.x).col(0), front = Vec3::UnitZ();

@@ -252,13 +252,15 @@ TEST(Runner, AnInputThatCannotBeFollowedEndsTheSessionInTheStateBeforeIt) {
   World world = small_world();
   std::vector<std::vector<Vec3>> skins;
   SessionOptions options;
-  options.observer = [&](const World& now, const Progress&, bool) { skins.push_back(now.skin_positions(0)); };
+  options.observer = [&](const World& now, const Progress&, bool) {
+    skins.push_back(now.skin_positions(OrganIndex(0)));
+  };
   const SessionResult result = run_session(world, script, source, options);
   EXPECT_EQ(result.end, SessionEnd::failed);
   ASSERT_EQ(result.state_hashes.size(), 5u)
       << "rest, three steps, and the state in which the last one failed";
   EXPECT_NE(skins[3], skins[2]) << "a ball that nothing moves shows nothing";
-  EXPECT_EQ(world.skin_positions(0), skins[3]);
+  EXPECT_EQ(world.skin_positions(OrganIndex(0)), skins[3]);
   // Another world, brought there by the same inputs, knows nothing of the failed step.
   World other = small_world();
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(other.step(*source.next(other, 0.02).value()));

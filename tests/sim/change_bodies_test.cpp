@@ -72,7 +72,7 @@ std::vector<std::string> names_in(const World& world) {
 std::string why(const Failure& failure) { return to_text(failure); }
 
 const Organ& organ_of(const World& world, const std::string& name) {
-  return world.field().organs[static_cast<std::size_t>(world.organ(name).value())];
+  return world.field().organ(world.organ(name).value());
 }
 
 const RodBody& rod_of(const World& world, const std::string& name) {
@@ -154,8 +154,8 @@ TEST_F(ChangedBodies, PiecesShareMassRestLengthAndEnergyOfTheWhole) {
 TEST_F(ChangedBodies, TheCutCarriesNoForce) {
   ASSERT_TRUE(world.divide("cystic_duct", 0.5));
   const Field& field = world.field();
-  const int patient = world.organ("cystic_duct.patient").value(),
-            specimen = world.organ("cystic_duct.specimen").value();
+  const int patient = world.organ("cystic_duct.patient")->value,
+            specimen = world.organ("cystic_duct.specimen")->value;
   std::vector<GroupPlace> places;
   std::vector<double> all;
   for (const Organ& organ : field.organs) {
@@ -266,14 +266,14 @@ TEST_F(ChangedBodies, HoldsAndPulledAnchorsStayAtTheirPlacesOnThePieces) {
     whole.friction.points.push_back({point, 9, StickSlip{.limit = 1e-3, .stiffness = 1}});
     rubbed.push_back(places.at(point));
   }
-  const Result<Division> done = divide_body(field, 0, 0.5, 1.0);
+  const Result<Division> done = divide_body(field, OrganIndex(0), 0.5, 1.0);
   ASSERT_TRUE(done) << why(done.failure());
   const auto near_one = [](const std::vector<Vec3>& of, const Vec3& at) {
     return std::any_of(of.begin(), of.end(), [&](const Vec3& one) { return (one - at).norm() < 1e-14; });
   };
   std::size_t holds = 0, anchors = 0;
-  for (int k : {done->patient, done->specimen}) {
-    const Organ& piece = field.organs[static_cast<std::size_t>(k)];
+  for (OrganIndex k : {done->patient, done->specimen}) {
+    const Organ& piece = field.organ(k);
     EXPECT_FALSE(piece.grips.empty());
     EXPECT_FALSE(piece.friction.points.empty());
     for (const GripPoint& grip : piece.grips)
@@ -298,11 +298,11 @@ TEST_F(ChangedBodies, AHandleToWhatIsGoneSaysWhenAndWhyItWent) {
   const std::string of_duct =
       "cystic_duct was divided at 0.06 s (its pieces are cystic_duct.patient and cystic_duct.specimen)";
   const std::string of_stone = "stone was removed: taken out at 0.10 s";
-  for (const Result<int>& found : {world.organ(duct_then), world.organ("cystic_duct")}) {
+  for (const Result<OrganIndex>& found : {world.organ(duct_then), world.organ("cystic_duct")}) {
     ASSERT_FALSE(found);
     EXPECT_NE(why(found.failure()).find(of_duct), std::string::npos) << why(found.failure());
   }
-  for (const Result<int>& found : {world.organ(stone_then), world.organ("stone")}) {
+  for (const Result<OrganIndex>& found : {world.organ(stone_then), world.organ("stone")}) {
     ASSERT_FALSE(found);
     EXPECT_NE(why(found.failure()).find(of_stone), std::string::npos) << why(found.failure());
   }
@@ -317,7 +317,7 @@ TEST_F(ChangedBodies, AHandleToWhatIsGoneSaysWhenAndWhyItWent) {
 TEST_F(ChangedBodies, AHandleFromATimeThatWasUndoneIsOfNobody) {
   const FieldState before = world.state();
   const OrganDefinition fresh = stone("second", Vec3(-60e-3, 60e-3, -60e-3));
-  const Result<int> added = world.add(fresh);
+  const Result<OrganIndex> added = world.add(fresh);
   ASSERT_TRUE(added) << why(added.failure());
   const BodyHandle then = world.handle(added.value());
   ASSERT_TRUE(world.restore(before));

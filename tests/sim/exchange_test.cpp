@@ -100,7 +100,7 @@ TEST(Exchange, WhatWaitsIsNotInTheField) {
   ASSERT_TRUE(rig.go({0, 0.6, port_depth, 0, 0}, 10));  // clear of the others' straight way in
   OrganDefinition tube = test::tube_across("band");
   for (Vec3& point : std::get<TubeShape>(tube.shape).points) point.z() = -0.8 * port_depth;
-  const Result<int> band = rig.world.add(tube);
+  const Result<OrganIndex> band = rig.world.add(tube);
   ASSERT_TRUE(band) << to_text(band.failure());
   ASSERT_TRUE(rig.go({0, 0.6, port_depth, 0, 0}, 5));
   EXPECT_EQ(rig.last_text(EventKind::contact), "none");

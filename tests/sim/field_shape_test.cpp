@@ -10,6 +10,10 @@
 namespace calot {
 namespace {
 
+static_assert(!std::is_convertible_v<int, ToolIndex> && !std::is_convertible_v<OrganIndex, ToolIndex> &&
+                  !std::is_convertible_v<int, OrganIndex> && !std::is_convertible_v<ToolIndex, OrganIndex>,
+              "a tool and an organ, or a number, cannot stand for each other");
+
 /// A ball, two graspers and two pieces of ground.
 Field field_of_all() {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());

@@ -70,7 +70,7 @@ TEST(Grasp, ReleasedOrganReturnsToItsRest) {
   CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::grasper_scene());
   const OrganState rest = path.world.report().organs[0];
-  const std::vector<Vec3> skin = path.world.skin_positions(0);
+  const std::vector<Vec3> skin = path.world.skin_positions(OrganIndex(0));
   ASSERT_TRUE(path.grasp() && path.lift() && path.release() && path.withdraw()) << path.driver.why();
   const OrganState after = path.world.report().organs[0];
   EXPECT_EQ(path.driver.count(EventKind::release), 1);
@@ -81,7 +81,7 @@ TEST(Grasp, ReleasedOrganReturnsToItsRest) {
   EXPECT_NEAR(after.energy / rest.energy, 1.0, 1e-6);
   EXPECT_NEAR(after.pressure / rest.pressure, 1.0, 1e-6);
   double away = 0;
-  const std::vector<Vec3> now = path.world.skin_positions(0);
+  const std::vector<Vec3> now = path.world.skin_positions(OrganIndex(0));
   for (std::size_t i = 0; i < skin.size(); ++i) away = std::max(away, (now[i] - skin[i]).norm());
   EXPECT_LT(away, 1e-6 * 80e-3);  // of the organ's size
 }

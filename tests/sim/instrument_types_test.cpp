@@ -22,7 +22,7 @@ TEST(Electrode, PushesTheWallWithoutGoingInAndLetsItSpringBack) {
   EXPECT_LT(path.world.deepest_penetration(), 0.1e-3);
   // The wall has gone along: it covers the tip, within the contact's range and half a grid of the skin.
   double nearest = 1;
-  for (const Vec3& p : path.world.skin_positions(0))
+  for (const Vec3& p : path.world.skin_positions(OrganIndex(0)))
     nearest = std::min(nearest, (p - pressed.instruments[0].tip).norm());
   EXPECT_LT(nearest, 1e-3);
   EXPECT_EQ(pressed.instruments[0].grip_points, 0);

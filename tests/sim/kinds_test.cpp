@@ -51,7 +51,7 @@ TEST(Kinds, ADuctHeldAtBothEndsGivesWayToARodAndComesBack) {
   organ.held = {{"start", "start", 6e-3, 1e6}, {"end", "end", 6e-3, 1e6}};
   World world = made(scene_of({organ}));
   test::Driver driver(world);
-  const std::vector<Vec3> before = world.skin_positions(0);
+  const std::vector<Vec3> before = world.skin_positions(OrganIndex(0));
   const Vec3 middle = world.landmark("duct.middle");
   EXPECT_NEAR((middle - Vec3(-80e-3, 90e-3, -97e-3)).norm(), 0, 1e-9) << "on the tube, above its line";
   ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 5e-3), 0, 4) && driver.go(middle - Vec3(0, 0, 3e-3), 0, 4))
@@ -62,7 +62,8 @@ TEST(Kinds, ADuctHeldAtBothEndsGivesWayToARodAndComesBack) {
   EXPECT_LT(world.deepest_penetration(), 1e-9) << "its middle line stays outside";
   ASSERT_TRUE(driver.go(middle + Vec3(0, 0, 10e-3), 0, 4)) << driver.why();
   for (std::size_t k = 0; k < before.size(); ++k)
-    EXPECT_LT((world.skin_positions(0)[k] - before[k]).norm(), 1e-6);  // m, of 40 mm: the solver's tolerance
+    EXPECT_LT((world.skin_positions(OrganIndex(0))[k] - before[k]).norm(),
+              1e-6);  // m, of 40 mm: the solver's tolerance
 }
 
 /// A tool with an upright shaft, its tip below a duct, is drawn across it at 500 mm/s: it takes the duct along, or the step
@@ -82,7 +83,7 @@ void draw_across(double radius, double thickness, SolverMotion motion) {
   driver.watch = [&](const StepReport& report) {
     const Vec3 tip = report.instruments[0].tip, up = (driver.trocar() - tip).normalized();
     double ahead = std::numeric_limits<double>::infinity(), nearest = ahead;
-    for (const Vec3& p : world.skin_positions(0)) {
+    for (const Vec3& p : world.skin_positions(OrganIndex(0))) {
       const Vec3 beside = p - tip - (p - tip).dot(up) * up;
       if (beside.norm() < nearest) nearest = beside.norm(), ahead = beside.y();
       carried = std::max(carried, p.y() - 90e-3);

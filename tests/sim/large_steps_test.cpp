@@ -36,7 +36,7 @@ TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
     grasped.go_back();
     EXPECT_TRUE(path.lift(steps)) << path.driver.why();
     EXPECT_EQ(path.driver.count(EventKind::slip), 0);
-    return path.world.skin_positions(0);
+    return path.world.skin_positions(OrganIndex(0));
   };
   // 8 mm: 400 mm/s in one step, 20 mm/s in twenty.
   const std::vector<Vec3> yanked = pulled(1), slow = pulled(20);
@@ -49,7 +49,8 @@ TEST(LargeSteps, ATipAt500MillimetresASecondNeverGoesThroughTheWall) {
   CALOT_SLOW_WHEN_SANITIZED("fast motions in many parts");
   SceneDefinition scene = test::ball_scene();
   const World rest = World::create(scene).value();
-  const std::vector<Vec3> skin = rest.skin_positions(0), normals = rest.skin_normals(0);
+  const std::vector<Vec3> skin = rest.skin_positions(OrganIndex(0)),
+                          normals = rest.skin_normals(OrganIndex(0));
   Rng rng(5);
   int dented = 0;
   for (int poke = 0; poke < 6; ++poke) {
@@ -62,8 +63,8 @@ TEST(LargeSteps, ATipAt500MillimetresASecondNeverGoesThroughTheWall) {
       const InstrumentState& tool = report.instruments[0];
       const Vec3 back = (driver.trocar() - tool.tip).normalized();
       for (double along : {0.5e-3, 5e-3, 15e-3, 30e-3})
-        EXPECT_LT(std::abs(winding_number(world.skin_positions(0), world.skin(0).triangles,
-                                          tool.tip + along * back)),
+        EXPECT_LT(std::abs(winding_number(world.skin_positions(OrganIndex(0)),
+                                          world.skin(OrganIndex(0)).triangles, tool.tip + along * back)),
                   0.01)
             << "poke " << poke << ", " << 1e3 * along << " mm behind the tip";
       EXPECT_LT(world.deepest_penetration(), 0.1e-3);

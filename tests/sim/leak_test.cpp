@@ -110,16 +110,16 @@ struct Bodies {
     field.heart_rate = 70;
     keep_members(field);
   }
-  Division cut(int organ, double share = 0.5) { return divide_body(field, organ, share, 0).value(); }
-  void clip(int organ, double share, double opening) {
-    const RodBody& rod = *field.organs[organ].body->as_tube();
+  Division cut(OrganIndex organ, double share = 0.5) { return divide_body(field, organ, share, 0).value(); }
+  void clip(OrganIndex organ, double share, double opening) {
+    const RodBody& rod = *field.organ(organ).body->as_tube();
     set_clip(field, organ, {ClipSize::ml, rod.at_share(share), opening, Vec3::UnitZ(), Vec3::UnitY(), 0});
   }
-  double pressure(int of, int organ, bool at_end) const {
-    const Organ& open = field.organs[organ];
+  double pressure(OrganIndex of, OrganIndex organ, bool at_end) const {
+    const Organ& open = field.organ(organ);
     const int last = static_cast<int>(open.body->skin_rest().size()) - 1;
-    return field.organs[of].body->as_shell()->bile()->pressure_at(
-        open.body->skin_point(at_end ? last : 0, open.state.x), field.organs[of].state.datum_pressure);
+    return field.organ(of).body->as_shell()->bile()->pressure_at(
+        open.body->skin_point(at_end ? last : 0, open.state.x), field.organ(of).state.datum_pressure);
   }
   std::vector<WorldEvent> run(double duration, int steps = 1) {
     std::vector<WorldEvent> events;
@@ -140,10 +140,10 @@ struct Bodies {
 TEST(Leaks, AnOpenDuctLosesByItsLumenAndThePressureThere) {
   Bodies bodies(bag_and_duct());
   EXPECT_TRUE(bodies.run(0.02).empty()) << "what is whole loses nothing";
-  const Division pieces = bodies.cut(1);
+  const Division pieces = bodies.cut(OrganIndex(1));
   const double volume = bodies.field.organs[0].state.volume;
   bodies.field.group.work.factored = false;  // no wall that gives way: the pressure stays
-  const double wanted = 0.02 * orifice(bodies.pressure(0, pieces.specimen, true), lumen);
+  const double wanted = 0.02 * orifice(bodies.pressure(OrganIndex(0), pieces.specimen, true), lumen);
   // Of the patient's side the bile duct leaves by what feeds it.
   const double fed = 0.02 * fed_flow({1e3, 0}, 1e3, lumen, bile_density);
   const std::vector<WorldEvent> events = bodies.run(0.02);
@@ -158,13 +158,13 @@ TEST(Leaks, AnOpenDuctLosesByItsLumenAndThePressureThere) {
 TEST(Leaks, AClipLeaksByWhatItLeavesOpenAndAShutOneNothing) {
   for (const double opening : {0.4, 0.1, 0.0}) {
     Bodies bodies(bag_and_duct());
-    bodies.clip(1, 0.2, opening);
-    bodies.clip(1, 0.3, std::max(opening, 0.2));  // the tightest counts
-    bodies.clip(1, 0.8, 0);
-    const Division pieces = bodies.cut(1);
+    bodies.clip(OrganIndex(1), 0.2, opening);
+    bodies.clip(OrganIndex(1), 0.3, std::max(opening, 0.2));  // the tightest counts
+    bodies.clip(OrganIndex(1), 0.8, 0);
+    const Division pieces = bodies.cut(OrganIndex(1));
     bodies.field.group.work.factored = false;
     const double wanted =
-        0.02 * orifice(bodies.pressure(0, pieces.specimen, true), lumen * std::min(opening, 1.0));
+        0.02 * orifice(bodies.pressure(OrganIndex(0), pieces.specimen, true), lumen * std::min(opening, 1.0));
     EXPECT_EQ(bodies.run(0.02).size(), opening > 0 ? 1u : 0u) << opening;
     EXPECT_NEAR(bodies.lost(Carries::bile), wanted, 1e-9 * orifice(1600, lumen)) << opening;
   }
@@ -232,10 +232,10 @@ TEST(Leaks, OfADuctAreUsuallyMillilitresAMinute) {
   SceneDefinition scene = bag_and_duct();
   std::get<TubeShape>(scene.anatomy.organs[1].shape).feed_resistance.reset();
   Bodies bodies(scene);
-  const Division pieces = bodies.cut(1);
+  const Division pieces = bodies.cut(OrganIndex(1));
   bodies.run(0.02);
-  EXPECT_NEAR(60e6 * bodies.field.organs[pieces.patient].openings[0].rate, 3, 0.2);
-  EXPECT_NEAR(60e6 * bodies.field.organs[pieces.specimen].openings[0].rate, 20, 4);
+  EXPECT_NEAR(60e6 * bodies.field.organ(pieces.patient).openings[0].rate, 3, 0.2);
+  EXPECT_NEAR(60e6 * bodies.field.organ(pieces.specimen).openings[0].rate, 20, 4);
 }
 
 TEST(Leaks, WhatIsLostDependsLittleOnTheLengthOfSteps) {
@@ -297,7 +297,7 @@ SceneDefinition artery() {
 
 TEST(Bleeding, OfACysticArteryIsThirtyToSixtyMillilitresAMinuteAndBeats) {
   Bodies bodies(artery());
-  const Division pieces = bodies.cut(0);
+  const Division pieces = bodies.cut(OrganIndex(0));
   const double beat = 60.0 / 70;
   std::vector<WorldEvent> events = bodies.run(beat, 43);
   const double held = pi * 0.4e-3 * 0.4e-3 * 15e-3;  // in the specimen's half
@@ -310,14 +310,14 @@ TEST(Bleeding, OfACysticArteryIsThirtyToSixtyMillilitresAMinuteAndBeats) {
   const auto rate_at = [&](double share) {
     bodies.field.time = 5 * beat + share * beat - 0.001;
     bodies.run(0.002);
-    return bodies.field.organs[pieces.patient].openings[0].rate;
+    return bodies.field.organ(pieces.patient).openings[0].rate;
   };
   EXPECT_GT(rate_at(0.25), 1.5 * rate_at(0.75));
   bodies.run(2, 100);
   EXPECT_NEAR(bodies.field.spill.drained[1], held, 0.02 * held) << "the cut lies on a skin point";
   EXPECT_NEAR(bodies.lost(Carries::blood), bodies.field.spill.given[1] + bodies.field.spill.drained[1],
               1e-9 * bodies.lost(Carries::blood));
-  EXPECT_EQ(bodies.field.organs[pieces.specimen].openings[0].leaks, false);
+  EXPECT_EQ(bodies.field.organ(pieces.specimen).openings[0].leaks, false);
 
   bodies.clip(pieces.patient, 0.5, 0);
   events = bodies.run(0.1);
@@ -333,7 +333,7 @@ TEST(Bleeding, DoesNotDependOnTheLengthOfSteps) {
   std::vector<double> out;
   for (const int steps : {7, 20, 300}) {
     Bodies bodies(artery());
-    bodies.cut(0);
+    bodies.cut(OrganIndex(0));
     bodies.run(0.3, steps);
     out.push_back(bodies.lost(Carries::blood));
   }
@@ -350,7 +350,8 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   const double deep = test::tube_depth + 14e-3;
   const auto open = [&] {
     const RodBody& rod = *acting.world.field().organs[0].body->as_tube();
-    return open_between(acting.world.field(), 0, 0, static_cast<double>(rod.skin_rest().size() - 1));
+    return open_between(acting.world.field(), OrganIndex(0), 0,
+                        static_cast<double>(rod.skin_rest().size() - 1));
   };
   ASSERT_TRUE(acting.go(test::about(0.7, test::tube_depth - 20e-3), 2) &&
               acting.go(test::about(0.7, deep), 8));

@@ -339,7 +339,7 @@ SceneDefinition loose_scene() {
 
 double lowest(const World& world) {
   double z = 1;
-  for (const Vec3& p : world.skin_positions(0)) z = std::min(z, p.z());
+  for (const Vec3& p : world.skin_positions(OrganIndex(0))) z = std::min(z, p.z());
   return z;
 }
 
@@ -348,14 +348,14 @@ TEST(Motion, AScenesLooseOrganSinksOntoItsSupportAndStaysThere) {
   SceneDefinition scene = loose_scene();
   Result<World> world = World::create(scene);
   ASSERT_TRUE(world) << to_text(world.failure());
-  const std::vector<Vec3> sunk = world->skin_positions(0);
+  const std::vector<Vec3> sunk = world->skin_positions(OrganIndex(0));
   EXPECT_NEAR(lowest(world.value()), scene.anatomy.support->point.z(), contact_gap);
   StepInput input;
   input.instruments = {world->report().instruments[0].pose};
   for (int k = 0; k < 5; ++k) ASSERT_TRUE(world->step(input));
   double moved = 0;
   for (std::size_t i = 0; i < sunk.size(); ++i)
-    moved = std::max(moved, (world->skin_positions(0)[i] - sunk[i]).norm());
+    moved = std::max(moved, (world->skin_positions(OrganIndex(0))[i] - sunk[i]).norm());
   EXPECT_LT(moved, 1e-6 * 40e-3);  // the solver's tolerance
   // On a slope it would slide for good.
   scene.anatomy.table_head_up = 0.2;

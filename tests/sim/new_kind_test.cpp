@@ -166,10 +166,11 @@ TEST(NewKind, GivesWayToAToolAndPressesBackByWhatItsBedBears) {
 
 TEST(NewKind, HasItsLandmarks) {
   const Field field = strap_field();
-  const auto [organ, point] = find_landmark(field.organs, "strap.last");
-  ASSERT_GE(point, 0);
-  EXPECT_EQ(field.organs[organ].body->skin_rest()[point], Vec3((rows - 1) * Strap::spacing, 0, 0));
-  EXPECT_EQ(find_landmark(field.organs, "strap.middle").second, -1);
+  const std::optional<OrganPoint> last = find_landmark(field.organs, "strap.last");
+  ASSERT_TRUE(last);
+  EXPECT_EQ(field.organ(last->organ).body->skin_rest()[last->skin_point],
+            Vec3((rows - 1) * Strap::spacing, 0, 0));
+  EXPECT_FALSE(find_landmark(field.organs, "strap.middle"));
 }
 
 TEST(NewKind, IsDividedIntoPiecesThatLieAsItDidWithTheirHoldsAndLandmarks) {
@@ -180,7 +181,7 @@ TEST(NewKind, IsDividedIntoPiecesThatLieAsItDidWithTheirHoldsAndLandmarks) {
   const Organ whole = field.organs[0];
   ASSERT_FALSE(can_be_divided(whole, 0));
   ASSERT_TRUE(can_be_divided(whole, 0.3));
-  const Result<Division> done = divide_body(field, 0, 0.3, 1.0);
+  const Result<Division> done = divide_body(field, OrganIndex(0), 0.3, 1.0);
   ASSERT_TRUE(done) << to_text(done.failure());
   EXPECT_EQ(done->share, 0.3);
   ASSERT_EQ(field.organs.size(), 2u);

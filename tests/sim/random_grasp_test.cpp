@@ -22,10 +22,10 @@ struct Approach {
 /// A point of the skin, met within some 40 deg of its normal, rolled anyhow.
 Approach random_approach(const World& rest, int number) {
   Rng rng(1000 + static_cast<std::uint64_t>(number));
-  const std::vector<Vec3> skin = rest.skin_positions(0);
+  const std::vector<Vec3> skin = rest.skin_positions(OrganIndex(0));
   const auto p = static_cast<std::size_t>(rng.uniform(0, static_cast<double>(skin.size())));
   const Vec3 aside = test::random_vector(rng, 1.0).normalized();
-  const Vec3 out = (rest.skin_normals(0)[p] + 0.8 * rng.uniform() * aside).normalized();
+  const Vec3 out = (rest.skin_normals(OrganIndex(0))[p] + 0.8 * rng.uniform() * aside).normalized();
   return {skin[p], out, rng.uniform(-3.1, 3.1)};
 }
 

@@ -152,7 +152,7 @@ TEST(Vibration, ABallThatItsKeptVolumeAloneMakesStableHasTheFrequencyOfMotionsTh
 TEST(Vibration, TheGallbladderMayBeTreatedAsStaticAtASurgeonsPace) {
   const SceneDefinition scene = test::grasper_scene(120);
   const World world = World::create(scene).value();
-  const Result<double> lowest = world.lowest_frequency(0);
+  const Result<double> lowest = world.lowest_frequency(OrganIndex(0));
   ASSERT_TRUE(lowest) << to_text(lowest.failure());
   // Hands tremble at 8 to 12 Hz and steer below 2 Hz: the licence must hold for steering.
   EXPECT_GT(static_share * lowest.value(), 2.0);

@@ -47,11 +47,11 @@ TEST(World, StepWithUnchangedPosesLeavesTheStateBitIdentical) {
   CALOT_SLOW_WHEN_SANITIZED("whole grasps");
   test::FundusPath path(test::ball_scene());
   const auto expect_still = [&] {
-    const std::vector<Vec3> skin = path.world.skin_positions(0);
+    const std::vector<Vec3> skin = path.world.skin_positions(OrganIndex(0));
     const StepReport before = path.world.report();
     ASSERT_TRUE(path.driver.stay(3)) << path.driver.why();
     const StepReport after = path.world.report();
-    EXPECT_EQ(path.world.skin_positions(0), skin);
+    EXPECT_EQ(path.world.skin_positions(OrganIndex(0)), skin);
     EXPECT_EQ(after.organs[0].pressure, before.organs[0].pressure);
     EXPECT_EQ(after.instruments[0].force, before.instruments[0].force);
     EXPECT_TRUE(after.events.empty());
@@ -131,7 +131,7 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   EXPECT_FALSE(failure.problems[0].hint.empty());
   const std::uint64_t hash = world.state_hash();
   EXPECT_EQ(hash, world.report().state_hash) << "what was tried is undone";
-  const std::vector<Vec3> skin = world.skin_positions(0);
+  const std::vector<Vec3> skin = world.skin_positions(OrganIndex(0));
   StepInput retreat;
   retreat.instruments = {pose_reaching(driver.trocar(), top + 30e-3 * out, 0, 0)};
   for (int k = 0; k < 2; ++k) {
@@ -139,7 +139,7 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
     ASSERT_FALSE(again);
     EXPECT_EQ(to_text(again.failure()), to_text(failure));
     EXPECT_EQ(world.state_hash(), hash);
-    EXPECT_EQ(world.skin_positions(0), skin);
+    EXPECT_EQ(world.skin_positions(OrganIndex(0)), skin);
   }
 }
 
@@ -177,7 +177,7 @@ TEST(World, NamesThatTheSceneDoesNotHaveAreNoPlaces) {
 TEST(World, ToolThatStartsInsideAnOrganIsRefused) {
   SceneDefinition scene = test::grasper_scene(80);
   const World world = World::create(scene).value();
-  const std::vector<Vec3> skin = world.skin_positions(0);
+  const std::vector<Vec3> skin = world.skin_positions(OrganIndex(0));
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : skin) middle += p / static_cast<double>(skin.size());
   scene.ports = {{"umbilical", Vec3::Zero()}, {"right_subcostal", middle}};

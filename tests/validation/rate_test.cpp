@@ -47,7 +47,7 @@ Outcome follow(double rate) {
       if (!step(interpolate(path[leg - 1], path[leg], static_cast<double>(k) / steps))) return {};
   const StepReport& end = world.report();
   EXPECT_EQ(end.instruments[0].holds, "gallbladder");
-  return {world.skin_positions(0), end.organs[0].pressure, end.instruments[0].force,
+  return {world.skin_positions(OrganIndex(0)), end.organs[0].pressure, end.instruments[0].force,
           end.instruments[0].grip_points};
 }
 

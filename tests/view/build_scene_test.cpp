@@ -44,12 +44,13 @@ TEST(BuildScene, DrawsTheSkinThatTheWorldTouches) {
   const Scene scene = build_scene(world);
   const SceneMesh* skin = mesh_of(scene, Material::membrane);
   ASSERT_NE(skin, nullptr);
-  EXPECT_EQ(skin->triangles, world.skin(0).triangles);
-  EXPECT_EQ(skin->positions, world.skin_positions(0));
-  EXPECT_EQ(skin->normals, world.skin_normals(0));
+  EXPECT_EQ(skin->triangles, world.skin(OrganIndex(0)).triangles);
+  EXPECT_EQ(skin->positions, world.skin_positions(OrganIndex(0)));
+  EXPECT_EQ(skin->normals, world.skin_normals(OrganIndex(0)));
   const Pose frame = organ_frame(world.scene().anatomy.organs[0]);
   for (std::size_t i = 0; i < skin->rest_positions.size(); i += 97)
-    EXPECT_LT((frame * skin->rest_positions[i] - world.drawn_rest(0)[i]).norm(), 1e-14);  // rounding
+    EXPECT_LT((frame * skin->rest_positions[i] - world.drawn_rest(OrganIndex(0))[i]).norm(),
+              1e-14);  // rounding
   EXPECT_NE(skin->vessels, nullptr);
 }
 
@@ -67,7 +68,7 @@ TEST(BuildScene, DrawsPiecesAndNotWhatIsGone) {
   World world = make_world(with_duct());
   const SceneBuilder builder(world);
   const std::size_t before = builder.build(world).meshes.size();
-  const auto drawn = [&](int organ) {
+  const auto drawn = [&](OrganIndex organ) {
     const Scene scene = builder.build(world);
     const std::vector<Vec3> places = world.drawn(organ).positions;
     return std::count_if(scene.meshes.begin(), scene.meshes.end(), [&](const SceneMesh& mesh) {
@@ -77,11 +78,11 @@ TEST(BuildScene, DrawsPiecesAndNotWhatIsGone) {
   };
   ASSERT_TRUE(world.divide("duct", 0.5));
   EXPECT_EQ(builder.build(world).meshes.size(), before + 1);
-  for (int organ : {0, 1, 2}) EXPECT_EQ(drawn(organ), 1) << organ;
+  for (int organ : {0, 1, 2}) EXPECT_EQ(drawn(OrganIndex(organ)), 1) << organ;
   ASSERT_TRUE(world.remove("duct.specimen", ""));
   ASSERT_TRUE(world.remove("ball", ""));
   EXPECT_EQ(builder.build(world).meshes.size(), before - 1);
-  EXPECT_EQ(drawn(0), 1);
+  EXPECT_EQ(drawn(OrganIndex(0)), 1);
   // The laparoscope still looks where the ball was, also one that is set up now.
   EXPECT_EQ(build_scene(world).meshes.size(), before - 1);
 }
@@ -93,14 +94,14 @@ TEST(BuildScene, CoarseSkinsStayWithTheirTissueAndPiecesThatCameLaterAreDrawnWho
   const Scene scene = builder.build(world);
   const SceneMesh* ball = mesh_of(scene, Material::membrane);
   ASSERT_NE(ball, nullptr);
-  const std::vector<Vec3> skin = world.skin_positions(0);
+  const std::vector<Vec3> skin = world.skin_positions(OrganIndex(0));
   EXPECT_LT(ball->positions.size(), skin.size() / 2);
   for (const Vec3& p : ball->positions) EXPECT_NE(std::find(skin.begin(), skin.end(), p), skin.end());
   ASSERT_EQ(ball->rest_positions.size(), ball->positions.size());
-  for (const int piece : {1, 2})
+  for (const OrganIndex piece : {OrganIndex(1), OrganIndex(2)})
     EXPECT_TRUE(std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const SceneMesh& mesh) {
       return mesh.positions == world.drawn(piece).positions;
-    })) << piece;
+    })) << piece.value;
 }
 
 TEST(BuildScene, ASupportedOrganHasADrapeAndNoLiver) {
@@ -154,7 +155,7 @@ TEST(BuildScene, LookingDoesNotTouchTheWorld) {
     press(unseen, depth);
     const Scene a = build_scene(seen), b = build_scene(seen);
     EXPECT_EQ(seen.state_hash(), unseen.state_hash());
-    EXPECT_EQ(seen.skin_positions(0), unseen.skin_positions(0));
+    EXPECT_EQ(seen.skin_positions(OrganIndex(0)), unseen.skin_positions(OrganIndex(0)));
     ASSERT_EQ(a.meshes.size(), b.meshes.size());
     for (std::size_t i = 0; i < a.meshes.size(); ++i) EXPECT_EQ(a.meshes[i].positions, b.meshes[i].positions);
   }

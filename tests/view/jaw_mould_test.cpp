@@ -55,9 +55,9 @@ double largest_way(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 void expect_touched_skin(const JawMoulds& moulds, const World& world) {
-  const DrawnSkin drawn = moulds.skin(world, 0);
-  EXPECT_EQ(drawn.positions, world.skin_positions(0));
-  EXPECT_EQ(drawn.normals, world.skin_normals(0));
+  const DrawnSkin drawn = moulds.skin(world, OrganIndex(0));
+  EXPECT_EQ(drawn.positions, world.skin_positions(OrganIndex(0)));
+  EXPECT_EQ(drawn.normals, world.skin_normals(OrganIndex(0)));
 }
 
 class JawMouldGrasp : public ::testing::TestWithParam<std::string> {
@@ -73,8 +73,8 @@ TEST_P(JawMouldGrasp, MovesTheHeldWallOntoThePadsAndNothingElse) {
   expect_touched_skin(moulds, path.world);
   path.driver.watch = [&](const StepReport&) { moulds.follow(path.world); };
   ASSERT_TRUE(path.grasp() && path.driver.stay(12)) << path.driver.why();
-  const std::vector<Vec3> touched = path.world.skin_positions(0);
-  const DrawnSkin drawn = moulds.skin(path.world, 0);
+  const std::vector<Vec3> touched = path.world.skin_positions(OrganIndex(0));
+  const DrawnSkin drawn = moulds.skin(path.world, OrganIndex(0));
   const Tool tool = tool_of(path.world);
   // Not all the way: towards the pads' edges the mould fades, and its functions are as wide as a fold at the tip.
   EXPECT_LT(mean_misfit(tool, touched, drawn.positions), 0.8 * mean_misfit(tool, touched, touched));
@@ -96,11 +96,11 @@ TEST_P(JawMouldGrasp, ASkinOfFewerPointsIsMouldedAndKeepsOutOfTheInstrumentToo) 
   path.driver.watch = [&](const StepReport&) { moulds.follow(path.world); };
   ASSERT_TRUE(path.grasp() && path.driver.stay(12)) << path.driver.why();
   SceneMesh fine;
-  fine.rest_positions = path.world.drawn_rest(0);
-  fine.triangles = path.world.drawn_triangles(0);
+  fine.rest_positions = path.world.drawn_rest(OrganIndex(0));
+  fine.triangles = path.world.drawn_triangles(OrganIndex(0));
   const CoarseMesh coarse = coarser(fine, 1, 0.25);
-  const DrawnSkin drawn = moulds.skin(path.world, 0, coarse.kept, coarse.mesh.triangles);
-  const std::vector<Vec3> touched = entries(path.world.skin_positions(0), coarse.kept);
+  const DrawnSkin drawn = moulds.skin(path.world, OrganIndex(0), coarse.kept, coarse.mesh.triangles);
+  const std::vector<Vec3> touched = entries(path.world.skin_positions(OrganIndex(0)), coarse.kept);
   ASSERT_EQ(drawn.positions.size(), touched.size());
   EXPECT_LT(touched.size(), fine.rest_positions.size() / 3);
   EXPECT_GT(largest_way(drawn.positions, touched), 0.1e-3);
@@ -117,19 +117,20 @@ TEST_P(JawMouldGrasp, ASkinOfFewerPointsIsMouldedAndKeepsOutOfTheInstrumentToo) 
 TEST_P(JawMouldGrasp, KeepsOutOfTheInstrumentComesAndGoesWithoutAJumpAndLeavesNothingBehind) {
   test::FundusPath path(test::scene_with(type));
   JawMoulds moulds(path.world), told_twice(path.world);
-  std::vector<Vec3> before = path.world.skin_positions(0), drawn_before = before;
+  std::vector<Vec3> before = path.world.skin_positions(OrganIndex(0)), drawn_before = before;
   path.driver.watch = [&](const StepReport&) {
     moulds.follow(path.world);
-    const std::vector<Vec3> touched = path.world.skin_positions(0);
-    const std::vector<Vec3> drawn = moulds.skin(path.world, 0).positions;
+    const std::vector<Vec3> touched = path.world.skin_positions(OrganIndex(0));
+    const std::vector<Vec3> drawn = moulds.skin(path.world, OrganIndex(0)).positions;
     for (int k = 0; k < 2; ++k) told_twice.follow(path.world);
-    ASSERT_EQ(told_twice.skin(path.world, 0).positions, drawn);
+    ASSERT_EQ(told_twice.skin(path.world, OrganIndex(0)).positions, drawn);
     const Solids solids(tools_only(tool_of(path.world)));
     for (std::size_t p = 0; p < drawn.size(); ++p) {
       if (drawn[p] == touched[p]) continue;
       ASSERT_GE(solids.distance(drawn[p]), std::min(pad_clearance, solids.distance(touched[p])) - 2e-9);
     }
-    for (const Triangle& t : path.world.skin(0).triangles)  // as the touched skin itself, between its points
+    for (const Triangle& t :
+         path.world.skin(OrganIndex(0)).triangles)  // as the touched skin itself, between its points
       ASSERT_GT(solids.distance((drawn[t[0]] + drawn[t[1]] + drawn[t[2]]) / 3), -0.2e-3);
     // Ten steps of easing, the fastest of which does 15% of at most 0.83 mm; the rest is the tissue's own motion.
     EXPECT_LT(largest_way(drawn, drawn_before), largest_way(touched, before) + 0.15 * 0.83e-3);
