@@ -9,6 +9,7 @@
 #include "act_rig.h"
 #include "base/units.h"
 #include "field/field_state.h"
+#include "liquid/outflow.h"
 #include "rig.h"
 #include "support/long_run.h"
 
