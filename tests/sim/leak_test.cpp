@@ -15,6 +15,7 @@
 #include "field/join_bodies.h"
 #include "liquid/leak_source.h"
 #include "liquid/perforate.h"
+#include "motion/settle_field.h"
 #include "organs/body_kinds.h"
 #include "rig.h"
 #include "support/long_run.h"
@@ -186,6 +187,35 @@ TEST(Leaks, AHoleInTheWallLeaksByItsArea) {
   EXPECT_NEAR(bodies.lost(Carries::bile, "ball"), 0.01 * orifice(pressure, 2e-6), 1e-15);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].instrument, "blades");
+}
+
+TEST(Leaks, APressureFallsByTheComplianceOfItsOwnOrgan) {
+  SceneDefinition scene = bag_and_duct();
+  OrganDefinition stiff = scene.anatomy.organs[0];
+  stiff.name = "stiff";
+  stiff.neck.x() += 80e-3;
+  stiff.fundus.x() += 80e-3;
+  stiff.wall.thickness *= 2;
+  scene.anatomy.organs.push_back(stiff);
+  for (const int open : {0, 2}) {
+    Bodies bodies(scene);
+    SolveStatistics statistics;
+    ASSERT_TRUE(settle_field(bodies.field, "", statistics));
+    // By how much its pressure falls with its volume.
+    Organ& bag = bodies.field.organs[open];
+    const double lost = 1e-4 * bag.state.volume, pressure_before = bag.state.datum_pressure;
+    bag.state.volume -= lost;
+    ASSERT_TRUE(settle_field(bodies.field, "", statistics));
+    const double compliance = lost / (pressure_before - bag.state.datum_pressure);
+    Opening hole;
+    hole.area = 2e-6;
+    bag.openings.push_back(hole);
+    const double pressure =
+        shell_of(bag)->bile()->pressure_at(bag.body->skin_point(0, bag.state.x), bag.state.datum_pressure);
+    bodies.run(0.1);
+    const double wanted = elastic_outflow(pressure, compliance, 2e-6, bile_density, 0.1);
+    EXPECT_NEAR(bodies.lost(Carries::bile), wanted, 5e-3 * wanted) << open;
+  }
 }
 
 TEST(Leaks, AHoleThatCurrentBurnsIsWhereItTouchedAndSaysWhatBurntIt) {
