@@ -373,6 +373,39 @@ TEST(Bleeding, DoesNotDependOnTheLengthOfSteps) {
   EXPECT_NEAR(out[1], out[2], 1e-5 * out[2]);
 }
 
+/// An artery from which another one branches off, at its end or in its middle.
+SceneDefinition branched(const std::string& from) {
+  SceneDefinition scene = artery();
+  OrganDefinition branch = scene.anatomy.organs[0];
+  branch.name = "branch";
+  const Vec3 start = std::get<TubeShape>(branch.shape).points[from == "end" ? 2 : 1];
+  std::get<TubeShape>(branch.shape).points = {start, start + Vec3(8e-3, 0, 0), start + Vec3(16e-3, 0, 0)};
+  branch.held = {{"far", "end", 4e-3, 1e6}};
+  scene.anatomy.organs.push_back(branch);
+  scene.anatomy.joints = {{"branch.start", "artery." + from}};
+  return scene;
+}
+
+TEST(Bleeding, EndsByAClipRightBesideTheJointOnTheFarSide) {
+  struct Clipped {
+    std::string from;
+    int organ;                   ///< that is clipped; the other one is cut
+    std::vector<double> beside;  ///< skin points from the joint
+  };
+  for (const Clipped& one : {Clipped{"end", 0, {-0.5}}, {"middle", 0, {-0.5, 0.5}}, {"end", 1, {0.5}}})
+    for (const bool shut : {false, true}) {
+      Bodies bodies(branched(one.from));
+      const double last = rod_of(bodies.field.organs[one.organ])->last_point();
+      const double joint = one.organ == 1 ? 0 : one.from == "end" ? last : 0.5 * last;
+      for (const double beside : one.beside) bodies.clip(one.organ, (joint + beside) / last, shut ? 0 : 1);
+      const Division pieces = bodies.cut(1 - one.organ);
+      bodies.run(0.1, 5);
+      // Of the branch the patient's piece is the one that grows out of the artery, of the artery the held one.
+      const int open = one.organ == 0 ? pieces.patient : pieces.specimen;
+      EXPECT_EQ(bodies.field.organs[open].openings[0].rate > 0, !shut) << one.from << one.organ;
+    }
+}
+
 TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   // Rough jaws: out of smooth ones it would slide.
   SceneDefinition scene = test::across(InstrumentType::atraumatic_grasper);
