@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "acts/exchange.h"
 #include "acts/pads.h"
 #include "body/rigid_body.h"
 #include "field_rig.h"
@@ -84,7 +85,8 @@ struct Wedge {
     field.tools[0].pose = pose(2 * angle + 4 * deg, 0);
   }
   InstrumentPose pose(double jaw, double lifted) const {
-    return {0, 0, depth + field.tools[0].geometry.jaw_length - lifted, 0, jaw};
+    const Tool& tool = field.tools[0];
+    return {0, 0, depth + tool.trocar.z() + tool.geometry.jaw_length - lifted, 0, jaw};
   }
   /// In even parts; the failure's text, empty when it arrived.
   std::string go(double jaw, double lifted, int parts) {
@@ -137,6 +139,33 @@ TEST(Pinch, AWedgeThatIsWiderThanFrictionIsNeverHeld) {
       ASSERT_EQ(wedge.go(0, 2e-3, 20), "");
       EXPECT_LT(wedge.height(), 0.1e-3);
     }
+}
+
+TEST(Pinch, WhatClaspsSomethingIsNotDrawnOutOfItsPort) {
+  Wedge wedge(5 * deg, 0.8, 10);
+  Tool& tool = wedge.field.tools[0];
+  tool.trocar.z() = port_depth - tool.geometry.jaw_length - Wedge::depth;
+  tool.pose = wedge.pose(tool.pose.jaw, 0);
+  Tool waiting = tool;
+  waiting.definition.name = "right";
+  waiting.waits = true;
+  wedge.field.tools.push_back(waiting);
+  const auto go = [&](double jaw, int steps) {
+    for (int k = 0; k < steps; ++k) {
+      SolveStatistics statistics;
+      ASSERT_TRUE(advance(wedge.field, {wedge.pose(jaw, 0), waiting.pose}, statistics));
+    }
+  };
+  go(0, 10);
+  ASSERT_EQ(between_pads(wedge.field, 0), "wedge");
+  ASSERT_TRUE(held_organ(wedge.field, 0).empty());
+  std::vector<WorldEvent> events;
+  const std::vector<InstrumentAction> exchange{InstrumentAction::none, InstrumentAction::exchange};
+  exchange_tools(wedge.field, exchange, events);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, EventKind::blocked_exchange);
+  EXPECT_EQ(events[0].text, "left holds wedge");
+  EXPECT_TRUE(wedge.field.tools[1].waits);
 }
 
 TEST(Pinch, StopsTheJawsOnAWallWhateverTheBilesPressure) {
