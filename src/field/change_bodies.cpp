@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "field/grip.h"
 #include "field/join_bodies.h"
 #include "field/renumbering.h"
 #include "field/roll.h"
@@ -28,6 +29,21 @@ void finish_change(Field& field) {
   keep_members(field);
 }
 
+namespace {
+
+/// Whether a tool holds some of an organ, or both of its jaws rub on it.
+bool jaws_rest_on(const Organ& organ, int instrument) {
+  if (grip_count(organ, instrument) > 0) return true;
+  const auto rubs = [&](int jaw) {
+    return std::any_of(
+        organ.friction.points.begin(), organ.friction.points.end(),
+        [&](const RubbingPoint& point) { return point.shape == shapes_per_tool * instrument + 1 + jaw; });
+  };
+  return rubs(0) && rubs(1);
+}
+
+}  // namespace
+
 Result<bool> remove_body(Field& field, int index, const std::string& why, double time) {
   if (field.organs.size() == 1)
     return fail(FailureKind::scenario, fmt::format("{} is the last organ", quoted(field.organs[0])),
@@ -37,16 +53,13 @@ Result<bool> remove_body(Field& field, int index, const std::string& why, double
   std::vector<int> now;
   for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) now.push_back(k < index ? k : k - 1);
   now[index] = -1;
-  const std::vector<GripPoint> held = field.organs[index].grips;
+  const Organ gone = std::move(field.organs[index]);
   field.organs.erase(field.organs.begin() + index);
   Renumbering(now).apply(field);
-  for (const GripPoint& grip : held) {
-    const auto holds = [&](const Organ& organ) {
-      return std::any_of(organ.grips.begin(), organ.grips.end(),
-                         [&](const GripPoint& g) { return g.instrument == grip.instrument; });
-    };
-    if (std::none_of(field.organs.begin(), field.organs.end(), holds))
-      field.tools[grip.instrument].jaw_stopped = false;
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    const auto rests = [&](const Organ& organ) { return jaws_rest_on(organ, static_cast<int>(i)); };
+    if (rests(gone) && std::none_of(field.organs.begin(), field.organs.end(), rests))
+      field.tools[i].jaw_stopped = field.tools[i].pressing = false;
   }
   finish_change(field);
   return true;
