@@ -46,8 +46,9 @@ bool feels(const Organ& organ, int instrument) {
 
 std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
   const Tool& tool = field.tools[instrument];
-  const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   std::vector<TubeBetween> out;
+  if (tool.waits) return out;
+  const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     const RodBody* rod = rod_of(organ);
@@ -69,7 +70,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, int instrument) {
 
 std::vector<ClipBetween> clips_between(const Field& field, int instrument, const Organ& organ) {
   std::vector<ClipBetween> out;
-  if (!feels(organ, instrument)) return out;
+  if (field.tools[instrument].waits || !feels(organ, instrument)) return out;
   const RodBody* rod = rod_of(organ);
   for (std::size_t c = 0; c < organ.clips.size(); ++c) {
     const Clip& clip = organ.clips[c];

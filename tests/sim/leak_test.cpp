@@ -425,6 +425,10 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   EXPECT_LT(open(), 0.8);
   ASSERT_TRUE(acting.go(test::about(0.24, deep), 8));
   EXPECT_EQ(open(), 0);
+  Field without = acting.world.field();
+  without.tools[0].waits = true;
+  EXPECT_EQ(open_between(without, 0, 0, rod_of(without.organs[0])->last_point()), 1)
+      << "an instrument that waits outside shuts nothing";
   // Cut beyond the jaws: what the specimen's piece holds is all that is lost, until they open.
   ASSERT_TRUE(acting.world.divide("duct", 0.75));
   ASSERT_TRUE(acting.go(test::about(0.24, deep), 3));
