@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "acts/hands.h"
+#include "acts/pads.h"
 #include "field/grip.h"
 #include "motion/tool_loads.h"
 
@@ -19,12 +20,23 @@ bool alike(const InstrumentPose& a, const InstrumentPose& b) {
                    std::abs(a.roll - b.roll), std::abs(a.jaw - b.jaw)}) <= slack;
 }
 
+/// What a tool has between its jaws, by its teeth or clasped by friction alone; empty: nothing.
+std::string held_in(const Field& field, int index) {
+  const std::string bitten = held_organ(field, index);
+  return bitten.empty() && field.tools[index].jaw_stopped ? between_pads(field, index) : bitten;
+}
+
+/// As a tool that has done nothing yet: what its jaws did in the field is over.
+void clean(Tool& tool) {
+  tool.jaw_stopped = tool.pressing = tool.lost = tool.beside = tool.slipping = tool.has_cut = false;
+}
+
 /// Why a tool that waits cannot come in for the one (`index`) that is in its port; empty: it can, and is in.
 std::string bring_in(Field& field, ToolIndex coming, ToolIndex index) {
   Tool& tool = field.tool(coming);
   Tool& leaving = field.tool(index);
   const std::string& name = leaving.definition.name;
-  if (const std::string held = held_organ(field, index); !held.empty())
+  if (const std::string held = held_in(field, index); !held.empty())
     return fmt::format("{} holds {}", name, held);
   if (!is_in_trocar(leaving))
     return fmt::format("{} is {:.0f} mm in: no more than {:.0f} mm are out of the field", name,
@@ -44,6 +56,7 @@ std::string bring_in(Field& field, ToolIndex coming, ToolIndex index) {
     return why;
   }
   tool.command = tool.pose;
+  clean(leaving);
   return {};
 }
 

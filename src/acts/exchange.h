@@ -23,8 +23,9 @@ ToolIndex tool_in_port(const std::vector<Tool>& tools, const Tool& waiting);
 std::optional<Failure> check_waiting(const std::vector<Tool>& tools, const StepInput& input);
 
 /// Brings in each tool whose action `exchange` begins (`actions`: one a tool, or none). Adds the events exchange and
-/// blocked_exchange: where the one that is there is further in than port_depth or holds something, where no other one is
-/// there, or where what comes in would touch an organ, tissue or another instrument.
+/// blocked_exchange: where the one that is there is further in than port_depth or holds something, be it by friction alone,
+/// where no other one is there, or where what comes in would touch an organ, tissue or another instrument. What was drawn
+/// out waits clean: of its jaws it knows nothing any more.
 void exchange_tools(Field& field, const std::vector<InstrumentAction>& actions,
                     std::vector<WorldEvent>& events);
 

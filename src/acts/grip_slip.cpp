@@ -32,11 +32,15 @@ Failure without_end(const Field& field, ToolIndex instrument, const std::string&
 }
 
 /// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
-/// equilibria; then they are let go.
+/// equilibria; then they are let go. Where there are none nothing is solved.
 Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(const GripPoint&)>& leaves,
                   double weaken, const Budget& budget, SolveStatistics& statistics) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
+  const bool any = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+    return std::any_of(organ.grips.begin(), organ.grips.end(), leaves);
+  });
+  if (!any) return true;
   for (double stiffness = grip_stiffness; stiffness > last_stiffness; stiffness *= weaken) {
     if (budget.spent()) return without_end(field, instrument, "what leaves");
     for (Organ& organ : field.organs)

@@ -37,8 +37,8 @@ class Inertia {
   void hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const;
   /// Null: the body is not filled.
   const LiquidMass* liquid() const { return liquid_ ? &*liquid_ : nullptr; }
-  /// Of its compliant constraints.
-  int constraints() const { return liquid_ ? LiquidMass::constraints : 0; }
+  /// How many compliant constraints a body's has.
+  static int constraints(const Body& body) { return body.liquid() != nullptr ? LiquidMass::constraints : 0; }
   /// Of these where nothing else asks for others.
   VecX multipliers(const VecX& x) const;
 

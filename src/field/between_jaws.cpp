@@ -38,8 +38,9 @@ bool feels(const Organ& organ, ToolIndex instrument) {
 
 std::vector<TubeBetween> tubes_between(const Field& field, ToolIndex instrument) {
   const Tool& tool = field.tool(instrument);
-  const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   std::vector<TubeBetween> out;
+  if (tool.waits) return out;
+  const Pose to_hinge = hinge_frame(tool.trocar, tool.pose, tool.geometry).inverse();
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     const RodBody* rod = organ.body->as_tube();
@@ -61,7 +62,7 @@ std::vector<TubeBetween> tubes_between(const Field& field, ToolIndex instrument)
 
 std::vector<ClipBetween> clips_between(const Field& field, ToolIndex instrument, const Organ& organ) {
   std::vector<ClipBetween> out;
-  if (!feels(organ, instrument)) return out;
+  if (field.tool(instrument).waits || !feels(organ, instrument)) return out;
   const RodBody* rod = organ.body->as_tube();
   for (std::size_t c = 0; c < organ.clips.size(); ++c) {
     const Clip& clip = organ.clips[c];

@@ -1,5 +1,6 @@
 #pragma once
-// What lies across open jaws: in the plane in which they open, y = 0 of the hinge's frame, between their pads.
+// What lies across open jaws: in the plane in which they open, y = 0 of the hinge's frame, between their pads. Nothing lies
+// across those of a tool that waits outside.
 
 #include "field/field.h"
 

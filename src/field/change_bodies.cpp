@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "field/grip.h"
 #include "field/join_bodies.h"
 #include "field/renumbering.h"
 #include "field/roll.h"
@@ -28,6 +29,21 @@ void finish_change(Field& field) {
   keep_members(field);
 }
 
+namespace {
+
+/// Whether a tool holds some of an organ, or both of its jaws rub on it.
+bool jaws_rest_on(const Organ& organ, ToolIndex instrument, std::size_t tools) {
+  if (grip_count(organ, instrument) > 0) return true;
+  const auto rubs = [&](int jaw) {
+    const int shape = FieldShape::of_jaw(instrument, jaw).index(tools);
+    return std::any_of(organ.friction.points.begin(), organ.friction.points.end(),
+                       [&](const RubbingPoint& point) { return point.shape == shape; });
+  };
+  return rubs(0) && rubs(1);
+}
+
+}  // namespace
+
 Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why, double time) {
   const int index = organ.value;
   if (field.organs.size() == 1)
@@ -38,16 +54,14 @@ Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why,
   std::vector<int> now;
   for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) now.push_back(k < index ? k : k - 1);
   now[index] = -1;
-  const std::vector<GripPoint> held = field.organs[index].grips;
+  const Organ gone = std::move(field.organs[index]);
   field.organs.erase(field.organs.begin() + index);
   Renumbering(now).apply(field);
-  for (const GripPoint& grip : held) {
-    const auto holds = [&](const Organ& organ) {
-      return std::any_of(organ.grips.begin(), organ.grips.end(),
-                         [&](const GripPoint& g) { return g.instrument == grip.instrument; });
-    };
-    if (std::none_of(field.organs.begin(), field.organs.end(), holds))
-      field.tool(grip.instrument).jaw_stopped = false;
+  for (int i = 0; i < static_cast<int>(field.tools.size()); ++i) {
+    const ToolIndex tool{i};
+    const auto rests = [&](const Organ& organ) { return jaws_rest_on(organ, tool, field.tools.size()); };
+    if (rests(gone) && std::none_of(field.organs.begin(), field.organs.end(), rests))
+      field.tool(tool).jaw_stopped = field.tool(tool).pressing = false;
   }
   finish_change(field);
   return true;

@@ -13,7 +13,7 @@ namespace calot {
 /// room for another body.
 std::optional<Failure> check_room(const Field& field, int more_nodes);
 
-/// The joints of a body go with it, and tools let it go.
+/// The joints of a body go with it, and tools let it go: jaws that rested on nothing else are free to close.
 Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why, double time);
 
 /// Adds an organ, where its definition has it, at rest; as make_organ() where that fails, and where it would be in

@@ -5,6 +5,12 @@
 #include "fem/assembly.h"
 
 namespace calot {
+
+int constraints_of(const Body& body, bool masses_count, bool fixed_pressure) {
+  const int volumes = body.liquid() != nullptr && !fixed_pressure ? 1 : 0;
+  return volumes + (masses_count ? Inertia::constraints(body) : 0);
+}
+
 BodyProblem::BodyProblem(const Body& body, const ContactLoads& loads, std::vector<ContactPair> pairs,
                          const BodyState& start, bool fixed_pressure)
     : body_(body),
@@ -43,7 +49,7 @@ const std::vector<Touch>& BodyProblem::touching(const VecX& x) const {
 
 VecX BodyProblem::multipliers() const {
   VecX out = VecX::Constant(constraints(), multiplier_);
-  if (liquid_mass()) out.tail(constraints() - volumes()) = loads_.inertia->multipliers(start_);
+  if (liquid_mass()) out.tail(LiquidMass::constraints) = loads_.inertia->multipliers(start_);
   return out;
 }
 

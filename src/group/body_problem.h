@@ -14,7 +14,11 @@ namespace calot {
 /// before it.
 inline constexpr double contact_keep = 0.2;
 
-/// A group of one. Its constraints are its liquid's volume, where it has one that is kept, and then its inertia's.
+/// How many constraints a body has: its liquid's volume, where it has one that is kept, and then, where masses count, its
+/// inertia's.
+int constraints_of(const Body& body, bool masses_count, bool fixed_pressure = false);
+
+/// A group of one.
 class BodyProblem : public ConstrainedEnergy {
  public:
   /// `fixed_pressure`: the multiplier is prescribed and the volume free; not with inertia. Without contact of the skin
@@ -32,7 +36,7 @@ class BodyProblem : public ConstrainedEnergy {
 
   std::vector<Part> parts() const override;
   int constraints() const override {
-    return volumes() + (loads_.inertia ? loads_.inertia->constraints() : 0);
+    return constraints_of(body_, loads_.inertia != nullptr, fixed_pressure_);
   }
   double value(const VecX& x) const override;
   double cancelling() const override;
@@ -49,7 +53,6 @@ class BodyProblem : public ConstrainedEnergy {
   double safe_share(const VecX& x, const VecX& step) const override;
 
  private:
-  int volumes() const { return body_.liquid() != nullptr && !fixed_pressure_ ? 1 : 0; }
   /// Of the liquid, where masses count; else null.
   const LiquidMass* liquid_mass() const { return loads_.inertia ? loads_.inertia->liquid() : nullptr; }
   /// How far any node, and so any skin point, is from where the solve began, m.

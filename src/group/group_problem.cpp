@@ -14,21 +14,34 @@ constexpr int large_body = 32;
 
 }  // namespace
 
+std::vector<Eigen::Index> volume_constraints(std::span<const int> counts) {
+  std::vector<Eigen::Index> out;
+  Eigen::Index before = 0;
+  for (int count : counts) {
+    out.push_back(count > 0 ? before : -1);
+    before += count;
+  }
+  return out;
+}
+
 GroupProblem::GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins,
                            GroupPatterns& patterns, bool fixed_pressures)
     : members_(members), joins_(joins), patterns_(patterns) {
   problems_.reserve(members.size());
+  std::vector<int> counts;
   for (const Member& member : members) {
     const bool large = member.body.nodes() >= large_body;
     small_ += large ? 0 : 1;
     by_size_.push_back(problems_.size());
     problems_.emplace_back(member.body, member.loads, member.search, member.state, fixed_pressures,
                            large ? members[0].assembly : nullptr);
-    const Eigen::Index size = member.state.x.size(), constraints = problems_.back().constraints();
-    ranges_.push_back({size_, size, constraints_, constraints});
+    counts.push_back(problems_.back().constraints());
+    const Eigen::Index size = member.state.x.size();
+    ranges_.push_back({size_, size, constraints_, counts.back()});
     size_ += size;
-    constraints_ += static_cast<int>(constraints);
+    constraints_ += counts.back();
   }
+  volumes_ = volume_constraints(counts);
   std::stable_sort(by_size_.begin(), by_size_.end(),
                    [&](std::size_t a, std::size_t b) { return ranges_[a].size < ranges_[b].size; });
   if (joins.empty()) return;
@@ -63,7 +76,7 @@ VecX GroupProblem::resting_multipliers() const {
 void GroupProblem::keep(const VecX& x, const VecX& multipliers) const {
   for (std::size_t k = 0; k < members_.size(); ++k) {
     members_[k].state.x = part_of(k, x);
-    if (ranges_[k].constraints > 0) members_[k].state.datum_pressure = multipliers[ranges_[k].constraint];
+    if (volumes_[k] >= 0) members_[k].state.datum_pressure = multipliers[volumes_[k]];
   }
 }
 
@@ -244,7 +257,7 @@ VecX GroupProblem::compliances() const {
 VecX GroupProblem::pressures(const VecX& multipliers) const {
   VecX out = VecX::Zero(static_cast<Eigen::Index>(members_.size()));
   for (std::size_t k = 0; k < members_.size(); ++k)
-    if (ranges_[k].constraints > 0) out[static_cast<Eigen::Index>(k)] = multipliers[ranges_[k].constraint];
+    if (volumes_[k] >= 0) out[static_cast<Eigen::Index>(k)] = multipliers[volumes_[k]];
   return out;
 }
 

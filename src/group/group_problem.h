@@ -28,6 +28,10 @@ struct GroupPatterns {
   std::vector<std::vector<int>> joined;
 };
 
+/// Where the kept volume of each body stands among the constraints of their group; -1: it has none. The group has them
+/// body by body, `counts` of each (constraints_of), a volume's first.
+std::vector<Eigen::Index> volume_constraints(std::span<const int> counts);
+
 class GroupProblem : public ConstrainedEnergy {
  public:
   GroupProblem(std::span<const Member> members, std::span<const JoinPointer> joins, GroupPatterns& patterns,
@@ -91,9 +95,10 @@ class GroupProblem : public ConstrainedEnergy {
   GroupPatterns& patterns_;
   std::vector<BodyProblem> problems_;
   std::vector<Range> ranges_;
-  std::vector<std::size_t> by_size_;  ///< members, the largest last
-  std::size_t small_ = 0;             ///< the first of these are not worth sharing
-  Eigen::Index size_ = 0;             ///< coordinates
+  std::vector<Eigen::Index> volumes_;  ///< of each member: place of its volume's constraint; -1: it has none
+  std::vector<std::size_t> by_size_;   ///< members, the largest last
+  std::size_t small_ = 0;              ///< the first of these are not worth sharing
+  Eigen::Index size_ = 0;              ///< coordinates
   int constraints_ = 0;
 };
 

@@ -23,7 +23,8 @@ struct JointLinks {
     double length = 0;  ///< m; 0: tied
   };
   std::array<int, 2> bodies{};  ///< by their places in the group
-  std::vector<Link> links;
+  std::vector<Link>
+      links;  ///< of the point nearest to where they were joined first, to what it is nearest to first
   double stiffness = 0;  ///< N/m, of each link
 };
 

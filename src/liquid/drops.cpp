@@ -17,7 +17,7 @@ constexpr double jet_volume = 3e-9;       // m^3, of a jet's drop
 constexpr double jet = 0.06;              // m/s: slower it drips
 constexpr double slowed = 0.4;            // share of its speed that a ragged end leaves a jet (d)
 constexpr double fastest = 2.5;           // m/s
-constexpr double farthest_fall = 600e-3;  // m: what is farther has fallen away
+constexpr double farthest_fall = 600e-3;  // m, from the field's middle: what is farther has fallen away
 
 /// Share of the way at which it goes through a triangle from its outside.
 std::optional<double> crosses(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& to) {
@@ -40,6 +40,10 @@ double width_of(const Organ& organ, const Opening& opening) {
   const RodBody* rod = organ.body->as_tube();
   if (rod == nullptr) return opening.area;
   return std::numbers::pi * std::pow(std::max(rod->lumen_radius(opening.point), 1e-4), 2);
+}
+
+bool has_fallen_away(const Field& field, const Vec3& at) {
+  return (at - field.middle).norm() >= farthest_fall;
 }
 
 /// Where what falls from one place to another lands; none: it falls on.
@@ -99,7 +103,7 @@ bool fall(Field& field, const FallenOn& skins, Drop& drop, double part) {
     spread_drop(field.spill, drop, *landing);
     return true;
   }
-  if (to.norm() < farthest_fall) return false;
+  if (!has_fallen_away(field, to)) return false;
   field.spill.out_of_sight[static_cast<std::size_t>(drop.liquid)] += drop.volume;
   return true;
 }
@@ -130,7 +134,7 @@ void let_fall(Field& field, double duration, std::optional<FallenOn>& skins) {
 void drop_clip(Field& field, ClipSize size, const Vec3& from, const Vec3& legs) {
   constexpr double part = 2e-3;  // m: ground is met within it
   const FallenOn skins(field);
-  for (Vec3 at = from; at.norm() < farthest_fall; at -= part * field.up) {
+  for (Vec3 at = from; !has_fallen_away(field, at); at -= part * field.up) {
     const std::optional<Landing> landing = lands(field, skins, at, at - part * field.up);
     if (!landing) continue;
     field.spill.clips.push_back({size, landing->on, landing->point, legs});

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "body/rod_body.h"
+#include "group/group_problem.h"
 #include "liquid/aspirate.h"
 #include "liquid/leak_source.h"
 
@@ -29,19 +31,15 @@ struct Outlet {
   double left = 0;      ///< m^3, leaves in the step
 };
 
-/// How much a hollow organ's volume grows with its pressure, m^3/Pa; 0: not known yet.
+/// How much a hollow organ's volume grows with its pressure, m^3/Pa; 0: the field has no factor yet that knows.
 double compliance_of(const Field& field, OrganIndex organ) {
   const NewtonWorkspace& work = field.group.work;
-  int liquids = 0, before = 0;
-  for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) {
-    if (field.organs[k].body->liquid() == nullptr) continue;
-    ++liquids;
-    if (k < organ.value) ++before;
-  }
-  const int constraints = static_cast<int>(work.border.complement.rows());
-  if (!work.factored || constraints == 0 || constraints % liquids != 0) return 0;
-  // Each has its volume's, and then its inertia's.
-  const Eigen::Index volume = before * (constraints / liquids);
+  std::vector<int> counts;
+  for (const Organ& each : field.organs)
+    counts.push_back(constraints_of(*each.body, each.state.motion.duration > 0));
+  const int all = std::accumulate(counts.begin(), counts.end(), 0);
+  if (!work.factored || work.border.complement.rows() != all) return 0;
+  const Eigen::Index volume = volume_constraints(counts)[static_cast<std::size_t>(organ.value)];
   return std::max(0.0, work.border.complement(volume, volume));
 }
 

@@ -14,15 +14,13 @@ using std::numbers::pi;
 
 constexpr double of_folds = 5e9;  // Pa s/m^3, of a cystic duct's: 15 mL a minute at 10 mmHg (d)
 
-/// Where a joint is on a body, skin points from its start.
-double place_on(const JointLinks& links, int side) {
-  double sum = 0;
-  for (const JointLinks::Link& link : links.links) {
-    const CarriedPlace& place = side == 0 ? link.one : link.other;
-    for (int point : place.points)
-      sum += static_cast<double>(point) / static_cast<double>(place.points.size());
-  }
-  return sum / static_cast<double>(links.links.size());
+/// Where a joint is on a tube, skin points from its start: at the first place that it ties, on the tube.
+double place_on(const JointLinks& links, int side, const RodBody& rod) {
+  const JointLinks::Link& first = links.links.front();
+  const CarriedPlace& place = side == 0 ? first.one : first.other;
+  double at = 0;
+  for (std::size_t i = 0; i < place.points.size(); ++i) at += place.weights[i] * place.points[i];
+  return std::clamp(at, 0.0, rod.last_point());
 }
 
 /// Follows tubes from an opening to what feeds them.
@@ -71,7 +69,7 @@ class SourceSearch {
 
   /// Whether a joint is at that end of a tube: its own end is tied, or nearly that of another's side.
   static bool is_at(const RodBody& rod, const JointLinks& links, int side, double end) {
-    const double away = std::abs(place_on(links, side) - end), last = rod.last_point();
+    const double away = std::abs(place_on(links, side, rod) - end), last = rod.last_point();
     return side == 0 ? away < 0.5 * last : away < std::min(3.0, 0.3 * last);
   }
 
@@ -84,7 +82,7 @@ class SourceSearch {
     if (rod == nullptr || liquid_of(other) != liquid || visited_[organ.value]) return std::nullopt;
     std::optional<LeakSource> best;
     for (double end : {0.0, rod->last_point()})
-      if (std::optional<LeakSource> found = along(organ, place_on(links, side), end, area))
+      if (std::optional<LeakSource> found = along(organ, place_on(links, side, *rod), end, area))
         if (!best || found->area > best->area) best = found;
     return best;
   }

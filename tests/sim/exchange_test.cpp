@@ -157,6 +157,23 @@ TEST(Exchange, IsBlockedWhereSomethingIsHeldUntilItIsLetGo) {
   EXPECT_EQ(rig.in_port(), 1u);
 }
 
+TEST(Exchange, WhatWasDrawnOutComesInAsOneThatHasDoneNothing) {
+  Exchanging rig;
+  Field field = rig.world.field();
+  Tool& tool = field.tools[0];
+  const auto knows = [&] {
+    return std::array{tool.jaw_stopped, tool.pressing, tool.lost, tool.beside, tool.slipping, tool.has_cut};
+  };
+  const auto at_the_start = knows();
+  tool.pressing = tool.lost = tool.beside = tool.slipping = tool.has_cut = true;
+  std::vector<WorldEvent> events;
+  exchange_tools(field, {InstrumentAction::none, InstrumentAction::exchange, InstrumentAction::none}, events);
+  ASSERT_TRUE(tool.waits);
+  exchange_tools(field, {InstrumentAction::exchange, InstrumentAction::none, InstrumentAction::none}, events);
+  ASSERT_FALSE(tool.waits);
+  EXPECT_EQ(knows(), at_the_start);
+}
+
 TEST(Exchange, IsUndoneByGivingBackTheStateOfBefore) {
   Exchanging rig;
   const FieldState before = rig.world.state();

@@ -15,6 +15,7 @@
 #include "field/join_bodies.h"
 #include "liquid/leak_source.h"
 #include "liquid/perforate.h"
+#include "motion/settle_field.h"
 #include "organs/body_kinds.h"
 #include "rig.h"
 #include "support/long_run.h"
@@ -186,6 +187,35 @@ TEST(Leaks, AHoleInTheWallLeaksByItsArea) {
   EXPECT_EQ(events[0].instrument, "blades");
 }
 
+TEST(Leaks, APressureFallsByTheComplianceOfItsOwnOrgan) {
+  SceneDefinition scene = bag_and_duct();
+  OrganDefinition stiff = scene.anatomy.organs[0];
+  stiff.name = "stiff";
+  stiff.neck.x() += 80e-3;
+  stiff.fundus.x() += 80e-3;
+  stiff.wall.thickness *= 2;
+  scene.anatomy.organs.push_back(stiff);
+  for (const int open : {0, 2}) {
+    Bodies bodies(scene);
+    SolveStatistics statistics;
+    ASSERT_TRUE(settle_field(bodies.field, "", statistics));
+    // By how much its pressure falls with its volume.
+    Organ& bag = bodies.field.organs[open];
+    const double lost = 1e-4 * bag.state.volume, pressure_before = bag.state.datum_pressure;
+    bag.state.volume -= lost;
+    ASSERT_TRUE(settle_field(bodies.field, "", statistics));
+    const double compliance = lost / (pressure_before - bag.state.datum_pressure);
+    Opening hole;
+    hole.area = 2e-6;
+    bag.openings.push_back(hole);
+    const double pressure =
+        shell_of(bag)->bile()->pressure_at(bag.body->skin_point(0, bag.state.x), bag.state.datum_pressure);
+    bodies.run(0.1);
+    const double wanted = elastic_outflow(pressure, compliance, 2e-6, bile_density, 0.1);
+    EXPECT_NEAR(bodies.lost(Carries::bile), wanted, 5e-3 * wanted) << open;
+  }
+}
+
 TEST(Leaks, AHoleThatCurrentBurnsIsWhereItTouchedAndSaysWhatBurntIt) {
   Bodies bodies(bag_and_duct());
   bodies.field.group.work.factored = false;
@@ -341,6 +371,39 @@ TEST(Bleeding, DoesNotDependOnTheLengthOfSteps) {
   EXPECT_NEAR(out[1], out[2], 1e-5 * out[2]);
 }
 
+/// An artery from which another one branches off, at its end or in its middle.
+SceneDefinition branched(const std::string& from) {
+  SceneDefinition scene = artery();
+  OrganDefinition branch = scene.anatomy.organs[0];
+  branch.name = "branch";
+  const Vec3 start = std::get<TubeShape>(branch.shape).points[from == "end" ? 2 : 1];
+  std::get<TubeShape>(branch.shape).points = {start, start + Vec3(8e-3, 0, 0), start + Vec3(16e-3, 0, 0)};
+  branch.held = {{"far", "end", 4e-3, 1e6}};
+  scene.anatomy.organs.push_back(branch);
+  scene.anatomy.joints = {{"branch.start", "artery." + from}};
+  return scene;
+}
+
+TEST(Bleeding, EndsByAClipRightBesideTheJointOnTheFarSide) {
+  struct Clipped {
+    std::string from;
+    int organ;                   ///< that is clipped; the other one is cut
+    std::vector<double> beside;  ///< skin points from the joint
+  };
+  for (const Clipped& one : {Clipped{"end", 0, {-0.5}}, {"middle", 0, {-0.5, 0.5}}, {"end", 1, {0.5}}})
+    for (const bool shut : {false, true}) {
+      Bodies bodies(branched(one.from));
+      const double last = rod_of(bodies.field.organs[one.organ])->last_point();
+      const double joint = one.organ == 1 ? 0 : one.from == "end" ? last : 0.5 * last;
+      for (const double beside : one.beside) bodies.clip(one.organ, (joint + beside) / last, shut ? 0 : 1);
+      const Division pieces = bodies.cut(1 - one.organ);
+      bodies.run(0.1, 5);
+      // Of the branch the patient's piece is the one that grows out of the artery, of the artery the held one.
+      const int open = one.organ == 0 ? pieces.patient : pieces.specimen;
+      EXPECT_EQ(bodies.field.organs[open].openings[0].rate > 0, !shut) << one.from << one.organ;
+    }
+}
+
 TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   // Rough jaws: out of smooth ones it would slide.
   SceneDefinition scene = test::across(InstrumentType::atraumatic_grasper);
@@ -361,6 +424,10 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   EXPECT_LT(open(), 0.8);
   ASSERT_TRUE(acting.go(test::about(0.24, deep), 8));
   EXPECT_EQ(open(), 0);
+  Field without = acting.world.field();
+  without.tools[0].waits = true;
+  EXPECT_EQ(open_between(without, 0, 0, rod_of(without.organs[0])->last_point()), 1)
+      << "an instrument that waits outside shuts nothing";
   // Cut beyond the jaws: what the specimen's piece holds is all that is lost, until they open.
   ASSERT_TRUE(acting.world.divide("duct", 0.75));
   ASSERT_TRUE(acting.go(test::about(0.24, deep), 3));

@@ -6,8 +6,10 @@
 #include <array>
 #include <map>
 
+#include "acts/exchange.h"
 #include "acts/pads.h"
 #include "body/rigid_body.h"
+#include "field/change_bodies.h"
 #include "field_rig.h"
 #include "rig.h"
 #include "support/long_run.h"
@@ -75,6 +77,7 @@ struct Wedge {
     Organ& organ = field.organs[0];
     organ.body = std::make_shared<const RigidBody>(std::move(body));
     organ.state.x = organ.body->rest();
+    organ.landmarks.clear();  // they were of another skin
     field.group.forget_bodies();
     field.ground.push_back({"floor", Plane{{0, 0, -depth - bottom}, Vec3::UnitZ()}, 0.2, false});
     field.step_time = 0.02;
@@ -84,7 +87,8 @@ struct Wedge {
     field.tools[0].pose = pose(2 * angle + 4 * deg, 0);
   }
   InstrumentPose pose(double jaw, double lifted) const {
-    return {0, 0, depth + field.tools[0].geometry.jaw_length - lifted, 0, jaw};
+    const Tool& tool = field.tools[0];
+    return {0, 0, depth + tool.trocar.z() + tool.geometry.jaw_length - lifted, 0, jaw};
   }
   /// In even parts; the failure's text, empty when it arrived.
   std::string go(double jaw, double lifted, int parts) {
@@ -137,6 +141,61 @@ TEST(Pinch, AWedgeThatIsWiderThanFrictionIsNeverHeld) {
       ASSERT_EQ(wedge.go(0, 2e-3, 20), "");
       EXPECT_LT(wedge.height(), 0.1e-3);
     }
+}
+
+TEST(Pinch, WhatClaspsSomethingIsNotDrawnOutOfItsPort) {
+  Wedge wedge(5 * deg, 0.8, 10);
+  Tool& tool = wedge.field.tools[0];
+  tool.trocar.z() = port_depth - tool.geometry.jaw_length - Wedge::depth;
+  tool.pose = wedge.pose(tool.pose.jaw, 0);
+  Tool waiting = tool;
+  waiting.definition.name = "right";
+  waiting.waits = true;
+  wedge.field.tools.push_back(waiting);
+  const auto go = [&](double jaw, int steps) {
+    for (int k = 0; k < steps; ++k) {
+      SolveStatistics statistics;
+      ASSERT_TRUE(advance(wedge.field, {wedge.pose(jaw, 0), waiting.pose}, statistics));
+    }
+  };
+  go(0, 10);
+  ASSERT_EQ(between_pads(wedge.field, 0), "wedge");
+  ASSERT_TRUE(held_organ(wedge.field, 0).empty());
+  std::vector<WorldEvent> events;
+  const std::vector<InstrumentAction> exchange{InstrumentAction::none, InstrumentAction::exchange};
+  exchange_tools(wedge.field, exchange, events);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, EventKind::blocked_exchange);
+  EXPECT_EQ(events[0].text, "left holds wedge");
+  EXPECT_TRUE(wedge.field.tools[1].waits);
+}
+
+TEST(Pinch, JawsRestOnNothingWhereWhatTheyHeldOrClaspedWasRemoved) {
+  OrganDefinition other = test::held_ball();
+  other.name = "other";
+  other.neck.x() = other.fundus.x() = 200e-3;
+  const auto remove = [&](Field field) {
+    field.add(make_organ(other, {}, Vec3::UnitZ(), 1e-6).value());
+    ASSERT_TRUE(field.tools[0].jaw_stopped && field.tools[0].pressing);
+    ASSERT_TRUE(remove_body(field, 1, "", 0));
+    EXPECT_TRUE(field.tools[0].jaw_stopped && field.tools[0].pressing) << "they hold on to what is there";
+    field.add(make_organ(other, {}, Vec3::UnitZ(), 1e-6).value());
+    ASSERT_TRUE(remove_body(field, 0, "", 0));
+    EXPECT_FALSE(field.tools[0].jaw_stopped || field.tools[0].pressing);
+    InstrumentPose closed = field.tools[0].pose;
+    closed.jaw = 0;
+    SolveStatistics statistics;
+    const auto events = advance(field, {closed}, statistics);
+    ASSERT_TRUE(events) << to_text(events.failure());
+    EXPECT_EQ(field.tools[0].pose.jaw, 0) << "they close at once";
+    for (const WorldEvent& event : events.value()) EXPECT_NE(event.kind, EventKind::release);
+  };
+  Wedge wedge(5 * deg, 0.8, 10);
+  ASSERT_EQ(wedge.go(0, 0, 10), "");
+  remove(wedge.field);
+  test::FundusField fold(test::ball_scene());
+  ASSERT_EQ(fold.grasp(), "");
+  remove(fold.field);
 }
 
 TEST(Pinch, StopsTheJawsOnAWallWhateverTheBilesPressure) {

@@ -253,6 +253,13 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
   }
 }
 
+TEST(Slip, WhereNothingIsHeldAReleaseSolvesNothing) {
+  Field field = test::FundusField(test::ball_scene()).field;
+  SolveStatistics statistics;
+  ASSERT_TRUE(release(field, 0, statistics));
+  EXPECT_EQ(statistics.solves, 0);
+}
+
 TEST(Slip, AFoldPulledOutOfTheJawsIsReleasedAndTheOrganReturnsToItsRest) {
   CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
   SceneDefinition scene = test::grasper_scene();

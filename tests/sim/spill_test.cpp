@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "field_rig.h"
+#include "liquid/drops.h"
 #include "liquid/films.h"
 #include "support/long_run.h"
 
@@ -130,6 +131,18 @@ TEST(Spills, WhatFallsPastEverythingIsCounted) {
   wait(field, 0.6);
   EXPECT_TRUE(field.spill.drops.empty());
   EXPECT_EQ(field.spill.out_of_sight[0], 7e-9);
+}
+
+TEST(Spills, WhatFallsAwayIsFarFromTheFieldWhereverItsOriginIs) {
+  Field field = ball_over_slope(0);
+  field.middle = Vec3(1, 0, ball_foot);
+  const Vec3 above = field.middle + Vec3(40e-3, 0, 20e-3);
+  drip(field, above, 10e-9);
+  drop_clip(field, ClipSize::ml, above, Vec3::UnitX());
+  wait(field, 0.2);
+  EXPECT_NEAR(field.spill.lying(Carries::blood), 10e-9, 1e-18);
+  EXPECT_NE(film_on_ground(field), nullptr);
+  EXPECT_EQ(field.spill.clips.size(), 1u);
 }
 
 }  // namespace
