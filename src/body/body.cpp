@@ -53,10 +53,7 @@ std::map<std::string, int> Body::nearest_points(const std::map<std::string, Vec3
   return out;
 }
 
-Result<BodyCut> Body::divide(double /*share*/) const {
-  return fail(FailureKind::scenario, "'" + name() + "' cannot be divided",
-              "divide a tube: a duct or a vessel");
-}
+Result<std::optional<BodyCut>> Body::divide(double /*share*/) const { return std::optional<BodyCut>(); }
 
 double Body::thickest() const {
   const std::vector<double>& radii = skin_radii();

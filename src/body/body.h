@@ -196,9 +196,9 @@ class Body {
 
   /// Skin points of its landmarks.
   virtual std::map<std::string, int> landmarks() const { return {}; }
-  /// The two that it becomes, divided at about a share of its length from its start. Fails (scenario) where it cannot
-  /// be, as most kinds never can.
-  virtual Result<BodyCut> divide(double share) const;
+  /// The two that it becomes, divided at about a share of its length from its start; none: its kind cannot be divided.
+  /// Fails (scenario) where it could be, but not there.
+  virtual Result<std::optional<BodyCut>> divide(double share) const;
   /// A piece under another name; null: it keeps the whole's.
   virtual std::shared_ptr<const Body> called(const std::string& /*name*/) const { return nullptr; }
   /// The shape that a piece's definition has, where the whole's has this.

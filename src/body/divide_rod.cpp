@@ -77,7 +77,7 @@ Result<BodyPiece> RodBody::piece(int first, int last) const {
   return out;
 }
 
-Result<BodyCut> RodBody::divide(double share) const {
+Result<std::optional<BodyCut>> RodBody::divide(double share) const {
   BodyCut out;
   out.point = point_to_divide_at(share);
   if (std::optional<Failure> failure = check_pieces(out.point)) return *failure;
@@ -88,7 +88,7 @@ Result<BodyCut> RodBody::divide(double share) const {
   if (!before) return before.failure();
   if (!behind) return behind.failure();
   out.pieces = {std::move(before).value(), std::move(behind).value()};
-  return out;
+  return std::optional(std::move(out));
 }
 
 std::shared_ptr<const Body> RodBody::called(const std::string& name) const {

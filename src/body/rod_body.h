@@ -86,7 +86,7 @@ class RodBody : public Body {
   std::optional<bool> bedded() const override { return !bed_.row.empty(); }
   std::map<std::string, int> landmarks() const override;
   /// Its skin points lie a mm apart. Fails (scenario) where a piece would be shorter than it is thick.
-  Result<BodyCut> divide(double share) const override;
+  Result<std::optional<BodyCut>> divide(double share) const override;
   std::shared_ptr<const Body> called(const std::string& name) const override;
   OrganShape shape_of_piece(const OrganShape& whole) const override;
   const RodBody* as_tube() const override { return this; }

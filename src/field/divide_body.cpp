@@ -69,12 +69,13 @@ std::array<std::string, 2> piece_names(const std::string& body) {
 
 Result<Division> divide_body(Field& field, OrganIndex index, double share, double time) {
   const Organ& whole = field.organ(index);
-  const Result<BodyCut> cut = whole.body->divide(share);
-  if (!cut) return cut.failure();
-  if (std::optional<Failure> failure = check_room(field, more_nodes(*whole.body, cut.value())))
-    return *failure;
-  std::array<Organ, 2> pieces{piece_of(whole, cut.value(), 0), piece_of(whole, cut.value(), 1)};
-  const bool start_first = start_is_patients(field, index, cut.value(), pieces);
+  const Result<std::optional<BodyCut>> divided = whole.body->divide(share);
+  if (!divided) return divided.failure();
+  if (!divided.value()) return no_tube(whole.definition, "divide", "divided");
+  const BodyCut& cut = *divided.value();
+  if (std::optional<Failure> failure = check_room(field, more_nodes(*whole.body, cut))) return *failure;
+  std::array<Organ, 2> pieces{piece_of(whole, cut, 0), piece_of(whole, cut, 1)};
+  const bool start_first = start_is_patients(field, index, cut, pieces);
   const std::array<std::string, 2> names = piece_names(whole.definition.name);
   for (int side = 0; side < 2; ++side) {
     const bool patients = (side == 0) == start_first;
@@ -86,11 +87,14 @@ Result<Division> divide_body(Field& field, OrganIndex index, double share, doubl
   note_departure(field, whole, {time, "was divided", {names[0], names[1]}, {}});
   field.enrol(pieces[start_first ? 0 : 1]);
   field.enrol(pieces[start_first ? 1 : 0]);
-  replace_body(field, index, std::move(pieces), start_first, cut.value());
+  replace_body(field, index, std::move(pieces), start_first, cut);
   finish_change(field);
-  return Division{index, OrganIndex(index.value + 1), cut->share};
+  return Division{index, OrganIndex(index.value + 1), cut.share};
 }
 
-bool can_be_divided(const Organ& organ, double share) { return static_cast<bool>(organ.body->divide(share)); }
+bool can_be_divided(const Organ& organ, double share) {
+  const Result<std::optional<BodyCut>> divided = organ.body->divide(share);
+  return divided && divided.value();
+}
 
 }  // namespace calot

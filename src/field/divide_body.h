@@ -20,8 +20,8 @@ std::array<std::string, 2> piece_names(const std::string& body);
 
 /// Divides a body at about a share of its length at rest. The patient's piece is the one that a tube's definition names
 /// (TubeShape::patient_end), or else that which is held, itself or by what it is tied to; where both are, or neither,
-/// its end. The pieces stand where the body stood, the patient's first. `time`, s: when. Fails as Body::divide does,
-/// and where the field would have too many organs or nodes.
+/// its end. The pieces stand where the body stood, the patient's first. `time`, s: when. Fails (scenario) where it
+/// cannot be divided (Body::divide), and where the field would have too many organs or nodes.
 Result<Division> divide_body(Field& field, OrganIndex organ, double share, double time);
 
 /// Whether the body can be.

@@ -94,8 +94,8 @@ class RandomActs {
     const Field& field = world_.field();
     const std::size_t body = below(field.organs.size() + field.tissues.size());
     if (body < field.organs.size()) {
-      const std::vector<Vec3> skin = world_.skin_positions(static_cast<int>(body));
-      const std::vector<Vec3> normals = world_.skin_normals(static_cast<int>(body));
+      const std::vector<Vec3> skin = world_.skin_positions(OrganIndex(body));
+      const std::vector<Vec3> normals = world_.skin_normals(OrganIndex(body));
       for (int tries = 0; tries < 50; ++tries) {
         const std::size_t point = below(skin.size());
         if (normals[point].dot((trocar() - skin[point]).normalized()) > 0.3) return skin[point];
