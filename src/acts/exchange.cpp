@@ -21,9 +21,9 @@ bool alike(const InstrumentPose& a, const InstrumentPose& b) {
 }
 
 /// What a tool has between its jaws, by its teeth or clasped by friction alone; empty: nothing.
-std::string held_in(const Field& field, int index) {
+std::string held_in(const Field& field, ToolIndex index) {
   const std::string bitten = held_organ(field, index);
-  return bitten.empty() && field.tools[index].jaw_stopped ? between_pads(field, index) : bitten;
+  return bitten.empty() && field.tool(index).jaw_stopped ? between_pads(field, index) : bitten;
 }
 
 /// As a tool that has done nothing yet: what its jaws did in the field is over.
