@@ -32,8 +32,7 @@ Result<bool> remove_body(Field& field, int index, const std::string& why, double
   if (field.organs.size() == 1)
     return fail(FailureKind::scenario, fmt::format("{} is the last organ", quoted(field.organs[0])),
                 "leave one in the field");
-  note_departure(field, field.organs[index],
-                 {time, why.empty() ? "was removed" : "was removed: " + why, {}, {}});
+  note_departure(field, field.organs[index], {time, why.empty() ? "was removed" : "was removed: " + why});
   std::vector<int> now;
   for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) now.push_back(k < index ? k : k - 1);
   now[index] = -1;

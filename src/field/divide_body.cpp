@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "body/rod_body.h"
+#include "field/between_jaws.h"
 #include "field/change_bodies.h"
 #include "field/renumbering.h"
 #include "field/roll.h"
@@ -59,8 +60,10 @@ std::vector<Burn> burns_of_piece(const Organ& whole, const RodBody& piece) {
 }
 
 /// What of a rod's state is one half's.
-Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool first, RodBody body) {
-  Organ piece{whole.definition, nullptr, {}, {}, {}, {}, {}, {}, {}, {}};
+Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool first, RodBody part) {
+  const auto made = std::make_shared<const RodBody>(std::move(part));
+  const RodBody& body = *made;
+  Organ piece(whole.definition, made);
   if (!first)
     for (InjuryNearStart& near : piece.definition.injury.near_start)
       near.within -= way_from_start(rod, cut.point);
@@ -113,7 +116,6 @@ Organ piece_of(const Organ& whole, const RodBody& rod, const Cut& cut, bool firs
     piece.left_in = *whole.left_in * std::abs(rod.share_of_length(last) - rod.share_of_length(first_point));
   piece.burns = burns_of_piece(whole, body);
   piece.landmarks = tube_landmarks(shape, body);
-  piece.body = std::make_shared<const RodBody>(std::move(body));
   return piece;
 }
 
@@ -321,12 +323,11 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
     return fail(FailureKind::scenario, fmt::format("{} is too short to be divided", quoted(whole)));
   if (std::optional<Failure> failure = check_lengths(whole, *rod, cut.point)) return *failure;
   if (std::optional<Failure> failure = check_room(field, most_more_nodes)) return *failure;
-  std::array<Organ, 2> pieces;
-  for (int half = 0; half < 2; ++half) {
-    Result<RodBody> part = half == 0 ? rod->part(0, cut.point) : rod->part(cut.point, cut.points - 1);
-    if (!part) return part.failure();
-    pieces[half] = piece_of(whole, *rod, cut, half == 0, std::move(part).value());
-  }
+  Result<RodBody> start = rod->part(0, cut.point), end = rod->part(cut.point, cut.points - 1);
+  if (!start) return start.failure();
+  if (!end) return end.failure();
+  std::array<Organ, 2> pieces{piece_of(whole, *rod, cut, true, std::move(start).value()),
+                              piece_of(whole, *rod, cut, false, std::move(end).value())};
   const bool start_first = start_is_patients(field, index, cut, pieces);
   const std::array<std::string, 2> names = piece_names(whole.definition.name);
   for (int half = 0; half < 2; ++half) {
@@ -337,7 +338,7 @@ Result<Division> divide_body(Field& field, int index, double share, double time)
     pieces[half].body =
         std::make_shared<const RodBody>(dynamic_cast<const RodBody&>(*pieces[half].body).called(name));
   }
-  note_departure(field, whole, {time, "was divided", {names[0], names[1]}, {}});
+  note_departure(field, whole, {time, "was divided", {names[0], names[1]}});
   field.enrol(pieces[start_first ? 0 : 1]);
   field.enrol(pieces[start_first ? 1 : 0]);
   const Division out{index, index + 1, rod->share_of_length(cut.point)};
