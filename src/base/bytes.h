@@ -14,13 +14,14 @@ class ByteWriter {
  public:
   template <class T>
   requires std::is_arithmetic_v<T>
-  void add(T value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
+  void add(T value) { add_bytes(&value, sizeof value); }
+  void add_bytes(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
   /// With their number.
   template <class T>
   requires std::is_arithmetic_v<T>
   void add(std::span<const T> values) {
     add(values.size());
-    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+    add_bytes(values.data(), values.size_bytes());
   }
   void add(const std::vector<std::vector<int>>& lists) {
     add(lists.size());
@@ -39,14 +40,13 @@ class ByteReader {
   template <class T>
   requires std::is_arithmetic_v<T> T number() {
     T value{};
-    if (has(sizeof value)) take(&value, sizeof value);
+    take(&value, sizeof value);
     return value;
   }
   template <class T>
   requires std::is_arithmetic_v<T> std::vector<T> numbers() {
-    const std::size_t count = counted(sizeof(T));
-    std::vector<T> out(count);
-    if (count > 0) take(out.data(), count * sizeof(T));
+    std::vector<T> out(counted(sizeof(T)));
+    take(out.data(), out.size() * sizeof(T));
     return out;
   }
   std::vector<std::vector<int>> lists() {
@@ -57,25 +57,26 @@ class ByteReader {
   /// How many things follow, of so many bytes each at least.
   std::size_t counted(std::size_t each) {
     const auto count = number<std::size_t>();
-    if (count <= left_.size() / each) return count;
-    lacking_ = true;
-    return 0;
+    return holds(count, each) ? count : 0;
+  }
+  /// Whether so many things of so many bytes each can follow; where not, bytes lack.
+  bool holds(std::size_t count, std::size_t each) {
+    lacking_ |= count > left_.size() / each;
+    return !lacking_;
+  }
+  /// The next bytes, where they are there; else `to` stays as it is.
+  void take(void* to, std::size_t size) {
+    if (size == 0 || !holds(size, 1)) return;
+    std::memcpy(to, left_.data(), size);
+    left_.remove_prefix(size);
   }
   /// What was read does not fit together: it counts as if bytes had lacked.
   void refuse() { lacking_ = true; }
+  bool lacks() const { return lacking_; }
   /// Whether all was there, and nothing is left.
   bool complete() const { return !lacking_ && left_.empty(); }
 
  private:
-  bool has(std::size_t size) {
-    lacking_ |= left_.size() < size;
-    return !lacking_;
-  }
-  void take(void* to, std::size_t size) {
-    std::memcpy(to, left_.data(), size);
-    left_.remove_prefix(size);
-  }
-
   std::string_view left_;
   bool lacking_ = false;
 };

@@ -28,6 +28,10 @@ struct DetailShare {
   bool leaving = false;  ///< its share falls
   bool operator==(const DetailShare&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<DetailShare> auto& detail) {
+  auto& [share, leaving] = detail;
+  visit(share, leaving);
+}
 
 /// The part of a motion that a body has come to the end of, or is being brought to: a step of implicit Euler
 /// (inertia.h).
@@ -37,6 +41,10 @@ struct MotionPart {
   /// The liquid's flow at the beginning, made of that; null without a liquid.
   std::shared_ptr<const FlowModes> flow = {};
 };
+void visit_members(auto&& visit, MembersOf<MotionPart> auto& part) {
+  auto& [begin, duration, flow] = part;  // the flow follows from where the body began
+  visit(begin, duration);
+}
 
 struct BodyState {
   VecX x;                     ///< 3 a node, m: places of the control nodes, then displacements of the details
@@ -47,6 +55,10 @@ struct BodyState {
   VecX fading_load = {};
   MotionPart motion = {};  ///< that ends here
 };
+void visit_members(auto&& visit, MembersOf<BodyState> auto& state) {
+  auto& [x, datum_pressure, volume, shares, fading_load, motion] = state;
+  visit(x, datum_pressure, volume, shares, fading_load, motion);
+}
 
 /// What a closed body is filled with: its weight, and a volume that is kept.
 class Liquid {

@@ -6,6 +6,7 @@
 // stiffness for all pressures a rising pressure adds no energy to what is strained already, as a mollifier of
 // fixed width would, so a cycle can only lose energy.
 
+#include "geometry/state_members.h"
 #include "geometry/types.h"
 
 namespace calot {
@@ -33,5 +34,9 @@ struct StickSlip {
   /// Anchor and normal moved rigidly.
   StickSlip carried(const Pose& motion) const;
 };
+void visit_members(auto&& visit, MembersOf<StickSlip> auto& hold) {
+  auto& [anchor, normal, limit, stiffness] = hold;
+  visit(anchor, normal, limit, stiffness);
+}
 
 }  // namespace calot

@@ -3,6 +3,7 @@
 
 #include "fem/bile.h"
 #include "fem/potential_flow.h"
+#include "geometry/state_members.h"
 
 namespace calot {
 
@@ -12,6 +13,10 @@ struct LiquidMotion {
   VecX velocity;                 ///< of these, m/s
   Vec3 centroid = Vec3::Zero();  ///< velocity of the liquid's centroid, m/s: as centroid_velocity() gave it
 };
+void visit_members(auto&& visit, MembersOf<LiquidMotion> auto& motion) {
+  auto& [x, velocity, centroid] = motion;
+  visit(x, velocity, centroid);
+}
 
 /// A step of h seconds minimises, beside all other energies, the liquid's
 ///

@@ -49,8 +49,7 @@ Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why,
   if (field.organs.size() == 1)
     return fail(FailureKind::scenario, fmt::format("{} is the last organ", quoted(field.organs[0])),
                 "leave one in the field");
-  note_departure(field, field.organs[index],
-                 {time, why.empty() ? "was removed" : "was removed: " + why, {}, {}});
+  note_departure(field, field.organs[index], {time, why.empty() ? "was removed" : "was removed: " + why});
   std::vector<int> now;
   for (int k = 0; k < static_cast<int>(field.organs.size()); ++k) now.push_back(k < index ? k : k - 1);
   now[index] = -1;

@@ -7,33 +7,11 @@
 
 namespace calot {
 
-struct ToolSnapshot {
-  InstrumentPose pose;
-  bool touched = false, over_limit = false, jaw_stopped = false, lost = false, beside = false,
-       slipping = false;
-  InstrumentAction action = InstrumentAction::none;
-  double dry = 0;
-  bool has_cut = false;
-  int clips = 0;
-  bool on_clip = false, beside_kept = false;
-  double burnt = 0;
-  int burnt_record = -1;
-  bool waits = false;
-  NeedleState needle = {};
-  InstrumentPose command = {};
-  double tissue_stiffness = 0, stiffness_across = 0;
-  MeetingState meeting = {};
-  bool met = false;
-  Vec3 drag = Vec3::Zero();
-  bool pressing = false;
-  double roll_stiffness = 0;
-};
-
 struct FieldState {
   long steps = 0;
   std::shared_ptr<const FieldMembers> members;
   GroupSnapshot group;
-  std::vector<ToolSnapshot> tools;
+  std::vector<ToolState> tools;
   Spill spill;
   StepReport report;  ///< of the step that led here: events are raised by what differs from it
 };

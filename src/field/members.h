@@ -23,10 +23,10 @@ struct SkinPlace {
 
 /// When and why a body went.
 struct Departure {
-  double time = 0;                             ///< s
-  std::string how;                             ///< "was divided", "was removed: taken out"
-  std::vector<std::string> pieces;             ///< the patient's and the specimen's, of one that was divided
-  std::map<std::string, SkinPlace> landmarks;  ///< where they were last
+  double time = 0;                       ///< s
+  std::string how;                       ///< "was divided", "was removed: taken out"
+  std::vector<std::string> pieces = {};  ///< the patient's and the specimen's, of one that was divided
+  std::map<std::string, SkinPlace> landmarks = {};  ///< where they were last
 };
 
 /// A body that is or was in the field.

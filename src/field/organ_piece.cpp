@@ -86,7 +86,7 @@ std::vector<Burn> burns_of(const Organ& whole, const Body& piece) {
 
 Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {
   const BodyPiece& piece = cut.pieces[side];
-  Organ out{definition_of(whole.definition, piece), piece.body, {}, {}, {}, {}, {}, {}, {}, {}};
+  Organ out(definition_of(whole.definition, piece), piece.body);
   out.state = state_on(whole.state, piece);
   out.search.own.active = whole.search.own.active;
   out.landmarks = piece.body->landmarks();

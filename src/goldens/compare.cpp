@@ -37,7 +37,8 @@ std::set<std::string> known_frames(const ExerciseDefinition& exercise, const fs:
 }
 
 GoldenResult drawn_frame(const std::string& scenario, const Frame& frame, const fs::path& folder) {
-  GoldenResult result{scenario, frame.name, {}, {}, make_golden(frame)};
+  GoldenResult result{scenario, frame.name};
+  result.actual = make_golden(frame);
   find_golden(result, folder);
   if (result.golden) result.judgement = judge(*result.golden, *result.actual);
   return result;
@@ -45,7 +46,7 @@ GoldenResult drawn_frame(const std::string& scenario, const Frame& frame, const 
 
 GoldenResult undrawn_frame(const std::string& scenario, const std::string& frame, const fs::path& folder,
                            const Played& played) {
-  GoldenResult result{scenario, frame, {}, {}, {}};
+  GoldenResult result{scenario, frame};
   find_golden(result, folder);
   if (!result.golden) return result;
   const std::vector<GoldenFrame> declared = golden_frames(played.exercise);

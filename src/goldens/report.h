@@ -10,8 +10,8 @@ namespace calot {
 /// One frame's comparison, as test and report need it.
 struct GoldenResult {
   std::string scenario, frame;
-  Judgement judgement;
-  std::optional<Golden> golden, actual;
+  Judgement judgement = {};
+  std::optional<Golden> golden = {}, actual = {};
 };
 
 /// One HTML page that opens offline: expected, actual and difference of every frame as data URIs, failures

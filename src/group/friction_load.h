@@ -13,6 +13,10 @@ struct RubbingPoint {
   int shape = 0;  ///< index into ContactLoads::shapes
   StickSlip hold;
 };
+void visit_members(auto&& visit, MembersOf<RubbingPoint> auto& rubbing) {
+  auto& [point, shape, hold] = rubbing;
+  visit(point, shape, hold);
+}
 
 /// Ordered by shape, then point; each pair occurs once.
 struct FrictionLoad {
@@ -25,5 +29,9 @@ struct FrictionLoad {
   void add_hessian(const Tessellation& skin, const VecX& x, BlockMatrix& matrix,
                    Workers* workers = nullptr) const;
 };
+void visit_members(auto&& visit, MembersOf<FrictionLoad> auto& load) {
+  auto& [points] = load;
+  visit(points);
+}
 
 }  // namespace calot

@@ -62,9 +62,8 @@ FallenOn::FallenOn(const Field& field) {
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];
     if (organ.body->is_line()) continue;
-    Skin skin{OrganIndex(k), organ.body->skin_positions(organ.state.x), {}, {}, {}};
-    skin.triangles = &organ.body->skin().triangles;
-    skin.each = static_cast<std::size_t>(organ.body->triangles_each());
+    Skin skin{OrganIndex(k), organ.body->skin_positions(organ.state.x), &organ.body->skin().triangles,
+              static_cast<std::size_t>(organ.body->triangles_each())};
     skin.patches.resize(skin.triangles->size() / skin.each);
     for (std::size_t t = 0; t < skin.triangles->size(); ++t)
       for (int corner : (*skin.triangles)[t]) skin.patches[t / skin.each].extend(skin.at[corner]);

@@ -24,9 +24,9 @@ class FallenOn {
   struct Skin {
     OrganIndex organ;
     std::vector<Vec3> at;
-    std::vector<Eigen::AlignedBox3d> patches;  ///< around `each` triangles that follow each other
     const std::vector<Triangle>* triangles;
     std::size_t each;
+    std::vector<Eigen::AlignedBox3d> patches = {};  ///< around `each` triangles that follow each other
   };
   std::vector<Skin> skins_;
 };

@@ -61,9 +61,7 @@ Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kin
   }
   const auto drawn = std::make_shared<const Kind>(std::move(body).value());
   if (std::optional<Failure> failure = check_clear_of_ground(*drawn, setting.loads)) return *failure;
-  RestedOrgan made{Organ{definition, drawn, {}, {}, {}, {}, {}, {}, {}, {}},
-                   NewtonWorkspace(drawn->pattern())};
-  made.organ.state.x = drawn->rest();
+  RestedOrgan made{Organ(definition, drawn), NewtonWorkspace(drawn->pattern())};
   made.organ.search.own.active = false;
   return made;
 }

@@ -365,9 +365,8 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   if (std::optional<Failure> failure = check_skin_spacing(body.value())) return *failure;
   NewtonWorkspace work(body->pattern());
   const auto shell = std::make_shared<ShellBody>(std::move(body).value());
-  RestedOrgan made{Organ{definition, shell, {}, {}, {}, {}, {}, {}, {}, {}}, std::move(work)};
+  RestedOrgan made{Organ(definition, shell), std::move(work)};
   Organ& organ = made.organ;
-  organ.state.x = shell->rest();
   organ.state.volume = shell->bile()->volume(organ.state.x);
   if (std::optional<Failure> failure = check_clear_of_ground(*shell, setting.loads)) return *failure;
   organ.search.own.active = !swells(organ);

@@ -4,24 +4,15 @@
 
 namespace calot {
 
-OrganSnapshot snapshot(const Organ& organ) {
-  return {organ.body,     organ.state, organ.grips,  organ.extensions, organ.refused_details,
-          organ.friction, organ.clips, organ.unfelt, organ.openings,   organ.left_in,
-          organ.burns};
+Organ::Organ(OrganDefinition of, BodyPointer with) : definition(std::move(of)), body(std::move(with)) {
+  state.x = body->rest();
 }
+
+OrganSnapshot snapshot(const Organ& organ) { return {organ, organ.body}; }
 
 void restore(Organ& organ, const OrganSnapshot& snapshot) {
   organ.body = snapshot.body;
-  organ.state = snapshot.state;
-  organ.grips = snapshot.grips;
-  organ.extensions = snapshot.extensions;
-  organ.refused_details = snapshot.refused_details;
-  organ.friction = snapshot.friction;
-  organ.clips = snapshot.clips;
-  organ.unfelt = snapshot.unfelt;
-  organ.openings = snapshot.openings;
-  organ.left_in = snapshot.left_in;
-  organ.burns = snapshot.burns;
+  static_cast<OrganMotion&>(organ) = snapshot;
 }
 
 std::string quoted(const Organ& organ) { return "'" + organ.definition.name + "'"; }

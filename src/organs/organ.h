@@ -25,6 +25,10 @@ struct GripPoint {
   double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
   bool operator==(const GripPoint&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<GripPoint> auto& grip) {
+  auto& [instrument, jaw, skin_point, local, stiffness] = grip;
+  visit(instrument, jaw, skin_point, local, stiffness);
+}
 
 /// Where details are active: around a skin point that a shape of the surroundings is near to.
 struct Extension {
@@ -32,6 +36,10 @@ struct Extension {
   int centre = 0;  ///< skin point
   bool operator==(const Extension&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<Extension> auto& extension) {
+  auto& [shape, centre] = extension;
+  visit(shape, centre);
+}
 
 /// What the active details were chosen by.
 struct ContactPlace {
@@ -60,6 +68,10 @@ struct Clip {
   bool shut() const { return opening <= 0; }
   bool operator==(const Clip&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<Clip> auto& clip) {
+  auto& [size, at, opening, legs, pressed, reach] = clip;
+  visit(size, at, opening, legs, pressed, reach);
+}
 
 /// Where what an organ holds can leave it: the end of a divided tube, or a hole in a wall (leak.h).
 struct Opening {
@@ -71,53 +83,63 @@ struct Opening {
   double drop = 0;    ///< m^3, that has left it and hangs on it still
   bool leaks = false;
 };
+void visit_members(auto&& visit, MembersOf<Opening> auto& hole) {
+  auto& [point, area, cause, rate, lost, drop, leaks] = hole;
+  visit(point, area, cause, rate, lost, drop, leaks);
+}
 
 /// What current has done to a wall, for pictures.
 struct Burn {
   int point = 0;      ///< of what is drawn of it
   double energy = 0;  ///< J
 };
+void visit_members(auto&& visit, MembersOf<Burn> auto& burn) {
+  auto& [point, energy] = burn;
+  visit(point, energy);
+}
 
-struct Organ {
-  OrganDefinition definition;
-  BodyPointer body;  ///< never null
+/// All of an organ that a step changes, but for its body, which another one replaces.
+struct OrganMotion {
   BodyState state;
-  mutable ContactSearch search;  ///< remembers where it looked last: what it finds does not depend on it
-  std::map<std::string, int> landmarks;  ///< skin point of each
-  std::vector<GripPoint> grips;          ///< ordered by instrument, jaw, skin_point
-  std::vector<Extension> extensions;     ///< ordered by shape
+  std::vector<GripPoint> grips;       ///< ordered by instrument, jaw, skin_point
+  std::vector<Extension> extensions;  ///< ordered by shape
   /// Details that found no rest when they were tried last: not tried again until others are wanted.
   std::optional<std::vector<int>> refused_details;
-  FrictionLoad friction;  ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
-  /// Where the details were found to be those that are wanted: remembered, no part of any result.
-  std::optional<ContactPlace> looked_at;
-  int record = -1;               ///< on the field's roll (members.h)
-  std::vector<Clip> clips = {};  ///< ordered by place
+  FrictionLoad friction;    ///< at the last equilibrium, each hold in its shape's frame (rubbing.h)
+  std::vector<Clip> clips;  ///< ordered by place
   /// Instruments whose jaws it does not feel, increasing: they cut it, and it is between them still.
-  std::vector<ToolIndex> unfelt = {};
-  bool of_specimen = false;            ///< a piece that the patient's was cut off from
-  std::vector<Opening> openings = {};  ///< ordered as they were made, but a tube's by their points
+  std::vector<ToolIndex> unfelt;
+  std::vector<Opening> openings;  ///< ordered as they were made, but a tube's by their points
   /// m^3, what is left in a tube that nothing feeds; none: it is full.
-  std::optional<double> left_in = {};
-  std::vector<Burn> burns = {};  ///< in the order in which they began
-  bool is_shut() const {         ///< by a clip
+  std::optional<double> left_in;
+  std::vector<Burn> burns;  ///< in the order in which they began
+  bool is_shut() const {    ///< by a clip
     return std::any_of(clips.begin(), clips.end(), [](const Clip& clip) { return clip.shut(); });
   }
 };
+void visit_members(auto&& visit, MembersOf<OrganMotion> auto& motion) {
+  auto& [state, grips, extensions, refused_details, friction, clips, unfelt, openings, left_in, burns] =
+      motion;
+  visit(state, grips, extensions, refused_details, friction, clips, unfelt, openings, left_in, burns);
+}
 
-/// All that moves of an organ. `search` only remembers.
-struct OrganSnapshot {
+struct Organ : OrganMotion {
+  /// At rest where the body is; the body is not null.
+  Organ(OrganDefinition definition, BodyPointer body);
+
+  OrganDefinition definition;
+  BodyPointer body;              ///< never null
+  mutable ContactSearch search;  ///< remembers where it looked last: what it finds does not depend on it
+  std::map<std::string, int> landmarks;  ///< skin point of each
+  /// Where the details were found to be those that are wanted: remembered, no part of any result.
+  std::optional<ContactPlace> looked_at;
+  int record = -1;           ///< on the field's roll (members.h)
+  bool of_specimen = false;  ///< a piece that the patient's was cut off from
+};
+
+/// All that a step changes. `search` only remembers.
+struct OrganSnapshot : OrganMotion {
   BodyPointer body;
-  BodyState state;
-  std::vector<GripPoint> grips;
-  std::vector<Extension> extensions;
-  std::optional<std::vector<int>> refused_details;
-  FrictionLoad friction;
-  std::vector<Clip> clips;
-  std::vector<ToolIndex> unfelt;
-  std::vector<Opening> openings;
-  std::optional<double> left_in;
-  std::vector<Burn> burns;
 };
 OrganSnapshot snapshot(const Organ& organ);
 void restore(Organ& organ, const OrganSnapshot& snapshot);

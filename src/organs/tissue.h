@@ -16,6 +16,10 @@ struct TissueMotion {
   std::vector<double> heated;  ///< J that each has taken from instruments' current
   bool tearing = false;        ///< some strand was torn in the last step
 };
+void visit_members(auto&& visit, MembersOf<TissueMotion> auto& motion) {
+  auto& [state, opened, heated, tearing] = motion;
+  visit(state, opened, heated, tearing);
+}
 
 struct Tissue {
   TissueDefinition definition;

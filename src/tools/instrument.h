@@ -7,6 +7,7 @@
 #include "anatomy/instruments.h"
 #include "base/status.h"
 #include "collision/shapes.h"
+#include "geometry/state_members.h"
 
 namespace calot {
 
@@ -21,6 +22,10 @@ struct InstrumentPose {
   double jaw = 0;   ///< rad between the two jaws; 0 is closed on nothing, and all there is without jaws
   bool operator==(const InstrumentPose&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<InstrumentPose> auto& pose) {
+  auto& [pitch, yaw, insertion, roll, jaw] = pose;
+  visit(pitch, yaw, insertion, roll, jaw);
+}
 
 /// The opening in a fenestrated jaw, m: from `start` to `end` along it, narrowing, with round corners.
 struct JawWindow {

@@ -18,17 +18,23 @@ struct NeedleState {
   double drawn_ever = 0;  ///< m^3, of all organs
   bool empty = false;     ///< it drew at the last step and was in nothing, for events
 };
+void visit_members(auto&& visit, MembersOf<NeedleState> auto& needle) {
+  auto& [record, point, drawn, drawn_ever, empty] = needle;
+  visit(record, point, drawn, drawn_ever, empty);
+}
 
 /// What other tools press it with (hands.h).
 struct MeetingState {
   Vec3 force = Vec3::Zero();  ///< N at the tip, of the same moment about the trocar
   std::string with;           ///< the first of those tools; empty: none
 };
+void visit_members(auto&& visit, MembersOf<MeetingState> auto& meeting) {
+  auto& [force, with] = meeting;
+  visit(force, with);
+}
 
-struct Tool {
-  InstrumentDefinition definition;
-  InstrumentGeometry geometry;
-  Vec3 trocar = Vec3::Zero();  ///< m
+/// All of a tool that a step changes.
+struct ToolState {
   InstrumentPose pose;
   bool touched = false, over_limit = false;  ///< at the last step, for events
   bool jaw_stopped = false;                  ///< the jaws rest on what they hold
@@ -58,6 +64,20 @@ struct Tool {
 
   /// Whether tissue keeps its jaws from closing.
   bool jaws_rest() const { return jaw_stopped || pressing; }
+};
+void visit_members(auto&& visit, MembersOf<ToolState> auto& state) {
+  auto& [pose, touched, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
+         beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
+         roll_stiffness, meeting, met, drag, pressing] = state;
+  visit(pose, touched, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
+        beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
+        roll_stiffness, meeting, met, drag, pressing);
+}
+
+struct Tool : ToolState {
+  InstrumentDefinition definition;
+  InstrumentGeometry geometry;
+  Vec3 trocar = Vec3::Zero();  ///< m
 };
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);

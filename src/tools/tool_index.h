@@ -4,6 +4,8 @@
 #include <compare>
 #include <concepts>
 
+#include "geometry/state_members.h"
+
 namespace calot {
 
 /// A tool by its place among the field's. A number becomes one only where that is said.
@@ -13,5 +15,10 @@ struct ToolIndex {
   constexpr explicit ToolIndex(std::integral auto place) : value(static_cast<int>(place)) {}
   auto operator<=>(const ToolIndex&) const = default;
 };
+
+void visit_members(auto&& visit, MembersOf<ToolIndex> auto& index) {
+  auto& [value] = index;
+  visit(value);
+}
 
 }  // namespace calot

@@ -33,9 +33,9 @@ inline BodyPointer straight_duct(const Vec3& from, const Vec3& to, double radius
 struct GroupRig {
   struct One {
     BodyPointer body;
-    ContactLoads loads;
-    ContactSearch search;
-    BodyState state;
+    ContactLoads loads = {};
+    ContactSearch search = {};
+    BodyState state = {};
   };
   std::deque<One> bodies;
   std::vector<JoinPointer> joins;
@@ -45,7 +45,7 @@ struct GroupRig {
 
   explicit GroupRig(const std::vector<BodyPointer>& of) {
     for (const BodyPointer& body : of) {
-      bodies.push_back({body, {}, {}, {}});
+      bodies.push_back({body});
       bodies.back().search.own.active = false;
       bodies.back().state.x = body->rest();
     }

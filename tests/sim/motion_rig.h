@@ -28,8 +28,9 @@ inline Field free_ball(double height, double step_time, const std::optional<Plan
   Field field;
   if (support) field.ground.push_back({"support", *support, 0, false});
   field.step_time = step_time;
-  BodyState state{body->rest(), 0, body->bile()->volume(body->rest())};
-  field.add({Organ{definition, body, state, {}, {}, {}, {}, {}, {}, {}}, NewtonWorkspace(body->pattern())});
+  Organ organ(definition, body);
+  organ.state.volume = body->bile()->volume(body->rest());
+  field.add({organ, NewtonWorkspace(body->pattern())});
   return field;
 }
 

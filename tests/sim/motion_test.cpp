@@ -128,14 +128,15 @@ struct Pendulum {
     }
     arm /= mass, arm_squared /= mass;
     field.step_time = h;
-    BodyState state{body->rest()};
-    const Eigen::AngleAxisd turn(0.05, Vec3::UnitY());
-    for (Eigen::Index i = 0; i < state.x.size(); i += 3)
-      state.x.segment<3>(i) = pivot + turn * Vec3(Vec3(state.x.segment<3>(i)) - pivot);
     OrganDefinition definition;
     definition.name = "rod";
     definition.wall.retardation = 0;  // the theory knows none
-    field.add({Organ{definition, body, state, {}, {}, {}, {}, {}, {}, {}}, NewtonWorkspace(body->pattern())});
+    Organ organ(definition, body);
+    VecX& x = organ.state.x;
+    const Eigen::AngleAxisd turn(0.05, Vec3::UnitY());
+    for (Eigen::Index i = 0; i < x.size(); i += 3)
+      x.segment<3>(i) = pivot + turn * Vec3(Vec3(x.segment<3>(i)) - pivot);
+    field.add({organ, NewtonWorkspace(body->pattern())});
   }
   double aside() const { return field.organs[0].state.x[field.organs[0].state.x.size() - 3]; }
 };
