@@ -208,8 +208,8 @@ TEST(Leaks, APressureFallsByTheComplianceOfItsOwnOrgan) {
     Opening hole;
     hole.area = 2e-6;
     bag.openings.push_back(hole);
-    const double pressure =
-        shell_of(bag)->bile()->pressure_at(bag.body->skin_point(0, bag.state.x), bag.state.datum_pressure);
+    const double pressure = bag.body->as_shell()->bile()->pressure_at(bag.body->skin_point(0, bag.state.x),
+                                                                      bag.state.datum_pressure);
     bodies.run(0.1);
     const double wanted = elastic_outflow(pressure, compliance, 2e-6, bile_density, 0.1);
     EXPECT_NEAR(bodies.lost(Carries::bile), wanted, 5e-3 * wanted) << open;
@@ -387,20 +387,22 @@ SceneDefinition branched(const std::string& from) {
 TEST(Bleeding, EndsByAClipRightBesideTheJointOnTheFarSide) {
   struct Clipped {
     std::string from;
-    int organ;                   ///< that is clipped; the other one is cut
+    OrganIndex organ;            ///< that is clipped; the other one is cut
     std::vector<double> beside;  ///< skin points from the joint
   };
-  for (const Clipped& one : {Clipped{"end", 0, {-0.5}}, {"middle", 0, {-0.5, 0.5}}, {"end", 1, {0.5}}})
+  constexpr OrganIndex artery{0}, branch{1};
+  for (const Clipped& one :
+       {Clipped{"end", artery, {-0.5}}, {"middle", artery, {-0.5, 0.5}}, {"end", branch, {0.5}}})
     for (const bool shut : {false, true}) {
       Bodies bodies(branched(one.from));
-      const double last = rod_of(bodies.field.organs[one.organ])->last_point();
-      const double joint = one.organ == 1 ? 0 : one.from == "end" ? last : 0.5 * last;
+      const double last = bodies.field.organ(one.organ).body->as_tube()->last_point();
+      const double joint = one.organ == branch ? 0 : one.from == "end" ? last : 0.5 * last;
       for (const double beside : one.beside) bodies.clip(one.organ, (joint + beside) / last, shut ? 0 : 1);
-      const Division pieces = bodies.cut(1 - one.organ);
+      const Division pieces = bodies.cut(one.organ == artery ? branch : artery);
       bodies.run(0.1, 5);
       // Of the branch the patient's piece is the one that grows out of the artery, of the artery the held one.
-      const int open = one.organ == 0 ? pieces.patient : pieces.specimen;
-      EXPECT_EQ(bodies.field.organs[open].openings[0].rate > 0, !shut) << one.from << one.organ;
+      const OrganIndex open = one.organ == artery ? pieces.patient : pieces.specimen;
+      EXPECT_EQ(bodies.field.organ(open).openings[0].rate > 0, !shut) << one.from << one.organ.value;
     }
 }
 
@@ -426,7 +428,7 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   EXPECT_EQ(open(), 0);
   Field without = acting.world.field();
   without.tools[0].waits = true;
-  EXPECT_EQ(open_between(without, 0, 0, rod_of(without.organs[0])->last_point()), 1)
+  EXPECT_EQ(open_between(without, OrganIndex(0), 0, without.organs[0].body->as_tube()->last_point()), 1)
       << "an instrument that waits outside shuts nothing";
   // Cut beyond the jaws: what the specimen's piece holds is all that is lost, until they open.
   ASSERT_TRUE(acting.world.divide("duct", 0.75));

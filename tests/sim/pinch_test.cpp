@@ -159,8 +159,8 @@ TEST(Pinch, WhatClaspsSomethingIsNotDrawnOutOfItsPort) {
     }
   };
   go(0, 10);
-  ASSERT_EQ(between_pads(wedge.field, 0), "wedge");
-  ASSERT_TRUE(held_organ(wedge.field, 0).empty());
+  ASSERT_EQ(between_pads(wedge.field, ToolIndex(0)), "wedge");
+  ASSERT_TRUE(held_organ(wedge.field, ToolIndex(0)).empty());
   std::vector<WorldEvent> events;
   const std::vector<InstrumentAction> exchange{InstrumentAction::none, InstrumentAction::exchange};
   exchange_tools(wedge.field, exchange, events);
@@ -177,10 +177,10 @@ TEST(Pinch, JawsRestOnNothingWhereWhatTheyHeldOrClaspedWasRemoved) {
   const auto remove = [&](Field field) {
     field.add(make_organ(other, {}, Vec3::UnitZ(), 1e-6).value());
     ASSERT_TRUE(field.tools[0].jaw_stopped && field.tools[0].pressing);
-    ASSERT_TRUE(remove_body(field, 1, "", 0));
+    ASSERT_TRUE(remove_body(field, OrganIndex(1), "", 0));
     EXPECT_TRUE(field.tools[0].jaw_stopped && field.tools[0].pressing) << "they hold on to what is there";
     field.add(make_organ(other, {}, Vec3::UnitZ(), 1e-6).value());
-    ASSERT_TRUE(remove_body(field, 0, "", 0));
+    ASSERT_TRUE(remove_body(field, OrganIndex(0), "", 0));
     EXPECT_FALSE(field.tools[0].jaw_stopped || field.tools[0].pressing);
     InstrumentPose closed = field.tools[0].pose;
     closed.jaw = 0;

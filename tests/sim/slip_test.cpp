@@ -256,7 +256,7 @@ TEST(Slip, AFailedSlipOrReleaseLeavesTheGripAsItWas) {
 TEST(Slip, WhereNothingIsHeldAReleaseSolvesNothing) {
   Field field = test::FundusField(test::ball_scene()).field;
   SolveStatistics statistics;
-  ASSERT_TRUE(release(field, 0, statistics));
+  ASSERT_TRUE(release(field, ToolIndex(0), statistics));
   EXPECT_EQ(statistics.solves, 0);
 }
 
