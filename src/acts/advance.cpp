@@ -10,7 +10,7 @@
 #include "field/field_tissues.h"
 #include "field/grip.h"
 #include "field/take_hold.h"
-#include "motion/structural_extension.h"
+#include "motion/step_budget.h"
 
 namespace calot {
 namespace {
@@ -64,6 +64,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     };
     if (Result<bool> moved = close_within_pinch(field, here, targets, go, events, statistics); !moved)
       return moved.failure();
+    else if (!moved.value())
+      break;
     for (std::size_t i = 0; i < field.tools.size(); ++i) {
       const std::vector<double>& own = holding_stops[i];
       const bool at_stop = std::binary_search(own.begin(), own.end(), stop);
@@ -73,7 +75,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       if (!closed) return closed.failure();
     }
   }
-  judge_clasps(field, slipped_before, events);
+  // What is not in balance tells not what slips.
+  if (!statistics.cut_short) judge_clasps(field, slipped_before, events);
   feel_again(field);
   grow_damage(field);
   tears.judge(field, events);

@@ -8,6 +8,7 @@
 #include "field/field_state.h"
 #include "field/grip.h"
 #include "field/teeth.h"
+#include "motion/step_budget.h"
 
 namespace calot {
 namespace {
@@ -58,6 +59,8 @@ class Trials {
   const Result<bool>& last() const { return last_; }
   /// Before it, of jaws that tissue had not stopped.
   double excess_at_start(std::size_t tool) const { return at_start_[tool]; }
+  /// No further angle is worth what the step may still take: what was tried last is kept.
+  bool spent() const { return is_spent(field_, statistics_); }
   double jaw_at_start(std::size_t tool) const { return start_.tools[tool].pose.jaw; }
   bool pressed_at_start(std::size_t tool) const { return start_.tools[tool].pressing; }
 
@@ -87,7 +90,7 @@ void find_pinch(Trials& trials, std::size_t tool, At tight, At loose) {
     const double share = std::clamp(of_tight / (of_tight - of_loose), 0.1, 0.9);
     const double jaw = tight.jaw + share * (loose.jaw - tight.jaw);
     const double excess = trials.excess(tool, jaw);
-    if (std::abs(excess) <= pinch_tolerance) return;
+    if (std::abs(excess) <= pinch_tolerance || trials.spent()) return;
     if (excess > 0) {
       tight = {jaw, excess};
       of_tight = std::min(excess, 1.0);
@@ -108,7 +111,7 @@ void turn_to_pinch(Trials& trials, std::size_t tool, At here, double end) {
   for (double way = shortest; here.jaw != end; way *= 4) {
     const double jaw = end > here.jaw ? std::min(here.jaw + way, end) : std::max(here.jaw - way, end);
     const At next{jaw, trials.excess(tool, jaw)};
-    if (std::abs(next.excess) <= pinch_tolerance) return;
+    if (std::abs(next.excess) <= pinch_tolerance || trials.spent()) return;
     if ((next.excess > 0) != (here.excess > 0))
       return next.excess > 0 ? find_pinch(trials, tool, next, here) : find_pinch(trials, tool, here, next);
     here = next;
@@ -136,6 +139,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     const At first{to[i].jaw, i == pressing.front() ? trials.excess(i, to[i].jaw) : trials.excess(i)};
     const bool tight = first.excess > pinch_tolerance;
     if (tight) stopped.push_back(i);
+    if (trials.spent()) continue;
     if (!trials.pressed_at_start(i)) {
       if (!tight) continue;
       // Jaws that were closing are let back as far as they have come.

@@ -10,6 +10,7 @@
 #include "field/moving_bodies.h"
 #include "motion/predict.h"
 #include "motion/settle_field.h"
+#include "motion/step_budget.h"
 #include "motion/structural_extension.h"
 
 namespace calot {
@@ -72,8 +73,13 @@ class Following {
         iterations_before_(statistics.newton_iterations) {}
 
   Result<bool> run() {
-    while (done_ < 1.0)
+    while (done_ < 1.0) {
+      if (is_spent(field_, statistics_)) {
+        statistics_.cut_short = true;
+        return false;
+      }
       if (Result<bool> part = one_part(); !part) return part;
+    }
     return true;
   }
 
@@ -95,7 +101,7 @@ class Following {
       const double next = share >= 1.0 ? 1.0 : done_ + share * (1.0 - done_);
       const Poses poses = next >= 1.0 ? to_ : interpolate(from, to_, share);
       last = settle_at(poses, share, parts.value(), answer.value());
-      accepted = last.converged();
+      accepted = last.converged() || was_cut_short(field_, last);
       if (accepted) {
         field_.group.missed = missed_by(answer.value(), share, before, field_, last.by_last_factor);
         if (Result<bool> kept = keep(poses, next); !kept) return kept;
@@ -123,6 +129,7 @@ class Following {
 
   /// That a share of what is left, after a solve that failed (or none), is not worth trying.
   std::optional<Failure> given_up(double share, const NewtonResult& last) const {
+    if (field_.stopped()) return fail(FailureKind::interrupted, "the step was interrupted");
     const int iterations = statistics_.newton_iterations - iterations_before_;
     if (part_ >= max_parts || iterations > step_iterations)
       return cannot_follow(field_,
@@ -146,9 +153,11 @@ class Following {
   /// The tools have come to `poses`, and `next` of the motion is done.
   Result<bool> keep(const Poses& poses, double next) {
     for (std::size_t i = 0; i < field_.tools.size(); ++i) field_.tools[i].pose = poses[i];
-    for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
     done_ = next;
     ++statistics_.substeps;
+    // What is not in balance tells neither what slips nor where it is touched.
+    if (is_spent(field_, statistics_)) return true;
+    for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
     const int iterations = statistics_.newton_iterations;
     Result<bool> held = let_slip(field_, slipped_before_, events_, statistics_);
     iterations_before_ += statistics_.newton_iterations - iterations;

@@ -13,6 +13,7 @@
 #include "field/take_hold.h"
 #include "field/teeth.h"
 #include "motion/settle_field.h"
+#include "motion/step_budget.h"
 
 namespace calot {
 namespace {
@@ -41,7 +42,8 @@ Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(c
     return std::any_of(organ.grips.begin(), organ.grips.end(), leaves);
   });
   if (!any) return true;
-  for (double stiffness = grip_stiffness; stiffness > last_stiffness; stiffness *= weaken) {
+  double stiffness = grip_stiffness;
+  for (; stiffness > last_stiffness && !is_spent(field, statistics); stiffness *= weaken) {
     if (budget.spent()) return without_end(field, instrument, "what leaves");
     for (Organ& organ : field.organs)
       for (GripPoint& grip : organ.grips)
@@ -218,6 +220,7 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   double way = demand.turns ? 0.5 * longest_way : shortest_way;
   bool turning = false;
   while (!budget.spent()) {
+    if (is_spent(field, statistics)) return out;
     if (demand.turns && !std::exchange(turning, true)) demand = largest_demand(field, instrument, true);
     const FieldState before = field_state(field);
     const Result<bool> slid = slide(field, instrument, demand, way, budget, statistics);

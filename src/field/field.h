@@ -1,6 +1,7 @@
 #pragma once
 // Organs, tools and what carries them.
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -60,6 +61,7 @@ struct Field {
   double tolerance = 1e-6;
   double step_time = 0;   ///< s that a step takes where masses count; 0: statics
   double time = 0;        ///< s, at the end of the present step
+  int step_budget = 500;  ///< what a step may take where masses count (motion/step_budget.h)
   Spill spill;            ///< what has left the organs
   double heart_rate = 0;  ///< a minute
   Vec3 up = Vec3::UnitZ();
@@ -67,10 +69,13 @@ struct Field {
   std::optional<OrganPoint> viewed;  ///< what the laparoscope looks at from near by
   ExtensionScheme scheme = ExtensionScheme::condensed;
   Assembly* assembly = nullptr;  ///< the world's threads; null: one does all
+  /// Becomes true when nobody waits any more for what is being solved for; null: somebody always does.
+  const std::atomic<bool>* stop = nullptr;
   Membership membership;
   std::shared_ptr<const FieldMembers> members;  ///< as it is now, for states; null before keep_members()
   std::uint64_t lives = 0;                      ///< that were given to bodies
 
+  bool stopped() const { return stop != nullptr && *stop; }
   /// What a body is touched by that has this place among its shapes.
   FieldShape shape(int index) const { return FieldShape::at(index, tools.size()); }
   Organ& organ(OrganIndex at) { return organs[at.value]; }

@@ -1,10 +1,13 @@
 #include "motion/settle_field.h"
 
+#include <limits>
+
 #include "field/field_tissues.h"
 #include "field/grip.h"
 #include "group/detail_fading.h"
 #include "motion/body_rubbing.h"
 #include "motion/rubbing.h"
+#include "motion/step_budget.h"
 
 namespace calot {
 
@@ -102,10 +105,16 @@ bool friction_agrees(Field& field, const std::vector<InstrumentPose>& poses, con
 
 }  // namespace
 
+NewtonSettings solver_settings(const Field& field, int iterations) {
+  NewtonSettings out;
+  out.tolerance = field.tolerance;
+  out.stop = [&field, left = iterations]() mutable { return field.stopped() || left-- <= 0; };
+  return out;
+}
+
 NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
                           const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics) {
-  NewtonSettings settings;
-  settings.tolerance = field.tolerance;
+  NewtonSettings settings = solver_settings(field, left_of_budget(field, statistics));
   settings.max_iterations = max_iterations;
   const double travel = largest_travel(field, poses);
   for (Organ& organ : field.organs) fade_details(travel, organ.state);
@@ -140,19 +149,26 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
   }
   count(field, total, statistics);
+  if (was_cut_short(field, total)) {
+    statistics.cut_short = true;
+    statistics.residual = total.residual;
+  }
   return total;
+}
+
+bool was_cut_short(const Field& field, const NewtonResult& result) {
+  return result.status == NewtonStatus::stopped && !field.stopped();
 }
 
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
   const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
                                            NewtonSettings{}.max_iterations, statistics);
-  if (!result.converged()) return solve_failure(result, member_name(field, result.part), when);
-  return true;
+  if (result.converged() || was_cut_short(field, result)) return true;
+  return solve_failure(result, member_name(field, result.part), when);
 }
 
 Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
-  NewtonSettings settings;
-  settings.tolerance = field.tolerance;
+  const NewtonSettings settings = solver_settings(field, std::numeric_limits<int>::max());
   std::vector<ContactLoads> loads;
   for (const Organ& organ : field.organs) loads.push_back(contact_loads(field, organ, present_poses(field)));
   Group& group = field.group;

@@ -16,6 +16,9 @@ ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vect
 /// Those of all organs.
 std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses);
 
+/// How the field's bodies are solved for; a solve ends (stopped) as soon as the field is, or after so many iterations.
+NewtonSettings solver_settings(const Field& field, int iterations);
+
 /// Adds a solve's counts and times.
 void count(const Field& field, const NewtonResult& result, SolveStatistics& statistics);
 
@@ -39,7 +42,11 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
 /// Lets organs that nothing holds sink to rest with no tool near (equilibrium.h); they rest without friction.
 Result<bool> sink_field(Field& field, SolveStatistics& statistics);
 
-/// Brings every organ to rest with the tools as they stand. `when` is for the failure's text (simulation);
+/// Whether a solve of the group ended because the step's budget was spent (step_budget.h): its members are left at the
+/// last iterate, from where the next step goes on.
+bool was_cut_short(const Field& field, const NewtonResult& result);
+
+/// Brings every organ to rest with the tools as they stand, or as far as the step's budget goes. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);
 

@@ -193,11 +193,13 @@ void change_details(Field& field, Organ& organ, std::vector<int> details, const 
   organ.body = std::make_shared<const ShellBody>(std::move(next).value());
   field.group.forget_bodies();
   ++statistics.extensions_changed;
-  if (clear_of_tools(organ, now) && clear_of_itself(organ, shell, was.x) &&
-      settle_group(field, poses, present_places(field), NewtonSettings{}.max_iterations, statistics)
-          .converged()) {
-    organ.refused_details.reset();
-    return;
+  if (clear_of_tools(organ, now) && clear_of_itself(organ, shell, was.x)) {
+    const NewtonResult settled =
+        settle_group(field, poses, present_places(field), NewtonSettings{}.max_iterations, statistics);
+    if (settled.converged() || was_cut_short(field, settled)) {
+      organ.refused_details.reset();
+      return;
+    }
   }
   restore(field, before);
   --statistics.extensions_changed;

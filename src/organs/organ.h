@@ -165,7 +165,7 @@ struct OrganPoint {
 /// Of "organ.landmark"; none: there is none.
 std::optional<OrganPoint> find_landmark(const std::vector<Organ>& organs, const std::string& name);
 
-/// A failed solve in words: what happened, and what to change.
+/// A failed solve in words: what happened, and what to change (simulation); one that was stopped was interrupted.
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);
 
 }  // namespace calot

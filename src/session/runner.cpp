@@ -121,6 +121,7 @@ class Session {
 
   /// The input that could not be followed is recorded too: its replay fails at the same place.
   void note_failed_step(const Failure& failure) {
+    if (failure.kind == FailureKind::interrupted) return end(SessionEnd::interrupted);
     end(failure);
     result_.state_hashes.push_back(world_.state_hash());
     if (options_.recording != nullptr) {
@@ -158,6 +159,7 @@ class Session {
     append_sample(world_, result_.traces);
     SessionTiming& timing = result_.timing;
     timing.substeps += report.statistics.substeps;
+    timing.steps_cut_short += report.statistics.cut_short ? 1 : 0;
     timing.newton_iterations += report.statistics.newton_iterations;
     refused_ += report.statistics.extensions_refused;
     timing.assembly_s += report.statistics.assembly_s;

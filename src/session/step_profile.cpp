@@ -39,6 +39,7 @@ std::vector<std::string> row_of(const ProfiledStep& step) {
        {s.substeps, s.solves, s.newton_iterations, s.factorisations, s.shifts, s.friction_rounds})
     row.push_back(std::to_string(count));
   row.push_back(csv_field(counts_text(s.jaw_trials)));
+  row.push_back(s.cut_short ? fmt::format("{:.2g}", s.residual) : "");
   for (const double part : {s.assembly_s, s.factorisation_s, s.solve_s, s.contact_s, s.extension_s,
                             std::max(0.0, step.wall_s - known)})
     row.push_back(ms(part));
@@ -95,9 +96,10 @@ StepTimes step_times(std::vector<double> wall_s, double step) {
 }
 
 std::string profile_csv(const std::vector<ProfiledStep>& steps) {
-  std::string text = csv_row({"time_s", "wall_ms", "parts", "solves", "newton_steps", "factorisations",
-                              "shifts", "friction_rounds", "trials", "assembly_ms", "factorisation_ms",
-                              "solve_ms", "contact_ms", "extension_ms", "other_ms", "furthest", "events"});
+  std::string text =
+      csv_row({"time_s", "wall_ms", "parts", "solves", "newton_steps", "factorisations", "shifts",
+               "friction_rounds", "trials", "cut_short_at", "assembly_ms", "factorisation_ms", "solve_ms",
+               "contact_ms", "extension_ms", "other_ms", "furthest", "events"});
   for (const ProfiledStep& step : steps) text += csv_row(row_of(step));
   return text;
 }

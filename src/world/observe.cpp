@@ -37,11 +37,6 @@ void judge_stretch(const Field& field, const std::vector<OrganState>& before,
   }
 }
 
-/// Whether an instrument's jaws are pressed with more than the force that they may bear, N.
-bool is_over(const InstrumentState& state, double limit) {
-  return state.load_on(ToolPart::jaws).force.norm() > limit;
-}
-
 /// What begins at a tool.
 void observe_tool(const InstrumentDefinition& tool, const InstrumentState& before, const InstrumentState& now,
                   std::vector<WorldEvent>& events) {
@@ -49,11 +44,6 @@ void observe_tool(const InstrumentDefinition& tool, const InstrumentState& befor
     events.push_back({EventKind::contact, 0, tool.name, now.touches, 0, touched_place(now)});
   if (now.action == InstrumentAction::activate && before.action != now.action)
     events.push_back({EventKind::activation, 0, tool.name, now.touches, 0, touched_place(now)});
-  if (is_over(now, tool.force_limit) && !is_over(before, tool.force_limit)) {
-    const PartLoad& on_jaws = now.load_on(ToolPart::jaws);
-    events.push_back(
-        {EventKind::overforce, 0, tool.name, on_jaws.organ, on_jaws.force.norm(), place_of(on_jaws)});
-  }
   if (!now.meets.empty() && before.meets.empty()) {
     WorldEvent event{EventKind::clash, 0, tool.name, {}, now.meeting_force};
     event.text = now.meets;
@@ -61,7 +51,19 @@ void observe_tool(const InstrumentDefinition& tool, const InstrumentState& befor
   }
 }
 
+/// Jaws that are pressed with more than they may, and were not when forces were in balance last.
+void judge_force(const Tool& tool, const InstrumentState& now, std::vector<WorldEvent>& events) {
+  if (!presses_too_hard(now, tool.definition.force_limit) || tool.over_limit) return;
+  const PartLoad& on_jaws = now.load_on(ToolPart::jaws);
+  events.push_back({EventKind::overforce, 0, tool.definition.name, on_jaws.organ, on_jaws.force.norm(),
+                    place_of(on_jaws)});
+}
+
 }  // namespace
+
+bool presses_too_hard(const InstrumentState& state, double limit) {
+  return state.load_on(ToolPart::jaws).force.norm() > limit;
+}
 
 std::vector<WorldEvent> observe(const Field& field, const StepReport& before, const StepReport& now) {
   std::vector<WorldEvent> events;
@@ -69,6 +71,10 @@ std::vector<WorldEvent> observe(const Field& field, const StepReport& before, co
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     observe_tool(field.tools[i].definition, i < before.instruments.size() ? before.instruments[i] : unseen,
                  now.instruments[i], events);
+  // Forces and stretches of what is not in balance tell nothing; what they really are, the next steps show.
+  if (!now.balanced) return events;
+  for (std::size_t i = 0; i < field.tools.size(); ++i)
+    judge_force(field.tools[i], now.instruments[i], events);
   judge_stretch(field, before.organs, now.organs, events);
   return events;
 }

@@ -125,12 +125,13 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
     field.tools[i].action = actions.empty() ? InstrumentAction::none : actions[i];
   feel_ports(field.tools, before.instruments, duration);
   report_states(field, report);
+  report.balanced = !report.statistics.cut_short;
   const std::vector<WorldEvent> begun = observe(field, before, report);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     tool.touched = report.instruments[i].touching;
-    tool.over_limit =
-        report.instruments[i].load_on(ToolPart::jaws).force.norm() > tool.definition.force_limit;
+    if (report.balanced)
+      tool.over_limit = presses_too_hard(report.instruments[i], tool.definition.force_limit);
     tool.met = !report.instruments[i].meets.empty();
   }
   feel_stiffness(field.tools, before.instruments, report.instruments);
@@ -283,6 +284,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (self.scene.ports.empty()) self.scene.ports = default_ports();
   self.up = up_direction(scene.anatomy);
   set_field(scene, self.field);
+  self.field.stop = stop;
   if (Result<bool> added = add_organs(scene, self.up, stop, kept, self.workers, self.field); !added)
     return added.failure();
   if (Result<bool> joined = join_bodies(scene.anatomy, self.field); !joined) return joined.failure();
@@ -359,6 +361,11 @@ Result<StepReport> World::step(const StepInput& input) {
   const std::uint64_t hash_before = self.field_hash;
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
   Result<std::vector<WorldEvent>> events = self.act(input);
+  if (self.field.stopped()) {
+    // Whatever was given up on the way went another way by that.
+    calot::restore(self.field, before);
+    return fail(FailureKind::interrupted, "the step was interrupted");
+  }
   if (!events) {
     self.failed = true;
     self.failure = events.failure();

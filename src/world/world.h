@@ -31,7 +31,7 @@ class World {
  public:
   /// Validates, builds and brings the scene to its rest equilibrium at time 0. Failures: scenario
   /// (validation), simulation (the rest state could not be found), resource (it would take too long) or interrupted
-  /// (`stop` became true). Of `threads`, at most as many share the work of a step for the world's life: its bits are the
+  /// (`stop`, which must outlive the world, became true). Of `threads`, at most as many share the work of a step for the world's life: its bits are the
   /// same whatever their number. What takes long is looked for among `kept` first, and kept there when it had to be found:
   /// no bit depends on whether it was there; null: nothing is.
   static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr,
@@ -41,7 +41,8 @@ class World {
   ~World();
 
   /// Advances by 1 / rate. On failure (FailureKind::simulation) the message says where, when and what to
-  /// change; the state is that of before the step and further steps fail alike. A step that is known to change nothing,
+  /// change; the state is that of before the step and further steps fail alike. Once `stop` is true a step fails
+  /// (interrupted) within some Newton iterations, the state that of before it. A step that is known to change nothing,
   /// as the last one with the same input did not, costs a hash (solver.skip_still).
   Result<StepReport> step(const StepInput& input);
 

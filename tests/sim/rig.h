@@ -1,6 +1,7 @@
 #pragma once
 // A grasper on a gallbladder, driven along straight ways.
 
+#include <atomic>
 #include <functional>
 #include <optional>
 
@@ -132,8 +133,8 @@ struct FundusPath {
   Driver driver;
   Vec3 fundus, out;
 
-  explicit FundusPath(const SceneDefinition& scene, int threads = 1)
-      : world(World::create(scene, nullptr, threads).value()),
+  explicit FundusPath(const SceneDefinition& scene, int threads = 1, const std::atomic<bool>* stop = nullptr)
+      : world(World::create(scene, stop, threads).value()),
         driver(world),
         fundus(world.landmark(scene.anatomy.organs[0].name + ".fundus")),
         out((driver.trocar() - fundus).normalized()) {}

@@ -143,6 +143,22 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   }
 }
 
+TEST(World, AnInterruptedStepChangesNothingAndTheWorldGoesOn) {
+  CALOT_SLOW_WHEN_SANITIZED("a world pressed on");
+  std::atomic<bool> stop = false;
+  test::FundusPath path(test::grasper_scene(80), 1, &stop);  // where the skin is touched
+  test::expect_refused_without_a_trace(path, [&] {
+    StepInput input;
+    input.instruments = {path.world.report().instruments[0].pose};
+    input.instruments[0].insertion += 2e-3;
+    stop = true;
+    const Result<StepReport> step = path.world.step(input);
+    stop = false;
+    ASSERT_FALSE(step);
+    EXPECT_EQ(step.failure().kind, FailureKind::interrupted);
+  });
+}
+
 TEST(World, StepWithTooFewPosesIsRefusedAndChangesNothing) {
   CALOT_SLOW_WHEN_SANITIZED("a world pressed on");
   test::FundusPath path(test::grasper_scene(80));  // where the skin is touched
