@@ -3,14 +3,18 @@
 
 #include <array>
 #include <functional>
+#include <memory>
+#include <vector>
 
-#include "body/body.h"
+#include "geometry/types.h"
 
 namespace calot {
 
+class Body;
+
 /// What of a body lies on one side of a cut.
 struct BodyPiece {
-  BodyPointer body;
+  std::shared_ptr<const Body> body;
   /// Which of the piece's skin points each of the whole's is, and which of its triangles; -1: none.
   std::vector<int> points, triangles;
   /// Places or velocities of its nodes, 3 a node, for which it moves as the whole with its nodes at x does there.

@@ -37,6 +37,8 @@ std::vector<ProfiledStep> two_steps() {
   cut.statistics.jaw_trials = {{"left", 3}, {"right", 12}};
   cut.statistics.furthest = {{"plate", 30}, {"duct", 10}};
   WorldEvent event;
+  cut.statistics.cut_short = true;
+  cut.statistics.residual = 2e-3;
   event.kind = EventKind::cut;
   event.instrument = "blades";
   cut.events = {event};
@@ -47,7 +49,7 @@ TEST(StepProfile, HasARowAStepWithWhatFilledIt) {
   const std::string csv = profile_csv(two_steps());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_THAT(
-      csv, HasSubstr("0.04,500.000,0,0,40,55,0,0,right 12; left 3,200.000,0.000,100.000,0.000,0.000,200.000,"
+      csv, HasSubstr("0.04,500.000,0,0,40,55,0,0,right 12; left 3,0.002,200.000,0.000,100.000,0.000,0.000,200.000,"
                      "plate 30; duct 10,cut blades\r\n"));
   std::vector<std::ptrdiff_t> commas;
   for (std::size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1)
