@@ -38,7 +38,8 @@ std::optional<OrganPoint> find_landmark(const std::vector<Organ>& organs, const 
 
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {
   if (result.status == NewtonStatus::stopped)
-    return fail(FailureKind::interrupted, fmt::format("interrupted while organ '{}' came to rest {}", organ, when));
+    return fail(FailureKind::interrupted,
+                fmt::format("interrupted while organ '{}' came to rest {}", organ, when));
   const std::string hint = result.status == NewtonStatus::mechanism
                                ? "give the organ a held region, or let something support it"
                                : "move more slowly or less far, raise solver.rate, or give the organ more "
