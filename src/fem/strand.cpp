@@ -133,6 +133,10 @@ double Strand::way(const StrandVector& places) const {
   return Halves(places, rounding_share * law.setup().length).way();
 }
 
+StrandVector Strand::slope(const StrandVector& places) const {
+  return Halves(places, rounding_share * law.setup().length).slope();
+}
+
 double Strand::value(const StrandVector& places, const StrandPast& past) const {
   return law.sample(way(places), past).energy +
          0.5 * centring() * off_centre(places, law.torn(past.opened)).squaredNorm();

@@ -7,6 +7,8 @@
 // does not depend on how many they are, nor on how finely time is cut). What it was opened to once stays: less stretched,
 // its tension is the elastic one less its damage. That grows between solves only; within one it is as if it had grown.
 
+#include <algorithm>
+
 #include "base/status.h"
 #include "geometry/types.h"
 
@@ -79,6 +81,12 @@ struct Strand {
   double value(const StrandVector& places, const StrandPast& past) const;           ///< J
   StrandVector gradient(const StrandVector& places, const StrandPast& past) const;  ///< N
   StrandMatrix hessian(const StrandVector& places, const StrandPast& past) const;   ///< N/m
+  /// N/m by the square of its way's slope: added to the Hessian of a strand that softens this makes it positive
+  /// semidefinite. 0: it is.
+  double convexity(const StrandVector& places, const StrandPast& past) const {
+    return std::max(0.0, -law.sample(way(places), past).stiffness);
+  }
+  StrandVector slope(const StrandVector& places) const;  ///< of way()
   double tension(const StrandVector& places, const StrandPast& past) const {
     return law.sample(way(places), past).tension;
   }

@@ -179,6 +179,17 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
   if (search_) search_->own.add_hessian(body_, x, matrix);
 }
 
+bool BodyProblem::add_convexity(const VecX& x, BlockMatrix& matrix) const {
+  const std::vector<Touch>& touches = touching(x);
+  if (!touches.empty()) {
+    ContactStiffness pressed(body_.skin(), matrix, workers());
+    for (const Touch& touch : touches) pressed.add(touch.point, -contact_bend(loads_, touch));
+    pressed.finish();
+  }
+  const bool own = search_ && search_->own.add_convexity(body_, x, matrix);
+  return own || !touches.empty();
+}
+
 void BodyProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
   values.resize(constraints());
   gradients.resize(x.size(), constraints());
@@ -272,12 +283,15 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
   return contact_forces(memory.at(body, x, loads, pairs, 0.0));
 }
 
-Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
+Mat3 contact_bend(const ContactLoads& loads, const Touch& touch) {
   DistanceSlope d = touch.slope;
   d.distance += touch.radius;  // of the point itself, as the shape curves there
-  const BarrierSample& b = touch.answer;
-  return touch.area * (b.second * d.gradient * d.gradient.transpose() +
-                       b.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d));
+  return touch.area * touch.answer.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d);
+}
+
+Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
+  const Vec3& normal = touch.slope.gradient;
+  return touch.area * touch.answer.second * normal * normal.transpose() + contact_bend(loads, touch);
 }
 
 }  // namespace calot

@@ -42,6 +42,8 @@ class BodyProblem : public ConstrainedEnergy {
   double cancelling() const override;
   void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
   void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override;
+  /// Of what touches: how distances curve times the pressure.
+  bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override;
   VecX constraint_values(const VecX& x) const override;
   void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,
@@ -97,5 +99,7 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
                                          const std::vector<ContactPair>& pairs);
 /// Hessian of a contact point's energy by its place, N/m.
 Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch);
+/// What the shape's curvature adds to that, negative semidefinite.
+Mat3 contact_bend(const ContactLoads& loads, const Touch& touch);
 
 }  // namespace calot

@@ -187,6 +187,23 @@ void GroupProblem::add_own_hessian(std::size_t k, const VecX& x, const VecX& mul
   matrix.add_part(own, static_cast<int>(range.first) / 3);
 }
 
+bool GroupProblem::add_convexity(const VecX& x, BlockMatrix& matrix) const {
+  std::vector<char> added(problems_.size(), 0);
+  if (alone()) {
+    added[0] = problems_[0].add_convexity(x, matrix);
+  } else {
+    for_each_member([&](std::size_t k) noexcept {
+      BlockMatrix& own = patterns_.own[k];
+      own.set_zero();
+      added[k] = problems_[k].add_convexity(part_of(k, x), own);
+      if (added[k]) matrix.add_part(own, static_cast<int>(ranges_[k].first) / 3);
+    });
+  }
+  bool any = std::find(added.begin(), added.end(), 1) != added.end();
+  for (const Join* join : joins_at(x)) any |= join->add_convexity(x, matrix);
+  return any;
+}
+
 void GroupProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
   if (alone()) return problems_[0].constraint(x, values, gradients);
   values.resize(constraints_);

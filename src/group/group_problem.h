@@ -54,6 +54,7 @@ class GroupProblem : public ConstrainedEnergy {
   double cancelling() const override;
   void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
   void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override;
+  bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override;
   VecX constraint_values(const VecX& x) const override;
   void gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& largest_internal, VecX& values,

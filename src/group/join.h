@@ -38,6 +38,8 @@ class Join {
   virtual void add_gradient(const VecX& x, VecX& gradient) const = 0;
   /// Couplings that the pattern does not hold are left out: Newton then converges more slowly.
   virtual void add_hessian(const VecX& x, BlockMatrix& matrix) const = 0;
+  /// As ConstrainedEnergy's, of the same couplings.
+  virtual bool add_convexity(const VecX& /*x*/, BlockMatrix& /*matrix*/) const { return false; }
   /// Whether the last add_hessian() left some out.
   virtual bool lacking() const { return false; }
   /// Adds the groups of nodes that add_hessian() couples near x: with `close` those that a solve from here on may well

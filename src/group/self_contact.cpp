@@ -226,10 +226,11 @@ void SelfContact::add_gradient(const Body& body, const VecX& x, VecX& gradient) 
       spread(skin, touch.ends[k], touch.area * touch.sample.gradient.segment<3>(3 * k), gradient);
 }
 
-void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix) {
-  lacking_ = false;
+template <class Answer>
+bool SelfContact::add_touches(const Body& body, const VecX& x, const Answer& answer, BlockMatrix& matrix) {
+  bool complete = true;
   for (const SelfTouch& touch : touching(body, x)) {
-    const BarrierSample b = self_barrier.sample(touch.sample.distance);
+    const BarrierSample b = answer(touch.sample.distance);
     std::array<Vec3, 3> corners;
     std::array<int, 4> rows{touch.skin_point, -1, -1, -1};
     Eigen::Matrix<double, 12, 1> slope;
@@ -240,14 +241,28 @@ void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matr
     }
     const std::span<const Vec3> used(corners.data(), touch.part.corners);
     const Eigen::Matrix<double, 12, 12> bend = flat_hessian(used, touch.sample);
-    const bool complete =
+    complete &=
         add_points_hessian(body.skin().stencils, rows,
                            touch.area * (b.second * slope * slope.transpose() + b.derivative * bend), matrix);
-    lacking_ |= !complete;
   }
+  return complete;
+}
+
+void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix) {
+  lacking_ = !add_touches(
+      body, x, [](double distance) { return self_barrier.sample(distance); }, matrix);
   for (const EdgeTouch& touch : crossing(body, x))
     lacking_ |=
         !add_points_hessian(body.skin().stencils, touch.ends, touch.area * touch.sample.hessian, matrix);
+}
+
+bool SelfContact::add_convexity(const Body& body, const VecX& x, BlockMatrix& matrix) {
+  if (touching(body, x).empty()) return false;
+  const auto against = [](double distance) {
+    return BarrierSample{0, -self_barrier.sample(distance).derivative, 0};
+  };
+  add_touches(body, x, against, matrix);
+  return true;
 }
 
 double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step, double keep, double share) {

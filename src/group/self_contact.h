@@ -69,7 +69,9 @@ class SelfContact {
   void add_gradient(const Body& body, const VecX& x, VecX& gradient);
   /// Couplings that the matrix' pattern does not hold are left out: Newton then converges more slowly.
   void add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix);
-  /// Whether the last add_hessian left some out.
+  /// As ConstrainedEnergy's, of the same couplings: how distances curve times the pressure. Edges' own curvature stays.
+  bool add_convexity(const Body& body, const VecX& x, BlockMatrix& matrix);
+  /// Whether the last add_hessian() left some out.
   bool lacking() const { return lacking_; }
 
   /// The largest part of `share` of the step on which no point and triangle, and no two edges, lose more than 1 - keep of their
@@ -86,6 +88,10 @@ class SelfContact {
   void forget_pairs() { near_.clear(), edges_near_.clear(); }
   /// Half of the longest edge at rest, stretched by a quarter: how far a point may be beside edges that meet, m.
   double beside_edges(const Body& body) { return 0.625 * net(body).edges.longest; }
+  /// Adds, for each touch, second * slope slope' + derivative * the distance's Hessian of what `answer` says at its
+  /// distance. Whether the pattern holds them all.
+  template <class Answer>
+  bool add_touches(const Body& body, const VecX& x, const Answer& answer, BlockMatrix& matrix);
   /// safe_share() of a step no longer than groups are remembered.
   double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.

@@ -13,6 +13,12 @@ void PartProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
   matrix.hold_all_but(free_);
 }
 
+bool PartProblem::add_convexity(const VecX& x, BlockMatrix& matrix) const {
+  const bool any = whole_.add_convexity(x, matrix);
+  if (any) matrix.hold_all_but(free_);
+  return any;
+}
+
 void PartProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
   whole_.constraint(x, values, gradients);
   for (std::size_t node = 0; node < free_.size(); ++node)

@@ -20,6 +20,7 @@ class PartProblem : public ConstrainedEnergy {
   double cancelling() const override { return whole_.cancelling(); }
   void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override;
   void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override;
+  bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override;
   VecX constraint_values(const VecX& x) const override { return whole_.constraint_values(x); }
   VecX constraint_scales() const override { return whole_.constraint_scales(); }

@@ -254,6 +254,15 @@ std::vector<SkinPress> SkinJoin::points_pressing(const VecX& x) const {
   return out;
 }
 
+Eigen::Matrix<double, 12, 12> SkinJoin::touch_matrix(const SkinTouch& touch, const Parts& x,
+                                                     const BarrierSample& at_gap) const {
+  const Side& other = sides_[touch.other];
+  std::array<Vec3, 3> corners;
+  for (int k = 0; k < touch.part.corners; ++k)
+    corners[k] = other.body->skin_point(touch.part.corner[k], x[touch.other]);
+  return touch_hessian(touch, {corners.data(), static_cast<std::size_t>(touch.part.corners)}, at_gap);
+}
+
 void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   lacking_ = false;
   for (const EdgeTouch& touch : crossing(x))
@@ -262,17 +271,22 @@ void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   if (touches.empty()) return;
   const Parts parts = parts_of(x);
   for (const SkinTouch& touch : touches) {
-    const Side& other = sides_[touch.other];
-    std::array<Vec3, 3> corners;
-    for (int k = 0; k < touch.part.corners; ++k)
-      corners[k] = other.body->skin_point(touch.part.corner[k], parts[touch.other]);
-    const bool complete = add_points_hessian(
-        points_of(touch),
-        touch_hessian(touch, {corners.data(), static_cast<std::size_t>(touch.part.corners)},
-                      self_barrier.sample(touch.gap)),
-        matrix);
-    lacking_ |= !complete;
+    const Eigen::Matrix<double, 12, 12> own = touch_matrix(touch, parts, self_barrier.sample(touch.gap));
+    lacking_ |= !add_points_hessian(points_of(touch), own, matrix);
   }
+}
+
+// How the gap curves times the pressure, that is; edges' own curvature stays.
+bool SkinJoin::add_convexity(const VecX& x, BlockMatrix& matrix) const {
+  const std::vector<SkinTouch>& touches = touching(x);
+  if (touches.empty()) return false;
+  const Parts parts = parts_of(x);
+  for (const SkinTouch& touch : touches) {
+    BarrierSample flat = self_barrier.sample(touch.gap);
+    flat.second = 0;
+    add_points_hessian(points_of(touch), -touch_matrix(touch, parts, flat), matrix);
+  }
+  return true;
 }
 
 void SkinJoin::add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const {

@@ -55,6 +55,7 @@ class SkinJoin : public Join {
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   bool lacking() const override { return lacking_; }
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
   double safe_share(const VecX& x, const VecX& step, double share) const override;
@@ -149,6 +150,9 @@ class SkinJoin : public Join {
   bool active() const { return sides_[0].body != nullptr; }
   void take_patches(Side& side) const;
   StencilPoint stencil_point(int skin, int row) const;
+  /// As touch_hessian(), of a touch at x.
+  Eigen::Matrix<double, 12, 12> touch_matrix(const SkinTouch& touch, const Parts& x,
+                                             const BarrierSample& at_gap) const;
   std::array<StencilPoint, 4> points_of(const SkinTouch& touch) const;
   std::array<StencilPoint, 4> points_of(const EdgeTouch& touch) const;
   RubbingPlace rubbing_place(const SkinPair& pair) const;

@@ -97,8 +97,8 @@ void StrandJoin::find_blocks(const BlockMatrix& matrix) const {
   }
 }
 
-void StrandJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
-  if (!active()) return;
+template <class Of>
+bool StrandJoin::add_matrices(const VecX& x, BlockMatrix& matrix, const Of& of) const {
   find_blocks(matrix);
   struct Node {
     int node, point;
@@ -106,23 +106,50 @@ void StrandJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   };
   std::vector<Node> nodes;
   std::size_t next = 0;
+  bool any = false;
+  StrandMatrix own;
   for (std::size_t i = 0; i < strands_.size(); ++i) {
-    const StrandVector at = places(i, x);
-    StrandMatrix hessian = strands_[i].strand.hessian(at, pasts_[i]);
-    if (const StrandThread* met = thread(i)) hessian += touch_.hessian(*met, at);
     nodes.clear();
     for (int row : ordered_rows(i))
       for (int e = rows_.begin[row]; e < rows_.begin[row + 1]; ++e)
         nodes.push_back({rows_.node[e], row % 3, rows_.value[e]});
+    if (!of(i, places(i, x), own)) {
+      next += nodes.size() * (nodes.size() + 1) / 2;
+      continue;
+    }
+    any = true;
     for (std::size_t column = 0; column < nodes.size(); ++column) {
-      const Node& of = nodes[column];
-      const Eigen::OuterStride<> stride(matrix.stride(of.node));
-      const Eigen::Matrix<double, 9, 3> by = of.weight * hessian.middleCols<3>(3 * of.point);
+      const Node& at = nodes[column];
+      const Eigen::OuterStride<> stride(matrix.stride(at.node));
+      const Eigen::Matrix<double, 9, 3> by = at.weight * own.middleCols<3>(3 * at.point);
       for (std::size_t below = column; below < nodes.size(); ++below)
         Eigen::Map<Mat3, 0, Eigen::OuterStride<>>(matrix.values() + blocks_.slots[next++], stride) +=
             nodes[below].weight * by.middleRows<3>(3 * nodes[below].point);
     }
   }
+  return any;
+}
+
+void StrandJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
+  if (!active()) return;
+  add_matrices(x, matrix, [&](std::size_t i, const StrandVector& at, StrandMatrix& own) {
+    own = strands_[i].strand.hessian(at, pasts_[i]);
+    if (const StrandThread* met = thread(i)) own += touch_.hessian(*met, at);
+    return true;
+  });
+}
+
+bool StrandJoin::add_convexity(const VecX& x, BlockMatrix& matrix) const {
+  return active() && add_matrices(x, matrix, [&](std::size_t i, const StrandVector& at, StrandMatrix& own) {
+           const double softens = strands_[i].strand.convexity(at, pasts_[i]);
+           const StrandThread* met = thread(i);
+           own = met ? touch_.convexity(*met, at) : StrandMatrix(StrandMatrix::Zero());
+           if (softens > 0) {
+             const StrandVector slope = strands_[i].strand.slope(at);
+             own += softens * slope * slope.transpose();
+           }
+           return !own.isZero(0);
+         });
 }
 
 // They stay what they are while the bodies do: a matrix that was made with room for them has it.

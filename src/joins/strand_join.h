@@ -40,6 +40,7 @@ class StrandJoin : public Join {
   double value(const VecX& x) const override;
   void add_gradient(const VecX& x, VecX& gradient) const override;
   void add_hessian(const VecX& x, BlockMatrix& matrix) const override;
+  bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
 
   /// No step takes a strand beyond half of the way on which it tears: it would end behind what it resists. None takes it
@@ -77,6 +78,10 @@ class StrandJoin : public Join {
   /// Rows of a strand, of increasing nodes.
   std::array<int, 3> ordered_rows(std::size_t strand) const;
   void find_blocks(const BlockMatrix& matrix) const;
+  /// Adds a matrix of each strand's places to those of its nodes: of(strand, places, matrix) says which, and whether
+  /// there is one. Whether any was added.
+  template <class Of>
+  bool add_matrices(const VecX& x, BlockMatrix& matrix, const Of& of) const;
   bool meets() const { return active() && !touch_.none(); }
   /// Null: it meets nothing.
   const StrandThread* thread(std::size_t strand) const {

@@ -98,23 +98,45 @@ StrandVector StrandTouch::gradient(const StrandThread& thread, const StrandVecto
   return out;
 }
 
-Mat3 StrandTouch::hessian_at(const StrandContact& contact) const {
+namespace {
+
+/// N/m, by its point: what it is pressed by times how the shape curves there.
+Mat3 bend_at(const StrandContact& contact, const Shape& shape) {
   DistanceSlope d = contact.slope;
   d.distance += contact.radius;  // of the point itself, as the shape curves there
-  return contact.area * (contact.answer.second * d.gradient * d.gradient.transpose() +
-                         contact.answer.derivative * distance_hessian(shapes_[contact.shape], contact.at, d));
+  return contact.area * contact.answer.derivative * distance_hessian(shape, contact.at, d);
 }
 
-StrandMatrix StrandTouch::hessian(const StrandThread& thread, const StrandVector& places) const {
+}  // namespace
+
+Mat3 StrandTouch::hessian_at(const StrandContact& contact) const {
+  const Vec3& normal = contact.slope.gradient;
+  return contact.area * contact.answer.second * normal * normal.transpose() +
+         bend_at(contact, shapes_[contact.shape]);
+}
+
+template <class At>
+StrandMatrix StrandTouch::sum_at_contacts(const StrandThread& thread, const StrandVector& places,
+                                          const At& at) const {
   StrandMatrix out = StrandMatrix::Zero();
   for_contacts(thread, places, [&](const StrandContact& contact) {
-    const Mat3 at = hessian_at(contact);
+    const Mat3 by_point = at(contact);
     const std::array<double, 2> weight{1 - contact.share, contact.share};
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i)
-        out.block<3, 3>(3 * (contact.piece + i), 3 * (contact.piece + j)) += weight[i] * weight[j] * at;
+        out.block<3, 3>(3 * (contact.piece + i), 3 * (contact.piece + j)) += weight[i] * weight[j] * by_point;
   });
   return out;
+}
+
+StrandMatrix StrandTouch::hessian(const StrandThread& thread, const StrandVector& places) const {
+  return sum_at_contacts(thread, places, [&](const StrandContact& contact) { return hessian_at(contact); });
+}
+
+StrandMatrix StrandTouch::convexity(const StrandThread& thread, const StrandVector& places) const {
+  return sum_at_contacts(thread, places, [&](const StrandContact& contact) -> Mat3 {
+    return -bend_at(contact, shapes_[contact.shape]);
+  });
 }
 
 double StrandTouch::safe_share(const StrandThread& thread, const StrandVector& places,

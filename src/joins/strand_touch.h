@@ -54,6 +54,8 @@ class StrandTouch {
   double value(const StrandThread& thread, const StrandVector& places) const;           ///< J
   StrandVector gradient(const StrandThread& thread, const StrandVector& places) const;  ///< N
   StrandMatrix hessian(const StrandThread& thread, const StrandVector& places) const;   ///< N/m
+  /// What the shapes' curvature takes off that, positive semidefinite.
+  StrandMatrix convexity(const StrandThread& thread, const StrandVector& places) const;
   /// By a contact's point, N/m.
   Mat3 hessian_at(const StrandContact& contact) const;
 
@@ -65,6 +67,9 @@ class StrandTouch {
  private:
   template <class Use>
   void for_contacts(const StrandThread& thread, const StrandVector& places, const Use& use) const;
+  /// Sum of at(contact), by the contacts' points, as a matrix of the strand's places.
+  template <class At>
+  StrandMatrix sum_at_contacts(const StrandThread& thread, const StrandVector& places, const At& at) const;
 
   std::vector<Shape> shapes_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< around them and the barrier's range

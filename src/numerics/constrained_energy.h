@@ -29,6 +29,9 @@ class ConstrainedEnergy {
   virtual void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const = 0;
   /// Hessian of L into `matrix` (values are overwritten).
   virtual void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const = 0;
+  /// Adds to a matrix that holds hessian() at x what makes its concave terms convex, where the terms say what that is: then
+  /// a matrix that was indefinite by them alone is no more. Whether anything was added.
+  virtual bool add_convexity(const VecX& /*x*/, BlockMatrix& /*matrix*/) const { return false; }
   /// Constraints and their gradients, a column each.
   virtual void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const = 0;
   virtual VecX constraint_values(const VecX& x) const = 0;

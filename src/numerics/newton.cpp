@@ -222,7 +222,7 @@ class Iteration {
     result_.by_last_factor = 0;
     work_.border.gradients = state_.constraint_gradients;  // no columns when there is no constraint
     work_.border.compliances = compliances_;
-    factorise(problem_, parts_, x_, multipliers_, work_, result_);
+    factorise(problem_, parts_, x_, multipliers_, definiteness_, work_, result_);
     if (result_.status != NewtonStatus::converged) return false;
     VecX dmultipliers;
     const VecX step = bordered_step(dmultipliers);
@@ -230,11 +230,14 @@ class Iteration {
       result_.status = NewtonStatus::not_finite;
       return false;
     }
-    if (!work_.shifted) {
+    if (definiteness_.shift == 0) {
       constexpr double worth = 0.5;  // a search along the step costs two more evaluations
       VecX whole = step, with = dmultipliers;
       correct_constraints(whole, with);
-      if (safe_share(whole) == 1.0 && leap(whole, with, worth)) return true;
+      if (safe_share(whole) == 1.0 && leap(whole, with, worth)) {
+        definiteness_.convex = 0;  // so near to balance the next matrix may well be definite as it is
+        return true;
+      }
     }
     return descend(step, dmultipliers, safe_share(step));
   }
@@ -281,6 +284,7 @@ class Iteration {
   double left_of_last_ = 0;  ///< share of the imbalance that the last step left
   bool in_place_ = false;    ///< no step is worth taking, to rounding
   SecantSteps seen_;
+  Definiteness definiteness_;
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ struct NewtonWorkspace {
   Cholesky factor;
   Border border;  ///< of the factor
   bool factored = false;
-  bool shifted = false;  ///< the factor is of a shifted matrix: no use for chord steps
+  bool shifted =
+      false;  ///< the factor is of a matrix that was made positive definite: no use for chord steps
 
   /// All that later solves depend on: the matrix' values are written anew by each. Cheap to copy, as the factor is
   /// shared until the next one is made.

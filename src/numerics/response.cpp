@@ -14,7 +14,8 @@ NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace
   work.border.gradients.resize(x.size(), 0);
   if (problem.constraints() > 0) problem.constraint(x, values, work.border.gradients);
   work.border.compliances = problem.compliances();
-  factorise(problem, problem.parts(), x, multipliers, work, result);
+  Definiteness definiteness;
+  factorise(problem, problem.parts(), x, multipliers, definiteness, work, result);
   return result;
 }
 

@@ -26,8 +26,30 @@ FactorStatus factorise_once(Workers* workers, NewtonWorkspace& work, NewtonResul
   return work.factor.factorise(work.matrix, workers);
 }
 
-NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Workers* workers,
-                              NewtonWorkspace& work, NewtonResult& result) {
+/// Shifts a matrix that is not positive definite until it is; returns by what share of its stiffness.
+double shift(std::span<const Part> parts, double last, Workers* workers, NewtonWorkspace& work,
+             NewtonResult& result, FactorStatus& status) {
+  constexpr double least = 1e-4, factor = 4;
+  const VecX whole = shifts_of(1.0, work.matrix, parts);
+  double share = 0;
+  for (double next = std::max(least, last / factor); status == FactorStatus::not_positive_definite;
+       next *= factor) {
+    if (!std::isfinite(next)) {
+      status = FactorStatus::not_finite;
+      break;
+    }
+    add_shifts((next - share) * whole, parts, work.matrix);
+    ++result.shifts;
+    share = next;
+    status = factorise_once(workers, work, result);
+  }
+  return share;
+}
+
+NewtonStatus factorise_matrix(const ConstrainedEnergy& problem, std::span<const Part> parts, const VecX& x,
+                              Definiteness& definiteness, NewtonWorkspace& work, NewtonResult& result) {
+  Workers* workers = problem.workers();
+  const bool begun_convex = definiteness.convex == 1 && problem.add_convexity(x, work.matrix);
   FactorStatus status = factorise_once(workers, work, result);
   const Border& border = work.border;
   // Between a stiff joint and a strand of fat the condition is low without anything amiss.
@@ -49,18 +71,16 @@ NewtonStatus factorise_matrix(std::span<const Part> parts, const VecX& x, Worker
     ++result.shifts;
     status = factorise_once(workers, work, result);
   }
-  const bool shifted = status == FactorStatus::not_positive_definite;
-  VecX shifts = shifted ? shifts_of(1e-4, work.matrix, parts) : VecX();
-  while (status == FactorStatus::not_positive_definite) {
-    add_shifts(shifts, parts, work.matrix);
-    ++result.shifts;
+  bool convex = begun_convex;
+  if (status == FactorStatus::not_positive_definite && !convex && problem.add_convexity(x, work.matrix)) {
+    convex = true;
     status = factorise_once(workers, work, result);
-    shifts *= 4;
-    if (!shifts.allFinite()) return NewtonStatus::not_finite;
   }
+  definiteness.convex = !convex ? 0 : begun_convex ? 2 : 1;
+  definiteness.shift = shift(parts, definiteness.shift, workers, work, result, status);
   if (status == FactorStatus::not_finite) return NewtonStatus::not_finite;
   if (status == FactorStatus::out_of_memory) return NewtonStatus::out_of_memory;
-  work.shifted = shifted;
+  work.shifted = convex || definiteness.shift > 0;
   return NewtonStatus::converged;
 }
 
@@ -71,14 +91,15 @@ bool serves(const NewtonWorkspace& work, const ConstrainedEnergy& problem) {
 }
 
 void factorise(const ConstrainedEnergy& problem, std::span<const Part> parts, const VecX& x,
-               const VecX& multipliers, NewtonWorkspace& work, NewtonResult& result) {
+               const VecX& multipliers, Definiteness& definiteness, NewtonWorkspace& work,
+               NewtonResult& result) {
   {
     const Timed timed(result.assembly_s);
     problem.hessian(x, multipliers, work.matrix);
   }
   const Timed timed(result.factorisation_s);
   work.factored = false;
-  result.status = factorise_matrix(parts, x, problem.workers(), work, result);
+  result.status = factorise_matrix(problem, parts, x, definiteness, work, result);
   if (result.status != NewtonStatus::converged) return;
   work.border.solve_with(work.factor, problem.workers());
   if (!work.border.complement.allFinite()) {

@@ -52,6 +52,70 @@ TEST(Newton, FindsTheStationaryPointOfANonlinearEnergy) {
   }
 }
 
+/// A node in two valleys along each axis: x^4 / 4 + x^2 / 20, which is convex, less x^2 / 2.
+class Valleys : public ConstrainedEnergy {
+ public:
+  bool knows_convexity = true;
+  mutable int asked = 0;  ///< for it
+
+  std::vector<Part> parts() const override { return {{{0, 1}, {}, 1}}; }
+  int constraints() const override { return 0; }
+  double value(const VecX& x) const override {
+    return (x.array().pow(4) / 4 - 0.45 * x.array().square()).sum();
+  }
+  void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override {
+    gradient = x.array().cube() - 0.9 * x.array();
+    largest_internal = VecX::Ones(1);
+  }
+  void hessian(const VecX& x, const VecX&, BlockMatrix& matrix) const override {
+    matrix.set_zero();
+    matrix.add(0, 0, Vec3(3 * x.array().square() - 0.9).asDiagonal());
+  }
+  bool add_convexity(const VecX&, BlockMatrix& matrix) const override {
+    ++asked;
+    if (knows_convexity) matrix.add(0, 0, Mat3::Identity());
+    return knows_convexity;
+  }
+  void constraint(const VecX&, VecX&, Eigen::MatrixXd&) const override {}
+  VecX constraint_values(const VecX&) const override { return {}; }
+  VecX constraint_scales() const override { return {}; }
+  double safe_share(const VecX&, const VecX&) const override { return 1; }
+
+  NewtonResult settle(VecX& x) const {
+    NewtonWorkspace work{BlockMatrix(1, std::vector<std::vector<int>>{{0}})};
+    VecX none;
+    return solve_equilibrium(*this, {}, work, x, none);
+  }
+};
+
+TEST(Newton, AConcaveTermIsMadeConvexBeforeAnythingIsShifted) {
+  Valleys known, unknown;
+  unknown.knows_convexity = false;
+  const VecX ridge = Vec3(0.1, -0.2, 0.15), valley = std::sqrt(0.9) * Vec3(1, -1, 1);
+  VecX x = ridge, by_shifts = ridge;
+  const NewtonResult result = known.settle(x), shifted = unknown.settle(by_shifts);
+  ASSERT_TRUE(result.converged()) << to_text(result.status);
+  ASSERT_TRUE(shifted.converged()) << to_text(shifted.status);
+  EXPECT_LT((x - valley).norm(), 1e-6);
+  EXPECT_LT((by_shifts - valley).norm(), 1e-6);
+  EXPECT_GT(known.asked, 0);
+  EXPECT_EQ(result.shifts, 0);
+  EXPECT_GT(shifted.shifts, 0);
+  // Two matrices fail at most of each three.
+  EXPECT_LE(result.factorisations, result.iterations + (result.iterations + 1) / 2);
+}
+
+TEST(Newton, AShiftBeginsWhereTheLastOneEnded) {
+  Valleys unknown;
+  unknown.knows_convexity = false;
+  VecX x = Vec3::Constant(1e-3);
+  const NewtonResult result = unknown.settle(x);
+  ASSERT_TRUE(result.converged());
+  // From 1e-4 of the stiffness on it takes seven shifts to pass what is concave there, each time.
+  EXPECT_GT(result.shifts, 7);
+  EXPECT_LT(result.shifts, 7 + 3 * result.iterations);
+}
+
 TEST(Newton, InBalanceToRoundingIsConverged) {
   for (bool constrained : {false, true}) {
     Net net(constrained);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <functional>
 #include <limits>
 
@@ -156,6 +157,26 @@ TEST(Equilibrium, GradientIsTheSlopeOfTheWholeEnergyAndHessianItsOwnSlope) {
     const VecX by_gradient = (gradient_at(h) - gradient_at(-h)) / (2 * h);
     EXPECT_GT(by_gradient.norm(), 0.0);
     EXPECT_LT((hessian.multiply(d) - by_gradient).norm(), 1e-7 * by_gradient.norm());
+  }
+}
+
+TEST(Equilibrium, ConvexityTakesAwayWhatContactCurvesBy) {
+  Touched touched(1, 0);
+  const BodyProblem problem = touched.problem();
+  BlockMatrix hessian = touched.organ.body->pattern();
+  problem.hessian(touched.x, VecX::Zero(1), hessian);
+  const Eigen::MatrixXd before = test::dense(hessian);
+  ASSERT_TRUE(problem.add_convexity(touched.x, hessian));
+  const VecX added =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(test::dense(hessian) - before, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  EXPECT_GT(added.maxCoeff(), 1);  // N/m
+  EXPECT_GT(added.minCoeff(), -1e-9 * added.maxCoeff());
+  const auto pairs = gather_pairs(*touched.organ.body, touched.x, touched.around, 0.0);
+  TouchMemory memory;
+  for (const Touch& touch : memory.at(*touched.organ.body, touched.x, touched.around, pairs, 0.0)) {
+    const Mat3 left = contact_hessian(touched.around, touch) - contact_bend(touched.around, touch);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat3>(left).eigenvalues().minCoeff(), -1e-9 * left.norm());
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <deque>
 
 #include "body/rod_body.h"
@@ -115,6 +116,21 @@ inline void expect_derivatives(const GroupRig& rig, const Join& join, const VecX
     const VecX exact = h.multiply(d);
     EXPECT_LT((bend - exact).norm(), tolerance * exact.norm());
   }
+}
+
+/// A join's Hessian at x has a negative eigenvalue, and none beyond rounding with what makes it convex.
+inline void expect_convexity(const GroupRig& rig, const Join& join, const VecX& x) {
+  const auto smallest = [](const BlockMatrix& matrix) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(matrix), Eigen::EigenvaluesOnly)
+        .eigenvalues()
+        .minCoeff();
+  };
+  BlockMatrix h = rig.matrix(x);
+  join.add_hessian(x, h);
+  const double before = smallest(h);
+  EXPECT_LT(before, -1e-2);  // N/m
+  ASSERT_TRUE(join.add_convexity(x, h));
+  EXPECT_GT(smallest(h), 1e-9 * before);
 }
 
 }  // namespace calot::test

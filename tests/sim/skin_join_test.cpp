@@ -118,6 +118,11 @@ TEST(SkinJoin, SlopesAreRightAndForcesBalanceInEitherOrder) {
   }
 }
 
+TEST(SkinJoin, WhatTheGapCurvesByIsMadeConvex) {
+  const Near shaken(near_bodies()[2]);
+  test::expect_convexity(shaken.rig, *shaken.join, shaken.x);
+}
+
 TEST(SkinJoin, EdgesThatCrossPressWithSlopesAndBalance) {
   for (const double gap : {0.02e-3, 0.06e-3}) {
     std::vector<BodyPointer> bodies = crossing_boxes(gap);

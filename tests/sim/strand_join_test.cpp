@@ -46,6 +46,17 @@ TEST(StrandJoin, ItsEnergyHasTheseDerivatives) {
   test::expect_derivatives(rig, *rig.strands, x, 1e-8, 1e-5);
 }
 
+TEST(StrandJoin, ThatSoftensIsMadeConvexAndOneThatDoesNotIsLeftAlone) {
+  StrandRig rig(
+      {test::soft_ball(Vec3(0, 0, 21e-3)), test::plate(Vec3(40e-3, 40e-3, 2e-3), Vec3(0, 0, -4e-3))}, {},
+      places_between(2, 2, 6e-3, 6e-3), 4e-6);
+  BlockMatrix none = rig.matrix(rig.x());
+  EXPECT_FALSE(rig.strands->add_convexity(rig.x(), none));
+  const Vec3 beyond_their_strength(0.3e-3, 0, 1.5e-3);
+  rig.bodies[0].state.x += beyond_their_strength.replicate(rig.bodies[0].body->nodes(), 1);
+  test::expect_convexity(rig, *rig.strands, rig.x());
+}
+
 struct PlatesApart {
   double largest = 0, work = 0;  ///< N, J
 };

@@ -80,6 +80,7 @@ TEST(StrandTouch, AsPartOfTheStrandsItsEnergyHasTheseDerivatives) {
   rig.strands->for_contacts(x, [&](std::size_t, const StrandContact&) { ++contacts; });
   ASSERT_GT(contacts, 4);
   test::expect_derivatives(rig, *rig.strands, x, 1e-9, 1e-4);
+  test::expect_convexity(rig, *rig.strands, x);
 }
 
 /// What holds a body presses on it by this, N.
