@@ -62,7 +62,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
         if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, ToolIndex(i), poses[i].jaw);
       return follow(field, poses, duration, slipped_before, events, statistics);
     };
-    if (Result<bool> moved = close_within_pinch(field, here, targets, go, events, statistics); !moved)
+    if (Result<bool> moved = close_within_pinch(field, here, targets, go, slipped_before, events, statistics);
+        !moved)
       return moved.failure();
     else if (!moved.value())
       break;

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "acts/clips.h"
+#include "acts/follow.h"
+#include "acts/jaw_acts.h"
 #include "acts/pads.h"
 #include "field/field_state.h"
 #include "field/grip.h"
+#include "field/take_hold.h"
 #include "field/teeth.h"
 #include "motion/step_budget.h"
 
@@ -20,7 +24,7 @@ constexpr double least_angle = 1e-6;
 /// More of them find no angle where one of two is all that there is: a fold that snaps through.
 constexpr int most_trials = 24;
 
-/// One motion, tried with jaws at several angles.
+/// One motion, and jaws that are turned at its end.
 class Trials {
  public:
   Trials(Field& field, Poses to, const std::function<Result<bool>(const Poses&)>& go,
@@ -41,17 +45,16 @@ class Trials {
   /// By how much of the pinch the jaws press harder than that when the motion is over, the tool's at `jaw`. What cannot
   /// be followed presses without end.
   double excess(std::size_t tool, double jaw) {
-    if (!fresh_) {
-      restore(field_, start_);
-      events_.resize(told_);
-    }
-    fresh_ = false;
     to_[tool].jaw = jaw;
     ++statistics_.jaw_trials[field_.tools[tool].definition.name];
-    last_ = go_(to_);
-    if (!last_) return std::numeric_limits<double>::infinity();
-    return excess(tool);
+    if (reached_)
+      turn(tool, jaw);
+    else
+      go();
+    return last_ ? excess(tool) : std::numeric_limits<double>::infinity();
   }
+  /// Whether jaws were turned after the motion.
+  bool turned() const { return turned_; }
   /// Where the motion was tried last.
   double excess(std::size_t tool) const {
     return pressed_apart(field_, ToolIndex(tool)) / field_.tools[tool].definition.pinch_force - 1;
@@ -65,6 +68,30 @@ class Trials {
   bool pressed_at_start(std::size_t tool) const { return start_.tools[tool].pressing; }
 
  private:
+  /// The whole motion, from its beginning.
+  void go() {
+    if (moved_) {
+      restore(field_, start_);
+      events_.resize(told_);
+    }
+    moved_ = true;
+    last_ = go_(to_);
+    reached_ = bool(last_);
+    grips_.clear();
+    for (const Organ& organ : field_.organs) grips_.push_back(organ.grips);
+  }
+  /// Turns a tool's jaws where the motion has brought them; they stay as they are where it fails.
+  void turn(std::size_t tool, double jaw) {
+    const FieldState before = field_state(field_);
+    // However far jaws were closed on trial, what they hold lies as the motion left it.
+    for (std::size_t k = 0; k < grips_.size(); ++k) field_.organs[k].grips = grips_[k];
+    for (std::size_t i = 0; i < field_.tools.size(); ++i)
+      make_room(field_, ToolIndex(i), i == tool ? jaw : field_.tools[i].pose.jaw);
+    last_ = turn_jaw(field_, ToolIndex(tool), jaw, statistics_);
+    if (!last_) restore(field_, before);
+    turned_ = true;
+  }
+
   Field& field_;
   Poses to_;
   const std::function<Result<bool>(const Poses&)>& go_;
@@ -73,7 +100,8 @@ class Trials {
   FieldState start_;
   std::size_t told_;
   std::vector<double> at_start_;
-  bool fresh_ = true;
+  std::vector<std::vector<GripPoint>> grips_;  ///< of the organs, at the motion's end
+  bool moved_ = false, reached_ = false, turned_ = false;
   Result<bool> last_ = true;
 };
 
@@ -82,47 +110,53 @@ struct At {
   double jaw, excess;
 };
 
-/// Between jaws that press too hard and such that do not press hard enough: regula falsi in the share of the pinch that
-/// is missing, where what is pressed beyond counts no more than what is missing at most (Illinois).
-void find_pinch(Trials& trials, std::size_t tool, At tight, At loose) {
-  double of_tight = std::min(tight.excess, 1.0), of_loose = loose.excess;
-  for (int k = 0; k < most_trials && loose.jaw - tight.jaw > least_angle; ++k) {
-    const double share = std::clamp(of_tight / (of_tight - of_loose), 0.1, 0.9);
-    const double jaw = tight.jaw + share * (loose.jaw - tight.jaw);
-    const double excess = trials.excess(tool, jaw);
-    if (std::abs(excess) <= pinch_tolerance || trials.spent()) return;
-    if (excess > 0) {
-      tight = {jaw, excess};
-      of_tight = std::min(excess, 1.0);
-      of_loose *= 0.5;
-    } else {
-      loose = {jaw, excess};
-      of_loose = excess;
-      of_tight *= 0.5;
-    }
-  }
-  trials.excess(tool, loose.jaw);
+/// What presses, as the logarithm of its share of the pinch: what gives way to jaws stiffens as they squeeze it, so that
+/// this falls in nearly a straight line as they open.
+double logarithm(double excess) {
+  constexpr double least = 0.02, most = 50;  // of the pinch: beyond, tissue is not there or there is no room
+  return std::log(std::clamp(1 + excess, least, most));
 }
 
-/// From jaws that press too hard, or not hard enough, towards `end`: by a little first, as what rests on tissue has
-/// little to make up for.
-void turn_to_pinch(Trials& trials, std::size_t tool, At here, double end) {
-  constexpr double shortest = grip_grid / 16;
-  for (double way = shortest; here.jaw != end; way *= 4) {
-    const double jaw = end > here.jaw ? std::min(here.jaw + way, end) : std::max(here.jaw - way, end);
+/// The next angle to try from `here`: by the slope, where one is known, else by a growing way.
+double next_angle(const At& here, double slope, int trial) {
+  constexpr double shortest = grip_grid / 16, longest = 0.5 * grip_grid;
+  const double open = here.excess > 0 ? 1 : -1;
+  if (!(slope < 0)) return here.jaw + open * std::min(shortest * std::pow(4.0, trial), grip_grid);
+  return here.jaw + std::clamp(-logarithm(here.excess) / slope, -longest, longest);
+}
+
+/// Turns jaws from `here` to where they press with their pinch, between `least` and `most`, rad: by secants, between what
+/// presses too hard and what presses not hard enough as soon as both are known.
+void find_pinch(Trials& trials, std::size_t tool, At here, std::optional<At> other, double least, double most,
+                double& slope) {
+  std::optional<At> tight, loose;
+  const auto note = [&](const At& at) { (at.excess > 0 ? tight : loose) = at; };
+  if (other) note(*other);
+  for (int k = 0; k < most_trials && std::abs(here.excess) > pinch_tolerance && !trials.spent(); ++k) {
+    note(here);
+    double jaw = std::clamp(next_angle(here, slope, k), least, most);
+    if (tight && loose) {
+      const double way = loose->jaw - tight->jaw;
+      if (way <= least_angle) break;
+      // Where secants creep along one side halves do not.
+      jaw = k % 4 == 3 ? tight->jaw + 0.5 * way
+                       : std::clamp(jaw, tight->jaw + 0.05 * way, loose->jaw - 0.05 * way);
+    }
+    if (jaw == here.jaw) return;
     const At next{jaw, trials.excess(tool, jaw)};
-    if (std::abs(next.excess) <= pinch_tolerance || trials.spent()) return;
-    if ((next.excess > 0) != (here.excess > 0))
-      return next.excess > 0 ? find_pinch(trials, tool, next, here) : find_pinch(trials, tool, here, next);
+    const double secant = (logarithm(next.excess) - logarithm(here.excess)) / (jaw - here.jaw);
+    if (secant < 0) slope = secant;
     here = next;
   }
+  if (here.excess > pinch_tolerance && loose && !trials.spent()) trials.excess(tool, loose->jaw);
 }
 
 }  // namespace
 
 Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targets,
                                 const std::function<Result<bool>(const Poses&)>& go,
-                                std::vector<WorldEvent>& events, SolveStatistics& statistics) {
+                                const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
+                                SolveStatistics& statistics) {
   std::vector<std::size_t> pressing;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Tool& tool = field.tools[i];
@@ -140,22 +174,23 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     const bool tight = first.excess > pinch_tolerance;
     if (tight) stopped.push_back(i);
     if (trials.spent()) continue;
-    if (!trials.pressed_at_start(i)) {
-      if (!tight) continue;
+    double& slope = field.tools[i].pinch_slope;
+    if (trials.pressed_at_start(i)) {
+      const double most = std::min(from + grip_grid, opening);
+      find_pinch(trials, i, first, std::nullopt, std::max(targets[i].jaw, from - grip_grid), most, slope);
+    } else if (tight) {
       // Jaws that were closing are let back as far as they have come.
       const At loose{from, trials.excess_at_start(i)};
       if (loose.excess < -pinch_tolerance) {
-        find_pinch(trials, i, first, loose);
+        find_pinch(trials, i, first, loose, to[i].jaw, from, slope);
       } else {
         trials.excess(i, from);
       }
-    } else if (tight) {
-      turn_to_pinch(trials, i, first, std::min(from + grip_grid, opening));
-    } else if (first.excess < -pinch_tolerance && targets[i].jaw < first.jaw) {
-      turn_to_pinch(trials, i, first, std::max(targets[i].jaw, from - grip_grid));
     }
   }
   for (std::size_t i : stopped) field.tools[i].pressing = true;
+  if (!trials.last() || !trials.turned() || trials.spent()) return trials.last();
+  if (Result<bool> held = let_slip(field, slipped_before, events, statistics); !held) return held;
   return trials.last();
 }
 

@@ -10,14 +10,16 @@
 
 namespace calot {
 
-/// Moves the tools to `to` by go(poses), which may fail (simulation), but for jaws that would press harder than their
-/// pinch or, where tissue has stopped them before, less hard: those end where they press with it, within
-/// pinch_tolerance, but turn no further than grip_grid on the way, and close no further than to their `targets`. `go` is
-/// tried as often as that takes, always from here; what it adds to `events` stays of the last time alone. Trials are counted
-/// in `statistics`, by the tool whose angle is tried.
+/// Moves the tools to `to` by go(poses), which may fail (simulation). Jaws that press harder than their pinch then, or
+/// where tissue has stopped them before less hard, are turned where they are until they press with it, within
+/// pinch_tolerance: by no more than grip_grid where they had been stopped, else back as far as they came, and never beyond
+/// their `targets`. Folds that ask for more than is held slip after that (let_slip()). Where `go` fails it is tried again
+/// with jaws that close less; what it adds to `events` stays of the last time alone. Trials are counted in `statistics`,
+/// by the tool whose angle is tried.
 Result<bool> close_within_pinch(Field& field, const std::vector<InstrumentPose>& to,
                                 const std::vector<InstrumentPose>& targets,
                                 const std::function<Result<bool>(const std::vector<InstrumentPose>&)>& go,
-                                std::vector<WorldEvent>& events, SolveStatistics& statistics);
+                                const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
+                                SolveStatistics& statistics);
 
 }  // namespace calot

@@ -59,16 +59,22 @@ void move_by(double share, const Prediction& prediction, Field& field) {
     state_of(field, k).x += share * parts.of(k, prediction.dx);
 }
 
+/// What a motion takes and brings beside the tools' way.
+struct Passing {
+  double duration;  ///< s
+  const std::vector<char>& slipped_before;
+  std::vector<WorldEvent>& events;
+};
+
 /// A motion that is under way.
 class Following {
  public:
-  Following(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
-            std::vector<WorldEvent>& events, SolveStatistics& statistics)
+  /// `passing`: null where neither time passes nor anything slips, as the part of the bodies' motion stays the one that
+  /// they are in.
+  Following(Field& field, const Poses& to, const Passing* passing, SolveStatistics& statistics)
       : field_(field),
         to_(to),
-        duration_(duration),
-        slipped_before_(slipped_before),
-        events_(events),
+        passing_(passing),
         statistics_(statistics),
         iterations_before_(statistics.newton_iterations) {}
 
@@ -86,8 +92,8 @@ class Following {
  private:
   Result<bool> one_part() {
     const Poses from = present_poses(field_);
-    grow_damage(field_);
-    const Result<std::vector<MotionPart>> parts = next_parts(field_);
+    if (passing_) grow_damage(field_);
+    const Result<std::vector<MotionPart>> parts = passing_ ? next_parts(field_) : std::vector<MotionPart>();
     if (!parts) return parts.failure();
     begin_parts(parts.value(), time_left(), field_);
     const Result<Prediction> answer = answer_to(from);
@@ -103,7 +109,7 @@ class Following {
       last = settle_at(poses, share, parts.value(), answer.value());
       accepted = last.converged() || was_cut_short(field_, last);
       if (accepted) {
-        field_.group.missed = missed_by(answer.value(), share, before, field_, last.by_last_factor);
+        learn(answer.value(), share, before, last);
         if (Result<bool> kept = keep(poses, next); !kept) return kept;
       } else {
         stuck_ = out_of_balance(field_, last);
@@ -115,7 +121,15 @@ class Following {
     return true;
   }
 
-  double time_left() const { return (1.0 - done_) * duration_; }  ///< s
+  double time_left() const { return passing_ ? (1.0 - done_) * passing_->duration : 0; }  ///< s
+
+  /// For the next prediction. What it missed of another motion than the step's says nothing of that.
+  void learn(const Prediction& answer, double share, const GroupSnapshot& before, const NewtonResult& last) {
+    if (passing_)
+      field_.group.missed = missed_by(answer, share, before, field_, last.by_last_factor);
+    else
+      field_.group.missed.by_last_factor = last.by_last_factor;
+  }
 
   /// What the organs answer to the rest of the motion: by the last factor where that serves and is safe all the way.
   Result<Prediction> answer_to(const Poses& from) {
@@ -158,17 +172,16 @@ class Following {
     // What is not in balance tells neither what slips nor where it is touched.
     if (is_spent(field_, statistics_)) return true;
     for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
+    if (!passing_) return true;
     const int iterations = statistics_.newton_iterations;
-    Result<bool> held = let_slip(field_, slipped_before_, events_, statistics_);
+    Result<bool> held = let_slip(field_, passing_->slipped_before, passing_->events, statistics_);
     iterations_before_ += statistics_.newton_iterations - iterations;
     return held;
   }
 
   Field& field_;
   const Poses& to_;
-  double duration_;
-  const std::vector<char>& slipped_before_;
-  std::vector<WorldEvent>& events_;
+  const Passing* passing_;
   SolveStatistics& statistics_;
   int iterations_before_;  ///< of Newton's method, that are not this motion's
   int part_ = 0;
@@ -180,7 +193,14 @@ class Following {
 
 Result<bool> follow(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
                     std::vector<WorldEvent>& events, SolveStatistics& statistics) {
-  return Following(field, to, duration, slipped_before, events, statistics).run();
+  const Passing passing{duration, slipped_before, events};
+  return Following(field, to, &passing, statistics).run();
+}
+
+Result<bool> turn_jaw(Field& field, ToolIndex instrument, double jaw, SolveStatistics& statistics) {
+  Poses to = present_poses(field);
+  to[instrument.value].jaw = jaw;
+  return Following(field, to, nullptr, statistics).run();
 }
 
 }  // namespace calot

@@ -25,4 +25,8 @@ Result<bool> follow(Field& field, const std::vector<InstrumentPose>& to, double 
                     const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
                     SolveStatistics& statistics);
 
+/// Turns a tool's jaws to an angle (rad) where they are, organs in equilibrium at the end: what a step has come to is found
+/// again with other jaws. No time passes and nothing slips. Returns and fails as follow() does.
+Result<bool> turn_jaw(Field& field, ToolIndex instrument, double jaw, SolveStatistics& statistics);
+
 }  // namespace calot

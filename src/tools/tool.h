@@ -62,16 +62,19 @@ struct ToolState {
   bool pressing =
       false;  ///< what is between its jaws carries the pinch: they turn as that gives way or pushes
 
+  /// 1/rad: how the logarithm of what presses its jaws apart grew as they opened, when that was found last; 0: never.
+  double pinch_slope = 0;
+
   /// Whether tissue keeps its jaws from closing.
   bool jaws_rest() const { return jaw_stopped || pressing; }
 };
 void visit_members(auto&& visit, MembersOf<ToolState> auto& state) {
   auto& [pose, touched, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
          beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
-         roll_stiffness, meeting, met, drag, pressing] = state;
+         roll_stiffness, meeting, met, drag, pressing, pinch_slope] = state;
   visit(pose, touched, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
         beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
-        roll_stiffness, meeting, met, drag, pressing);
+        roll_stiffness, meeting, met, drag, pressing, pinch_slope);
 }
 
 struct Tool : ToolState {
