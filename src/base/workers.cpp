@@ -40,6 +40,13 @@ class Patience {
 
 int usual_threads() { return std::thread::hardware_concurrency() > 1 ? 2 : 1; }
 
+void ThrownByChunks::keep(std::exception_ptr thrown, int chunk) noexcept {
+  const std::lock_guard lock(mutex_);
+  if (chunk > by_) return;
+  by_ = chunk;
+  thrown_ = std::move(thrown);
+}
+
 Workers::Workers(int threads) {
   for (int k = 1; k < threads; ++k) {
     try {

@@ -7,9 +7,11 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
+#include <limits>
 #include <mutex>
 #include <thread>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace calot {
@@ -24,6 +26,31 @@ constexpr Chunk chunk_of(int items, int chunks, int k) {
   return {at(k), at(k + 1)};
 }
 
+/// Keeps the exceptions of a loop's chunks from ending their threads: of all that are thrown the one of the chunk with the
+/// lowest number goes on to the loop's caller, whichever was thrown first.
+class ThrownByChunks {
+ public:
+  template <class Work>
+  void watch(const Work& work, int chunk) noexcept {
+    try {
+      work(chunk);
+    } catch (...) {
+      keep(std::current_exception(), chunk);
+    }
+  }
+  /// When all chunks have ended. Nothing where none has thrown.
+  void rethrow() {
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+  }
+
+ private:
+  void keep(std::exception_ptr thrown, int chunk) noexcept;
+
+  std::mutex mutex_;
+  std::exception_ptr thrown_;
+  int by_ = std::numeric_limits<int>::max();
+};
+
 class Workers {
  public:
   /// `threads` in all, the caller's among them: of one or less none is started. Where the system refuses some, those
@@ -35,14 +62,18 @@ class Workers {
 
   int threads() const { return static_cast<int>(threads_.size()) + 1; }
 
-  /// Calls work(chunk), which must be noexcept, once for each of 0 .. chunks - 1, on any thread and in any order, and
-  /// returns when all are done; what they wrote is then seen. Loops within a chunk, and those of several threads, are
-  /// shared as well; one that finds no room beside the others is done by its caller alone.
+  /// Calls work(chunk) once for each of 0 .. chunks - 1, on any thread and in any order, and returns when all are done;
+  /// what they wrote is then seen. A chunk that throws ends no other one: the first one's exception, by their numbers, is
+  /// thrown on when all are done. Loops within a chunk, and those of several threads, are shared as well; one that finds
+  /// no room beside the others is done by its caller alone.
   template <class Work>
   void for_each(int chunks, const Work& work) {
-    static_assert(std::is_nothrow_invocable_v<const Work&, int>, "no exception may leave a worker");
+    ThrownByChunks thrown;
+    const auto watched = [&](int chunk) noexcept { thrown.watch(work, chunk); };
     run(
-        chunks, [](const void* on, int chunk) noexcept { (*static_cast<const Work*>(on))(chunk); }, &work);
+        chunks, [](const void* on, int chunk) noexcept { (*static_cast<decltype(&watched)>(on))(chunk); },
+        &watched);
+    thrown.rethrow();
   }
 
  private:
@@ -79,18 +110,20 @@ class Workers {
 int usual_threads();
 inline constexpr int most_threads = 64;
 
-/// With workers or without: then on the caller's thread.
+/// With workers or without: then on the caller's thread, and all chunks alike where one throws.
 template <class Work>
 void for_each_chunk(Workers* workers, int chunks, const Work& work) {
   if (workers != nullptr) return workers->for_each(chunks, work);
-  for (int k = 0; k < chunks; ++k) work(k);
+  ThrownByChunks thrown;
+  for (int k = 0; k < chunks; ++k) thrown.watch(work, k);
+  thrown.rethrow();
 }
 
-/// Does all of these, which must be noexcept and share nothing that one of them changes, at once; the last one is begun
-/// first.
+/// Does all of these, which must share nothing that one of them changes, at once; the last one is begun first. Of those
+/// that throw the first one's exception is thrown on when all are done.
 template <class... Work>
 void do_at_once(Workers* workers, const Work&... work) {
-  for_each_chunk(workers, static_cast<int>(sizeof...(work)), [&](int chunk) noexcept {
+  for_each_chunk(workers, static_cast<int>(sizeof...(work)), [&](int chunk) {
     int k = 0;
     (static_cast<void>(k++ == chunk && (work(), true)), ...);
   });

@@ -98,7 +98,7 @@ void ContactStiffness::finish() {
   constexpr std::size_t few = 8;
   constexpr int most = 4;  // what each share does for itself is a tenth of the whole
   const int shares = workers_ == nullptr || sums_.size() < few ? 1 : most;
-  for_each_chunk(workers_, shares, [&](int share) noexcept {
+  for_each_chunk(workers_, shares, [&](int share) {
     for (const OfTriangle& one : sums_) {
       const Triangle& t = skin_.triangles[one.triangle];
       add_points_hessian(skin_.stencils, {t[0], t[1], t[2], -1}, one.by_corners(), matrix_, {share, shares});

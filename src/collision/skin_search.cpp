@@ -116,7 +116,7 @@ class Search {
   auto find(const Hit& hit, Workers* workers) const {
     const std::vector<NodePair> starts = first_pairs();
     std::vector<std::vector<decltype(hit(0, 0, 0.0))>> found(starts.size() + 1);
-    for_each_chunk(workers, static_cast<int>(starts.size()), [&](int k) noexcept {
+    for_each_chunk(workers, static_cast<int>(starts.size()), [&](int k) {
       visit(starts[k],
             [&](int item, int other, double distance) { found[k].push_back(hit(item, other, distance)); });
     });
@@ -261,7 +261,7 @@ std::vector<SkinPair> skin_pairs(std::span<const PlacedSkin> skins, const SkinRe
                                  Workers* workers) {
   std::vector<std::optional<decltype(points_of(skins[0]))>> points(skins.size());
   std::vector<std::optional<decltype(simplices_of(skins[0]))>> simplices(skins.size());
-  for_each_chunk(workers, 2 * static_cast<int>(skins.size()), [&](int chunk) noexcept {
+  for_each_chunk(workers, 2 * static_cast<int>(skins.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk) / 2;
     if (chunk % 2 == 0)
       points[k].emplace(points_of(skins[k]));
@@ -288,8 +288,8 @@ std::vector<EdgesNear> near_edges(const PlacedEdges& one, const ItemTree& of_one
                                   const ItemTree& of_other, const SkinReach& looked_for, Workers* workers) {
   std::optional<decltype(edges_of(one, of_one))> edges, others;
   do_at_once(
-      workers, [&]() noexcept { edges.emplace(edges_of(one, of_one)); },
-      [&]() noexcept { others.emplace(edges_of(other, of_other)); });
+      workers, [&] { edges.emplace(edges_of(one, of_one)); },
+      [&] { others.emplace(edges_of(other, of_other)); });
   const bool moving = one.motions || other.motions;
   const auto hit = [&](int edge, int other_edge, double distance) {
     return EdgesNear{edge, other_edge, moving ? 0 : distance};

@@ -24,7 +24,7 @@ void Assembly::scatter(std::span<const FaceNodes> elements, BlockMatrix& matrix)
     return static_cast<int>((std::lower_bound(starts.begin(), starts.end(), entries) - starts.begin() + 2) /
                             3);
   };
-  workers_.for_each(chunks, [&](int k) noexcept {
+  workers_.for_each(chunks, [&](int k) {
     const int first = first_column(k), last = first_column(k + 1);
     for (std::size_t i = 0; i < elements.size(); ++i) matrices_[i].scatter(elements[i], matrix, first, last);
   });

@@ -20,22 +20,22 @@ class Assembly {
   explicit Assembly(Workers& workers) : workers_(workers) {}
   Workers& workers() { return workers_; }
 
-  /// Adds the matrices of all `elements`; compute(k, matrix) sets the k-th and must be noexcept.
+  /// Adds the matrices of all `elements`; compute(k, matrix) sets the k-th.
   template <class Compute>
   void add(std::span<const FaceNodes> elements, BlockMatrix& matrix, const Compute& compute) {
     if (busy_.exchange(true)) return add_alone(elements, matrix, compute);
+    const Use use{busy_};
     for (std::size_t first = 0; first < elements.size();) {
       const std::size_t count = make_room(elements.subspan(first));
       const int size = static_cast<int>(count);
       const int chunks = std::min(size, chunks_of_elements);
-      workers_.for_each(chunks, [&](int k) noexcept {
+      workers_.for_each(chunks, [&](int k) {
         const Chunk chunk = chunk_of(size, chunks, k);
         for (int i = chunk.begin; i < chunk.end; ++i) compute(first + i, matrices_[i]);
       });
       scatter(elements.subspan(first, count), matrix);
       first += count;
     }
-    busy_ = false;
   }
 
   /// The same by the caller's thread alone.
@@ -49,6 +49,11 @@ class Assembly {
   }
 
  private:
+  /// Ends when what is added is added, or has thrown.
+  struct Use {
+    std::atomic<bool>& busy;
+    ~Use() { busy = false; }
+  };
   static constexpr int chunks_of_elements = 32;
   /// Room for the matrices of as many elements as stay in a processor's cache: how many.
   std::size_t make_room(std::span<const FaceNodes> elements);

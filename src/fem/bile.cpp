@@ -284,7 +284,7 @@ void Bile::cell_hessian(std::size_t cell, const std::vector<Vec3>& at, double da
 void Bile::add_hessian(const VecX& x, double datum_pressure, const LiquidWeight& weight, BlockMatrix& matrix,
                        Assembly* assembly) const {
   const std::vector<Vec3> at = positions(x);
-  add_elements(cell_nodes_, matrix, assembly, [&](std::size_t cell, ElementMatrix& element) noexcept {
+  add_elements(cell_nodes_, matrix, assembly, [&](std::size_t cell, ElementMatrix& element) {
     cell_hessian(cell, at, datum_pressure, weight, element);
   });
 }

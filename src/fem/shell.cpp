@@ -298,7 +298,7 @@ void Shell::face_hessian(std::size_t face, const VecX& x, ElementMatrix& element
 
 void Shell::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const {
   add_elements(faces_, matrix, assembly,
-               [&](std::size_t face, ElementMatrix& element) noexcept { face_hessian(face, x, element); });
+               [&](std::size_t face, ElementMatrix& element) { face_hessian(face, x, element); });
 }
 
 std::vector<double> Shell::point_areas() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "anatomy/definitions.h"
+#include "body/body.h"
 #include "geometry/stencil.h"
 #include "tools/step_report.h"
 
@@ -26,9 +27,19 @@ struct WetPoint {
   std::array<double, liquids> volume{};  ///< m^3
 };
 
+/// What a film lay on, and for how long, when a part of a step moved nothing of it. Where all this is the same the next
+/// part moves nothing either.
+struct FilmRest {
+  double part = 0;  ///< s
+  Vec3 up = Vec3::UnitZ();
+  BodyPointer body;  ///< null: the ground, which stays
+  VecX x;            ///< m, of the body's nodes
+};
+
 struct Film {
-  int on = 0;                 ///< an organ by its place on the roll; below 0: ground -1 - on
-  std::vector<WetPoint> wet;  ///< by increasing points
+  int on = 0;                         ///< an organ by its place on the roll; below 0: ground -1 - on
+  std::vector<WetPoint> wet;          ///< by increasing points
+  std::optional<FilmRest> rest = {};  ///< remembered, no part of any result; none: it may flow
 };
 
 /// A clip that fell, where it lies.

@@ -75,16 +75,16 @@ void BodyProblem::for_held_details(const Use& use) const {
 
 template <class... Work>
 void BodyProblem::beside_touches(const VecX& x, const Work&... work) const {
-  const auto own = [&]() noexcept {
+  const auto own = [&] {
     if (search_) search_->own.touching(body_, x);
   };
   do_at_once(
-      workers(), own, [&]() noexcept { touching(x); }, work...);
+      workers(), own, [&] { touching(x); }, work...);
 }
 
 double BodyProblem::value(const VecX& x) const {
   double sum = 0;
-  beside_touches(x, [&]() noexcept { sum = loads_.inertia ? loads_.inertia->value(x) : body_.value(x); });
+  beside_touches(x, [&] { sum = loads_.inertia ? loads_.inertia->value(x) : body_.value(x); });
   if (!std::isfinite(sum)) return sum;
   sum += loads_.grip.value(body_.skin().stencils, x);
   sum += loads_.friction.value(body_.skin(), x);
@@ -105,7 +105,7 @@ double BodyProblem::value(const VecX& x) const {
 template <class... Work>
 double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, const Work&... beside) const {
   double largest_internal = 0;
-  const auto wall = [&]() noexcept {
+  const auto wall = [&] {
     if (loads_.inertia)
       largest_internal = loads_.inertia->add_gradient(x, gradient);
     else
@@ -131,7 +131,7 @@ void BodyProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_internal
   gradient.setZero(x.size());
   const Liquid* liquid = body_.liquid();
   VecX weight = VecX::Zero(x.size());
-  const double internal = add_dry_gradient(x, gradient, [&]() noexcept {
+  const double internal = add_dry_gradient(x, gradient, [&] {
     if (liquid) liquid->add_load(x, fixed_pressure_ ? multiplier_ : 0.0, weight);
   });
   gradient += weight;
@@ -144,8 +144,8 @@ void BodyProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX& 
   values.resize(constraints());
   of_constraints.resize(x.size(), constraints());
   VecX weight = VecX::Zero(x.size()), of_volume = weight;
-  const auto inertia = [&]() noexcept { fill_inertia(x, values, of_constraints); };
-  const auto liquid = [&]() noexcept {
+  const auto inertia = [&] { fill_inertia(x, values, of_constraints); };
+  const auto liquid = [&] {
     const double volume = body_.liquid()->add_weight_and_volume_gradient(x, weight, of_volume);
     fill_volume(volume, of_volume, values, of_constraints);
   };
@@ -193,8 +193,8 @@ bool BodyProblem::add_convexity(const VecX& x, BlockMatrix& matrix) const {
 void BodyProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const {
   values.resize(constraints());
   gradients.resize(x.size(), constraints());
-  const auto inertia = [&]() noexcept { fill_inertia(x, values, gradients); };
-  do_at_once(workers(), inertia, [&]() noexcept {
+  const auto inertia = [&] { fill_inertia(x, values, gradients); };
+  do_at_once(workers(), inertia, [&] {
     VecX of_volume = VecX::Zero(x.size());
     const double volume = body_.liquid()->add_volume_gradient(x, of_volume);
     fill_volume(volume, of_volume, values, gradients);

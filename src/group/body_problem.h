@@ -62,11 +62,11 @@ class BodyProblem : public ConstrainedEnergy {
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;
   Workers* workers() const override;
-  /// Does all `work`, which must be noexcept, and finds what touches at x, for which no memory is shared: what touches is
+  /// Does all `work` and finds what touches at x, for which no memory is shared: what touches is
   /// known then.
   template <class... Work>
   void beside_touches(const VecX& x, const Work&... work) const;
-  /// Gradient but for the liquid's part; its largest internal force. Does `beside`, noexcept, at the same time.
+  /// Gradient but for the liquid's part; its largest internal force. Does `beside` at the same time.
   template <class... Work>
   double add_dry_gradient(const VecX& x, VecX& gradient, const Work&... beside) const;
   void fill_volume(double volume, const VecX& of_volume, VecX& values, Eigen::MatrixXd& gradients) const;

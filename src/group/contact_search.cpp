@@ -94,7 +94,7 @@ std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, c
   const std::size_t shapes = loads.shapes.size();
   if (memory_.size() < shapes) memory_.resize(shapes);
   std::vector<std::vector<ContactPair>> found(shapes);
-  for_each_chunk(own.workers, static_cast<int>(shapes), [&](int shape) noexcept {
+  for_each_chunk(own.workers, static_cast<int>(shapes), [&](int shape) {
     pairs_with(shape, body, x, loads, reach_of(loads, extra), found[static_cast<std::size_t>(shape)]);
   });
   std::vector<ContactPair> out;

@@ -98,7 +98,7 @@ void GroupProblem::for_each_member(const Work& work, std::span<const Join* const
                                    const VecX* x) const {
   // The last are begun first: what takes longest.
   const std::size_t found = small_ + joins.size();
-  for_each_chunk(workers(), static_cast<int>(by_size_.size() + joins.size()), [&](int chunk) noexcept {
+  for_each_chunk(workers(), static_cast<int>(by_size_.size() + joins.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
     if (k >= small_ && k < found) return joins[k - small_]->find(*x);
     work(by_size_[k < small_ ? k : k - joins.size()]);
@@ -125,7 +125,7 @@ std::vector<const Join*> GroupProblem::joins_at(const VecX& x, const VecX* step)
 double GroupProblem::value(const VecX& x) const {
   std::vector<double> values(problems_.size());
   const std::vector<const Join*> joins = joins_at(x);
-  for_each_member([&](std::size_t k) noexcept { values[k] = problems_[k].value(part_of(k, x)); }, joins, &x);
+  for_each_member([&](std::size_t k) { values[k] = problems_[k].value(part_of(k, x)); }, joins, &x);
   double sum = 0;
   for (std::size_t k = 0; k < problems_.size() && std::isfinite(sum); ++k) sum += values[k];
   if (!std::isfinite(sum)) return sum;
@@ -159,7 +159,7 @@ void GroupProblem::gradient(const VecX& x, VecX& gradient, VecX& largest_interna
   }
   gradient.resize(size_);
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
-  const auto own_part = [&](std::size_t k) noexcept {
+  const auto own_part = [&](std::size_t k) {
     VecX own, internal;
     problems_[k].gradient(part_of(k, x), own, internal);
     gradient.segment(ranges_[k].first, ranges_[k].size) = own;
@@ -174,7 +174,7 @@ void GroupProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& 
     problems_[0].hessian(x, multipliers, matrix);
   } else {
     matrix.set_zero();
-    for_each_member([&](std::size_t k) noexcept { add_own_hessian(k, x, multipliers, matrix); });
+    for_each_member([&](std::size_t k) { add_own_hessian(k, x, multipliers, matrix); });
   }
   for (const Join* join : joins_at(x)) join->add_hessian(x, matrix);
 }
@@ -239,7 +239,7 @@ void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX&
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
   values.resize(constraints_);
   of_constraints.setZero(size_, constraints_);
-  const auto own_part = [&](std::size_t k) noexcept {
+  const auto own_part = [&](std::size_t k) {
     VecX own, internal, own_values;
     Eigen::MatrixXd own_constraints;
     const Range& range = ranges_[k];
@@ -339,7 +339,7 @@ std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
   const VecX x = coordinates();
   const std::vector<const Join*> joins = joins_at(x);
   std::vector<std::vector<std::vector<int>>> of_join(joins.size());
-  for_each_chunk(workers(), static_cast<int>(joins.size()), [&](int chunk) noexcept {
+  for_each_chunk(workers(), static_cast<int>(joins.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
     joins[k]->add_cliques(x, close, of_join[k]);
   });
@@ -351,7 +351,7 @@ std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
 double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
   std::vector<double> shares(problems_.size());
   for_each_member(
-      [&](std::size_t k) noexcept { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
+      [&](std::size_t k) { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
   double share = 1;
   for (double own : shares) share = std::min(share, own);
   return calot::safe_share(joins_at(x, &step), x, step, share, workers());

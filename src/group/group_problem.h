@@ -75,7 +75,7 @@ class GroupProblem : public ConstrainedEnergy {
   VecX part_of(std::size_t member, const VecX& x) const {
     return x.segment(ranges_[member].first, ranges_[member].size);
   }
-  /// Calls work(member), which must be noexcept and write nothing that another's does, for each, and meanwhile finds what
+  /// Calls work(member), which must write nothing that another's does, for each, and meanwhile finds what
   /// `joins` do at x; the largest is begun first, and who has nothing left to begin helps with it.
   template <class Work>
   void for_each_member(const Work& work, std::span<const Join* const> joins = {},

@@ -143,7 +143,7 @@ class Boxes {
     }
     const int size = static_cast<int>(high.size()), chunks = std::min(size, 16);
     std::vector<std::vector<GroupPair>> found(static_cast<std::size_t>(chunks));
-    for_each_chunk(workers, chunks, [&](int k) noexcept {
+    for_each_chunk(workers, chunks, [&](int k) {
       const Chunk chunk = chunk_of(size, chunks, k);
       for (int i = chunk.begin; i < chunk.end; ++i) visit(high[i].first, high[i].second, found[k]);
     });
@@ -157,7 +157,7 @@ class Boxes {
   void find_reaches(Workers* workers) {
     const int size = static_cast<int>(net_.triangles.size());
     std::vector<double> of_triangle(net_.triangles.size());
-    for_each_chunk(workers, chunks_of_skin, [&](int k) noexcept {
+    for_each_chunk(workers, chunks_of_skin, [&](int k) {
       const Chunk chunk = chunk_of(size, chunks_of_skin, k);
       for (int t = chunk.begin; t < chunk.end; ++t)
         of_triangle[t] = skin_.reach + Differences(net_.triangles[t], skin_).beside_corner(skin_);
@@ -168,7 +168,7 @@ class Boxes {
 
   void find_boxes(const Mat3& turn, Workers* workers) {
     const int size = static_cast<int>(net_.nodes.size());
-    for_each_chunk(workers, chunks_of_skin, [&](int chunk_index) noexcept {
+    for_each_chunk(workers, chunks_of_skin, [&](int chunk_index) {
       const Chunk chunk = chunk_of(size, chunks_of_skin, chunk_index);
       for (int n = chunk.begin; n < chunk.end; ++n) {
         const SkinNet::Node& node = net_.nodes[n];
@@ -365,7 +365,7 @@ std::vector<Found> in_chunks(std::span<const Item> items, Workers* workers, cons
   constexpr int few = 64;  // not worth another chunk
   const int size = static_cast<int>(items.size()), chunks = std::clamp(size / few, 1, 8);
   std::vector<std::vector<Found>> of_chunk(static_cast<std::size_t>(chunks));
-  for_each_chunk(workers, chunks, [&](int k) noexcept {
+  for_each_chunk(workers, chunks, [&](int k) {
     const Chunk chunk = chunk_of(size, chunks, k);
     find(items.subspan(chunk.begin, chunk.end - chunk.begin), of_chunk[k]);
   });

@@ -52,6 +52,7 @@ void add_to(Film& film, const Added& added) {
   }
   for (; next != added.end(); ++next) out.push_back({next->first, next->second});
   film.wet = std::move(out);
+  film.rest.reset();
 }
 
 /// By the way to whichever neighbour is nearer, from the first point: the ground is convex.
@@ -110,22 +111,36 @@ Landing land_on_skin(Field& field, const Organ& organ, int point) {
   return {organ.record, point};
 }
 
+bool lies_still(const Field& field, const Film& film, double part) {
+  if (!film.rest || film.rest->part != part || film.rest->up != field.up) return false;
+  const Organ* organ = film.on < 0 ? nullptr : organ_on(field, film.on);
+  return organ == nullptr || (organ->body == film.rest->body && organ->state.x == film.rest->x);
+}
+
+FilmRest rest_of(const Field& field, const Film& film, double part) {
+  const Organ* organ = film.on < 0 ? nullptr : organ_on(field, film.on);
+  if (organ == nullptr) return {part, field.up, nullptr, {}};
+  return {part, field.up, organ->body, organ->state.x};
+}
+
 FilmFlow::FilmFlow(WetSurface surface, const Vec3& up) : surface_(std::move(surface)), up_(up) {
   thickness_.assign(surface_.at.size(), 0.0);
   moved_.assign(surface_.at.size(), {});
   touched_.assign(surface_.at.size(), 0);
 }
 
-void FilmFlow::run(Film& film, double part, std::vector<Drop>& drops) {
+bool FilmFlow::run(Film& film, double part, std::vector<Drop>& drops) {
   for (const WetPoint& wet : film.wet)
     thickness_[wet.point] = volume_of(wet) / surface_.mesh->areas[wet.point];
-  for (const WetPoint& wet : film.wet) flow_from(wet, part);
+  bool moves = false;
+  for (const WetPoint& wet : film.wet) moves = flow_from(wet, part) || moves;
   move(film);
   for (WetPoint& wet : film.wet) {
     if (up_.dot(surface_.normals[wet.point]) > 0) continue;
-    drip(wet, drops);
-    drop_off(film, wet, drops);
+    moves = drip(wet, drops) || moves;
+    moves = drop_off(film, wet, drops) || moves;
   }
+  return moves;
 }
 
 double FilmFlow::height(int point) const {
@@ -136,9 +151,9 @@ double FilmFlow::loose(const WetPoint& wet) const {
   return std::max(0.0, volume_of(wet) - sticks * surface_.mesh->areas[wet.point]);
 }
 
-void FilmFlow::flow_from(const WetPoint& wet, double part) {
+bool FilmFlow::flow_from(const WetPoint& wet, double part) {
   const double mobile = loose(wet), all = volume_of(wet), thickness = thickness_[wet.point];
-  if (mobile < least_flow) return;
+  if (mobile < least_flow) return false;
   const WetMesh& mesh = *surface_.mesh;
   double mu = 0;
   for (int l = 0; l < liquids; ++l) mu += viscosities[l] * wet.volume[l] / all;
@@ -170,6 +185,7 @@ void FilmFlow::flow_from(const WetPoint& wet, double part) {
     }
     if (thickness_[other] == 0) fresh_.push_back(other);
   }
+  return !flows_.empty();
 }
 
 void FilmFlow::move(Film& film) {
@@ -206,33 +222,35 @@ void FilmFlow::make_drops(const WetPoint& below, const std::array<double, liquid
                        taken[l]});
 }
 
-void FilmFlow::drip(WetPoint& wet, std::vector<Drop>& drops) const {
+bool FilmFlow::drip(WetPoint& wet, std::vector<Drop>& drops) const {
   const double all = volume_of(wet), excess = all - clings * surface_.mesh->areas[wet.point];
-  if (excess < least_drip) return;
+  if (excess < least_drip) return false;
   std::array<double, liquids> taken{};
   take(wet, excess / all, taken);
   make_drops(wet, taken, drops);
+  return true;
 }
 
-void FilmFlow::drop_off(Film& film, WetPoint& wet, std::vector<Drop>& drops) const {
+bool FilmFlow::drop_off(Film& film, WetPoint& wet, std::vector<Drop>& drops) const {
   const WetMesh& mesh = *surface_.mesh;
   double hanging = loose(wet);
-  if (!(hanging > 0)) return;
+  if (!(hanging > 0)) return false;
   const double here = height(wet.point);
   std::vector<WetPoint*> all{&wet};
   for (int e = mesh.begin[wet.point]; e < mesh.begin[wet.point + 1]; ++e) {
     const int other = mesh.beside[e];
-    if (height(other) < here) return;
+    if (height(other) < here) return false;
     const auto at = std::lower_bound(film.wet.begin(), film.wet.end(), other,
                                      [](const WetPoint& w, int point) { return w.point < point; });
     if (at == film.wet.end() || at->point != other) continue;
     hanging += loose(*at);
     all.push_back(&*at);
   }
-  if (hanging < hangs) return;
+  if (hanging < hangs) return false;
   std::array<double, liquids> taken{};
   for (WetPoint* point : all) take(*point, loose(*point) / volume_of(*point), taken);
   make_drops(wet, taken, drops);
+  return true;
 }
 
 void forget_films_of_gone(Field& field) {

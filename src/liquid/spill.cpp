@@ -8,7 +8,7 @@
 
 namespace calot {
 
-void spill(Field& field, double duration) {
+int spill(Field& field, double duration) {
   Spill& all = field.spill;
   forget_films_of_gone(field);
   constexpr double longest_part = 5e-3;  // s
@@ -16,17 +16,22 @@ void spill(Field& field, double duration) {
   const double part = duration / parts;
   std::optional<FallenOn> skins;
   std::map<int, FilmFlow> flows;
+  int looks = 0;
   for (int k = 0; k < parts; ++k) {
     if (!all.drops.empty() && !skins) skins.emplace(field);
     std::erase_if(all.drops, [&](Drop& drop) { return fall(field, *skins, drop, part); });
     for (Film& film : all.films) {
+      if (lies_still(field, film, part)) continue;
       auto at = flows.find(film.on);
       if (at == flows.end())
         at = flows.emplace(film.on, FilmFlow(wet_surface(field, film.on), field.up)).first;
-      at->second.run(film, part, all.drops);
+      const bool moved = at->second.run(film, part, all.drops);
+      film.rest = moved ? std::nullopt : std::optional(rest_of(field, film, part));
+      ++looks;
     }
   }
   let_fall(field, duration, skins);
+  return looks;
 }
 
 }  // namespace calot

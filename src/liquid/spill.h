@@ -7,13 +7,15 @@
 // where it stands lower, as fast as a liquid sheet of its thickness runs (rho g h^2 / 3 mu), but for what sticks to the
 // surface, and it wets a dry point only once it stands high enough. Where it hangs it drops off, and
 // drips where it is too thick to hang.
-// Nothing of this acts on the organs.
+// Nothing of this acts on the organs. A film that lies still is not looked at again until more lands on it or what
+// carries it moves.
 
 #include "field/field.h"
 
 namespace calot {
 
-/// Moves all of it on by `duration` s, and makes drops of what hangs on openings.
-void spill(Field& field, double duration);
+/// Moves all of it on by `duration` s, and makes drops of what hangs on openings. Returns how often it looked at what a
+/// film does in a part of the step: never at films that lie still.
+int spill(Field& field, double duration);
 
 }  // namespace calot

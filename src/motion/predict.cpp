@@ -176,7 +176,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
   const BodyParts parts(field);
   Workers* workers = field.workers();
   std::vector<double> own(field.organs.size(), out.share);
-  for_each_chunk(workers, static_cast<int>(own.size()), [&](int chunk) noexcept {
+  for_each_chunk(workers, static_cast<int>(own.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
     const Organ& organ = field.organs[k];
     own[k] = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),

@@ -42,7 +42,7 @@ ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vect
 
 std::vector<ContactLoads> solve_loads(const Field& field, const std::vector<InstrumentPose>& poses) {
   std::vector<ContactLoads> out(field.organs.size());
-  for_each_chunk(field.workers(), static_cast<int>(out.size()), [&](int chunk) noexcept {
+  for_each_chunk(field.workers(), static_cast<int>(out.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
     out[k] = solve_loads(field, field.organs[k], poses);
   });

@@ -139,7 +139,7 @@ Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right, Workers* workers) 
   constexpr Eigen::Index together = 4;  // columns: more take little longer, but could not be shared
   const auto chunks = static_cast<int>((right.cols() + together - 1) / together);
   Eigen::MatrixXd out(right.rows(), right.cols());
-  for_each_chunk(workers, chunks, [&](int chunk) noexcept {
+  for_each_chunk(workers, chunks, [&](int chunk) {
     const Eigen::Index first = chunk * together, count = std::min(together, right.cols() - first);
     out.middleCols(first, count) = solve_columns<Eigen::MatrixXd>(right.middleCols(first, count));
   });

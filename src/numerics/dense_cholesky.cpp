@@ -29,7 +29,7 @@ template <class Under, class Rest>
 void take_product_off(const Under& under, Rest rest, Workers* workers) {
   constexpr Eigen::Index columns = 2 * cholesky_block;  // narrower ones read the rows more often
   const auto chunks = static_cast<int>((rest.cols() + columns - 1) / columns);
-  for_each_chunk(workers, chunks, [&](int chunk) noexcept {
+  for_each_chunk(workers, chunks, [&](int chunk) {
     // Chunks are taken from the last on, which is the smallest: the longest columns shall come first.
     const Eigen::Index k = (chunks - 1 - chunk) * columns, size = std::min(columns, rest.cols() - k),
                        below = rest.cols() - k - size;
@@ -45,7 +45,7 @@ template <class Corner, class Under>
 void solve_under(const Corner& corner, Under under, Workers* workers) {
   constexpr Eigen::Index rows = 96;  // twice as many as the corner has: less is not worth to be shared
   const auto chunks = static_cast<int>((under.rows() + rows - 1) / rows);
-  for_each_chunk(workers, chunks, [&](int chunk) noexcept {
+  for_each_chunk(workers, chunks, [&](int chunk) {
     auto part = under.middleRows(chunk * rows, std::min(rows, under.rows() - chunk * rows));
     corner.matrixU().template solveInPlace<Eigen::OnTheRight>(part);
   });

@@ -80,7 +80,7 @@ EnvelopeFactor EnvelopeFactor::blank() const {
 
 void EnvelopeFactor::clear(Workers* workers) {
   constexpr int chunks = 8;
-  for_each_chunk(workers, chunks, [&](int k) noexcept {
+  for_each_chunk(workers, chunks, [&](int k) {
     const Chunk columns = chunk_of(static_cast<int>(size()), chunks, k);
     for (Eigen::Index column = columns.begin; column < columns.end; ++column)
       l_.col(column).segment(column, end_of(column) - column).setZero();

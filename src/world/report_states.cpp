@@ -81,7 +81,7 @@ void report_states(const Field& field, StepReport& report) {
     report.instruments.back().action = field.tools[i].action;
   }
   report.organs.resize(field.organs.size());
-  for_each_chunk(field.workers(), static_cast<int>(field.organs.size()), [&](int chunk) noexcept {
+  for_each_chunk(field.workers(), static_cast<int>(field.organs.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
     report.organs[k] = organ_state(field.organs[k]);
   });

@@ -189,7 +189,7 @@ std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinitio
                                                             KeptResults* kept) {
   const std::vector<OrganDefinition>& organs = scene.anatomy.organs;
   std::vector<std::optional<Result<RestedOrgan>>> out(organs.size());
-  const auto make_those = [&](bool lobes) noexcept {
+  const auto make_those = [&](bool lobes) {
     for (std::size_t k = 0; k < organs.size(); ++k) {
       if (std::holds_alternative<LobeShape>(organs[k].shape) != lobes) continue;
       // No lobe is filled, and nothing of the others is kept: limits and kept results are each one thread's alone.
@@ -200,7 +200,7 @@ std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinitio
     }
   };
   do_at_once(
-      &workers, [&]() noexcept { make_those(true); }, [&]() noexcept { make_those(false); });
+      &workers, [&] { make_those(true); }, [&] { make_those(false); });
   return out;
 }
 

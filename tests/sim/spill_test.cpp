@@ -124,6 +124,72 @@ TEST(Spills, WhatLiesLevelComesToRestAndStaysAsItIs) {
   EXPECT_LT(deepest, 0.4e-3) << "200 mm^3 in a puddle";
 }
 
+/// Drops on the ground and on top of the ball, and what they became when nothing of it moves any more.
+Field with_films_at_rest() {
+  Field field = ball_over_slope(0);
+  drip(field, Vec3(40e-3, 0, 5e-3), 10e-9);
+  drip(field, Vec3(0, 0, ball_foot + 45e-3), 2e-9, Carries::bile);
+  for (int k = 0; k < 3000; ++k)
+    if (spill(field, 0.02) == 0 && field.spill.drops.empty()) return field;
+  ADD_FAILURE() << "after a minute they still flow";
+  return field;
+}
+
+void expect_same(const Film& film, const Film& other) {
+  EXPECT_EQ(film.on, other.on);
+  ASSERT_EQ(film.wet.size(), other.wet.size());
+  for (std::size_t k = 0; k < film.wet.size(); ++k) {
+    EXPECT_EQ(film.wet[k].point, other.wet[k].point);
+    EXPECT_EQ(film.wet[k].volume, other.wet[k].volume);
+  }
+}
+
+TEST(Spills, FilmsAtRestCostNothing) {
+  Field field = with_films_at_rest();
+  ASSERT_EQ(field.spill.films.size(), 2u) << "on the ball and on the ground";
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(spill(field, 0.02), 0) << "looks at what they do";
+  EXPECT_EQ(spill(field, 0.013), 2) << "in parts of another length each film is looked at once";
+  EXPECT_EQ(spill(field, 0.013), 0);
+}
+
+TEST(Spills, FilmsAtRestAreWhatTheyWereIfTheyWereLookedAt) {
+  Field field = with_films_at_rest(), looked_at = field;
+  for (int k = 0; k < 20; ++k) {
+    spill(field, 0.02);
+    for (Film& film : looked_at.spill.films) film.rest.reset();
+    EXPECT_EQ(spill(looked_at, 0.02), 2);
+  }
+  for (std::size_t k = 0; k < 2; ++k) expect_same(field.spill.films[k], looked_at.spill.films[k]);
+}
+
+TEST(Spills, FilmsAtRestFlowAgainWhereWhatCarriesThemTilts) {
+  Field field = with_films_at_rest();
+  const double then = middle_of(field, *film_on_ground(field)).x();
+  field.up = Vec3(-0.5, 0, 1).normalized();
+  EXPECT_GT(spill(field, 0.02), 0);
+  wait(field, 2);
+  EXPECT_GT(middle_of(field, *film_on_ground(field)).x(), then);
+}
+
+TEST(Spills, AFilmAtRestFlowsAgainWhereItsOrganTurnsAndNotOnWhatItLeft) {
+  Field field = with_films_at_rest();
+  VecX& x = field.organs[0].state.x;
+  const VecX before = x;
+  const Mat3 turn = Eigen::AngleAxisd(1.2, Vec3::UnitX()).toRotationMatrix();
+  for (Eigen::Index k = 0; k < x.size(); k += 3) x.segment<3>(k) = turn * before.segment<3>(k);
+  EXPECT_EQ(spill(field, 0.02), 4) << "four parts of a step, and the ground's film still lies";
+  x = before;
+  EXPECT_GT(spill(field, 0.02), 0) << "what has flowed meanwhile was never at rest there";
+}
+
+TEST(Spills, AFilmAtRestFlowsAgainWhereMoreLandsOnIt) {
+  Field field = with_films_at_rest();
+  const Film before = *film_on_ground(field);
+  drip(field, Vec3(40e-3, 0, 1e-3), 10e-9);
+  wait(field, 1);
+  EXPECT_GT(film_on_ground(field)->wet.size(), before.wet.size()) << "thicker, it wets more";
+}
+
 TEST(Spills, WhatFallsPastEverythingIsCounted) {
   Field field = ball_over_slope();
   field.ground.clear();
