@@ -20,16 +20,28 @@ struct Drop {
   Vec3 at = Vec3::Zero(), velocity = Vec3::Zero();  ///< m, m/s
   double volume = 0;                                ///< m^3
 };
+void visit_members(auto&& visit, MembersOf<Drop> auto& drop) {
+  auto& [liquid, at, velocity, volume] = drop;
+  visit(liquid, at, velocity, volume);
+}
 
 struct WetPoint {
   int point = 0;
   std::array<double, liquids> volume{};  ///< m^3
 };
+void visit_members(auto&& visit, MembersOf<WetPoint> auto& wet) {
+  auto& [point, volume] = wet;
+  visit(point, volume);
+}
 
 struct Film {
   int on = 0;                 ///< an organ by its place on the roll; below 0: ground -1 - on
   std::vector<WetPoint> wet;  ///< by increasing points
 };
+void visit_members(auto&& visit, MembersOf<Film> auto& film) {
+  auto& [on, wet] = film;
+  visit(on, wet);
+}
 
 /// A clip that fell, where it lies.
 struct FallenClip {
@@ -38,6 +50,10 @@ struct FallenClip {
   Vec3 legs = Vec3::
       UnitZ();  ///< unit: where its legs pointed when it fell, and lie along as far as the surface lets them
 };
+void visit_members(auto&& visit, MembersOf<FallenClip> auto& clip) {
+  auto& [size, on, point, legs] = clip;
+  visit(size, on, point, legs);
+}
 
 /// Where a film can be: points, and who is beside whom.
 struct WetMesh {
@@ -71,5 +87,9 @@ struct Spill {
   /// m^3 in drops and films.
   double lying(Carries liquid) const;
 };
+void visit_members(auto&& visit, MembersOf<Spill> auto& spill) {
+  auto& [lost, given, drained, out_of_sight, drops, films, clips, skins, ground] = spill;
+  visit(lost, given, drained, out_of_sight, drops, films, clips);
+}
 
 }  // namespace calot
