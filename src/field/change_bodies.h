@@ -31,7 +31,5 @@ void finish_change(Field& field);
 void keep_members(Field& field);
 /// Sets the field back to other members, their bodies as they were when these began.
 void restore_members(Field& field, const std::shared_ptr<const FieldMembers>& members);
-/// Whether bodies and joints are the scene's, all of them.
-bool is_as_in_scene(const Field& field);
 
 }  // namespace calot

@@ -68,7 +68,7 @@ struct World::Impl {
   long steps = 0;
   bool failed = false;
   Failure failure;
-  std::uint64_t field_hash = 0;
+  std::uint64_t hash_but_steps = 0;    ///< of the state, but for how many steps there were
   std::vector<RestShift> rest_shifts;  ///< one an organ of the scene
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
@@ -84,9 +84,9 @@ struct World::Impl {
   /// current flow: what begins is an event, too.
   void observe_step(const std::vector<InstrumentAction>& actions, double duration,
                     std::vector<WorldEvent> events);
+  std::uint64_t find_hash_but_steps() const;
+  std::uint64_t hash(std::uint64_t but_steps) const;
   void keep_hash();
-  bool same_factors(const FieldState& state) const;
-  std::uint64_t hash(std::uint64_t of_field) const;
 
   double time() const { return static_cast<double>(steps) / scene.solver.rate; }
   /// Changes the field's members; the report then is of them, with the events of the last step. On failure all is as it
@@ -97,18 +97,15 @@ struct World::Impl {
   Result<bool> settle_change(const std::string& what);
 };
 
-/// The hash knows a factor only by what it makes of one vector.
-bool World::Impl::same_factors(const FieldState& state) const {
-  return field.group.work.factor.shares_factor_with(state.group.factor.factor);
+std::uint64_t World::Impl::find_hash_but_steps() const {
+  WordHash hash;
+  MemberWriter{hash}(hash_of(field), report);
+  return hash.value();
 }
 
-std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
-  Hash hash;
-  hash.add(of_field);
-  hash.add(steps);
-  const InstrumentPose& scope = report.laparoscope.pose;
-  if (scope != laparoscope.start())
-    for (double v : {scope.pitch, scope.yaw, scope.insertion, scope.roll, scope.jaw}) hash.add(v);
+std::uint64_t World::Impl::hash(std::uint64_t but_steps) const {
+  WordHash hash;
+  MemberWriter{hash}(but_steps, steps);
   return hash.value();
 }
 
@@ -129,10 +126,8 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
   const std::vector<WorldEvent> begun = observe(field, before, report);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    tool.touched = report.instruments[i].touching;
     if (report.balanced)
       tool.over_limit = presses_too_hard(report.instruments[i], tool.definition.force_limit);
-    tool.met = !report.instruments[i].meets.empty();
   }
   feel_stiffness(field.tools, before.instruments, report.instruments);
   const std::vector<WorldEvent> burnt = apply_current(field, report.instruments, duration);
@@ -144,8 +139,8 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
 }
 
 void World::Impl::keep_hash() {
-  field_hash = hash_of(field);
-  report.state_hash = hash(field_hash);
+  hash_but_steps = find_hash_but_steps();
+  report.state_hash = hash(hash_but_steps);
 }
 
 void World::Impl::place_laparoscope(const InstrumentPose& pose) {
@@ -305,8 +300,6 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   self.place_laparoscope(self.laparoscope.start());
   if (Result<bool> clear = check_clear(self.field); !clear) return clear.failure();
   if (Result<bool> apart = check_apart(self.field); !apart) return apart.failure();
-  self.field.membership.of_scene = self.field.organs.size();
-  self.field.membership.scene_joints = self.field.membership.joints.size();
   keep_members(self.field);
   self.observe_step({}, 1 / scene.solver.rate, {});
   self.keep_hash();
@@ -354,11 +347,11 @@ Result<StepReport> World::step(const StepInput& input) {
     ++self.steps;
     self.report.time = self.time();
     self.report.events.clear();
-    self.report.state_hash = self.hash(self.field_hash);
+    self.report.state_hash = self.hash(self.hash_but_steps);
     return self.report;
   }
   const FieldState before = state();
-  const std::uint64_t hash_before = self.field_hash;
+  const std::uint64_t hash_before = self.hash_but_steps;
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
   Result<std::vector<WorldEvent>> events = self.act(input);
   if (self.field.stopped()) {
@@ -380,14 +373,13 @@ Result<StepReport> World::step(const StepInput& input) {
   self.observe_step(input.actions, 1 / self.scene.solver.rate, std::move(events).value());
   self.keep_hash();
   self.still.reset();
-  if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
-    self.still = input;
+  if (self.hash_but_steps == hash_before && self.report.events.empty()) self.still = input;
   return self.report;
 }
 
 const SceneDefinition& World::scene() const { return impl_->scene; }
 const StepReport& World::report() const { return impl_->report; }
-std::uint64_t World::state_hash() const { return impl_->hash(hash_of(impl_->field)); }
+std::uint64_t World::state_hash() const { return impl_->hash(impl_->find_hash_but_steps()); }
 
 FieldState World::state() const {
   FieldState state = field_state(impl_->field);
@@ -403,7 +395,7 @@ Result<bool> World::restore(const FieldState& state) {
   calot::restore(self.field, state);
   self.steps = state.steps;
   self.report = state.report;
-  self.field_hash = hash_of(self.field);
+  self.hash_but_steps = self.find_hash_but_steps();
   self.still.reset();
   self.failed = false;
   return true;
