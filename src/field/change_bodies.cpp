@@ -96,13 +96,12 @@ std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
 
 }  // namespace
 
-Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting) {
+Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganMaker& make) {
   for (const Organ& organ : field.organs)
     if (organ.definition.name == definition.name)
       return fail(FailureKind::scenario, fmt::format("there is {} already", quoted(organ)),
                   "give it another name", {"", 0, ".name"});
-  Result<RestedOrgan> made =
-      make_organ(definition, setting.loads, setting.up, setting.tolerance, setting.levels, setting.limits);
+  Result<RestedOrgan> made = make(definition);
   if (!made) return made.failure();
   if (std::optional<Failure> failure = check_room(field, made->organ.body->coarse_nodes())) return *failure;
   if (std::optional<Failure> failure = check_free(field, made->organ)) return *failure;

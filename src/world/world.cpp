@@ -16,6 +16,7 @@
 #include "fem/assembly.h"
 #include "field/change_bodies.h"
 #include "field/divide_body.h"
+#include "field/field_bytes.h"
 #include "field/field_hash.h"
 #include "field/field_state.h"
 #include "field/field_tissues.h"
@@ -34,6 +35,7 @@
 #include "world/observe.h"
 #include "world/report_states.h"
 #include "world/sight.h"
+#include "world/world_bytes.h"
 
 namespace calot {
 namespace {
@@ -68,6 +70,7 @@ struct World::Impl {
   long steps = 0;
   bool failed = false;
   Failure failure;
+  std::string scene_digest;
   std::uint64_t hash_but_steps = 0;    ///< of the state, but for how many steps there were
   std::vector<RestShift> rest_shifts;  ///< one an organ of the scene
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
@@ -87,6 +90,11 @@ struct World::Impl {
   std::uint64_t find_hash_but_steps() const;
   std::uint64_t hash(std::uint64_t but_steps) const;
   void keep_hash();
+
+  /// An organ that comes later, of its definition.
+  Result<RestedOrgan> make_later(const OrganDefinition& definition) const;
+  /// Goes on from what to_bytes() had behind its header; whether it could.
+  bool take(std::string_view state);
 
   double time() const { return static_cast<double>(steps) / scene.solver.rate; }
   /// Changes the field's members; the report then is of them, with the events of the last step. On failure all is as it
@@ -301,6 +309,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (Result<bool> clear = check_clear(self.field); !clear) return clear.failure();
   if (Result<bool> apart = check_apart(self.field); !apart) return apart.failure();
   keep_members(self.field);
+  self.scene_digest = calot::scene_digest(self.scene, self.field);
   self.observe_step({}, 1 / scene.solver.rate, {});
   self.keep_hash();
   return world;
@@ -400,6 +409,49 @@ Result<bool> World::restore(const FieldState& state) {
   self.failed = false;
   return true;
 }
+
+std::string World::to_bytes() const {
+  ByteWriter out;
+  MemberWriter{out}(impl_->steps, impl_->report);
+  add_bytes_of(impl_->field, out);
+  return with_header(impl_->scene_digest, out.bytes());
+}
+
+Result<World> World::from_bytes(const SceneDefinition& scene, std::string_view bytes,
+                                const std::atomic<bool>* stop, int threads, KeptResults* kept) {
+  const Result<SavedWorld> saved = saved_world(bytes);
+  if (!saved) return saved.failure();
+  Result<World> world = create(scene, stop, threads, kept);
+  if (!world) return world;
+  Impl& self = *world->impl_;
+  if (saved->scene != self.scene_digest)
+    return fail(FailureKind::scenario, "the saved world is of another scene",
+                "give the scene that it was saved of");
+  if (self.take(saved->state)) return world;
+  return fail(FailureKind::usage, "the saved world cannot be read: its parts do not fit together",
+              "save it anew by this program");
+}
+
+Result<RestedOrgan> World::Impl::make_later(const OrganDefinition& definition) const {
+  const SolverDefinition& solver = scene.solver;
+  FillingLimits limits = filling_limits(solver, nullptr);
+  return make_organ(definition, loads_of_ground(field), up, solver.tolerance,
+                    definition.extensions ? solver.extension_levels : 0, &limits);
+}
+
+bool World::Impl::take(std::string_view state) {
+  ByteReader in(state);
+  MemberReader read{in};
+  read(steps, report);
+  read_field(
+      read, [&](const OrganDefinition& definition) { return make_later(definition); }, field);
+  if (!in.complete() || report.instruments.size() != field.tools.size()) return false;
+  report.time = field.time = time();
+  report.statistics = {};
+  keep_hash();
+  return true;
+}
+
 const std::vector<RestShift>& World::rest_shifts() const { return impl_->rest_shifts; }
 Vec3 World::up() const { return impl_->up; }
 const Field& World::field() const { return impl_->field; }
@@ -530,13 +582,9 @@ Result<bool> World::remove(const std::string& name, const std::string& why) {
 Result<OrganIndex> World::add(const OrganDefinition& definition) {
   if (std::vector<Problem> problems = validate(definition); !problems.empty())
     return Failure{FailureKind::scenario, std::move(problems)};
-  const SolverDefinition& solver = impl_->scene.solver;
-  const ContactLoads still = loads_of_ground(impl_->field);
-  FillingLimits limits = filling_limits(solver, nullptr);
-  const OrganSetting setting{still, impl_->up, solver.tolerance,
-                             definition.extensions ? solver.extension_levels : 0, &limits};
+  const auto make = [&](const OrganDefinition& one) { return impl_->make_later(one); };
   Result<OrganIndex> added = impl_->change(fmt::format("after '{}' came", definition.name),
-                                           [&] { return add_body(impl_->field, definition, setting); });
+                                           [&] { return add_body(impl_->field, definition, make); });
   if (added) return added;
   Failure failure = added.failure();
   for (Problem& problem : failure.problems)  // of its definition
