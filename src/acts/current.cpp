@@ -167,7 +167,7 @@ std::vector<WorldEvent> apply_current(Field& field, const std::vector<Instrument
   const std::vector<std::vector<Heated>> heated = heated_strands(field);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    if (!is_active(tool) || tool.touched) {
+    if (!is_active(tool) || instruments[i].touching) {
       tool.dry = 0;
     } else if (tool.dry < dry_limit) {
       tool.dry = std::min(tool.dry + duration, dry_limit);

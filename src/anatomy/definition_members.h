@@ -106,10 +106,28 @@ void visit_members(auto&& visit, MembersOf<AnatomyDefinition> auto& definition) 
   visit(organs, joints, tissue, ground, support, friction, rest_within, heart_rate, table_head_up,
         table_left_down);
 }
+void visit_members(auto&& visit, MembersOf<PortDefinition> auto& definition) {
+  auto& [name, position] = definition;
+  visit(name, position);
+}
+void visit_members(auto&& visit, MembersOf<InstrumentDefinition> auto& definition) {
+  auto& [name, type, port, force_limit, pinch_force, pad_friction, friction, power, clip, clips, bore,
+         bore_length, suction, pinhole, waits, hand_force, port_friction] = definition;
+  visit(name, type, port, force_limit, pinch_force, pad_friction, friction, power, clip, clips, bore,
+        bore_length, suction, pinhole, waits, hand_force, port_friction);
+}
+void visit_members(auto&& visit, MembersOf<LaparoscopeDefinition> auto& definition) {
+  auto& [port, angle, field_of_view, look_at, distance, light, exposure, show_structure] = definition;
+  visit(port, angle, field_of_view, look_at, distance, light, exposure, show_structure);
+}
 void visit_members(auto&& visit, MembersOf<SolverDefinition> auto& definition) {
   auto& [rate, motion, tolerance, extension_levels, extension_scheme, extension_view, skip_still] =
       definition;
   visit(rate, motion, tolerance, extension_levels, extension_scheme, extension_view, skip_still);
+}
+void visit_members(auto&& visit, MembersOf<SceneDefinition> auto& definition) {
+  auto& [anatomy, ports, instruments, laparoscope, solver] = definition;
+  visit(anatomy, ports, instruments, laparoscope, solver);
 }
 
 }  // namespace calot

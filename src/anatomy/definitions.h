@@ -47,9 +47,11 @@ struct MeshFile {
 /// Which end of a tube that is divided stays with the patient: the one that is held, itself or by what it is tied to (its
 /// end where both are, or neither), or always the same.
 enum class PatientEnd { held, start, end };
+constexpr PatientEnd last_of(PatientEnd) { return PatientEnd::end; }
 
 /// What flows in a tube; by it a duct and an artery look different.
 enum class Carries { bile, blood };
+constexpr Carries last_of(Carries) { return Carries::blood; }
 
 /// A duct or a vessel: a tube along a line; a solid thread where its wall is as thick as its radius.
 struct TubeShape {
@@ -184,6 +186,7 @@ struct WallVessel {
 
 /// How a hollow organ is drawn: full of bile, or pale, as one that mucus has filled (hydrops).
 enum class OrganLooks { bile, pale };
+constexpr OrganLooks last_of(OrganLooks) { return OrganLooks::pale; }
 
 struct OrganDefinition {
   std::string name = "gallbladder";
@@ -300,6 +303,7 @@ enum class InstrumentType {
 
 /// Of titanium clips, a row each in clip_rows() (anatomy/instruments.h).
 enum class ClipSize { m, ml };
+constexpr ClipSize last_of(ClipSize) { return ClipSize::ml; }
 
 struct InstrumentDefinition {
   std::string name;  ///< "left", "right", ...
@@ -338,6 +342,7 @@ enum class InstrumentAction {
   aspirate,  ///< liquid is drawn out through a bore
   exchange,  ///< it comes in through its port for the one that is there
 };
+constexpr InstrumentAction last_of(InstrumentAction) { return InstrumentAction::exchange; }
 
 /// In the order of the types.
 const std::vector<std::string>& instrument_type_names();

@@ -31,6 +31,28 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325ULL;
 };
 
+/// The same for much data, eight bytes at a time, of long lists four times eight at once.
+class WordHash {
+ public:
+  void add_bytes(const void* data, std::size_t size);
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void add(T value) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, &value, sizeof value);
+    state_ = mixed(state_, word);
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  /// No two words lead from one state to the same.
+  static std::uint64_t mixed(std::uint64_t state, std::uint64_t word) {
+    state = (state ^ word) * 0x9e3779b97f4a7c15ULL;
+    return state ^ state >> 32;
+  }
+  std::uint64_t state_ = 0xcbf29ce484222325ULL;
+};
+
 /// Sixteen lower-case hexadecimal digits.
 std::string hex(std::uint64_t value);
 

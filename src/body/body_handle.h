@@ -5,6 +5,8 @@
 #include <concepts>
 #include <cstdint>
 
+#include "geometry/state_members.h"
+
 namespace calot {
 
 /// An organ by its place among the field's. A number becomes one only where that is said.
@@ -14,6 +16,10 @@ struct OrganIndex {
   constexpr explicit OrganIndex(std::integral auto place) : value(static_cast<int>(place)) {}
   auto operator<=>(const OrganIndex&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<OrganIndex> auto& index) {
+  auto& [value] = index;
+  visit(value);
+}
 
 /// One body, for as long as it is in the field.
 struct BodyHandle {

@@ -174,5 +174,9 @@ class RodBody : public Body {
   std::vector<std::vector<int>> face_nodes_;
   std::optional<TubeMesh> tube_;
 };
+void visit_members(auto&& visit, MembersOf<RodBody::Pinch> auto& pinch) {
+  auto& [at, opening, pressed] = pinch;
+  visit(at, opening, pressed);
+}
 
 }  // namespace calot

@@ -17,6 +17,7 @@ class TissueBody : public Body {
     double strength = 0.1;  ///< N, of a strand: residuals are judged beside it
   };
   explicit TissueBody(const Setup& setup);
+  const Setup& setup() const { return setup_; }
 
   /// Some of its nodes, increasing, as a body of their own.
   TissueBody part(const std::vector<int>& which) const;
@@ -52,5 +53,9 @@ class TissueBody : public Body {
   std::vector<Vec3> no_points_;
   std::vector<std::vector<int>> no_faces_;
 };
+void visit_members(auto&& visit, MembersOf<TissueBody::Setup> auto& setup) {
+  auto& [name, nodes, masses, up, strength] = setup;
+  visit(name, nodes, masses, up, strength);
+}
 
 }  // namespace calot

@@ -101,6 +101,15 @@ Result<StrandLaw> StrandLaw::create(const Setup& setup) {
       "raise the break energy, or lower the strength");
 }
 
+void visit_members(MemberReader& read, StrandLaw& law) {
+  StrandLaw::Setup setup;
+  read(setup);
+  if (read.lacks()) return;
+  Result<StrandLaw> made = StrandLaw::create(setup);
+  if (!made) return read.refuse();
+  law = std::move(made).value();
+}
+
 double StrandLaw::intact(double opened) const {
   if (opened <= peak_) return 1;
   if (torn(opened)) return 0;

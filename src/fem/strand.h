@@ -10,7 +10,7 @@
 #include <algorithm>
 
 #include "base/status.h"
-#include "geometry/types.h"
+#include "geometry/state_members.h"
 
 namespace calot {
 
@@ -70,6 +70,12 @@ class StrandLaw {
   Setup setup_;
   double peak_ = 0, tail_ = 0;
 };
+void visit_members(auto&& visit, MembersOf<StrandLaw::Setup> auto& setup) {
+  auto& [taut, length, stiffness, stiffening, strength, break_energy] = setup;
+  visit(taut, length, stiffness, stiffening, strength, break_energy);
+}
+void visit_members(auto&& visit, const StrandLaw& law) { visit(law.setup()); }
+void visit_members(MemberReader& read, StrandLaw& law);
 
 /// The whole strand. Beside its tension a weak spring centres its node between the places: slack it would float, and
 /// along a straight one it would slip freely. Torn it hangs by that spring at a.
@@ -92,5 +98,9 @@ struct Strand {
   }
   double centring() const;  ///< N/m
 };
+void visit_members(auto&& visit, MembersOf<Strand> auto& strand) {
+  auto& [law] = strand;
+  visit(law);
+}
 
 }  // namespace calot

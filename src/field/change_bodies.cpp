@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "base/hash.h"
 #include "field/grip.h"
 #include "field/join_bodies.h"
+#include "field/members_note.h"
 #include "field/renumbering.h"
 #include "field/roll.h"
 
@@ -94,16 +96,16 @@ std::optional<Failure> check_free(const Field& field, const Organ& fresh) {
 
 }  // namespace
 
-Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting) {
+Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganMaker& make) {
   for (const Organ& organ : field.organs)
     if (organ.definition.name == definition.name)
       return fail(FailureKind::scenario, fmt::format("there is {} already", quoted(organ)),
                   "give it another name", {"", 0, ".name"});
-  Result<RestedOrgan> made =
-      make_organ(definition, setting.loads, setting.up, setting.tolerance, setting.levels, setting.limits);
+  Result<RestedOrgan> made = make(definition);
   if (!made) return made.failure();
   if (std::optional<Failure> failure = check_room(field, made->organ.body->coarse_nodes())) return *failure;
   if (std::optional<Failure> failure = check_free(field, made->organ)) return *failure;
+  made->organ.origin.added = definition;
   field.enrol(made->organ);
   field.organs.push_back(std::move(made->organ));
   finish_change(field);
@@ -129,15 +131,22 @@ Result<bool> untie_bodies(Field& field, OrganIndex one, OrganIndex other) {
 }
 
 void keep_members(Field& field) {
-  FieldMembers now{field.organs,      field.tissues,
-                   field.group.joins, field.viewed,
-                   field.membership,  field.members ? field.members->world : std::make_shared<const int>(0)};
+  FieldMembers now{field.organs,
+                   field.tissues,
+                   field.group.joins,
+                   field.viewed,
+                   field.membership,
+                   field.members ? field.members->world : std::make_shared<const int>(0),
+                   0};
   for (Organ& organ : now.organs) {
     const bool meets_itself = organ.search.own.active;
     organ.search = {};
     organ.search.own.active = meets_itself;
     organ.looked_at.reset();
   }
+  WordHash hash;
+  MemberWriter{hash}(note_of(field));
+  now.hash = hash.value();
   field.members = std::make_shared<const FieldMembers>(std::move(now));
 }
 
@@ -150,15 +159,6 @@ void restore_members(Field& field, const std::shared_ptr<const FieldMembers>& me
   field.group.joins = members->joins;
   field.viewed = members->viewed;
   field.membership = members->membership;
-}
-
-bool is_as_in_scene(const Field& field) {
-  const Membership& who = field.membership;
-  bool same = field.organs.size() == who.of_scene && who.joints.size() == who.scene_joints;
-  for (std::size_t k = 0; same && k < field.organs.size(); ++k)
-    same = field.organs[k].record == static_cast<int>(k);
-  for (const FieldJoint& joint : who.joints) same = same && joint.of_scene;
-  return same;
 }
 
 }  // namespace calot

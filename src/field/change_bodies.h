@@ -4,6 +4,8 @@
 // Each change leaves all other bodies as they are, in their order, and asks nothing of a solver; what pressed, stuck or
 // held on a body that goes is gone, and factors are made anew. A failure (scenario) leaves the field as it is.
 
+#include <functional>
+
 #include "field/field.h"
 #include "organs/body_kinds.h"
 
@@ -16,9 +18,11 @@ std::optional<Failure> check_room(const Field& field, int more_nodes);
 /// The joints of a body go with it, and tools let it go: jaws that rested on nothing else are free to close.
 Result<bool> remove_body(Field& field, OrganIndex organ, const std::string& why, double time);
 
-/// Adds an organ, where its definition has it, at rest; as make_organ() where that fails, and where it would be in
+/// Makes an organ that comes later of its definition, at rest where that has it.
+using OrganMaker = std::function<Result<RestedOrgan>(const OrganDefinition& definition)>;
+/// Adds an organ, where its definition has it, at rest; fails as `make` does, and where it would be in
 /// another body or a tool. It stands behind all others.
-Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganSetting& setting);
+Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganMaker& make);
 
 /// Ties "organ.landmark" to another where they are now: without a load. The names are the field's.
 Result<bool> tie_bodies(Field& field, const JointDefinition& joint);
@@ -31,7 +35,5 @@ void finish_change(Field& field);
 void keep_members(Field& field);
 /// Sets the field back to other members, their bodies as they were when these began.
 void restore_members(Field& field, const std::shared_ptr<const FieldMembers>& members);
-/// Whether bodies and joints are the scene's, all of them.
-bool is_as_in_scene(const Field& field);
 
 }  // namespace calot

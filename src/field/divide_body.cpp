@@ -81,8 +81,7 @@ Result<Division> divide_body(Field& field, OrganIndex index, double share, doubl
     const bool patients = (side == 0) == start_first;
     Organ& piece = pieces[side];
     piece.of_specimen = whole.of_specimen || !patients;
-    piece.definition.name = names[patients ? 0 : 1];
-    if (BodyPointer called = piece.body->called(piece.definition.name)) piece.body = std::move(called);
+    name_piece(piece, names[patients ? 0 : 1]);
   }
   note_departure(field, whole, {time, "was divided", {names[0], names[1]}, {}});
   field.enrol(pieces[start_first ? 0 : 1]);

@@ -42,6 +42,7 @@ std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
 
 void Field::add(RestedOrgan made) {
   organs.push_back(std::move(made.organ));
+  organs.back().origin.of_scene = static_cast<int>(organs.size()) - 1;
   enrol(organs.back());
   group.forget_bodies();
   group.missed = {};

@@ -84,7 +84,7 @@ struct Field {
   const Tool& tool(ToolIndex at) const { return tools[at.value]; }
   /// Null: one thread does all.
   Workers* workers() const { return workers_of(assembly); }
-  /// The first one's last factor serves on.
+  /// The scene's next organ. The first one's last factor serves on.
   void add(RestedOrgan made);
   /// Puts an organ on the roll.
   void enrol(Organ& organ);

@@ -7,7 +7,7 @@
 
 namespace calot {
 
-/// Of a factor, which later steps begin with, only what it makes of the constraints' gradients.
+/// Of all that its bytes have (field_bytes.h) but the roll's history; after keep_members().
 std::uint64_t hash_of(const Field& field);
 
 }  // namespace calot

@@ -42,7 +42,7 @@ Result<bool> add_joint(const JointDefinition& joint, bool at_rest, Field& field)
   Result<JointLinks> links = joint_links(*first.body, *second.body, skins, {one, other}, skins[0][from],
                                          joint.radius, joint.stiffness);
   if (!links) return links.failure();
-  field.membership.joints.push_back({std::make_shared<const Joint>(std::move(links).value()), at_rest});
+  field.membership.joints.push_back({std::make_shared<const Joint>(std::move(links).value())});
   // Where one grows out of the other they lie in each other: as far as both are thick there.
   const double within = joint.radius + 2 * (first.body->thickest() + second.body->thickest()) + joint_fold;
   const std::array bodies{std::min(one, other), std::max(one, other)};

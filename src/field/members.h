@@ -20,6 +20,10 @@ struct SkinPlace {
   Vec3 at = Vec3::Zero();      ///< m
   Vec3 normal = Vec3::Zero();  ///< unit, outward
 };
+void visit_members(auto&& visit, MembersOf<SkinPlace> auto& place) {
+  auto& [at, normal] = place;
+  visit(at, normal);
+}
 
 /// When and why a body went.
 struct Departure {
@@ -28,6 +32,10 @@ struct Departure {
   std::vector<std::string> pieces = {};  ///< the patient's and the specimen's, of one that was divided
   std::map<std::string, SkinPlace> landmarks = {};  ///< where they were last
 };
+void visit_members(auto&& visit, MembersOf<Departure> auto& departure) {
+  auto& [time, how, pieces, landmarks] = departure;
+  visit(time, how, pieces, landmarks);
+}
 
 /// A body that is or was in the field.
 struct BodyRecord {
@@ -35,16 +43,23 @@ struct BodyRecord {
   std::uint64_t life = 0;
   std::optional<Departure> gone;
 };
+void visit_members(auto&& visit, MembersOf<BodyRecord> auto& record) {
+  auto& [name, life, gone] = record;  // lives are of one world in one process
+  visit(name, gone);
+}
 
 /// Nothing of two bodies presses on each other there.
 struct TiedPlace {
   std::array<int, 2> bodies{};  ///< increasing
   JoinedPlace place;
 };
+void visit_members(auto&& visit, MembersOf<TiedPlace> auto& tied) {
+  auto& [bodies, place] = tied;
+  visit(bodies, place);
+}
 
 struct FieldJoint {
   std::shared_ptr<const Joint> joint;
-  bool of_scene = false;
 };
 
 /// Beside the bodies themselves.
@@ -52,8 +67,6 @@ struct Membership {
   std::vector<FieldJoint> joints;
   std::vector<TiedPlace> tied;
   std::vector<BodyRecord> roll;  ///< in the order in which they came; the scene's first
-  std::size_t of_scene = 0;      ///< bodies, and
-  std::size_t scene_joints = 0;
 };
 
 /// All of it at one time.
@@ -64,6 +77,7 @@ struct FieldMembers {
   std::optional<OrganPoint> viewed;
   Membership membership;
   std::shared_ptr<const int> world;  ///< whose it is
+  std::uint64_t hash = 0;            ///< of who they are (members_note.h)
 };
 
 }  // namespace calot

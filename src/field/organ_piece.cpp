@@ -84,12 +84,19 @@ std::vector<Burn> burns_of(const Organ& whole, const Body& piece) {
 
 }  // namespace
 
+std::vector<RodBody::Pinch> pinches_of(const Organ& organ) {
+  const RodBody* tube = organ.body->as_tube();
+  return tube == nullptr ? std::vector<RodBody::Pinch>() : tube->pinches();
+}
+
 Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {
   const BodyPiece& piece = cut.pieces[side];
   Organ out(definition_of(whole.definition, piece), piece.body);
   out.state = state_on(whole.state, piece);
   out.search.own.active = whole.search.own.active;
   out.landmarks = piece.body->landmarks();
+  out.origin = whole.origin;
+  out.origin.cuts.push_back({cut.share, side, {}, pinches_of(whole)});
   out.grips = grips_of(whole, cut, side);
   out.friction = friction_of(whole, piece);
   out.unfelt = whole.unfelt;
@@ -98,6 +105,11 @@ Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {
   if (whole.left_in) out.left_in = *whole.left_in * piece.share;
   out.burns = burns_of(whole, *piece.body);
   return out;
+}
+
+void name_piece(Organ& piece, const std::string& name) {
+  piece.definition.name = piece.origin.cuts.back().name = name;
+  if (BodyPointer called = piece.body->called(name)) piece.body = std::move(called);
 }
 
 }  // namespace calot

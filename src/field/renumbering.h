@@ -22,8 +22,7 @@ class Renumbering {
     std::vector<FieldJoint> joints;
     for (const FieldJoint& joint : field.membership.joints) {
       JointLinks links = joint.joint->links();
-      if (apply(links.bodies))
-        joints.push_back({std::make_shared<const Joint>(std::move(links)), joint.of_scene});
+      if (apply(links.bodies)) joints.push_back({std::make_shared<const Joint>(std::move(links))});
     }
     field.membership.joints = std::move(joints);
     std::vector<TiedPlace> tied;

@@ -63,7 +63,7 @@ void replace_in_joints(const Replaced& places, const BodyCut& cut, const std::ve
     const int side = side_in(links.bodies, places.whole);
     links.bodies = places.now(links.bodies);
     if (side < 0) {
-      out.push_back({std::make_shared<const Joint>(std::move(links)), joint.of_scene});
+      out.push_back({std::make_shared<const Joint>(std::move(links))});
       continue;
     }
     for (FieldJoint& part : divide_joint(joint, side, cut, rest, places.pieces, field.organs, links.bodies))
@@ -162,8 +162,7 @@ std::vector<FieldJoint> divide_joint(const FieldJoint& joint, int side, const Bo
   }
   std::vector<FieldJoint> made;
   for (JointLinks& links : out)
-    if (!links.links.empty())
-      made.push_back({std::make_shared<const Joint>(std::move(links)), joint.of_scene});
+    if (!links.links.empty()) made.push_back({std::make_shared<const Joint>(std::move(links))});
   return made;
 }
 

@@ -21,11 +21,19 @@ struct Drop {
   Vec3 at = Vec3::Zero(), velocity = Vec3::Zero();  ///< m, m/s
   double volume = 0;                                ///< m^3
 };
+void visit_members(auto&& visit, MembersOf<Drop> auto& drop) {
+  auto& [liquid, at, velocity, volume] = drop;
+  visit(liquid, at, velocity, volume);
+}
 
 struct WetPoint {
   int point = 0;
   std::array<double, liquids> volume{};  ///< m^3
 };
+void visit_members(auto&& visit, MembersOf<WetPoint> auto& wet) {
+  auto& [point, volume] = wet;
+  visit(point, volume);
+}
 
 /// What a film lay on, and for how long, when a part of a step moved nothing of it. Where all this is the same the next
 /// part moves nothing either.
@@ -41,6 +49,10 @@ struct Film {
   std::vector<WetPoint> wet;          ///< by increasing points
   std::optional<FilmRest> rest = {};  ///< remembered, no part of any result; none: it may flow
 };
+void visit_members(auto&& visit, MembersOf<Film> auto& film) {
+  auto& [on, wet, rest] = film;  // the rest is found again
+  visit(on, wet);
+}
 
 /// A clip that fell, where it lies.
 struct FallenClip {
@@ -49,6 +61,10 @@ struct FallenClip {
   Vec3 legs = Vec3::
       UnitZ();  ///< unit: where its legs pointed when it fell, and lie along as far as the surface lets them
 };
+void visit_members(auto&& visit, MembersOf<FallenClip> auto& clip) {
+  auto& [size, on, point, legs] = clip;
+  visit(size, on, point, legs);
+}
 
 /// Where a film can be: points, and who is beside whom.
 struct WetMesh {
@@ -82,5 +98,9 @@ struct Spill {
   /// m^3 in drops and films.
   double lying(Carries liquid) const;
 };
+void visit_members(auto&& visit, MembersOf<Spill> auto& spill) {
+  auto& [lost, given, drained, out_of_sight, drops, films, clips, skins, ground] = spill;
+  visit(lost, given, drained, out_of_sight, drops, films, clips);
+}
 
 }  // namespace calot

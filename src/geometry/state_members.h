@@ -8,7 +8,8 @@
 //   }
 //
 // The names take the struct apart by all of its members: one that gets another is an error there until that is named.
-// What is named and not visited follows from the others, or is no part of any result: a comment says which.
+// What is named and not visited follows from the others, or is no part of any result: a comment says which. A class that
+// is read by being made anew has two functions: one of a const object for any visit, and one of a MemberReader.
 
 #include <concepts>
 #include <map>
@@ -121,6 +122,8 @@ class MemberWriter {
 class MemberReader {
  public:
   explicit MemberReader(ByteReader& in) : in_(in) {}
+  void refuse() { in_.refuse(); }
+  bool lacks() const { return in_.lacks(); }
   template <class... Each>
   void operator()(Each&... each) {
     (get(each), ...);

@@ -27,6 +27,10 @@ struct GroupPatterns {
   std::vector<BlockMatrix> own;
   std::vector<std::vector<int>> joined;
 };
+void visit_members(auto&& visit, MembersOf<GroupPatterns> auto& patterns) {
+  auto& [own, joined] = patterns;
+  visit(own, joined);
+}
 
 /// Where the kept volume of each body stands among the constraints of their group; -1: it has none. The group has them
 /// body by body, `counts` of each (constraints_of), a volume's first.

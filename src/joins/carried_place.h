@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/state_members.h"
 #include "geometry/stencil.h"
 
 namespace calot {
@@ -17,6 +18,10 @@ struct CarriedPlace {
   std::vector<int> points;
   std::vector<double> weights;
 };
+void visit_members(auto&& visit, MembersOf<CarriedPlace> auto& place) {
+  auto& [points, weights] = place;
+  visit(points, weights);
+}
 
 /// Adds a row of the nodes that it depends on, counted from `first_node`; `skin`: the body's.
 void append_place(const CarriedPlace& place, const StencilTable& skin, int first_node, StencilTable& rows);

@@ -27,6 +27,14 @@ struct JointLinks {
       links;  ///< of the point nearest to where they were joined first, to what it is nearest to first
   double stiffness = 0;  ///< N/m, of each link
 };
+void visit_members(auto&& visit, MembersOf<JointLinks::Link> auto& link) {
+  auto& [one, other, length] = link;
+  visit(one, other, length);
+}
+void visit_members(auto&& visit, MembersOf<JointLinks> auto& joint) {
+  auto& [bodies, links, stiffness] = joint;
+  visit(bodies, links, stiffness);
+}
 
 /// What ties the points of body `one` that lie within `radius` (m) of `place` at rest, three at least, to places that
 /// `other` carries; together they are as stiff as `stiffness` (N/m). `bodies`: their places in the group. Fails (scenario) where the

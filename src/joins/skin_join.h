@@ -27,6 +27,10 @@ struct JoinedPlace {
   Vec3 place = Vec3::Zero();
   double within = 0;
 };
+void visit_members(auto&& visit, MembersOf<JoinedPlace> auto& joined) {
+  auto& [place, within] = joined;
+  visit(place, within);
+}
 
 /// What a point of one skin is pressed by, and the frame in which it may rub.
 struct SkinPress {

@@ -24,6 +24,10 @@ struct BodyPoint {
   int body = 0, row = 0;
   auto operator<=>(const BodyPoint&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<BodyPoint> auto& point) {
+  auto& [body, row] = point;
+  visit(body, row);
+}
 
 /// What rubs: a skin point and the body that it presses on. There is one hold of each.
 struct RubbingPair {
@@ -31,6 +35,10 @@ struct RubbingPair {
   int on = 0;  ///< body
   auto operator<=>(const RubbingPair&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<RubbingPair> auto& pair) {
+  auto& [point, on] = pair;
+  visit(point, on);
+}
 
 /// By which points a hold's frame is found.
 struct RubbingPlace {
@@ -40,6 +48,10 @@ struct RubbingPlace {
   bool lines = false;
   bool operator==(const RubbingPlace&) const = default;
 };
+void visit_members(auto&& visit, MembersOf<RubbingPlace> auto& place) {
+  auto& [points, lines] = place;
+  visit(points, lines);
+}
 
 struct SkinHold {
   RubbingPair pair;
@@ -48,6 +60,10 @@ struct SkinHold {
   double across = 1;
   StickSlip hold;  ///< in the frame
 };
+void visit_members(auto&& visit, MembersOf<SkinHold> auto& held) {
+  auto& [pair, place, across, hold] = held;
+  visit(pair, place, across, hold);
+}
 
 /// The frame of four points, and where the first of them is in it.
 struct RubbingFrame {

@@ -19,6 +19,10 @@ struct PlacedStrand {
   StrandThread thread = {};
   double area = 0;  ///< m^2 that it stands for
 };
+void visit_members(auto&& visit, MembersOf<PlacedStrand> auto& placed) {
+  auto& [strand, one, other, thread, area] = placed;
+  visit(strand, one, other, thread, area);
+}
 
 class StrandJoin : public Join {
  public:

@@ -19,6 +19,10 @@ struct StrandThread {
   double area = 0;    ///< m^2 that a point stands for in the middle
   int points = 0;     ///< on each piece
 };
+void visit_members(auto&& visit, MembersOf<StrandThread> auto& thread) {
+  auto& [radius, area, points] = thread;
+  visit(radius, area, points);
+}
 StrandThread strand_thread(const StrandLaw& law, double radius);
 
 /// A piece of a strand: its ends, m, or how they move.

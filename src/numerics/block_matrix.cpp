@@ -21,7 +21,6 @@ BlockMatrix::BlockMatrix(int nodes, std::span<const std::vector<int>> cliques) {
   std::vector<int> seen_by(nodes, -1), column;
   auto made = std::make_shared<Pattern>();
   made->block_start.push_back(0);
-  made->column_starts.push_back(0);
   for (int j = 0; j < nodes; ++j) {
     column.assign(1, j);
     for (int k : cliques_of[j])
@@ -30,20 +29,52 @@ BlockMatrix::BlockMatrix(int nodes, std::span<const std::vector<int>> cliques) {
     std::sort(column.begin(), column.end());
     made->block_row.insert(made->block_row.end(), column.begin(), column.end());
     made->block_start.push_back(static_cast<int>(made->block_row.size()));
-    for (int c = 0; c < 3; ++c) {
-      for (int i : column)
-        for (int r = 0; r < 3; ++r) made->rows.push_back(3 * i + r);
-      made->column_starts.push_back(static_cast<int>(made->rows.size()));
-    }
   }
+  made->complete();
   values_.assign(made->rows.size(), 0.0);
   pattern_ = made;
-  if (nodes > table_nodes) return;
-  made->slots.assign(static_cast<std::size_t>(nodes) * nodes, -1);
+}
+
+void BlockMatrix::Pattern::complete() {
+  const int nodes = static_cast<int>(block_start.size()) - 1;
+  column_starts.push_back(0);
   for (int j = 0; j < nodes; ++j)
-    for (int b = made->block_start[j]; b < made->block_start[j + 1]; ++b)
-      made->slots[static_cast<std::size_t>(j) * nodes + made->block_row[b]] =
-          made->column_starts[3 * j] + 3 * (b - made->block_start[j]);
+    for (int c = 0; c < 3; ++c) {
+      for (int b = block_start[j]; b < block_start[j + 1]; ++b)
+        for (int r = 0; r < 3; ++r) rows.push_back(3 * block_row[b] + r);
+      column_starts.push_back(static_cast<int>(rows.size()));
+    }
+  if (nodes > table_nodes) return;
+  slots.assign(static_cast<std::size_t>(nodes) * nodes, -1);
+  for (int j = 0; j < nodes; ++j)
+    for (int b = block_start[j]; b < block_start[j + 1]; ++b)
+      slots[static_cast<std::size_t>(j) * nodes + block_row[b]] =
+          column_starts[3 * j] + 3 * (b - block_start[j]);
+}
+
+std::optional<BlockMatrix> BlockMatrix::of_pattern(std::vector<int> block_starts,
+                                                   std::vector<int> block_rows) {
+  const int nodes = static_cast<int>(block_starts.size()) - 1, blocks = static_cast<int>(block_rows.size());
+  if (nodes < 0 || block_starts.front() != 0 || block_starts.back() != blocks) return std::nullopt;
+  for (int j = 0; j < nodes; ++j) {
+    const int first = block_starts[j], end = block_starts[j + 1];
+    if (first < 0 || first >= end || end > blocks || block_rows[first] != j || block_rows[end - 1] >= nodes)
+      return std::nullopt;
+    for (int b = first + 1; b < end; ++b)
+      if (block_rows[b - 1] >= block_rows[b]) return std::nullopt;
+  }
+  Pattern made{std::move(block_starts), std::move(block_rows), {}, {}, {}};
+  made.complete();
+  return BlockMatrix(std::make_shared<const Pattern>(std::move(made))).blank();
+}
+
+void visit_members(MemberReader& read, BlockMatrix& matrix) {
+  std::vector<int> starts, rows;
+  read(starts, rows);
+  if (std::optional<BlockMatrix> made = BlockMatrix::of_pattern(std::move(starts), std::move(rows)))
+    matrix = std::move(*made);
+  else
+    read.refuse();
 }
 
 int BlockMatrix::search(int i, int j) const {

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "geometry/types.h"
+#include "geometry/state_members.h"
 
 namespace calot {
 
@@ -17,6 +18,7 @@ class BlockMatrix {
  public:
   /// `cliques`: groups of nodes coupled with each other (an element's nodes). Every diagonal block exists.
   BlockMatrix(int nodes, std::span<const std::vector<int>> cliques);
+  BlockMatrix() : BlockMatrix(0, {}) {}
   /// Of bodies whose nodes follow each other in the order of `parts`, with room for theirs and for the couplings of
   /// further cliques.
   BlockMatrix(std::span<const BlockMatrix> parts, std::span<const std::vector<int>> cliques);
@@ -36,6 +38,11 @@ class BlockMatrix {
   BlockMatrix blank() const;
   bool same_pattern(const BlockMatrix& other) const { return pattern_ == other.pattern_; }
 
+  /// The pattern as it is stored: where each block column begins, and their number, and each block's row.
+  const std::vector<int>& block_starts() const { return pattern_->block_start; }
+  const std::vector<int>& block_rows() const { return pattern_->block_row; }
+  /// A matrix of zeros of such a pattern; none: it is no pattern.
+  static std::optional<BlockMatrix> of_pattern(std::vector<int> block_starts, std::vector<int> block_rows);
   /// The pattern as cliques: a pair of nodes for each block.
   std::vector<std::vector<int>> couplings() const;
   /// The same values with room for the couplings of further cliques.
@@ -80,6 +87,8 @@ class BlockMatrix {
     std::vector<int> block_row;
     std::vector<int> column_starts, rows;
     std::vector<int> slots;  ///< of every pair (i, j) at j * nodes + i, for few nodes
+    /// What follows from the blocks.
+    void complete();
   };
   explicit BlockMatrix(std::shared_ptr<const Pattern> pattern) : pattern_(std::move(pattern)) {}
   int search(int i, int j) const;
@@ -89,5 +98,10 @@ class BlockMatrix {
   std::shared_ptr<const Pattern> pattern_;
   std::vector<double> values_;
 };
+/// The pattern alone.
+void visit_members(auto&& visit, const BlockMatrix& matrix) {
+  visit(matrix.block_starts(), matrix.block_rows());
+}
+void visit_members(MemberReader& read, BlockMatrix& matrix);
 
 }  // namespace calot

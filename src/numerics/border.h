@@ -28,5 +28,9 @@ struct Border {
   /// Adds to a step what takes the constraints' values at its end to 0, to first order; returns dm.
   VecX restore(const VecX& values, VecX& step) const;
 };
+void visit_members(auto&& visit, MembersOf<Border> auto& border) {
+  auto& [gradients, compliances, answers, complement] = border;
+  visit(gradients, compliances, answers, complement);
+}
 
 }  // namespace calot

@@ -25,6 +25,8 @@ std::vector<char> first_kept(int nodes, int count) {
 
 struct Cholesky::Impl {
   FactorKind kind = FactorKind::dense;
+  std::vector<char> given_kept;
+  std::vector<double> factorised;
   std::optional<Condensation> condensation;  ///< of nothing where the whole is dense; none where it is sparse
   EnvelopeFactor kept;                       ///< of what the matrix is condensed to
   cholmod_common common;
@@ -46,6 +48,7 @@ struct Cholesky::Impl {
   /// Room for another factor of the same pattern.
   explicit Impl(const Impl& like) : Impl() {
     kind = like.kind;
+    given_kept = like.given_kept;
     if (like.condensation) condensation = like.condensation->blank();
     kept = like.kept.blank();
     if (like.factor != nullptr) factor = cholmod_copy_factor(like.factor, &common);
@@ -94,6 +97,7 @@ Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept) {
 
 Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept, FactorKind kind)
     : impl_(std::make_shared<Impl>()) {
+  impl_->given_kept.assign(kept.begin(), kept.end());
   if (kind == FactorKind::sparse) {
     impl_->kind = kind;
     cholmod_sparse sparse = Impl::view(pattern);
@@ -109,11 +113,14 @@ Cholesky::Cholesky(const BlockMatrix& pattern, std::span<const char> kept, Facto
 }
 
 FactorKind Cholesky::kind() const { return impl_->kind; }
+const std::vector<char>& Cholesky::kept() const { return impl_->given_kept; }
+const std::vector<double>& Cholesky::factorised() const { return impl_->factorised; }
 
 FactorStatus Cholesky::factorise(const BlockMatrix& matrix, Workers* workers) {
   // Neither library minds a NaN (CHOLMOD 3.0.14 takes one on the diagonal for a success), so look before.
   if (!matrix.all_finite()) return FactorStatus::not_finite;
   if (impl_.use_count() > 1) impl_ = std::make_shared<Impl>(*impl_);
+  impl_->factorised = matrix.entries();
   if (impl_->kind == FactorKind::sparse) return impl_->factorise_sparse(matrix);
   return impl_->factorise_dense(matrix, workers);
 }

@@ -63,6 +63,11 @@ class Cholesky {
   /// Cheap estimate of the reciprocal condition number: (smallest / largest diagonal of L)^2.
   double reciprocal_condition() const;
   FactorKind kind() const;
+  /// `kept` as it was made with.
+  const std::vector<char>& kept() const;
+  /// Entries of the matrix that was factorised last: another Cholesky of the same pattern and `kept` makes the same factor
+  /// of them, to the last bit.
+  const std::vector<double>& factorised() const;
   double factor_flops() const;  ///< of one factorisation
   long factor_nonzeros() const;
 

@@ -10,4 +10,23 @@ void NewtonWorkspace::restore(const Kept& kept) {
   shifted = kept.shifted;
 }
 
+void visit_members(MemberReader& read, NewtonWorkspace& work) {
+  BlockMatrix pattern;
+  std::vector<char> kept;
+  bool factored = false, shifted = false;
+  read(pattern, kept, factored, shifted);
+  if (!kept.empty() && kept.size() != static_cast<std::size_t>(pattern.nodes())) read.refuse();
+  if (read.lacks()) return;
+  work = NewtonWorkspace(std::move(pattern), kept);
+  work.shifted = shifted;
+  if (!factored) return;
+  std::vector<double> entries;
+  read(work.border, entries);
+  if (entries.size() != work.matrix.entries().size() || work.border.gradients.rows() != work.matrix.size())
+    return read.refuse();
+  work.matrix.assign(entries);
+  work.factored = work.factor.factorise(work.matrix) == FactorStatus::ok;
+  if (!work.factored) read.refuse();
+}
+
 }  // namespace calot

@@ -29,5 +29,12 @@ struct NewtonWorkspace {
   Kept keep() const { return {matrix.pattern_only(), factor, border, factored, shifted}; }
   void restore(const Kept& kept);
 };
+/// All that later solves depend on; the factor by the matrix that it is of.
+void visit_members(auto&& visit, const NewtonWorkspace& work) {
+  const auto& [matrix, factor, border, factored, shifted] = work;
+  visit(matrix, factor.kept(), factored, shifted);
+  if (factored) visit(border, factor.factorised());
+}
+void visit_members(MemberReader& read, NewtonWorkspace& work);
 
 }  // namespace calot

@@ -11,6 +11,7 @@
 #include "body/body_handle.h"
 #include "body/shell_body.h"
 #include "group/equilibrium.h"
+#include "organs/body_origin.h"
 #include "tools/instrument.h"
 #include "tools/tool_index.h"
 
@@ -133,9 +134,13 @@ struct Organ : OrganMotion {
   std::map<std::string, int> landmarks;  ///< skin point of each
   /// Where the details were found to be those that are wanted: remembered, no part of any result.
   std::optional<ContactPlace> looked_at;
-  int record = -1;           ///< on the field's roll (members.h)
+  int record = -1;  ///< on the field's roll (members.h)
+  BodyOrigin origin;
   bool of_specimen = false;  ///< a piece that the patient's was cut off from
 };
+
+inline OrganMotion& motion_of(Organ& organ) { return organ; }
+inline const OrganMotion& motion_of(const Organ& organ) { return organ; }
 
 /// All that a step changes. `search` only remembers.
 struct OrganSnapshot : OrganMotion {
@@ -162,6 +167,10 @@ struct OrganPoint {
   OrganIndex organ;
   int skin_point = 0;
 };
+void visit_members(auto&& visit, MembersOf<OrganPoint> auto& point) {
+  auto& [organ, skin_point] = point;
+  visit(organ, skin_point);
+}
 /// Of "organ.landmark"; none: there is none.
 std::optional<OrganPoint> find_landmark(const std::vector<Organ>& organs, const std::string& name);
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/types.h"
+#include "geometry/state_members.h"
 
 namespace calot {
 
@@ -48,6 +48,7 @@ enum class EventKind {
   step_timeout,
   step_missed,
 };
+constexpr EventKind last_of(EventKind) { return EventKind::step_missed; }
 
 struct EventRow {
   EventKind kind;
@@ -61,6 +62,7 @@ struct EventRow {
 
 /// What did it.
 enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping, turning };
+constexpr EventCause last_of(EventCause) { return EventCause::turning; }
 /// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned"; of none empty.
 std::string to_text(EventCause cause);
 std::optional<EventCause> event_cause_called(const std::string& name);
@@ -87,5 +89,9 @@ struct WorldEvent {
   EventCause cause = EventCause::none;
   std::string text = {};  ///< an injury's class; what was said at a time-out or a bail-out
 };
+void visit_members(auto&& visit, MembersOf<WorldEvent> auto& event) {
+  auto& [kind, time, instrument, organ, value, place, cause, text] = event;
+  visit(kind, time, instrument, organ, value, place, cause, text);
+}
 
 }  // namespace calot

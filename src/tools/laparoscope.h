@@ -9,6 +9,10 @@ struct LaparoscopePose {
   Vec3 position = Vec3::Zero();                        ///< m, of the lens
   Vec3 direction = Vec3::UnitY(), up = Vec3::UnitZ();  ///< unit
 };
+void visit_members(auto&& visit, MembersOf<LaparoscopePose> auto& pose) {
+  auto& [position, direction, up] = pose;
+  visit(position, direction, up);
+}
 /// Of a laparoscope through `port` that looks at `target` from `distance`. An angled optic looks down (posteriorly) from its
 /// shaft by `angle`, in the vertical plane through port and target, so the shaft runs above the line of sight; the horizon is
 /// level (screen up is as much +z as it can be, screen right is the patient's left). Where the port is too near for that

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/types.h"
+#include "geometry/state_members.h"
 
 namespace calot {
 
@@ -23,6 +23,10 @@ struct PartLoad {
   double largest = 0;         ///< N, that force
   std::string organ;          ///< the organ that it is of; empty without touches
 };
+void visit_members(auto&& visit, MembersOf<PartLoad> auto& load) {
+  auto& [force, touches, at, largest, organ] = load;
+  visit(force, touches, at, largest, organ);
+}
 
 /// One for each part; the jaws' has the tip's in it, so that jaws and shaft make the whole.
 using PartLoads = std::array<PartLoad, 3>;
@@ -34,6 +38,7 @@ enum class GripState {
   beside,   ///< closed, with tissue touched that is not between the pads
   slipped,  ///< what was held slid off; until the jaws open or hold again
 };
+constexpr GripState last_of(GripState) { return GripState::slipped; }
 
 /// "holding", "open", "empty", "beside", "slipped": in the order of the states.
 const std::vector<std::string>& grip_state_names();

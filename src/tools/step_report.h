@@ -57,18 +57,32 @@ struct InstrumentState {
   double roll_torque = 0;  ///< N m, of the tissue on it about the shaft, right-handed about its tip direction
   double roll_lag = 0;     ///< rad, about the shaft, from where it is commanded to be: its hand gives way
 };
+void visit_members(auto&& visit, MembersOf<InstrumentState> auto& state) {
+  auto& [pose, tip, force, handle_force, parts, touching, touches, holds, grip_points, grip, action, clips,
+         aspirated, waits, at_tip, lag, pad_pressure, meets, meeting_force, roll_torque, roll_lag] = state;
+  visit(pose, tip, force, handle_force, parts, touching, touches, holds, grip_points, grip, action, clips,
+        aspirated, waits, at_tip, lag, pad_pressure, meets, meeting_force, roll_torque, roll_lag);
+}
 
 struct ClipState {
   ClipSize size = ClipSize::ml;
   double share = 0;    ///< where it is, of the tube's length at rest from its start
   double opening = 0;  ///< share of the tube's width that it leaves open; 0: shut
 };
+void visit_members(auto&& visit, MembersOf<ClipState> auto& clip) {
+  auto& [size, share, opening] = clip;
+  visit(size, share, opening);
+}
 
 struct LaparoscopeState {
   InstrumentPose pose;
   LaparoscopePose view;
   double distance = 0;  ///< m, from the lens to where at rest the place was that the scene has it look at
 };
+void visit_members(auto&& visit, MembersOf<LaparoscopeState> auto& state) {
+  auto& [pose, view, distance] = state;
+  visit(pose, view, distance);
+}
 
 struct OrganState {
   std::string name;
@@ -81,11 +95,19 @@ struct OrganState {
   int details = 0;         ///< nodes that they add
   std::vector<ClipState> clips = {};  ///< in the order of their places
 };
+void visit_members(auto&& visit, MembersOf<OrganState> auto& state) {
+  auto& [name, record, pressure, volume, energy, max_stretch, extensions, details, clips] = state;
+  visit(name, record, pressure, volume, energy, max_stretch, extensions, details, clips);
+}
 
 struct TissueState {
   std::string name;
   int strands = 0, torn = 0;
 };
+void visit_members(auto&& visit, MembersOf<TissueState> auto& state) {
+  auto& [name, strands, torn] = state;
+  visit(name, strands, torn);
+}
 
 /// What has left an organ of the scene and its pieces.
 struct LostState {
@@ -93,6 +115,10 @@ struct LostState {
   double bile = 0, blood = 0;  ///< m^3, by openings
   double aspirated = 0;        ///< m^3, drawn out
 };
+void visit_members(auto&& visit, MembersOf<LostState> auto& state) {
+  auto& [name, bile, blood, aspirated] = state;
+  visit(name, bile, blood, aspirated);
+}
 
 /// What a step's solves took. Its counts are the same at every number of threads; times are no part of any hash.
 struct SolveStatistics {
@@ -130,5 +156,12 @@ struct StepReport {
   SolveStatistics statistics;
   std::uint64_t state_hash = 0;
 };
+/// What the next step is told of the last one.
+void visit_members(auto&& visit, MembersOf<StepReport> auto& report) {
+  // The time follows from the steps, the hash from all that is visited; statistics are no part of any result.
+  auto& [time, instruments, laparoscope, organs, tissues, lost, events, balanced, statistics, state_hash] =
+      report;
+  visit(instruments, laparoscope, organs, tissues, lost, events, balanced);
+}
 
 }  // namespace calot

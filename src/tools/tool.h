@@ -36,8 +36,8 @@ void visit_members(auto&& visit, MembersOf<MeetingState> auto& meeting) {
 /// All of a tool that a step changes.
 struct ToolState {
   InstrumentPose pose;
-  bool touched = false, over_limit = false;  ///< at the last step, for events
-  bool jaw_stopped = false;                  ///< the jaws rest on what they hold
+  bool over_limit = false;   ///< when forces were in balance last, for events
+  bool jaw_stopped = false;  ///< the jaws rest on what they hold
   bool lost = false;  ///< what it held slid off; until the jaws open or hold again, they take hold of no wall
   bool beside =
       false;  ///< it closed with skin at one pad only; until the jaws open or hold again; for reports
@@ -57,7 +57,6 @@ struct ToolState {
   double roll_stiffness =
       0;  ///< N m/rad, how the tissue's torque about the shaft grew with its roll; 0: none that counts
   MeetingState meeting = {};
-  bool met = false;          ///< it pressed on another tool at the last step, for events
   Vec3 drag = Vec3::Zero();  ///< N at the hand, of the port's seal in the last step (hands.h)
   bool pressing =
       false;  ///< what is between its jaws carries the pinch: they turn as that gives way or pushes
@@ -69,12 +68,12 @@ struct ToolState {
   bool jaws_rest() const { return jaw_stopped || pressing; }
 };
 void visit_members(auto&& visit, MembersOf<ToolState> auto& state) {
-  auto& [pose, touched, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
+  auto& [pose, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
          beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
-         roll_stiffness, meeting, met, drag, pressing, pinch_slope] = state;
-  visit(pose, touched, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
+         roll_stiffness, meeting, drag, pressing, pinch_slope] = state;
+  visit(pose, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
         beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
-        roll_stiffness, meeting, met, drag, pressing, pinch_slope);
+        roll_stiffness, meeting, drag, pressing, pinch_slope);
 }
 
 struct Tool : ToolState {
@@ -82,6 +81,8 @@ struct Tool : ToolState {
   InstrumentGeometry geometry;
   Vec3 trocar = Vec3::Zero();  ///< m
 };
+inline ToolState& state_of(Tool& tool) { return tool; }
+inline const ToolState& state_of(const Tool& tool) { return tool; }
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
 /// Of each tool; as many of a as of b.

@@ -16,6 +16,7 @@
 #include "fem/assembly.h"
 #include "field/change_bodies.h"
 #include "field/divide_body.h"
+#include "field/field_bytes.h"
 #include "field/field_hash.h"
 #include "field/field_state.h"
 #include "field/field_tissues.h"
@@ -34,6 +35,7 @@
 #include "world/observe.h"
 #include "world/report_states.h"
 #include "world/sight.h"
+#include "world/world_bytes.h"
 
 namespace calot {
 namespace {
@@ -68,7 +70,8 @@ struct World::Impl {
   long steps = 0;
   bool failed = false;
   Failure failure;
-  std::uint64_t field_hash = 0;
+  std::string scene_digest;
+  std::uint64_t hash_but_steps = 0;    ///< of the state, but for how many steps there were
   std::vector<RestShift> rest_shifts;  ///< one an organ of the scene
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
@@ -84,9 +87,14 @@ struct World::Impl {
   /// current flow: what begins is an event, too.
   void observe_step(const std::vector<InstrumentAction>& actions, double duration,
                     std::vector<WorldEvent> events);
+  std::uint64_t find_hash_but_steps() const;
+  std::uint64_t hash(std::uint64_t but_steps) const;
   void keep_hash();
-  bool same_factors(const FieldState& state) const;
-  std::uint64_t hash(std::uint64_t of_field) const;
+
+  /// An organ that comes later, of its definition.
+  Result<RestedOrgan> make_later(const OrganDefinition& definition) const;
+  /// Goes on from what to_bytes() had behind its header; whether it could.
+  bool take(std::string_view state);
 
   double time() const { return static_cast<double>(steps) / scene.solver.rate; }
   /// Changes the field's members; the report then is of them, with the events of the last step. On failure all is as it
@@ -97,18 +105,15 @@ struct World::Impl {
   Result<bool> settle_change(const std::string& what);
 };
 
-/// The hash knows a factor only by what it makes of one vector.
-bool World::Impl::same_factors(const FieldState& state) const {
-  return field.group.work.factor.shares_factor_with(state.group.factor.factor);
+std::uint64_t World::Impl::find_hash_but_steps() const {
+  WordHash hash;
+  MemberWriter{hash}(hash_of(field), report);
+  return hash.value();
 }
 
-std::uint64_t World::Impl::hash(std::uint64_t of_field) const {
-  Hash hash;
-  hash.add(of_field);
-  hash.add(steps);
-  const InstrumentPose& scope = report.laparoscope.pose;
-  if (scope != laparoscope.start())
-    for (double v : {scope.pitch, scope.yaw, scope.insertion, scope.roll, scope.jaw}) hash.add(v);
+std::uint64_t World::Impl::hash(std::uint64_t but_steps) const {
+  WordHash hash;
+  MemberWriter{hash}(but_steps, steps);
   return hash.value();
 }
 
@@ -129,10 +134,8 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
   const std::vector<WorldEvent> begun = observe(field, before, report);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    tool.touched = report.instruments[i].touching;
     if (report.balanced)
       tool.over_limit = presses_too_hard(report.instruments[i], tool.definition.force_limit);
-    tool.met = !report.instruments[i].meets.empty();
   }
   feel_stiffness(field.tools, before.instruments, report.instruments);
   const std::vector<WorldEvent> burnt = apply_current(field, report.instruments, duration);
@@ -144,8 +147,8 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
 }
 
 void World::Impl::keep_hash() {
-  field_hash = hash_of(field);
-  report.state_hash = hash(field_hash);
+  hash_but_steps = find_hash_but_steps();
+  report.state_hash = hash(hash_but_steps);
 }
 
 void World::Impl::place_laparoscope(const InstrumentPose& pose) {
@@ -305,9 +308,8 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   self.place_laparoscope(self.laparoscope.start());
   if (Result<bool> clear = check_clear(self.field); !clear) return clear.failure();
   if (Result<bool> apart = check_apart(self.field); !apart) return apart.failure();
-  self.field.membership.of_scene = self.field.organs.size();
-  self.field.membership.scene_joints = self.field.membership.joints.size();
   keep_members(self.field);
+  self.scene_digest = calot::scene_digest(self.scene, self.field);
   self.observe_step({}, 1 / scene.solver.rate, {});
   self.keep_hash();
   return world;
@@ -354,11 +356,11 @@ Result<StepReport> World::step(const StepInput& input) {
     ++self.steps;
     self.report.time = self.time();
     self.report.events.clear();
-    self.report.state_hash = self.hash(self.field_hash);
+    self.report.state_hash = self.hash(self.hash_but_steps);
     return self.report;
   }
   const FieldState before = state();
-  const std::uint64_t hash_before = self.field_hash;
+  const std::uint64_t hash_before = self.hash_but_steps;
   self.field.time = static_cast<double>(self.steps + 1) / self.scene.solver.rate;
   Result<std::vector<WorldEvent>> events = self.act(input);
   if (self.field.stopped()) {
@@ -380,14 +382,13 @@ Result<StepReport> World::step(const StepInput& input) {
   self.observe_step(input.actions, 1 / self.scene.solver.rate, std::move(events).value());
   self.keep_hash();
   self.still.reset();
-  if (self.field_hash == hash_before && self.report.events.empty() && self.same_factors(before))
-    self.still = input;
+  if (self.hash_but_steps == hash_before && self.report.events.empty()) self.still = input;
   return self.report;
 }
 
 const SceneDefinition& World::scene() const { return impl_->scene; }
 const StepReport& World::report() const { return impl_->report; }
-std::uint64_t World::state_hash() const { return impl_->hash(hash_of(impl_->field)); }
+std::uint64_t World::state_hash() const { return impl_->hash(impl_->find_hash_but_steps()); }
 
 FieldState World::state() const {
   FieldState state = field_state(impl_->field);
@@ -403,11 +404,54 @@ Result<bool> World::restore(const FieldState& state) {
   calot::restore(self.field, state);
   self.steps = state.steps;
   self.report = state.report;
-  self.field_hash = hash_of(self.field);
+  self.hash_but_steps = self.find_hash_but_steps();
   self.still.reset();
   self.failed = false;
   return true;
 }
+
+std::string World::to_bytes() const {
+  ByteWriter out;
+  MemberWriter{out}(impl_->steps, impl_->report);
+  add_bytes_of(impl_->field, out);
+  return with_header(impl_->scene_digest, out.bytes());
+}
+
+Result<World> World::from_bytes(const SceneDefinition& scene, std::string_view bytes,
+                                const std::atomic<bool>* stop, int threads, KeptResults* kept) {
+  const Result<SavedWorld> saved = saved_world(bytes);
+  if (!saved) return saved.failure();
+  Result<World> world = create(scene, stop, threads, kept);
+  if (!world) return world;
+  Impl& self = *world->impl_;
+  if (saved->scene != self.scene_digest)
+    return fail(FailureKind::scenario, "the saved world is of another scene",
+                "give the scene that it was saved of");
+  if (self.take(saved->state)) return world;
+  return fail(FailureKind::usage, "the saved world cannot be read: its parts do not fit together",
+              "save it anew by this program");
+}
+
+Result<RestedOrgan> World::Impl::make_later(const OrganDefinition& definition) const {
+  const SolverDefinition& solver = scene.solver;
+  FillingLimits limits = filling_limits(solver, nullptr);
+  return make_organ(definition, loads_of_ground(field), up, solver.tolerance,
+                    definition.extensions ? solver.extension_levels : 0, &limits);
+}
+
+bool World::Impl::take(std::string_view state) {
+  ByteReader in(state);
+  MemberReader read{in};
+  read(steps, report);
+  read_field(
+      read, [&](const OrganDefinition& definition) { return make_later(definition); }, field);
+  if (!in.complete() || report.instruments.size() != field.tools.size()) return false;
+  report.time = field.time = time();
+  report.statistics = {};
+  keep_hash();
+  return true;
+}
+
 const std::vector<RestShift>& World::rest_shifts() const { return impl_->rest_shifts; }
 Vec3 World::up() const { return impl_->up; }
 const Field& World::field() const { return impl_->field; }
@@ -538,13 +582,9 @@ Result<bool> World::remove(const std::string& name, const std::string& why) {
 Result<OrganIndex> World::add(const OrganDefinition& definition) {
   if (std::vector<Problem> problems = validate(definition); !problems.empty())
     return Failure{FailureKind::scenario, std::move(problems)};
-  const SolverDefinition& solver = impl_->scene.solver;
-  const ContactLoads still = loads_of_ground(impl_->field);
-  FillingLimits limits = filling_limits(solver, nullptr);
-  const OrganSetting setting{still, impl_->up, solver.tolerance,
-                             definition.extensions ? solver.extension_levels : 0, &limits};
+  const auto make = [&](const OrganDefinition& one) { return impl_->make_later(one); };
   Result<OrganIndex> added = impl_->change(fmt::format("after '{}' came", definition.name),
-                                           [&] { return add_body(impl_->field, definition, setting); });
+                                           [&] { return add_body(impl_->field, definition, make); });
   if (added) return added;
   Failure failure = added.failure();
   for (Problem& problem : failure.problems)  // of its definition

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "anatomy/definitions.h"
@@ -56,6 +57,14 @@ class World {
   /// (internal) where it is another world's.
   FieldState state() const;
   Result<bool> restore(const FieldState& state);
+
+  /// All of it but its scene, as bytes of which another process makes the same world: each step from there has the same hash.
+  std::string to_bytes() const;
+  /// The other arguments as of create(). Fails, too, (usage) where the bytes are no world's, cut off, longer, damaged or
+  /// of another version, and (scenario) where they are of another scene.
+  static Result<World> from_bytes(const SceneDefinition& scene, std::string_view bytes,
+                                  const std::atomic<bool>* stop = nullptr, int threads = 1,
+                                  KeptResults* kept = nullptr);
 
   // Organs come, go and are divided between steps (field/change_bodies.h); the report then is of those that are there. Where
   // masses do not count all come to rest at once. Each fails (scenario; simulation where no rest was found) with the world

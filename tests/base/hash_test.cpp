@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string_view>
 
 namespace calot {
@@ -45,6 +46,27 @@ TEST(Hash, ASpanCountsAsItsNumbersInTurn) {
   together.add(std::span<const double>(values));
   for (const double value : values) apart.add(value);
   EXPECT_EQ(together.value(), apart.value());
+}
+
+TEST(WordHash, SeesEveryBitAndItsPlaceHoweverLongTheData) {
+  const auto of = [](const std::vector<char>& bytes) {
+    WordHash hash;
+    hash.add_bytes(bytes.data(), bytes.size());
+    return hash.value();
+  };
+  for (const std::size_t size : {1u, 7u, 8u, 31u, 32u, 33u, 100u}) {
+    const std::vector<char> plain(size, 0);
+    std::set<std::uint64_t> seen{of(plain)};
+    for (std::size_t bit = 0; bit < 8 * size; ++bit) {
+      std::vector<char> other = plain;
+      other[bit / 8] = static_cast<char>(1u << bit % 8);
+      EXPECT_TRUE(seen.insert(of(other)).second) << size << " bytes, bit " << bit;
+      if (bit + 1 == 8 * size) continue;
+      // Two signs that change at once do not hide each other.
+      other.back() = static_cast<char>(other.back() ^ 0x80);
+      EXPECT_TRUE(seen.insert(of(other)).second) << size << " bytes, bit " << bit << " and the last";
+    }
+  }
 }
 
 TEST(Hash, HexIsSixteenLowerCaseDigits) {

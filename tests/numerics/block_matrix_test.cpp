@@ -35,6 +35,32 @@ TEST(BlockMatrix, BlocksAddUpAtTheirSlots) {
                   expected(3 * i + r, 3 * j + c));
 }
 
+TEST(BlockMatrix, IsMadeAgainOfItsPatternAndOfNothingThatIsNone) {
+  Rng rng(3);
+  for (int nodes : {0, 1, 20, 700}) {
+    const BlockMatrix matrix = test::random_matrix(rng, nodes);
+    std::optional<BlockMatrix> again = BlockMatrix::of_pattern(matrix.block_starts(), matrix.block_rows());
+    ASSERT_TRUE(again) << nodes;
+    EXPECT_EQ(again->column_starts(), matrix.column_starts());
+    EXPECT_EQ(again->rows(), matrix.rows());
+    again->assign(matrix.entries());
+    for (int j = 0; j < nodes; ++j)
+      for (int i = j; i < nodes; ++i) ASSERT_EQ(again->slot(i, j), matrix.slot(i, j));
+  }
+  using List = std::vector<int>;
+  EXPECT_TRUE(BlockMatrix::of_pattern({0, 2, 3}, {0, 1, 1}));
+  for (const auto& [starts, rows] : {std::pair<List, List>{{}, {}},
+                                     {{1, 3}, {0, 1, 1}},
+                                     {{0, 2, 4}, {0, 1, 1}},
+                                     {{0, 2, 2}, {0, 1}},
+                                     {{0, 3, 2}, {0, 1}},
+                                     {{0, 2, 3}, {0, 2, 1}},
+                                     {{0, 2, 3}, {1, 0, 1}},
+                                     {{0, 3, 4}, {0, 1, 1, 1}},
+                                     {{0, 2, 3}, {0, -1, 1}}})
+    EXPECT_FALSE(BlockMatrix::of_pattern(starts, rows)) << starts.size() << " " << rows.size();
+}
+
 TEST(BlockMatrix, SlotsAreTheSameWithATableAndWithout) {
   const std::vector<std::vector<int>> cliques = {{0, 3, 7, 8}, {1, 3, 4}, {4, 9}};
   const BlockMatrix few(10, cliques), many(1000, cliques);  // too many nodes for a table

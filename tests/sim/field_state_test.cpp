@@ -43,6 +43,16 @@ TEST(FieldState, RestoredTheSameStepsHaveTheSameBits) {
   EXPECT_EQ(fifty_steps(path), first);
 }
 
+/// Of a matrix that is twice as large.
+Cholesky twice(const NewtonWorkspace::Kept& kept) {
+  BlockMatrix matrix = kept.pattern.blank();
+  matrix.assign(kept.factor.factorised());
+  matrix.scale(2);
+  Cholesky out = kept.factor;
+  EXPECT_EQ(out.factorise(matrix), FactorStatus::ok);
+  return out;
+}
+
 TEST(FieldState, EachPartOfItIsInTheStateHash) {
   test::FundusPath path(refined_scene());
   ASSERT_TRUE(path.grasp() && path.lift(2)) << path.driver.why();
@@ -80,7 +90,8 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("friction", [](FieldState& s) {
     s.group.organs[0].friction.points.push_back({0, 0, StickSlip{.limit = 1e-3, .stiffness = 1}});
   });
-  differs("factor", [](FieldState& s) { s.group.factor.border.answers(0, 0) += 1e-12; });
+  differs("factor", [](FieldState& s) { s.group.factor.factor = twice(s.group.factor); });
+  differs("answers of the factor", [](FieldState& s) { s.group.factor.border.answers(0, 0) += 1e-12; });
   differs("no factor", [](FieldState& s) { s.group.factor.factored = false; });
   differs("shifted", [](FieldState& s) { s.group.factor.shifted ^= true; });
   differs("pose", [](FieldState& s) { s.tools[0].pose.roll += 1e-12; });
@@ -91,13 +102,41 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("action", [](FieldState& s) { s.tools[0].action = InstrumentAction::activate; });
   differs("lost", [](FieldState& s) { s.tools[0].lost ^= true; });
   differs("beside", [](FieldState& s) { s.tools[0].beside ^= true; });
-  differs("touch", [](FieldState& s) { s.tools[0].touched ^= true; });
+  differs("touch", [](FieldState& s) { s.report.instruments[0].touching ^= true; });
+  differs("what hands felt", [](FieldState& s) { s.report.instruments[0].at_tip.x() += 1e-12; });
+  differs("command", [](FieldState& s) { s.tools[0].command.pitch += 1e-12; });
+  differs("drag", [](FieldState& s) { s.tools[0].drag.x() += 1e-12; });
   differs("limit", [](FieldState& s) { s.tools[0].over_limit ^= true; });
   differs("on a clip", [](FieldState& s) { s.tools[0].on_clip ^= true; });
   differs("beside what is kept", [](FieldState& s) { s.tools[0].beside_kept ^= true; });
   differs("burnt", [](FieldState& s) { s.tools[0].burnt += 1; });
   ASSERT_TRUE(path.world.restore(state));
   EXPECT_EQ(path.world.state_hash(), hash);
+}
+
+TEST(FieldState, WhatIsListedInsideAPartOfItIsInTheStateHash) {
+  World world = World::create(test::grasper_scene(80)).value();
+  const FieldState state = world.state();
+  std::vector<std::uint64_t> hashes{world.state_hash()};
+  const auto differs = [&](const char* what, const std::function<void(FieldState&)>& change) {
+    FieldState other = state;
+    change(other);
+    ASSERT_TRUE(world.restore(other));
+    EXPECT_EQ(std::count(hashes.begin(), hashes.end(), world.state_hash()), 0) << what;
+    hashes.push_back(world.state_hash());
+  };
+  const auto opened = [](FieldState& s, const char* cause) {
+    s.group.organs[0].openings.push_back({.cause = cause});
+  };
+  differs("an opening", [&](FieldState& s) { opened(s, "left"); });
+  differs("its cause", [&](FieldState& s) { opened(s, "right"); });
+  const auto wet = [](FieldState& s, int first, int second) {
+    s.spill.films = {{0, std::vector<WetPoint>(first)}, {0, std::vector<WetPoint>(second)}};
+  };
+  differs("films", [&](FieldState& s) { wet(s, 1, 2); });
+  differs("films of which the first is longer", [&](FieldState& s) { wet(s, 2, 1); });
+  differs("what was drained", [](FieldState& s) { s.spill.drained[0] = 1e-9; });
+  differs("a couple of nodes that once met", [](FieldState& s) { s.group.patterns.joined = {{1, 2}}; });
 }
 
 TEST(FieldState, OfAnotherWorldIsRefused) {
