@@ -47,7 +47,7 @@ class Trials {
   double excess(std::size_t tool, double jaw) {
     to_[tool].jaw = jaw;
     ++statistics_.jaw_trials[field_.tools[tool].definition.name];
-    if (reached_)
+    if (reached_ && field_.step_time > 0 && !rubs(tool))
       turn(tool, jaw);
     else
       go();
@@ -68,6 +68,16 @@ class Trials {
   bool pressed_at_start(std::size_t tool) const { return start_.tools[tool].pressing; }
 
  private:
+  /// Whether anything rubs on a tool's jaws: what is squeezed out of them slides, and does not come back as they open again.
+  bool rubs(std::size_t tool) const {
+    const auto on_jaws = [&](const RubbingPoint& rubbing) {
+      const FieldShape which = field_.shape(rubbing.shape);
+      return which.tool == ToolIndex(tool) && !which.is_shaft();
+    };
+    return std::any_of(field_.organs.begin(), field_.organs.end(), [&](const Organ& organ) {
+      return std::any_of(organ.friction.points.begin(), organ.friction.points.end(), on_jaws);
+    });
+  }
   /// The whole motion, from its beginning.
   void go() {
     if (moved_) {
@@ -129,10 +139,15 @@ double next_angle(const At& here, double slope, int trial) {
 /// presses too hard and what presses not hard enough as soon as both are known.
 void find_pinch(Trials& trials, std::size_t tool, At here, std::optional<At> other, double least, double most,
                 double& slope) {
+  // At first nearer to it than need be, so that the end hardly depends on where the search began.
+  const auto good_enough = [](double excess, int trial) {
+    return std::abs(excess) <= (trial == 0 || trial > 3 ? pinch_tolerance : pinch_tolerance / 4);
+  };
   std::optional<At> tight, loose;
   const auto note = [&](const At& at) { (at.excess > 0 ? tight : loose) = at; };
   if (other) note(*other);
-  for (int k = 0; k < most_trials && std::abs(here.excess) > pinch_tolerance && !trials.spent(); ++k) {
+  for (int k = 0; k < most_trials && !trials.spent(); ++k) {
+    if (good_enough(here.excess, k)) return;
     note(here);
     double jaw = std::clamp(next_angle(here, slope, k), least, most);
     if (tight && loose) {

@@ -122,12 +122,12 @@ typename RodContactLaw<Gap>::Sample RodContactLaw<Gap>::sample(double distance, 
   }
   if (!(distance > ring.folded()) || !ring.stands(pressure))
     return {{infinity, -infinity, infinity}, ring.lumen, 0};
-  const double left = balanced_gap(overlap, pressure);
-  const auto b = gap.sample(left);
-  const SectionSample s = side(overlap + left, pressure);
+  const double open = balanced_gap(overlap, pressure);
+  const auto b = gap.sample(open);
+  const SectionSample s = side(overlap + open, pressure);
   const double press = width * b.second;
   return {
-      {s.energy + width * b.energy, -s.slope, s.bend * press / (s.bend + press)}, 2 * (overlap + left), left};
+      {s.energy + width * b.energy, -s.slope, s.bend * press / (s.bend + press)}, 2 * (overlap + open), open};
 }
 
 }  // namespace calot

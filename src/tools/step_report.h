@@ -127,7 +127,7 @@ struct SolveStatistics {
   int newton_iterations = 0, factorisations = 0;
   int shifts = 0;           ///< of the factorisations, those of a matrix that was shifted
   int friction_rounds = 0;  ///< solves that only renewed what rubs
-  /// By tool: motions of this step that were played to try an angle of its jaws.
+  /// By tool: angles of its jaws that were tried in this step.
   std::map<std::string, int> jaw_trials;
   /// By organ or tissue: Newton steps in which its forces were the furthest from balance.
   std::map<std::string, int> furthest;

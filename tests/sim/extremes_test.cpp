@@ -121,7 +121,8 @@ TEST(Extremes, AStonePressedOnTheGroundSlipsAsideOrSaysThatItCannotAndIsNeverEnt
   ASSERT_TRUE(driver.go(top + 2e-3 * Vec3::UnitZ(), 0, 4)) << driver.why();
   // 3 mm down, of which 1 mm is into the stone: nothing of the three gives way.
   const bool followed = driver.go(top - 1e-3 * Vec3::UnitZ(), 0, 30);
-  EXPECT_GT(largest, 1.0) << "else nothing was pressed";
+  // Twenty times its weight. Pressed on its top it lies as on a needle's point: it slips as soon as a solver looks aside.
+  EXPECT_GT(largest, 0.3) << "else nothing was pressed";
   const Vec3 now = world.landmark("stone.centre");
   EXPECT_GT(now.z(), floor - 0.1e-3) << "a place on the stone's skin";
   if (followed) {

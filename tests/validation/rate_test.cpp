@@ -61,17 +61,20 @@ TEST(Validation, ShapeDoesNotDependOnTheRate) {
     for (std::size_t i = 0; i < other.skin.size(); ++i)
       apart = std::max(apart, (other.skin[i] - reference.skin[i]).norm());
     const double force = (other.force - reference.force).norm() / reference.force.norm();
-    fmt::print("{} Hz against 50 Hz: skin {:.2e} m, force {:.1e}, pressure {:.1e}\n", rate, apart, force,
-               std::abs(other.pressure / reference.pressure - 1));
+    fmt::print("{} Hz against 50 Hz: skin {:.2e} m, force {:.1e}, pressure {:.1e}, {} points held of {}\n",
+               rate, apart, force, std::abs(other.pressure / reference.pressure - 1), other.grip_points,
+               reference.grip_points);
     // A point that comes to the edge of what its pad holds may have left it at one rate, and not at the other.
     EXPECT_NEAR(other.grip_points, reference.grip_points, 1) << rate;
     // Jaws stop where the fold carries their pinch to 2 %, 0.14 N (pinch_tolerance); a fold that carries 6.8 N over some
     // 2 mm between open jaws and stopped ones does so within 0.02 to 0.04 mm, half of that each pad. What follows
-    // repeats that, and beside a point that has left the wall moves by a tenth of a millimetre.
+    // repeats that. What a point that has left carried, one of so many, the others do; beside it the wall moves by a few
+    // times the 40 um between open jaws and stopped ones.
     const bool same = other.grip_points == reference.grip_points;
-    EXPECT_LT(apart, same ? 20e-6 : 0.1e-3) << rate;
-    EXPECT_LT(force, same ? 1e-3 : 2e-3) << rate;
-    EXPECT_NEAR(other.pressure, reference.pressure, (same ? 1e-3 : 2e-3) * reference.pressure) << rate;
+    const double off = same ? 1e-3 : 1.0 / reference.grip_points;
+    EXPECT_LT(apart, same ? 20e-6 : 0.15e-3) << rate;
+    EXPECT_LT(force, off) << rate;
+    EXPECT_NEAR(other.pressure, reference.pressure, off * reference.pressure) << rate;
   }
 }
 
