@@ -142,6 +142,26 @@ TEST(WorldBytes, OfATubeBetweenJawsAndItsClipsGoOnAlike) {
   expect_goes_on_alike(grasper.world);
 }
 
+TEST(WorldBytes, OfTubesThatRubOnEachOtherGoOnAlike) {
+  for (const SolverMotion motion : {SolverMotion::statics, SolverMotion::dynamics}) {
+    SceneDefinition scene = test::across(InstrumentType::atraumatic_grasper, motion);
+    scene.anatomy.organs.push_back(test::tube_across("below"));
+    const double depth = -test::tube_depth - 4.0e-3;
+    std::get<TubeShape>(scene.anatomy.organs[1].shape).points = {
+        {-15e-3, 1e-3, depth}, {0, 0, depth}, {15e-3, -1e-3, depth}};
+    scene.anatomy.friction = 0.4;
+    test::Acting acting(scene);
+    ASSERT_TRUE(acting.go(test::about(0, test::tube_depth - 8e-3), 2));
+    ASSERT_TRUE(acting.go(test::about(0, test::tube_depth + 0.6e-3), 10));
+    InstrumentPose aside = test::about(0, test::tube_depth + 0.6e-3);
+    aside.pitch = 4e-3;
+    ASSERT_TRUE(acting.go(aside, 3));
+    ASSERT_FALSE(acting.world.field().group.rubbing.empty());
+    ASSERT_FALSE(acting.world.field().group.patterns.joined.empty());
+    expect_goes_on_alike(acting.world, 4);
+  }
+}
+
 TEST(WorldBytes, OfAStateThatWasGivenBackGoOnAlike) {
   // Then the solver's matrix is of a later step than its factor.
   World world = World::create(test::triangle_scene()).value();
