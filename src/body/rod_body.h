@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "body/body.h"
+#include "body/tube_pinch.h"
 #include "fem/centreline.h"
 #include "fem/links.h"
 #include "fem/ring.h"
@@ -37,12 +38,7 @@ class RodBody : public Body {
     std::vector<double> radii = {};
     std::map<std::string, double> landmarks = {};  ///< share of the way from its first skin point to its last
   };
-  /// A place at which something holds it flat.
-  struct Pinch {
-    double at = 0;                 ///< skin points from its start
-    double opening = 0;            ///< share of the lumen's height that is left
-    Vec3 pressed = Vec3::UnitY();  ///< in the frame there, see frame_at()
-  };
+  using Pinch = TubePinch;
   /// Fails (scenario) where the line cannot be one.
   static Result<RodBody> create(const Setup& setup);
 
@@ -174,9 +170,5 @@ class RodBody : public Body {
   std::vector<std::vector<int>> face_nodes_;
   std::optional<TubeMesh> tube_;
 };
-void visit_members(auto&& visit, MembersOf<RodBody::Pinch> auto& pinch) {
-  auto& [at, opening, pressed] = pinch;
-  visit(at, opening, pressed);
-}
 
 }  // namespace calot

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "body/rod_body.h"
 #include "field/join_bodies.h"
 #include "field/organ_piece.h"
 
@@ -22,10 +23,10 @@ std::optional<Organ> organ_at_first(const BodyOrigin& origin, const std::vector<
 }
 
 /// Whether it could be.
-bool hold_flat(const std::vector<RodBody::Pinch>& pinches, Organ& organ) {
+bool hold_flat(const std::vector<TubePinch>& pinches, Organ& organ) {
   const RodBody* tube = organ.body->as_tube();
   if (tube == nullptr) return pinches.empty();
-  if (!std::all_of(pinches.begin(), pinches.end(), [&](const RodBody::Pinch& p) { return tube->has(p.at); }))
+  if (!std::all_of(pinches.begin(), pinches.end(), [&](const TubePinch& p) { return tube->has(p.at); }))
     return false;
   organ.body = std::make_shared<const RodBody>(tube->pinched(pinches));
   return true;

@@ -10,7 +10,7 @@ struct OrganNote {
   BodyOrigin origin;
   int record = -1;
   bool of_specimen = false;
-  std::vector<RodBody::Pinch> pinches;  ///< where a tube is held flat
+  std::vector<TubePinch> pinches;  ///< where a tube is held flat
 };
 void visit_members(auto&& visit, MembersOf<OrganNote> auto& note) {
   auto& [origin, record, of_specimen, pinches] = note;

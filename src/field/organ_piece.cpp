@@ -1,5 +1,6 @@
 #include "field/organ_piece.h"
 
+#include "body/rod_body.h"
 #include "geometry/tri_mesh.h"
 
 namespace calot {
@@ -84,9 +85,9 @@ std::vector<Burn> burns_of(const Organ& whole, const Body& piece) {
 
 }  // namespace
 
-std::vector<RodBody::Pinch> pinches_of(const Organ& organ) {
+std::vector<TubePinch> pinches_of(const Organ& organ) {
   const RodBody* tube = organ.body->as_tube();
-  return tube == nullptr ? std::vector<RodBody::Pinch>() : tube->pinches();
+  return tube == nullptr ? std::vector<TubePinch>() : tube->pinches();
 }
 
 Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {

@@ -7,7 +7,7 @@
 namespace calot {
 
 /// Where an organ is held flat; nowhere: it is no tube.
-std::vector<RodBody::Pinch> pinches_of(const Organ& organ);
+std::vector<TubePinch> pinches_of(const Organ& organ);
 
 /// One of the pieces of an organ, the start's (0) or the end's (1), where and as it moves: with the skin that is held,
 /// rubs or is burnt on it, and the clips and openings there. What is just at the cut is the start's; where what it
