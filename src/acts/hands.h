@@ -1,11 +1,11 @@
 #pragma once
 // Hands that give way: from where tools are commanded to be to where they come in a step, before the organs answer.
 //
-// A hand holds its tool to the command until the tissue presses the tip with the hand's strength
-// (InstrumentDefinition::hand_force); beyond, the tip goes no further against that force, and back where it grew, so that
-// the force stays at the strength: rigid, then plastic. How the force grows with the way is the secant of the last step,
-// so that after a step of a motion it may be off by what that step's secant is.
-// Just so a hand turns its tool about the shaft until the tissue's torque is its strength times HandStrength::roll_arm.
+// A hand brings its tool to the command as long as the tissue presses the tip by less than the hand's strength
+// (InstrumentDefinition::hand_force, N). Beyond it the tip gives way along the force, so that the force stays at the
+// strength. How far it has to give way follows from how the force grew with the way in the last step (N/m, a secant): after
+// a step of motion the force may be off by as much as that secant is.
+// In the same way a hand turns its tool about the shaft up to a torque of its strength times HandStrength::roll_arm, N m.
 // Tools that meet press on each other by the contact barrier (tool_meeting.h) against the springs of their hands (hand.h),
 // solved together: each gives way until both hands carry the force. What touches no other tool comes exactly to where its
 // hand takes it.

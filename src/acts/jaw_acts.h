@@ -31,8 +31,9 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
 Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
                       SolveStatistics& statistics);
 
-/// At an angle at which closing jaws may take hold (closing_stops()): blades divide what is between them, and jaws that
-/// a fold fills hold it and stop. Adds what comes of it. Fails as close_blades() and release() do.
+/// Does what closing jaws do at one of their stops (closing_stops()): blades divide what is between them; other jaws take
+/// hold of skin at their pads, and stop where a fold fills them. Adds the events of it. Fails as close_blades() and
+/// release() do.
 Result<bool> close_jaws(Field& field, ToolIndex instrument, TearWatch& tears, std::vector<WorldEvent>& events,
                         SolveStatistics& statistics);
 

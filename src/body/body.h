@@ -143,8 +143,8 @@ class Body {
 
   /// What is touched, by triangles; see skin_radii().
   virtual const Tessellation& skin() const = 0;
-  /// Of what the skin's points are the middles of, one a point, m: a rod's are on its centreline, and its triangles flat
-  /// as lines. Empty: the skin itself is touched.
+  /// Radius of the surface around each skin point, m. A rod has its skin points on its centreline, so its triangles are flat
+  /// as lines and its surface lies this far from them. Empty: the skin itself is the surface.
   virtual const std::vector<double>& skin_radii() const;
   /// Whether its skin is a line with a radius about it.
   bool is_line() const { return !skin_radii().empty(); }

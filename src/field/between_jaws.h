@@ -28,8 +28,8 @@ bool feels(const Organ& organ, ToolIndex instrument);
 /// Of all tubes that feel the jaws, in the order of organs and places.
 std::vector<TubeBetween> tubes_between(const Field& field, ToolIndex instrument);
 
-/// Whether a line from one place to another (m) passes between the pads of a tool now, and no longer when its jaws have
-/// closed by an angle (rad) more: an edge passes it.
+/// Whether the line between two places (m) lies between a tool's pads now, and would not if its jaws were closed by `angle`
+/// (rad) more: then the jaws' edge passes it as they close by that.
 bool is_passed(const Tool& tool, const Vec3& from, const Vec3& to, double angle);
 
 /// A clip on a tube that is between the pads of a tool, anywhere over their width.

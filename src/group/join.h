@@ -42,9 +42,9 @@ class Join {
   virtual bool add_convexity(const VecX& /*x*/, BlockMatrix& /*matrix*/) const { return false; }
   /// Whether the last add_hessian() left some out.
   virtual bool lacking() const { return false; }
-  /// Adds the groups of nodes that add_hessian() couples near x: with `close` those that a solve from here on may well
-  /// couple, else those that some later one may, too, so that a matrix made for these serves for long. Not asked for
-  /// where there is but one body: it is joined to nothing but itself, by nodes that its own pattern couples.
+  /// Adds groups of nodes that add_hessian() may couple: with `close` in a solve that begins at x, else in some later solve,
+  /// too. A matrix is made with room for the second kind, so that it serves many solves. Asked only of groups of two bodies
+  /// or more: a body alone has all that it couples in its own pattern.
   virtual void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const = 0;
   /// The largest part of `share` of the step that is safe.
   virtual double safe_share(const VecX& /*x*/, const VecX& /*step*/, double share) const { return share; }

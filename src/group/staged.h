@@ -32,8 +32,8 @@ class PartProblem : public ConstrainedEnergy {
   std::vector<char> free_;
 };
 
-/// Both stages once. The volumes are the coarse stage's, whose pressures the second one takes over; what is left out
-/// of balance is what the extensions pass back. The workspace is left without a factor.
+/// Solves each stage once. The first keeps the volumes; the second has its pressures, and frees the volumes. What the
+/// extensions then press back on the coarse structure is left out of balance. The workspace is left without a factor.
 NewtonResult solve_in_stages(std::span<const Member> members, std::span<const JoinPointer> joins,
                              GroupPatterns& patterns, const NewtonSettings& settings, NewtonWorkspace& work);
 

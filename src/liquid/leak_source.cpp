@@ -60,7 +60,7 @@ class SourceSearch {
       const int side = links.bodies[0] == organ.value ? 0 : 1;
       if (links.bodies[side] != organ.value || !is_at(rod, links, side, to)) continue;
       if (std::optional<LeakSource> found = beyond(links, 1 - side, liquid_of(tube), area)) return found;
-      // It ends in something else that feeds it not.
+      // It ends in another body, from which nothing flows into it.
       return std::nullopt;
     }
     if (tube.of_specimen) return std::nullopt;

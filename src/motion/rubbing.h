@@ -29,8 +29,9 @@ inline constexpr int friction_rounds = 15;
 /// Whether anything rubs at all: else nothing of this costs anything.
 bool has_friction(const Field& field);
 
-/// Teeth rub on what they do not sink into by pad_friction (teeth.h). The organ's rubbing points, as they were at the last equilibrium, for the tools at `poses`. On jaws that
-/// hold some of it nothing rubs: their edges are part of the grip, whose limit is holding_limit (hold.h).
+/// The organ's rubbing points of the last equilibrium, their anchors and normals carried along to the tools' `poses`. Jaws
+/// that hold a part of the organ are left out: there the grip's own limit counts (holding_limit() in acts/grip_slip.h).
+/// Teeth rub by pad_friction on what they do not sink into (teeth.h).
 FrictionLoad friction_load(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses);
 
 /// Replaces around.friction by what rubs at the organ's present state with its present normal forces; points

@@ -47,9 +47,10 @@ struct ToolState {
   bool has_cut = false;   ///< its blades divided something since they opened last, for events
   int clips = 0;          ///< that it still carries
   bool on_clip = false, beside_kept = false;  ///< its current was let flow there at the last step, for events
-  double burnt = 0;                           ///< J that a wall has taken at one go, up to what opens it
-  int burnt_record = -1;                      ///< on the world's roll: that wall's organ; none: -1
-  bool waits = false;                         ///< outside: another one is in its port (acts/exchange.h)
+  double burnt =
+      0;  ///< J that its current has brought into one wall without a pause; at the wall's limit that opens
+  int burnt_record = -1;  ///< the organ of that wall, by its place on the world's roll; none: -1
+  bool waits = false;     ///< outside: another one is in its port (acts/exchange.h)
   NeedleState needle = {};
   InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
   /// N/m, how the force on the tip grew with its way: along the force and across it; 0: none that counts.
