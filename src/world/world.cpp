@@ -107,9 +107,10 @@ struct World::Impl {
 
 std::uint64_t World::Impl::find_hash_but_steps() const {
   WordHash hash;
-  // From where it is looked at is no part of the state: a picture from elsewhere is another picture of it.
+  // Where the scene puts the laparoscope is no part of the state: a picture from elsewhere is another picture of it. Where it
+  // was moved to is.
   StepReport unseen = report;
-  unseen.laparoscope = {};
+  if (report.laparoscope.pose == laparoscope.start()) unseen.laparoscope = {};
   MemberWriter{hash}(hash_of(field), unseen);
   return hash.value();
 }
