@@ -283,10 +283,16 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
   return contact_forces(memory.at(body, x, loads, pairs, 0.0));
 }
 
+Mat3 contact_bend(const Shape& shape, const Vec3& at, const DistanceSlope& slope, double radius,
+                  double push) {
+  DistanceSlope of_point = slope;
+  of_point.distance += radius;  // of the point itself, as the shape curves there
+  return push * distance_hessian(shape, at, of_point);
+}
+
 Mat3 contact_bend(const ContactLoads& loads, const Touch& touch) {
-  DistanceSlope d = touch.slope;
-  d.distance += touch.radius;  // of the point itself, as the shape curves there
-  return touch.area * touch.answer.derivative * distance_hessian(loads.shapes[touch.shape], touch.at, d);
+  return contact_bend(loads.shapes[touch.shape], touch.at, touch.slope, touch.radius,
+                      touch.area * touch.answer.derivative);
 }
 
 Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {

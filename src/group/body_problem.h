@@ -99,7 +99,10 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
                                          const std::vector<ContactPair>& pairs);
 /// Hessian of a contact point's energy by its place, N/m.
 Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch);
-/// What the shape's curvature adds to that, negative semidefinite.
+/// What the shape's curvature adds to that, N/m, negative semidefinite.
 Mat3 contact_bend(const ContactLoads& loads, const Touch& touch);
+/// The same of any point at a place (m) that a shape pushes with -`push` N; `slope` is of the surface that lies `radius` m
+/// around it.
+Mat3 contact_bend(const Shape& shape, const Vec3& at, const DistanceSlope& slope, double radius, double push);
 
 }  // namespace calot

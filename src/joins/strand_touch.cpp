@@ -100,11 +100,9 @@ StrandVector StrandTouch::gradient(const StrandThread& thread, const StrandVecto
 
 namespace {
 
-/// N/m, by its point: what it is pressed by times how the shape curves there.
 Mat3 bend_at(const StrandContact& contact, const Shape& shape) {
-  DistanceSlope d = contact.slope;
-  d.distance += contact.radius;  // of the point itself, as the shape curves there
-  return contact.area * contact.answer.derivative * distance_hessian(shape, contact.at, d);
+  return contact_bend(shape, contact.at, contact.slope, contact.radius,
+                      contact.area * contact.answer.derivative);
 }
 
 }  // namespace
