@@ -56,7 +56,8 @@ end
 local function expert(t)
   local clips, cuts = technique.hand(t, "applier", ports.epigastric), technique.hand(t, "blades", ports.epigastric)
   technique.take(t, t.hook, "artery_fat", {
-    port = ports.epigastric, tries = 6, hardest = 0.4 * N, keep_off = t:place("cystic_duct.end"),
+    port = ports.epigastric, tries = 6, hardest = 0.4 * N,
+    keep_off = { organ = "common_duct", place = t:place("cystic_duct.end"), clear = 3.5 * mm },
   })
   technique.take(t, t.hook, "cystic_plate", {
     port = ports.epigastric, tries = 30, hardest = 1 * N,
@@ -220,8 +221,8 @@ return calot.exercise {
 
   golden = {
     at = {
-      0, 11.36 * s, 12.72 * s, 18.92 * s, 31.8 * s, 37.6 * s, 46.6 * s, 49.08 * s, 55.36 * s, 64.08 * s,
-      71.28 * s,
+      0, 11.36 * s, 12.72 * s, 18.92 * s, 35.4 * s, 41.2 * s, 50.2 * s, 52.68 * s, 58.96 * s, 67.68 * s,
+      74.88 * s,
     },
   },
 }

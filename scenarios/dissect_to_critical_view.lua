@@ -121,7 +121,8 @@ return calot.exercise {
     t.left:wait(0.3 * s)
     if p.demo == "clumsy" then t.hook:activate(0.5 * s) end
     technique.take(t, t.hook, "artery_fat", {
-      port = hook_port, tries = 6, hardest = 0.4 * N, keep_off = t:place("cystic_duct.end"),
+      port = hook_port, tries = 6, hardest = 0.4 * N,
+      keep_off = { organ = "common_duct", place = t:place("cystic_duct.end"), clear = 3.5 * mm },
       is_done = function() return p.demo == "clumsy" and t:torn("artery_fat") > 0.2 or gives_up() end,
     })
     if p.demo == "clumsy" then return end
@@ -144,5 +145,5 @@ return calot.exercise {
     pass = 80,
   },
 
-  golden = { at = { 4.8 * s, 13.2 * s, 29.6 * s, 35.28 * s } },
+  golden = { at = { 4.8 * s, 13.2 * s, 36 * s, 41.68 * s } },
 }

@@ -705,6 +705,11 @@ function Instrument:tip() end
 ---@return number
 function Instrument:distance(landmark) end
 
+---How far its jaws, or the electrode that it ends in, are from an organ's surface, m; 0 where they touch.
+---@param organ string an organ's name
+---@return number
+function Instrument:clearance(organ) end
+
 ---An instrument as the demo moves it. Motions return when they have ended.
 ---@class calot.DemoInstrument: calot.Instrument
 local DemoInstrument = {}

@@ -64,8 +64,8 @@ end
 --- comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and then on
 --- all three nearer to its heel. `how`: port, where its shaft comes from; tries, of a tenth of a second; hardest, the
 --- force that ends its way down; wanted(strand), if given, those that are taken; is_done(), if given, asked before each
---- strand; keep_off, a place that current keeps off: beside it the heel comes down first, on the middle, and the foot
---- points away.
+--- strand; keep_off, an organ and a place of it: current flows no nearer to the organ than `clear`, and beside the
+--- place the heel comes down first, on the middle, and the foot points away.
 function technique.take(t, hook, tissue, how)
   local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
   local wanted = how.wanted or function() return true end
@@ -73,7 +73,8 @@ function technique.take(t, hook, tissue, how)
   while missed < 9 and not (how.is_done and how.is_done()) do
     local strand = nearest_strand(t, hook, tissue, wanted)
     if not strand then return end
-    local beside = how.keep_off and length(minus(strand.middle, how.keep_off)) < 10 * mm
+    local off = how.keep_off
+    local beside = off and length(minus(strand.middle, off.place)) < 10 * mm
     local ends = { strand.middle, strand.to, strand.from }
     local at = beside and strand.middle or plus(strand.middle, minus(ends[missed % 3 + 1], strand.middle), 0.5)
     local aim = plus(at, { beside and by_heel[missed % 3 + 1] or reach[missed // 3 + 1], 0, 0 })
@@ -83,10 +84,13 @@ function technique.take(t, hook, tissue, how)
       local contact = hook:contact()
       return contact ~= nil and contact.organ == tissue or hook:force() > how.hardest
     end
+    local function may_burn()
+      return hook:touching() and not (off and hook:clearance(off.organ) < off.clear)
+    end
     hook:move_until(lies_on_it, { along = plus({ 0, 0, 0 }, back, -1), speed = 25 * mm / s, limit = 8 * mm })
     local standing = #t:strands(tissue)
     for _ = 1, how.tries do
-      if not hook:touching() or #t:strands(tissue) < standing then break end
+      if not may_burn() or #t:strands(tissue) < standing then break end
       hook:activate(0.1 * s)
     end
     missed = #t:strands(tissue) < standing and 0 or missed + 1

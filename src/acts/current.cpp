@@ -94,28 +94,17 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
                       clip->second, EventCause::current});
   tool.on_clip = clip.has_value();
   const Organ* kept = nullptr;
-  double nearest = std::numeric_limits<double>::infinity();
-  Vec3 place = Vec3::Zero();
+  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
   for (const Organ& organ : field.organs) {
     if (!active || organ.definition.keep_clear == 0) continue;
-    const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-    const std::vector<double>& radii = organ.body->skin_radii();
-    // Of a tube, whose points stand far apart, between them too.
-    const std::size_t parts = organ.body->is_line() ? 8 : 1;
-    for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
-      const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
-      const Vec3 at =
-          skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
-      const double distance = distance_to(tool, shapes, at) - (radii.empty() ? 0.0 : radii[p]);
-      if (distance >= organ.definition.keep_clear || distance >= nearest) continue;
-      kept = &organ;
-      nearest = distance;
-      place = at;
-    }
+    const Clearance found = clearance(tool, organ);
+    if (found.distance >= organ.definition.keep_clear || found.distance >= nearest.distance) continue;
+    kept = &organ;
+    nearest = found;
   }
   if (kept != nullptr && !tool.beside_kept)
     events.push_back({EventKind::activation_beside, 0, tool.definition.name, kept->definition.name,
-                      std::max(0.0, nearest) / units::mm, place, EventCause::current});
+                      nearest.distance / units::mm, nearest.place, EventCause::current});
   tool.beside_kept = kept != nullptr;
 }
 
@@ -196,6 +185,24 @@ std::vector<WorldEvent> apply_current(Field& field, const std::vector<Instrument
     }
   }
   return events;
+}
+
+Clearance clearance(const Tool& tool, const Organ& organ) {
+  const std::vector<Shape> shapes = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
+  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+  const std::vector<double>& radii = organ.body->skin_radii();
+  // Of a tube, whose points stand far apart, between them too.
+  const std::size_t parts = organ.body->is_line() ? 8 : 1;
+  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
+    const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
+    const Vec3 at =
+        skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
+    const double distance = distance_to(tool, shapes, at) - (radii.empty() ? 0.0 : radii[p]);
+    if (distance < nearest.distance) nearest = {distance, at};
+  }
+  nearest.distance = std::max(0.0, nearest.distance);
+  return nearest;
 }
 
 }  // namespace calot

@@ -14,4 +14,12 @@ namespace calot {
 std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
                                       double duration);
 
+/// How near something is to an organ's skin.
+struct Clearance {
+  double distance = 0;  ///< m; 0 where they touch
+  Vec3 place;           ///< m, of the skin, nearest to it
+};
+/// Of what a tool works with: its jaws, or what its rod ends in (`conducts`), as it is posed now.
+Clearance clearance(const Tool& tool, const Organ& organ);
+
 }  // namespace calot

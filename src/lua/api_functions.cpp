@@ -343,6 +343,12 @@ std::vector<ApiFunction> instrument_functions() {
        "string"},
       {"Instrument", "tip", "Its tip's place, {x, y, z} in m.", {}, "calot.point"},
       {"Instrument", "distance", "How far its tip is from a landmark, m.", {landmark()}, "number"},
+      {"Instrument",
+       "clearance",
+       "How far its jaws, or the electrode that it ends in, are from an organ's surface, m; 0 where they "
+       "touch.",
+       {organ(true)},
+       "number"},
       {"DemoInstrument",
        "approach",
        "Opens the jaws, if it has any, and goes to a landmark from outside, ending pressed onto the tissue, "

@@ -384,6 +384,13 @@ int distance(lua_State* L) {
   return 1;
 }
 
+int clearance(lua_State* L) {
+  const HandleTarget target = instrument_target(L, "clearance");
+  const Arguments arguments(L, *target.session, "Instrument", "clearance");
+  lua_pushnumber(L, target.session->clearance(L, target.instrument, arguments.text("organ")));
+  return 1;
+}
+
 // ---- steps
 
 StepsScript& steps_of(lua_State* L, const char* method) {
@@ -557,6 +564,7 @@ const Method methods[] = {{"Session", "wait", guarded<wait>},
                           {"Instrument", "waits", guarded<waits>},
                           {"Instrument", "tip", guarded<tip>},
                           {"Instrument", "distance", guarded<distance>},
+                          {"Instrument", "clearance", guarded<clearance>},
                           {"Instrument", "force_vector", guarded<force_vector>},
                           {"Instrument", "pull", guarded<pull>},
                           {"Instrument", "push", guarded<push>},

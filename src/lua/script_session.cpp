@@ -31,6 +31,7 @@ constexpr double share_of_filling[levels] = {0.5, 1, 2};
 constexpr double share_torn[levels] = {0, 0.5, 1};
 constexpr double share_lost[levels] = {0, 0.1, 1};
 constexpr double share_seen[levels] = {0, 0.5, 1};
+constexpr double clear_by[levels] = {0, 5e-3, 50e-3};  // m
 constexpr double usual_pressure = 12 * units::mmHg;
 constexpr double usual_volume = 40 * units::mL;
 
@@ -281,6 +282,13 @@ Vec3 ScriptSession::tip(lua_State* L, int instrument) {
   if (!checking()) return world(L).report().instruments[static_cast<std::size_t>(instrument)].tip;
   const std::optional<Vec3> known = known_tip(instrument);
   return known ? *known : stand_in_instrument(instrument).tip;
+}
+
+double ScriptSession::clearance(lua_State* L, int instrument, const std::string& name) {
+  const int found = organ(L, name);
+  if (checking() || found < 0) return clear_by[next_level()];
+  return world(L).clearance(ToolIndex{static_cast<std::size_t>(instrument)},
+                            OrganIndex{static_cast<std::size_t>(found)});
 }
 
 Vec3 ScriptSession::shaft_axis(lua_State* L, int instrument) {

@@ -92,6 +92,8 @@ class ScriptSession {
   Vec3 landmark_normal(lua_State* L, const std::string& name) const;
   /// Where an instrument's tip is now, m; a stand-in where a dry run does not know it.
   Vec3 tip(lua_State* L, int instrument);
+  /// How far an instrument's end is from an organ, m (World::clearance); complains where there is none of that name.
+  double clearance(lua_State* L, int instrument, const std::string& organ);
   /// From its port to its tip, unit.
   Vec3 shaft_axis(lua_State* L, int instrument);
   /// Where the part that `choose` picks is pressed hardest; a stand-in in a dry run.

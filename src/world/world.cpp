@@ -491,6 +491,10 @@ Vec3 World::landmark_normal(const std::string& name) const {
   return there ? skin_normals(there->organ)[there->skin_point] : last_place(impl_->field, name).normal;
 }
 
+double World::clearance(ToolIndex instrument, OrganIndex organ) const {
+  return calot::clearance(impl_->field.tool(instrument), impl_->field.organ(organ)).distance;
+}
+
 double World::seen_area(const std::array<Vec3, 3>& corners) const {
   constexpr double margin = 2e-3;  // m: as thick as what such a triangle is stretched between
   return calot::seen_area(impl_->field, impl_->report.laparoscope.view,

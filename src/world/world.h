@@ -13,6 +13,7 @@
 #include "body/body_handle.h"
 #include "geometry/stencil.h"
 #include "tools/step_report.h"
+#include "tools/tool_index.h"
 #include "world/critical_view.h"
 
 namespace calot {
@@ -94,6 +95,8 @@ class World {
   Vec3 port_position(const std::string& port) const;
   /// Present place of "organ.landmark" on the skin, m; of an organ that went, where it was last.
   Vec3 landmark(const std::string& organ_and_landmark) const;
+  /// How far a tool's jaws, or what its rod ends in, are from an organ's skin, m; 0 where they touch (acts/current.h).
+  double clearance(ToolIndex instrument, OrganIndex organ) const;
   /// Of a triangle's area what the laparoscope sees, m^2, across its line of sight (world/sight.h), from where
   /// it is now.
   double seen_area(const std::array<Vec3, 3>& corners) const;

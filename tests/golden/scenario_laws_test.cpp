@@ -88,12 +88,8 @@ TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
     test::expect_more_for_more(played.value());
     test::expect_no_error_helps(played.value());
   }
-  // A defect to be mended: this demo's hook lets current flow beside its strand at 16.64 to 17.04 s.
-  const std::string known =
-      std::string(GetParam().scenario) == "dissect_to_critical_view" ? "activation_beside" : "";
   for (const SessionEvent& event : played->session.progress.events())
-    EXPECT_TRUE(!event_row(event.kind).error || to_text(event.kind) == known)
-        << to_text(event.kind) << " at " << event.time << " s";
+    EXPECT_FALSE(event_row(event.kind).error) << to_text(event.kind) << " at " << event.time << " s";
   EXPECT_EQ(watch.strongest > 1.0, GetParam().pulls) << "without traction the laws below say little";
   EXPECT_LT(watch.deepest, 0.1e-3);
   EXPECT_LT(watch.swelling, 1e-9);

@@ -387,6 +387,21 @@ TEST(Steps, LearnWherePlacesAreAndHowFarATipIs) {
               ::testing::ElementsAre("3\ttrue\ttrue", "0.0\t0.0", "true\ttrue", "true\ttrue"));
 }
 
+TEST(Demo, ClearanceIsTheWayThatIsLeftToAnOrgan) {
+  const Played played =
+      play(with_demo("local from, to = t.left:tip(), { -60 * mm, 90 * mm, -90 * mm }\n"
+                     "t.left:move_by({ to[1] - from[1], to[2] - from[2], to[3] - from[3] })\n"
+                     "local far, at, goal = t.left:clearance('ball'), t.left:tip(), t:place('ball.fundus')\n"
+                     "local share = 20 * mm / t.left:distance('ball.fundus')\n"
+                     "t.left:move_by({ share * (goal[1] - at[1]), share * (goal[2] - at[2]),\n"
+                     "                 share * (goal[3] - at[3]) })\n"
+                     "local way = far - t.left:clearance('ball')\n"
+                     "print(far < t.left:distance('ball.fundus') + 20 * mm, way > 15 * mm, way < 20.1 * mm)"),
+           50, 8);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("true\ttrue\ttrue"));
+}
+
 TEST(Demo, GoesToWhereAPlaceIsByItsOwnReckoning) {
   const Played played =
       play(with_demo("local from, to = t.left:tip(), { -60 * mm, 90 * mm, -90 * mm }\n"
