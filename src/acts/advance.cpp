@@ -10,6 +10,7 @@
 #include "field/field_tissues.h"
 #include "field/grip.h"
 #include "field/take_hold.h"
+#include "motion/settle_field.h"
 #include "motion/step_budget.h"
 
 namespace calot {
@@ -36,6 +37,15 @@ std::vector<double> all_stops(const std::vector<std::vector<double>>& holding_st
   return stops;
 }
 
+/// A field that is solved roughly on the way, and not after, however that ends.
+struct RoughWay {
+  explicit RoughWay(Field& of) : field(of) {}
+  RoughWay(const RoughWay&) = delete;
+  RoughWay& operator=(const RoughWay&) = delete;
+  ~RoughWay() { field.rough = false; }
+  Field& field;
+};
+
 }  // namespace
 
 Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, SolveStatistics& statistics) {
@@ -50,9 +60,11 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   std::vector<std::vector<double>> holding_stops;
   for (std::size_t i = 0; i < to.size(); ++i)
     holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
+  const RoughWay way(field);
   double reached = 0;
   for (double stop : all_stops(holding_stops)) {
     const double duration = (stop - std::exchange(reached, stop)) * field.step_time;
+    field.rough = field.step_time > 0 && stop < 1;
     Poses here = interpolate(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (rested[i] || field.tools[i].jaws_rest()) here[i].jaw = field.tools[i].pose.jaw;
@@ -76,6 +88,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       if (!closed) return closed.failure();
     }
   }
+  if (field.rough && !statistics.cut_short) end_in_balance(field, statistics);
   // What is not in balance tells not what slips.
   if (!statistics.cut_short) judge_clasps(field, slipped_before, events);
   feel_again(field);

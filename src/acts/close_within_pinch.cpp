@@ -37,6 +37,7 @@ class Trials {
         statistics_(statistics),
         start_(field_state(field)),
         told_(events.size()),
+        on_the_way_(field.rough),
         at_start_(field.tools.size(), 0.0) {
     for (std::size_t i : pressing)
       if (!pressed_at_start(i)) at_start_[i] = excess(i);
@@ -46,6 +47,7 @@ class Trials {
   /// be followed presses without end.
   double excess(std::size_t tool, double jaw) {
     to_[tool].jaw = jaw;
+    field_.rough = on_the_way_ || (moved_ && field_.step_time > 0);
     ++statistics_.jaw_trials[field_.tools[tool].definition.name];
     if (reached_ && field_.step_time > 0 && !rubs(tool))
       turn(tool, jaw);
@@ -109,6 +111,7 @@ class Trials {
   SolveStatistics& statistics_;
   FieldState start_;
   std::size_t told_;
+  bool on_the_way_;  ///< rough from the first trial on; else from the second
   std::vector<double> at_start_;
   std::vector<std::vector<GripPoint>> grips_;  ///< of the organs, at the motion's end
   bool moved_ = false, reached_ = false, turned_ = false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "acts/jaw_acts.h"
 #include "field/field_tissues.h"
@@ -84,12 +85,13 @@ class Following {
         statistics_.cut_short = true;
         return false;
       }
-      if (Result<bool> part = one_part(); !part) return part;
+      if (Result<bool> part = one_part(); !part || !part.value()) return part;
     }
     return true;
   }
 
  private:
+  /// Whether the motion goes on.
   Result<bool> one_part() {
     const Poses from = present_poses(field_);
     if (passing_) grow_damage(field_);
@@ -102,11 +104,15 @@ class Following {
     double share = from == to_ ? 1.0 : answer->share;
     NewtonResult last;  // of the solve that failed last, if any did in this part
     for (bool accepted = false; !accepted;) {
+      if (field_.step_time > 0 && passing_ && share < smallest_share && !field_.stopped())
+        return stay(parts.value(), answer.value());
       if (std::optional<Failure> failure = given_up(share, last)) return *failure;
       const GroupSnapshot before = snapshot(field_);
       const double next = share >= 1.0 ? 1.0 : done_ + share * (1.0 - done_);
       const Poses poses = next >= 1.0 ? to_ : interpolate(from, to_, share);
+      const bool rough = std::exchange(field_.rough, field_.rough || (field_.step_time > 0 && next < 1.0));
       last = settle_at(poses, share, parts.value(), answer.value());
+      field_.rough = rough;
       accepted = last.converged() || was_cut_short(field_, last);
       if (accepted) {
         learn(answer.value(), share, before, last);
@@ -119,6 +125,22 @@ class Following {
     }
     ++part_;
     return true;
+  }
+
+  /// What the tools press leaves them no room yet: the rest of the time passes with them where they are, in which it gives
+  /// way. The motion ends there, and its next step goes on.
+  Result<bool> stay(const std::vector<MotionPart>& parts, const Prediction& answer) {
+    const Poses here = present_poses(field_);
+    const GroupSnapshot before = snapshot(field_);
+    const NewtonResult last = settle_at(here, 1.0, parts, answer);
+    if (!last.converged() && !was_cut_short(field_, last)) {
+      restore(field_, before);
+      stuck_ = out_of_balance(field_, last);
+      return cannot_follow(field_, stuck_, done_);
+    }
+    statistics_.cut_short = true;
+    ++statistics_.substeps;
+    return false;
   }
 
   double time_left() const { return passing_ ? (1.0 - done_) * passing_->duration : 0; }  ///< s
@@ -161,6 +183,7 @@ class Following {
     const std::vector<VecX> places = present_places(field_);
     begin_parts(parts, share * time_left(), field_);
     move_by(std::min(share, answer.share), answer, field_);
+    if (field_.step_time > 0) lay_strands(field_, poses);
     return settle_group(field_, poses, places, part_iterations, statistics_);
   }
 

@@ -51,6 +51,16 @@ struct Ground {
   bool broad = true;    ///< felt by few points; by all as instruments are where it is false
 };
 
+/// Newton iterations and parts of the motion, together, of a step where masses count.
+struct StepBudget {
+  int begin = 40;    ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
+  int balance = 20;  ///< that the solve under way may take beyond
+};
+
+/// Of solves on the way through a step where masses count: what takes hold, what presses and what slips is decided by
+/// forces to a hundredth. The last solve of each step is balanced to the field's tolerance.
+inline constexpr double rough_tolerance = 1e-3;
+
 struct Field {
   std::vector<Organ> organs;
   std::vector<Tissue> tissues;  ///< between them
@@ -59,9 +69,12 @@ struct Field {
   std::vector<Ground> ground;
   Barrier barrier = contact_barrier;
   double tolerance = 1e-6;
+  /// What is solved for now is on the way to where the step ends: balanced to rough_tolerance it serves. At the end of
+  /// each step it is false.
+  bool rough = false;
   double step_time = 0;   ///< s that a step takes where masses count; 0: statics
   double time = 0;        ///< s, at the end of the present step
-  int step_budget = 500;  ///< what a step may take where masses count (motion/step_budget.h)
+  StepBudget budget;      ///< what a step may take where masses count (motion/step_budget.h)
   Spill spill;            ///< what has left the organs
   double heart_rate = 0;  ///< a minute
   Vec3 up = Vec3::UnitZ();

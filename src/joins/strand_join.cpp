@@ -1,5 +1,6 @@
 #include "joins/strand_join.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 namespace calot {
@@ -173,6 +174,38 @@ double StrandJoin::safe_share(const VecX& x, const VecX& step, double share) con
     if (const StrandThread* met = thread(i)) share = touch_.safe_share(*met, from, motion, share);
   }
   return share;
+}
+
+std::optional<Vec3> StrandJoin::balanced_node(std::size_t i, const VecX& x) const {
+  constexpr int most_steps = 20, halvings = 10;
+  constexpr double longest = 1e-3;  // m, of a step
+  const StrandThread* met = meets() ? thread(i) : nullptr;
+  if (!met) return std::nullopt;
+  const Strand& strand = strands_[i].strand;
+  StrandVector at = places(i, x);
+  const double strength = strand.law.setup().strength;
+  if (touch_.gradient(*met, at).segment<3>(3).norm() <= strength) return std::nullopt;
+  const auto energy = [&](const StrandVector& of) {
+    return strand.value(of, pasts_[i]) + touch_.value(*met, of);
+  };
+  for (int k = 0; k < most_steps; ++k) {
+    const Vec3 slope = (strand.gradient(at, pasts_[i]) + touch_.gradient(*met, at)).segment<3>(3);
+    if (slope.norm() <= 1e-3 * strength) break;
+    const StrandMatrix whole = strand.hessian(at, pasts_[i]) + touch_.hessian(*met, at);
+    const Eigen::SelfAdjointEigenSolver<Mat3> modes(Mat3(whole.block<3, 3>(3, 3)));
+    const Vec3 stiffness = modes.eigenvalues().cwiseAbs().cwiseMax(strand.centring());
+    Vec3 step = -modes.eigenvectors() * (modes.eigenvectors().transpose() * slope).cwiseQuotient(stiffness);
+    step *= std::min(1.0, longest / step.norm());
+    StrandVector motion = StrandVector::Zero();
+    motion.segment<3>(3) = step;
+    double share = touch_.safe_share(*met, at, motion, 1.0);
+    const double before = energy(at);
+    int halved = 0;
+    while (halved < halvings && !(energy(at + share * motion) < before)) share *= 0.5, ++halved;
+    if (halved == halvings) break;
+    at += share * motion;
+  }
+  return Vec3(at.segment<3>(3));
 }
 
 std::vector<double> StrandJoin::strains(const VecX& x) const {

@@ -5,6 +5,8 @@
 // Neighbours are coupled by the skins that they end on, not by their nodes: these then are condensed one by one, where a
 // sheet of linked nodes takes several times as long.
 
+#include <optional>
+
 #include "fem/strand.h"
 #include "group/join.h"
 #include "joins/carried_place.h"
@@ -77,6 +79,10 @@ class StrandJoin : public Join {
     }
   }
   const StrandTouch& touch() const { return touch_; }
+
+  /// The place of a strand's node, m, in balance between its ends at x; null where tools press the strand no harder than it
+  /// holds. Sought downhill from where the node is, past nothing that the strand touches; its weight and mass are left out.
+  std::optional<Vec3> balanced_node(std::size_t strand, const VecX& x) const;
 
  private:
   /// Rows of a strand, of increasing nodes.

@@ -1,5 +1,6 @@
 #include "motion/settle_field.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "field/field_tissues.h"
@@ -107,14 +108,16 @@ bool friction_agrees(Field& field, const std::vector<InstrumentPose>& poses, con
 
 NewtonSettings solver_settings(const Field& field, int iterations) {
   NewtonSettings out;
-  out.tolerance = field.tolerance;
+  out.tolerance = field.rough ? std::max(rough_tolerance, field.tolerance) : field.tolerance;
+  if (field.rough) out.constraint_tolerance = 1e-3 * rough_tolerance;
   out.stop = [&field, left = iterations]() mutable { return field.stopped() || left-- <= 0; };
   return out;
 }
 
 NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
-                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics) {
-  NewtonSettings settings = solver_settings(field, left_of_budget(field, statistics));
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics,
+                          Rubbing rubs) {
+  NewtonSettings settings = solver_settings(field, left_to_balance(field, statistics));
   settings.max_iterations = max_iterations;
   const double travel = largest_travel(field, poses);
   for (Organ& organ : field.organs) fade_details(travel, organ.state);
@@ -130,7 +133,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
     ++statistics.solves;
     if (round > 0) ++statistics.friction_rounds;
-    if (!total.converged() || !has_friction(field)) break;
+    if (!total.converged() || rubs == Rubbing::as_it_is || !has_friction(field)) break;
     std::vector<FrictionLoad> used;
     for (const ContactLoads& of_organ : loads) used.push_back(of_organ.friction);
     std::vector<SkinHold> used_between = rubbing;
@@ -154,6 +157,17 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     statistics.residual = total.residual;
   }
   return total;
+}
+
+void end_in_balance(Field& field, SolveStatistics& statistics) {
+  field.rough = false;
+  const GroupSnapshot before = snapshot(field);
+  const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
+                                           NewtonSettings{}.max_iterations, statistics, Rubbing::as_it_is);
+  if (result.converged() || was_cut_short(field, result)) return;
+  restore(field, before);
+  statistics.cut_short = true;
+  statistics.residual = result.residual;
 }
 
 bool was_cut_short(const Field& field, const NewtonResult& result) {

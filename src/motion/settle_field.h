@@ -33,11 +33,18 @@ std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& lo
 /// The way of the tool that travels most from where it stands, m.
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to);
 
+/// What rubs: renewed until the normal forces ask for no other limit, or held as it was found last.
+enum class Rubbing { renewed, as_it_is };
+
 /// Brings the organs to rest, or to the end of the part of a motion that they are in, with the tools at `poses`; on failure they are left at the last iterate. `before`, one an
 /// organ, is where they were at their last equilibrium, tools as field.tools stand: friction resists what moved since,
 /// and details fade as far as the tools travel from there.
 NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
-                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics);
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics,
+                          Rubbing rubs = Rubbing::renewed);
+/// Balances to the field's tolerance what was solved roughly until now, nothing rubbing otherwise. Where that fails all
+/// stays as it is, and the step is one that was cut short.
+void end_in_balance(Field& field, SolveStatistics& statistics);
 
 /// Lets organs that nothing holds sink to rest with no tool near (equilibrium.h); they rest without friction.
 Result<bool> sink_field(Field& field, SolveStatistics& statistics);

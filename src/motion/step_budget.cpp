@@ -4,9 +4,13 @@
 
 namespace calot {
 
-int left_of_budget(const Field& field, const SolveStatistics& statistics) {
+bool is_spent(const Field& field, const SolveStatistics& statistics) {
+  return field.step_time > 0 && statistics.newton_iterations + statistics.substeps >= field.budget.begin;
+}
+
+int left_to_balance(const Field& field, const SolveStatistics& statistics) {
   if (field.step_time == 0) return std::numeric_limits<int>::max();
-  return field.step_budget - statistics.newton_iterations - statistics.substeps;
+  return field.budget.begin + field.budget.balance - statistics.newton_iterations - statistics.substeps;
 }
 
 }  // namespace calot

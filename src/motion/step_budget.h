@@ -12,11 +12,9 @@
 
 namespace calot {
 
-/// What is left of Field::step_budget, Newton iterations and parts of the motion together; without masses as good as
-/// endless.
-int left_of_budget(const Field& field, const SolveStatistics& statistics);
-inline bool is_spent(const Field& field, const SolveStatistics& statistics) {
-  return left_of_budget(field, statistics) <= 0;
-}
+/// Whether the step begins nothing more. Never without masses.
+bool is_spent(const Field& field, const SolveStatistics& statistics);
+/// Newton iterations that a solve may take; without masses as good as endless.
+int left_to_balance(const Field& field, const SolveStatistics& statistics);
 
 }  // namespace calot

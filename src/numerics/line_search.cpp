@@ -1,6 +1,7 @@
 #include "numerics/line_search.h"
 
 #include <cmath>
+#include <limits>
 
 namespace calot {
 namespace {
@@ -56,35 +57,79 @@ VecX penalties(const SearchStart& start, double curvature, const VecX& scales) {
   return out;
 }
 
+/// The merit along one step.
+class Search {
+ public:
+  Search(const ConstrainedEnergy& problem, const SearchStart& start)
+      : problem_(problem),
+        start_(start),
+        scales_(constrained() ? problem.constraint_scales() : VecX()),
+        compliances_(constrained() ? problem.compliances() : VecX()),
+        curvature_(whole_curvature(start, compliances_)),
+        merit_{start.multipliers, compliances_, penalties(start, curvature_, scales_)},
+        slope_(merit_.slope(curvature_, start.left)) {
+    const double energy = problem.value(start.x);
+    before_ = merit_.at(point(start.x, energy, 0));
+    // Differences below the rounding of the sum cannot be judged.
+    double terms = std::abs(energy) + problem.cancelling();
+    for (Eigen::Index k = 0; k < scales_.size(); ++k)
+      terms += std::abs(start.multipliers[k]) * scales_[k] +
+               0.5 * compliances_[k] * start.multipliers[k] * start.multipliers[k];
+    rounding_ = 1e-13 * terms;
+  }
+
+  /// At a share of the step; infinite where that is not admissible.
+  double at(double share) const {
+    const VecX next = start_.x + share * start_.step;
+    const double energy = problem_.value(next);
+    return std::isfinite(energy) ? merit_.at(point(next, energy, share))
+                                 : std::numeric_limits<double>::infinity();
+  }
+  /// Whether a share takes off enough of it.
+  bool falls(double share) const { return at(share) <= before_ + 1e-4 * share * slope_ + rounding_; }
+  double rounding() const { return rounding_; }
+
+ private:
+  bool constrained() const { return problem_.constraints() > 0; }
+  Point point(const VecX& x, double energy, double share) const {
+    return {energy, constrained() ? problem_.constraint_values(x) : VecX(),
+            start_.multipliers - (1 - share) * start_.dmultipliers};
+  }
+
+  const ConstrainedEnergy& problem_;
+  const SearchStart& start_;
+  VecX scales_, compliances_;
+  double curvature_;
+  Merit merit_;
+  double slope_, before_ = 0, rounding_ = 0;
+};
+
 }  // namespace
 
 double line_search(const ConstrainedEnergy& problem, const SearchStart& start, double share) {
-  const bool constrained = problem.constraints() > 0;
-  const VecX scales = constrained ? problem.constraint_scales() : VecX();
-  const VecX compliances = constrained ? problem.compliances() : VecX();
-  const double curvature = whole_curvature(start, compliances);
-  const Merit merit{start.multipliers, compliances, penalties(start, curvature, scales)};
-  const auto at = [&](const VecX& x, double energy, double of_step) {
-    return Point{energy, constrained ? problem.constraint_values(x) : VecX(),
-                 start.multipliers - (1 - of_step) * start.dmultipliers};
-  };
-  const double slope = merit.slope(curvature, start.left);
-  const Point begin = at(start.x, problem.value(start.x), 0);
-  const double before = merit.at(begin);
-  // Differences below the rounding of the sum cannot be judged.
-  double terms = std::abs(begin.energy) + problem.cancelling();
-  for (Eigen::Index k = 0; k < scales.size(); ++k)
-    terms += std::abs(start.multipliers[k]) * scales[k] +
-             0.5 * compliances[k] * start.multipliers[k] * start.multipliers[k];
-  const double rounding = 1e-13 * terms;
+  const Search search(problem, start);
   for (int trial = 0; trial < 40 && share > 0; ++trial) {
-    const VecX next = start.x + share * start.step;
-    const double e = problem.value(next);
-    if (std::isfinite(e) && merit.at(at(next, e, share)) <= before + 1e-4 * share * slope + rounding)
-      return share;
+    if (search.falls(share)) return share;
     share *= 0.5;
   }
   return 0;
+}
+
+double lengthen(const ConstrainedEnergy& problem, const SearchStart& start) {
+  constexpr int most_doublings = 10;
+  const Search search(problem, start);
+  const double whole = search.at(1);
+  double share = 1, least = whole;
+  for (int k = 0; k < most_doublings; ++k) {
+    const double further = search.at(2 * share);
+    if (!(further < least - search.rounding())) break;
+    share *= 2;
+    least = further;
+  }
+  if (share == 1) return 1;
+  const double safe = problem.safe_share(start.x, share * start.step);
+  if (safe == 1) return share;
+  return safe * share > 1 && search.at(safe * share) < whole ? safe * share : 1;
 }
 
 }  // namespace calot

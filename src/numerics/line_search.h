@@ -17,5 +17,9 @@ struct SearchStart {
 
 /// Begins with `share` of the step; returns the share taken, 0 when no decrease was found.
 double line_search(const ConstrainedEnergy& problem, const SearchStart& start, double share);
+/// Of a whole step that line_search() has taken, by a matrix that is stiffer than the energy: the share to take instead, 1
+/// or more. By such a matrix steps out of a saddle grow by a few per cent each: they are doubled as long as that takes off
+/// more, and cut to what is safe.
+double lengthen(const ConstrainedEnergy& problem, const SearchStart& start);
 
 }  // namespace calot

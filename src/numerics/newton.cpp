@@ -251,8 +251,9 @@ class Iteration {
     double share = 0;
     {
       const Timed timed(result_.assembly_s);
-      share =
-          line_search(problem_, {x_, step, multipliers, dmultipliers, state_.constraints, curvature}, safe);
+      const SearchStart start{x_, step, multipliers, dmultipliers, state_.constraints, curvature};
+      share = line_search(problem_, start, safe);
+      if (share == 1 && work_.shifted) share = lengthen(problem_, start);
     }
     const Worst increment = relative_increment(step, share);
     if (increment.value <= smallest_move) {

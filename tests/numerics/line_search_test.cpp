@@ -96,6 +96,38 @@ TEST(LineSearch, AStepIsHalvedUntilItIsAdmissible) {
   EXPECT_EQ(problem.share(), 0.25);
 }
 
+/// One node in a well with two bottoms, at x = -1 and 1; a wall that no step may pass.
+class TwoBottoms : public Hilltop {
+ public:
+  double wall = 1e9;  ///< m
+
+  int constraints() const override { return 0; }
+  double value(const VecX& x) const override {
+    return 0.25 * std::pow(x.squaredNorm(), 2) - 0.5 * x.squaredNorm();
+  }
+  double safe_share(const VecX& x, const VecX& step) const override {
+    return std::min(1.0, (wall - x[0]) / step[0]);
+  }
+  /// Of a step along the first coordinate.
+  double lengthened(double from, double by) const {
+    const VecX x = from * VecX::Unit(3, 0), step = by * VecX::Unit(3, 0), none;
+    return lengthen(*this, {x, step, none, none, none, 0});
+  }
+};
+
+TEST(LineSearch, AStepOutOfASaddleIsDoubledAsLongAsTheEnergyFalls) {
+  TwoBottoms problem;
+  EXPECT_EQ(problem.lengthened(0.01, 0.01), 64) << "to 0.65: twice as far is beyond the bottom and higher";
+  EXPECT_EQ(problem.lengthened(1.3, -0.2), 1) << "to 1.1: twice as far is as high again";
+  EXPECT_EQ(problem.lengthened(1, 1e-3), 1) << "uphill";
+}
+
+TEST(LineSearch, ALengthenedStepEndsAtWhatItMayNotPass) {
+  TwoBottoms problem;
+  problem.wall = 0.21;
+  EXPECT_DOUBLE_EQ(problem.lengthened(0.01, 0.01), 20);
+}
+
 TEST(LineSearch, ARiseThatIsRoundingOfWhatCancelsIsNoRise) {
   Hilltop problem;
   problem.a = 1;

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "acts/advance.h"
+#include "field/grip.h"
+#include "motion/settle_field.h"
 #include "rig.h"
 #include "support/long_run.h"
 
@@ -24,11 +26,11 @@ struct Budgeted {
   SolveStatistics last = {};
   int cut_short = 0;
 
-  Budgeted(const World& world, int budget) : field(world.field()) { field.step_budget = budget; }
+  Budgeted(const World& world, const StepBudget& budget) : field(world.field()) { field.budget = budget; }
   void step(const InstrumentPose& to) {
     last = {};
     ASSERT_TRUE(advance(field, {to}, last));
-    EXPECT_LE(last.newton_iterations + last.substeps, field.step_budget + 1);
+    EXPECT_LE(last.newton_iterations + last.substeps, field.budget.begin + field.budget.balance + 1);
     cut_short += last.cut_short ? 1 : 0;
   }
 };
@@ -37,7 +39,7 @@ TEST(StepBudget, WhatAStepLeavesUndoneTheNextOnesMakeGood) {
   CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
   test::FundusPath path(moving_scene());
   ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
-  Budgeted whole(path.world, 500), thrifty(path.world, 4);
+  Budgeted whole(path.world, {500, 0}), thrifty(path.world, {4, 0});
   const InstrumentPose start = path.world.report().instruments[0].pose;
   InstrumentPose in = start;
   in.insertion += 6e-3;
@@ -59,10 +61,42 @@ TEST(StepBudget, WhatAStepLeavesUndoneTheNextOnesMakeGood) {
             10 * near);
 }
 
+TEST(StepBudget, WhatLeavesAToolNoRoomEndsTheStepAndNotTheSession) {
+  CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
+  test::FundusPath path(moving_scene());
+  ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
+  Budgeted thrifty(path.world, {1, 0});
+  InstrumentPose in = path.world.report().instruments[0].pose;
+  in.insertion += 15e-3;
+  for (int k = 0; k < 60; ++k) thrifty.step(in);
+  EXPECT_GT(thrifty.cut_short, 10);
+  EXPECT_EQ(thrifty.field.tools[0].pose, in) << "it came there in the end";
+}
+
+TEST(StepBudget, AStepThatWasSolvedRoughlyOnTheWayEndsInBalance) {
+  CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
+  test::FundusPath path(moving_scene());
+  ASSERT_TRUE(path.driver.go(path.fundus - 3e-3 * path.out, test::open_jaw, 8)) << path.driver.why();
+  Budgeted closing(path.world, {500, 0});
+  InstrumentPose to = path.world.report().instruments[0].pose;
+  int several = 0;
+  while (to.jaw > 0) {
+    to.jaw = std::max(0.0, to.jaw - 0.1);
+    closing.step(to);
+    several += closing.last.solves > 3 ? 1 : 0;
+    EXPECT_FALSE(closing.field.rough);
+    SolveStatistics again;
+    ASSERT_TRUE(settle_field(closing.field, "once more", again));
+    EXPECT_EQ(again.newton_iterations, 0);
+  }
+  EXPECT_GT(several, 2) << "without stops on the way this says little";
+  EXPECT_GT(grip_count(closing.field.organs[0], ToolIndex{0}), 5);
+}
+
 TEST(StepBudget, WithoutMassesThereIsNone) {
   const World world = World::create(test::grasper_scene(80)).value();
   Field field = world.field();
-  field.step_budget = 0;
+  field.budget = {0, 0};
   SolveStatistics spent;
   spent.newton_iterations = 1000;
   EXPECT_FALSE(is_spent(field, spent));

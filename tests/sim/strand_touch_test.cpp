@@ -70,6 +70,29 @@ TEST(StrandTouch, ItsEnergyHasTheseDerivatives) {
   }
 }
 
+TEST(StrandTouch, AStrandThatARodStandsInIsLaidWhereItIsInBalanceBetweenItsEnds) {
+  StrandRig rig = plates_with({Vec3(0, 0, 0), Vec3(0, 8e-3, 0)});
+  put(rig, Capsule{Vec3(0.9e-3, -1e-3, 0.5e-3), Vec3(0.9e-3, 1e-3, 0.5e-3), 1e-3});
+  VecX x = rig.x();
+  rig.matrix(x);  // which says where the bodies are
+  const auto force_on_node = [&] {
+    const Eigen::Index node = x.size() - 6;  // of the first strand
+    VecX gradient = VecX::Zero(x.size());
+    rig.strands->add_gradient(x, gradient);
+    return gradient.segment<3>(node).norm();
+  };
+  const double strength = rig.strands->strands()[0].strand.law.setup().strength,
+               energy = rig.strands->value(x);
+  ASSERT_GT(force_on_node(), 10 * strength);
+  EXPECT_FALSE(rig.strands->balanced_node(1, x)) << "nothing touches it";
+  const std::optional<Vec3> node = rig.strands->balanced_node(0, x);
+  ASSERT_TRUE(node);
+  EXPECT_LT(node->x(), -0.1e-3) << "pushed aside, away from the rod";
+  x.segment<3>(x.size() - 6) = *node;
+  EXPECT_LT(force_on_node(), 1e-3 * strength);
+  EXPECT_LT(rig.strands->value(x), energy);
+}
+
 TEST(StrandTouch, AsPartOfTheStrandsItsEnergyHasTheseDerivatives) {
   StrandRig rig = plates_with({Vec3(0, 0, 0), Vec3(0, 3e-3, 0)});
   put(rig, rod_at(1.2e-3, 1e-3));
