@@ -262,7 +262,7 @@
 ---A hollow organ, a duct or vessel, a rigid thing, or a lobe of the liver. In calot.anatomy's overrides, only what differs.
 ---@class calot.organ
 ---@field name? string its name, unique; landmarks are written "gallbladder.fundus"; default "gallbladder"
----@field shape? calot.shape its shape at rest: type "pear", "sphere", "swept", "obj", "tube", "rigid" or "lobe" with their keys
+---@field shape? calot.shape its shape at rest: type "pear", "sphere", "swept", "obj", "tube", "rigid", "lobe" with its keys
 ---@field nodes? number control nodes; more resolve finer folds and cost more; default 180; 12 to 1000
 ---@field neck? calot.point where the shape's lower pole lies; default { -50 * mm, 130 * mm, -110 * mm }
 ---@field fundus? calot.point where its upper pole points to; default { -80 * mm, 100 * mm, -60 * mm }

@@ -55,6 +55,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   if (Result<bool> done = let_go(field, targets, events, statistics); !done) return done.failure();
   const Poses to = reachable(field, targets), start = present_poses(field);
+  field.tools_move = to != start;
   std::vector<char> rested;
   for (const Tool& tool : field.tools) rested.push_back(tool.jaws_rest());
   std::vector<std::vector<double>> holding_stops;

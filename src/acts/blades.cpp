@@ -101,7 +101,7 @@ Result<bool> close_blades(Field& field, ToolIndex instrument, std::vector<WorldE
   }
   tool.has_cut |= divided;
   if (!divided || field.step_time > 0) return divided;
-  if (Result<bool> rested = settle_field(field, "after it was cut", statistics); !rested)
+  if (Result<bool> rested = settle_in_step(field, "after it was cut", statistics); !rested)
     return rested.failure();
   return true;
 }

@@ -62,6 +62,12 @@ class Trials {
     return pressed_apart(field_, ToolIndex(tool)) / field_.tools[tool].definition.pinch_force - 1;
   }
   const Result<bool>& last() const { return last_; }
+  /// How it ended. A turn that failed was undone: the motion stands, its jaws as they were before, in a step cut short.
+  Result<bool> end() {
+    if (last_ || !turned_ || field_.stopped()) return last_;
+    statistics_.cut_short = true;
+    return true;
+  }
   /// Before it, of jaws that tissue had not stopped.
   double excess_at_start(std::size_t tool) const { return at_start_[tool]; }
   /// No further angle is worth what the step may still take: what was tried last is kept.
@@ -207,7 +213,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     }
   }
   for (std::size_t i : stopped) field.tools[i].pressing = true;
-  if (!trials.last() || !trials.turned() || trials.spent()) return trials.last();
+  if (!trials.last() || !trials.turned() || trials.spent()) return trials.end();
   if (Result<bool> held = let_slip(field, slipped_before, events, statistics); !held) return held;
   return trials.last();
 }

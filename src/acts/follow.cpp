@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "acts/jaw_acts.h"
 #include "field/field_tissues.h"
@@ -110,9 +109,7 @@ class Following {
       const GroupSnapshot before = snapshot(field_);
       const double next = share >= 1.0 ? 1.0 : done_ + share * (1.0 - done_);
       const Poses poses = next >= 1.0 ? to_ : interpolate(from, to_, share);
-      const bool rough = std::exchange(field_.rough, field_.rough || (field_.step_time > 0 && next < 1.0));
       last = settle_at(poses, share, parts.value(), answer.value());
-      field_.rough = rough;
       accepted = last.converged() || was_cut_short(field_, last);
       if (accepted) {
         learn(answer.value(), share, before, last);
@@ -133,12 +130,12 @@ class Following {
     const Poses here = present_poses(field_);
     const GroupSnapshot before = snapshot(field_);
     const NewtonResult last = settle_at(here, 1.0, parts, answer);
-    if (!last.converged() && !was_cut_short(field_, last)) {
+    if (!last.converged() && !may_end_so(field_, last)) {
       restore(field_, before);
-      stuck_ = out_of_balance(field_, last);
-      return cannot_follow(field_, stuck_, done_);
+      return cannot_follow(field_, out_of_balance(field_, last), done_);
     }
     statistics_.cut_short = true;
+    statistics_.residual = last.residual;
     ++statistics_.substeps;
     return false;
   }

@@ -48,10 +48,10 @@ Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(c
     for (Organ& organ : field.organs)
       for (GripPoint& grip : organ.grips)
         if (leaves(grip)) grip.stiffness *= weaken;
-    if (Result<bool> settled = settle_field(field, when, statistics); !settled) return settled;
+    if (Result<bool> settled = settle_in_step(field, when, statistics); !settled) return settled;
   }
   for (Organ& organ : field.organs) std::erase_if(organ.grips, leaves);
-  return settle_field(field, when, statistics);
+  return settle_in_step(field, when, statistics);
 }
 
 auto held_by(ToolIndex instrument) {
@@ -97,12 +97,12 @@ Result<bool> slide(Field& field, ToolIndex instrument, const Demand& demand, dou
     }
   }
   if (draws && hold_by_clips(field, instrument))
-    return settle_field(field, "as a clip was drawn along", statistics);
+    return settle_in_step(field, "as a clip was drawn along", statistics);
   // A clip that has come off was what the pads held.
   if (draws) return fade(field, instrument, held_by(instrument), 0.04, budget, statistics);
   // The rest of the fold holds on: longer steps than a release's do.
   if (leave) return fade(field, instrument, off_the_pads, 0.04, budget, statistics);
-  return settle_field(field, "as it slipped from the jaws", statistics);
+  return settle_in_step(field, "as it slipped from the jaws", statistics);
 }
 
 }  // namespace
@@ -220,7 +220,10 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   double way = demand.turns ? 0.5 * longest_way : shortest_way;
   bool turning = false;
   while (!budget.spent()) {
-    if (is_spent(field, statistics)) return out;
+    if (is_spent(field, statistics)) {
+      statistics.cut_short = true;
+      return out;
+    }
     if (demand.turns && !std::exchange(turning, true)) demand = largest_demand(field, instrument, true);
     const FieldState before = field_state(field);
     const Result<bool> slid = slide(field, instrument, demand, way, budget, statistics);

@@ -1,5 +1,8 @@
 // The keys of a scene's definitions, one row a key. Limits catch forgotten units and slips, not unusual patients.
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "anatomy/instruments.h"
 #include "anatomy/key_table.h"
 #include "base/units.h"
@@ -240,8 +243,8 @@ std::vector<KeyTable> organ_tables() {
           "differs.",
           {text("name", &Organ::name, "its name, unique; landmarks are written \"gallbladder.fundus\""),
            table("shape", "shape",
-                 "its shape at rest: type \"pear\", \"sphere\", \"swept\", \"obj\", \"tube\", \"rigid\" or "
-                 "\"lobe\" with their keys"),
+                 fmt::format("its shape at rest: type \"{}\" with its keys",
+                             fmt::join(shape_names(), "\", \""))),
            count("nodes", &Organ::nodes, 12, most_nodes, "a number of control nodes",
                  "control nodes; more resolve finer folds and cost more"),
            place("neck", &Organ::neck, abdomen_reach, "a place in the abdomen",

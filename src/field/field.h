@@ -51,9 +51,11 @@ struct Ground {
   bool broad = true;    ///< felt by few points; by all as instruments are where it is false
 };
 
-/// Newton iterations and parts of the motion, together, of a step where masses count.
+/// Newton iterations of a step where masses count.
 struct StepBudget {
-  int begin = 40;    ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
+  int begin = 40;  ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
+  int still =
+      500;  ///< the same where no tool moves: what falls is followed in many parts, and no hand waits for it
   int balance = 20;  ///< that the solve under way may take beyond
 };
 
@@ -72,11 +74,12 @@ struct Field {
   /// What is solved for now is on the way to where the step ends: balanced to rough_tolerance it serves. At the end of
   /// each step it is false.
   bool rough = false;
-  double step_time = 0;   ///< s that a step takes where masses count; 0: statics
-  double time = 0;        ///< s, at the end of the present step
-  StepBudget budget;      ///< what a step may take where masses count (motion/step_budget.h)
-  Spill spill;            ///< what has left the organs
-  double heart_rate = 0;  ///< a minute
+  bool tools_move = false;  ///< in the present step, by their commands
+  double step_time = 0;     ///< s that a step takes where masses count; 0: statics
+  double time = 0;          ///< s, at the end of the present step
+  StepBudget budget;        ///< what a step may take where masses count (motion/step_budget.h)
+  Spill spill;              ///< what has left the organs
+  double heart_rate = 0;    ///< a minute
   Vec3 up = Vec3::UnitZ();
   Vec3 middle = Vec3::Zero();        ///< m, of the first organ at rest
   std::optional<OrganPoint> viewed;  ///< what the laparoscope looks at from near by

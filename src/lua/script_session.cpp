@@ -241,8 +241,9 @@ std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name
   if (checking() && !has_world()) {
     stand_in();
     const OrganShape shape = known_organ(index).shape;
-    if (const auto* tube = std::get_if<TubeShape>(&shape))
-      return {tube->points.front(), (tube->points.back() - tube->points.front()).normalized()};
+    const auto* tube = std::get_if<TubeShape>(&shape);
+    if (tube && tube->points.size() < 2) return {Vec3::Zero(), Vec3::UnitX()};  // which is refused elsewhere
+    if (tube) return {tube->points.front(), (tube->points.back() - tube->points.front()).normalized()};
   } else if (const Result<OrganIndex> there = world(L).organ(name)) {
     const Organ& organ = world(L).field().organ(there.value());
     if (const RodBody* rod = organ.body->as_tube()) {

@@ -159,26 +159,48 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
   return total;
 }
 
-void end_in_balance(Field& field, SolveStatistics& statistics) {
-  field.rough = false;
-  const GroupSnapshot before = snapshot(field);
-  const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
-                                           NewtonSettings{}.max_iterations, statistics, Rubbing::as_it_is);
-  if (result.converged() || was_cut_short(field, result)) return;
-  restore(field, before);
-  statistics.cut_short = true;
-  statistics.residual = result.residual;
-}
-
 bool was_cut_short(const Field& field, const NewtonResult& result) {
   return result.status == NewtonStatus::stopped && !field.stopped();
 }
 
+bool may_end_so(const Field& field, const NewtonResult& result) {
+  const bool no_balance =
+      result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
+  return was_cut_short(field, result) || (field.step_time > 0 && no_balance);
+}
+
+namespace {
+
+NewtonResult settle_where_it_is(Field& field, SolveStatistics& statistics, Rubbing rubs = Rubbing::renewed) {
+  return settle_group(field, present_poses(field), present_places(field), NewtonSettings{}.max_iterations,
+                      statistics, rubs);
+}
+
+}  // namespace
+
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics) {
-  const NewtonResult result = settle_group(field, present_poses(field), present_places(field),
-                                           NewtonSettings{}.max_iterations, statistics);
+  const NewtonResult result = settle_where_it_is(field, statistics);
   if (result.converged() || was_cut_short(field, result)) return true;
   return solve_failure(result, member_name(field, result.part), when);
+}
+
+Result<bool> settle_in_step(Field& field, const std::string& when, SolveStatistics& statistics) {
+  const NewtonResult result = settle_where_it_is(field, statistics);
+  if (result.converged()) return true;
+  if (!may_end_so(field, result)) return solve_failure(result, member_name(field, result.part), when);
+  statistics.cut_short = true;
+  statistics.residual = result.residual;
+  return true;
+}
+
+void end_in_balance(Field& field, SolveStatistics& statistics) {
+  field.rough = false;
+  const GroupSnapshot before = snapshot(field);
+  const NewtonResult result = settle_where_it_is(field, statistics, Rubbing::as_it_is);
+  if (result.converged() || was_cut_short(field, result)) return;
+  restore(field, before);
+  statistics.cut_short = true;
+  statistics.residual = result.residual;
 }
 
 Result<bool> sink_field(Field& field, SolveStatistics& statistics) {

@@ -52,9 +52,14 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics);
 /// Whether a solve of the group ended because the step's budget was spent (step_budget.h): its members are left at the
 /// last iterate, from where the next step goes on.
 bool was_cut_short(const Field& field, const NewtonResult& result);
+/// The same, or, where masses count, that it found no balance but left its members at a state that may be kept.
+bool may_end_so(const Field& field, const NewtonResult& result);
 
 /// Brings every organ to rest with the tools as they stand, or as far as the step's budget goes. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);
+/// The same within a step. Where masses count, one that finds no balance is a step that was cut short: all stays where the
+/// last iterate left it, and inertia carries it on.
+Result<bool> settle_in_step(Field& field, const std::string& when, SolveStatistics& statistics);
 
 }  // namespace calot

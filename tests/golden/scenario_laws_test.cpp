@@ -20,13 +20,22 @@ class Watch {
       if (volumes_[k] > 0)  // a duct keeps none
         swelling = std::max(swelling, std::abs(report.organs[k].volume / volumes_[k] - 1));
     for (const InstrumentState& tool : report.instruments) strongest = std::max(strongest, tool.force.norm());
+    ++steps;
+    cut_short += report.balanced ? 0 : 1;
+    in_a_row_ = report.balanced ? 0 : in_a_row_ + 1;
+    longest_unbalanced = std::max(longest_unbalanced, in_a_row_);
+    furthest_off = std::max(furthest_off, report.statistics.residual);
   }
   double deepest = 0;    ///< m, of an instrument in a skin
   double swelling = 0;   ///< of an organ's volume, a share
   double strongest = 0;  ///< N
+  int steps = 0, cut_short = 0;
+  int longest_unbalanced = 0;  ///< steps in a row that were cut short
+  double furthest_off = 0;     ///< from balance, of these: as of NewtonResult
 
  private:
   std::vector<double> volumes_;
+  int in_a_row_ = 0;
 };
 
 struct Shipped {
@@ -93,6 +102,9 @@ TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
   EXPECT_EQ(watch.strongest > 1.0, GetParam().pulls) << "without traction the laws below say little";
   EXPECT_LT(watch.deepest, 0.1e-3);
   EXPECT_LT(watch.swelling, 1e-9);
+  EXPECT_LE(watch.cut_short, 0.03 * watch.steps) << "steps that spent their budget";
+  EXPECT_LE(watch.longest_unbalanced, 5);
+  EXPECT_LE(watch.furthest_off, 0.05) << "of the forces in a body: more would be felt";
   RecordProperty("deepest_um", static_cast<int>(1e6 * watch.deepest));
   if (GetParam().judges_pictures)
     test::expect_mutations_caught(stored, scenes, request.width, request.height);

@@ -261,14 +261,15 @@ struct DrawnClip : ClipAndCut {
       if (!step(at(grasped, 0.5 * (1 - k / 30.0)))) return false;
     return true;
   }
-  /// Largest pull on the pads as they go that far along the tube, or until the clip is off, N.
+  /// Largest pull on the pads as they go that far along the tube, or until the clip is off, N. So slowly that no step
+  /// spends its budget on what slips.
   double draw(double way) {
     double largest = 0;
-    for (double y = 0; y < way && !stump().clips.empty(); y += 0.2e-3) {
+    for (double y = 0; y < way && !stump().clips.empty(); y += 0.05e-3) {
       EXPECT_TRUE(step(at(grasped + y, 0)));
       const Vec3 pull = pad_load(world.field(), ToolIndex(1)).pull;
       largest = std::max(largest, pull.norm());
-      if (grip_count(stump(), ToolIndex(1)) > 0)
+      if (grip_count(stump(), ToolIndex(1)) > 0 && world.report().balanced)
         asked = std::max(asked, asked_of_friction(world.field().tools[1], pull).norm());
     }
     return largest;

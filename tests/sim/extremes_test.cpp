@@ -114,8 +114,10 @@ TEST(Extremes, AStonePressedOnTheGroundSlipsAsideOrSaysThatItCannotAndIsNeverEnt
   test::Driver driver(world);
   const Vec3 top(-80e-3, 70e-3, floor + 2 * radius);
   double largest = 0;
+  bool stayed_behind = false;
   driver.watch = [&](const StepReport& report) {
     largest = std::max(largest, report.instruments[0].force.norm());
+    stayed_behind |= !report.balanced;
     EXPECT_LT(world.deepest_penetration(), 0.1e-3);
   };
   ASSERT_TRUE(driver.go(top + 2e-3 * Vec3::UnitZ(), 0, 4)) << driver.why();
@@ -126,7 +128,8 @@ TEST(Extremes, AStonePressedOnTheGroundSlipsAsideOrSaysThatItCannotAndIsNeverEnt
   const Vec3 now = world.landmark("stone.centre");
   EXPECT_GT(now.z(), floor - 0.1e-3) << "a place on the stone's skin";
   if (followed) {
-    EXPECT_GT(std::hypot(now.x() - begin.x(), now.y() - begin.y()), 1e-3) << "it slipped aside";
+    EXPECT_TRUE(stayed_behind || std::hypot(now.x() - begin.x(), now.y() - begin.y()) > 1e-3)
+        << "it slipped aside, or steps said that they ended before the electrode was where it was to be";
   } else {
     EXPECT_NE(driver.why().find("move more slowly or less far"), std::string::npos) << driver.why();
   }

@@ -23,8 +23,8 @@ class Strap : public Body {
     const int nodes = static_cast<int>(points_.size()), rows = nodes / across;
     for (int row = 0; row + 1 < rows; ++row)
       for (int k = across * row; k + 1 < across * (row + 1); ++k) {
-        skin_.triangles.push_back({k, k + 1, k + across});
-        skin_.triangles.push_back({k + 1, k + across + 1, k + across});
+        skin_.triangles.push_back({k, k + across, k + 1});
+        skin_.triangles.push_back({k + 1, k + across, k + across + 1});
       }
     Eigen::AlignedBox3d box;
     for (int k = 0; k < nodes; ++k) {

@@ -226,7 +226,9 @@ class RandomActs {
   }
   double bile_in_organs() const {
     double sum = 0;
-    for (const OrganState& organ : world_.report().organs) sum += organ.volume;
+    // What is booked: where a step was cut short its shape holds that to a millionth only.
+    for (const Organ& organ : world_.field().organs)
+      if (organ.body->liquid() != nullptr) sum += organ.state.volume;
     return sum;
   }
   int carried_clips() const {
