@@ -64,7 +64,7 @@ class Trials {
   const Result<bool>& last() const { return last_; }
   /// How it ended. A turn that failed was undone: the motion stands, its jaws as they were before, in a step cut short.
   Result<bool> end() {
-    if (last_ || !turned_ || field_.stopped()) return last_;
+    if (last_ || !reached_ || field_.stopped()) return last_;
     statistics_.cut_short = true;
     return true;
   }

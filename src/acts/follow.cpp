@@ -134,8 +134,7 @@ class Following {
       restore(field_, before);
       return cannot_follow(field_, out_of_balance(field_, last), done_);
     }
-    statistics_.cut_short = true;
-    statistics_.residual = last.residual;
+    note_cut_short(last, statistics_);
     ++statistics_.substeps;
     return false;
   }

@@ -18,7 +18,8 @@ namespace calot {
 
 /// Moves all tools from their poses to `to`, organs in equilibrium and grips within what they hold at the end
 /// of each part, in `duration` s where masses count.
-/// Returns whether they came there: where masses count, not if the step's budget was spent before (step_budget.h).
+/// Returns whether they came there: where masses count, not if the step's budget was spent before (step_budget.h), nor
+/// where what they press leaves them no room yet: then the time has passed with them where they are.
 /// `slipped_before`: one a tool, whether what it holds slid at the last step; events have no time yet. Fails (simulation)
 /// with the field as it was at the last part that came to rest.
 Result<bool> follow(Field& field, const std::vector<InstrumentPose>& to, double duration,

@@ -152,10 +152,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
   }
   count(field, total, statistics);
-  if (was_cut_short(field, total)) {
-    statistics.cut_short = true;
-    statistics.residual = total.residual;
-  }
+  if (was_cut_short(field, total)) note_cut_short(total, statistics);
   return total;
 }
 
@@ -167,6 +164,11 @@ bool may_end_so(const Field& field, const NewtonResult& result) {
   const bool no_balance =
       result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
   return was_cut_short(field, result) || (field.step_time > 0 && no_balance);
+}
+
+void note_cut_short(const NewtonResult& last, SolveStatistics& statistics) {
+  statistics.cut_short = true;
+  statistics.residual = last.residual;
 }
 
 namespace {
@@ -188,8 +190,7 @@ Result<bool> settle_in_step(Field& field, const std::string& when, SolveStatisti
   const NewtonResult result = settle_where_it_is(field, statistics);
   if (result.converged()) return true;
   if (!may_end_so(field, result)) return solve_failure(result, member_name(field, result.part), when);
-  statistics.cut_short = true;
-  statistics.residual = result.residual;
+  note_cut_short(result, statistics);
   return true;
 }
 
@@ -199,8 +200,7 @@ void end_in_balance(Field& field, SolveStatistics& statistics) {
   const NewtonResult result = settle_where_it_is(field, statistics, Rubbing::as_it_is);
   if (result.converged() || was_cut_short(field, result)) return;
   restore(field, before);
-  statistics.cut_short = true;
-  statistics.residual = result.residual;
+  note_cut_short(result, statistics);
 }
 
 Result<bool> sink_field(Field& field, SolveStatistics& statistics) {

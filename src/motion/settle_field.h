@@ -54,6 +54,8 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics);
 bool was_cut_short(const Field& field, const NewtonResult& result);
 /// The same, or, where masses count, that it found no balance but left its members at a state that may be kept.
 bool may_end_so(const Field& field, const NewtonResult& result);
+/// Notes that a step ends where a solve that found no balance has left it.
+void note_cut_short(const NewtonResult& last, SolveStatistics& statistics);
 
 /// Brings every organ to rest with the tools as they stand, or as far as the step's budget goes. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.

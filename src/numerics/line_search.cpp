@@ -85,8 +85,10 @@ class Search {
     return std::isfinite(energy) ? merit_.at(point(next, energy, share))
                                  : std::numeric_limits<double>::infinity();
   }
-  /// Whether a share takes off enough of it.
-  bool falls(double share) const { return at(share) <= before_ + 1e-4 * share * slope_ + rounding_; }
+  /// Whether a share, at which it is this, takes off enough of it.
+  bool falls_enough(double merit, double share) const {
+    return merit <= before_ + 1e-4 * share * slope_ + rounding_;
+  }
   double rounding() const { return rounding_; }
 
  private:
@@ -104,21 +106,10 @@ class Search {
   double slope_, before_ = 0, rounding_ = 0;
 };
 
-}  // namespace
-
-double line_search(const ConstrainedEnergy& problem, const SearchStart& start, double share) {
-  const Search search(problem, start);
-  for (int trial = 0; trial < 40 && share > 0; ++trial) {
-    if (search.falls(share)) return share;
-    share *= 0.5;
-  }
-  return 0;
-}
-
-double lengthen(const ConstrainedEnergy& problem, const SearchStart& start) {
+/// Of a whole step, at whose end the merit is `whole`: the share to take instead, 1 or more.
+double lengthened(const ConstrainedEnergy& problem, const SearchStart& start, const Search& search,
+                  double whole) {
   constexpr int most_doublings = 10;
-  const Search search(problem, start);
-  const double whole = search.at(1);
   double share = 1, least = whole;
   for (int k = 0; k < most_doublings; ++k) {
     const double further = search.at(2 * share);
@@ -130,6 +121,19 @@ double lengthen(const ConstrainedEnergy& problem, const SearchStart& start) {
   const double safe = problem.safe_share(start.x, share * start.step);
   if (safe == 1) return share;
   return safe * share > 1 && search.at(safe * share) < whole ? safe * share : 1;
+}
+
+}  // namespace
+
+double line_search(const ConstrainedEnergy& problem, const SearchStart& start, double share, bool stiffer) {
+  const Search search(problem, start);
+  for (int trial = 0; trial < 40 && share > 0; ++trial) {
+    const double merit = search.at(share);
+    if (search.falls_enough(merit, share))
+      return stiffer && share == 1 ? lengthened(problem, start, search, merit) : share;
+    share *= 0.5;
+  }
+  return 0;
 }
 
 }  // namespace calot

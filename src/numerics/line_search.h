@@ -15,11 +15,10 @@ struct SearchStart {
   double curvature;  ///< step' K step
 };
 
-/// Begins with `share` of the step; returns the share taken, 0 when no decrease was found.
-double line_search(const ConstrainedEnergy& problem, const SearchStart& start, double share);
-/// Of a whole step that line_search() has taken, by a matrix that is stiffer than the energy: the share to take instead, 1
-/// or more. By such a matrix steps out of a saddle grow by a few per cent each: they are doubled as long as that takes off
-/// more, and cut to what is safe.
-double lengthen(const ConstrainedEnergy& problem, const SearchStart& start);
+/// Begins with `share` of the step; returns the share taken, 0 when no decrease was found. `stiffer`: the step is by a
+/// matrix that is stiffer than the energy. By such a matrix steps out of a saddle grow by a few per cent each: a whole one
+/// is doubled as long as that takes off more, and cut to what is safe, so that the share may be above 1.
+double line_search(const ConstrainedEnergy& problem, const SearchStart& start, double share,
+                   bool stiffer = false);
 
 }  // namespace calot

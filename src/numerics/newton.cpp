@@ -251,9 +251,8 @@ class Iteration {
     double share = 0;
     {
       const Timed timed(result_.assembly_s);
-      const SearchStart start{x_, step, multipliers, dmultipliers, state_.constraints, curvature};
-      share = line_search(problem_, start, safe);
-      if (share == 1 && work_.shifted) share = lengthen(problem_, start);
+      share = line_search(problem_, {x_, step, multipliers, dmultipliers, state_.constraints, curvature},
+                          safe, work_.shifted);
     }
     const Worst increment = relative_increment(step, share);
     if (increment.value <= smallest_move) {

@@ -105,7 +105,7 @@ TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
   EXPECT_LT(watch.swelling, 1e-9);
   EXPECT_LE(watch.cut_short, 0.03 * watch.steps) << "steps that spent their budget";
   EXPECT_LE(watch.longest_unbalanced, 10) << "five are aimed at; after critical_view's cuts there are nine";
-  EXPECT_LE(watch.furthest_off, 0.05) << "of the forces in a body: more would be felt";
+  EXPECT_LE(watch.furthest_off, 0.01) << "of the forces in a body";
   RecordProperty("deepest_um", static_cast<int>(1e6 * watch.deepest));
   if (GetParam().judges_pictures)
     test::expect_mutations_caught(stored, scenes, request.width, request.height);

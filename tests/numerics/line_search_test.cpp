@@ -106,20 +106,22 @@ class TwoBottoms : public Hilltop {
     return 0.25 * std::pow(x.squaredNorm(), 2) - 0.5 * x.squaredNorm();
   }
   double safe_share(const VecX& x, const VecX& step) const override {
-    return std::min(1.0, (wall - x[0]) / step[0]);
+    return step[0] > 0 ? std::min(1.0, (wall - x[0]) / step[0]) : 1;
   }
   /// Of a step along the first coordinate.
   double lengthened(double from, double by) const {
     const VecX x = from * VecX::Unit(3, 0), step = by * VecX::Unit(3, 0), none;
-    return lengthen(*this, {x, step, none, none, none, 0});
+    const double curvature = -(std::pow(from, 3) - from) * by;  // of the matrix that took it there
+    return line_search(*this, {x, step, none, none, none, curvature}, 1, true);
   }
 };
 
 TEST(LineSearch, AStepOutOfASaddleIsDoubledAsLongAsTheEnergyFalls) {
   TwoBottoms problem;
   EXPECT_EQ(problem.lengthened(0.01, 0.01), 64) << "to 0.65: twice as far is beyond the bottom and higher";
-  EXPECT_EQ(problem.lengthened(1.3, -0.2), 1) << "to 1.1: twice as far is as high again";
-  EXPECT_EQ(problem.lengthened(1, 1e-3), 1) << "uphill";
+  EXPECT_EQ(problem.lengthened(1.3, -0.3), 1) << "to the bottom: twice as far is higher";
+  EXPECT_EQ(problem.lengthened(1.3, -0.2), 2) << "to 1.1: twice as far is a little lower still";
+  EXPECT_LT(problem.lengthened(1, 1e-3), 1) << "uphill";
 }
 
 TEST(LineSearch, ALengthenedStepEndsAtWhatItMayNotPass) {

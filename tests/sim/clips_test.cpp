@@ -261,8 +261,8 @@ struct DrawnClip : ClipAndCut {
       if (!step(at(grasped, 0.5 * (1 - k / 30.0)))) return false;
     return true;
   }
-  /// Largest pull on the pads as they go that far along the tube, or until the clip is off, N. So slowly that no step
-  /// spends its budget on what slips.
+  /// Largest pull on the pads as they go that far along the tube, or until the clip is off, N. So slowly that few
+  /// steps spend their budget on what slips; what these ask is not judged.
   double draw(double way) {
     double largest = 0;
     for (double y = 0; y < way && !stump().clips.empty(); y += 0.05e-3) {
