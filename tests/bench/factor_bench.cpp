@@ -10,9 +10,8 @@
 #include "numerics/condense.h"
 #include "organs/body_kinds.h"
 
+namespace calot::factor_bench {
 namespace {
-
-using namespace calot;
 
 using Cliques = std::vector<std::vector<int>>;
 
@@ -156,3 +155,4 @@ BENCHMARK(group_analysis)->Apply(groups);
 BENCHMARK(elimination)->Apply(groups);
 
 }  // namespace
+}  // namespace calot::factor_bench

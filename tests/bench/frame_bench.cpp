@@ -5,9 +5,8 @@
 #include "render/offscreen.h"
 #include "view/build_scene.h"
 
+namespace calot::frame_bench {
 namespace {
-
-using namespace calot;
 
 SceneDefinition standard() {
   SceneDefinition scene;
@@ -58,3 +57,4 @@ void start_to_first_frame(benchmark::State& state) {
 BENCHMARK(start_to_first_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
+}  // namespace calot::frame_bench

@@ -10,9 +10,8 @@
 #include "tools/tool.h"
 #include "world/world.h"
 
+namespace calot::group_bench {
 namespace {
-
-using namespace calot;
 
 /// From `start` on, one behind the other, to and fro.
 std::vector<OrganDefinition> ducts(int count, const Vec3& start) {
@@ -91,3 +90,4 @@ BENCHMARK(swinging_ducts)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
+}  // namespace calot::group_bench

@@ -6,9 +6,8 @@
 #include "organs/body_kinds.h"
 #include "tools/instrument.h"
 
+namespace calot::parts_bench {
 namespace {
-
-using namespace calot;
 
 RestedOrgan gallbladder(int nodes, int levels = 0) {
   OrganDefinition definition = named_anatomy("standard")->organs[0];
@@ -111,3 +110,4 @@ BENCHMARK(solve)->Apply(nodes);
 BENCHMARK(laying_an_extension)->Apply(nodes);
 
 }  // namespace
+}  // namespace calot::parts_bench

@@ -5,9 +5,8 @@
 #include "liquid/spill.h"
 #include "organs/body_kinds.h"
 
+namespace calot::spill_bench {
 namespace {
-
-using namespace calot;
 
 constexpr double step = 0.02;  // s
 
@@ -60,3 +59,4 @@ BENCHMARK_CAPTURE(film_that_runs, ground, over_ground)->Unit(benchmark::kMicrose
 BENCHMARK_CAPTURE(film_that_runs, skin, over_ball)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
+}  // namespace calot::spill_bench

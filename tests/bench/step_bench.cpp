@@ -11,9 +11,8 @@
 #include "tools/tool.h"
 #include "world/world.h"
 
+namespace calot::step_bench {
 namespace {
-
-using namespace calot;
 
 OrganDefinition ball(int nodes) {
   OrganDefinition organ;
@@ -127,3 +126,4 @@ void world_from_scene(benchmark::State& state) {
 BENCHMARK(world_from_scene)->Unit(benchmark::kMillisecond);
 
 }  // namespace
+}  // namespace calot::step_bench

@@ -7,7 +7,7 @@
 
 #include "collision/random_shapes.h"
 
-namespace calot {
+namespace calot::shapes_test {
 namespace {
 
 using test::DistanceSample;
@@ -257,4 +257,4 @@ TEST(Offset, ChangesTheDistanceByAsMuchEverywhere) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::shapes_test

@@ -7,7 +7,7 @@
 #include "support/bodies.h"
 #include "support/derivatives.h"
 
-namespace calot {
+namespace calot::hinges_test {
 namespace {
 
 constexpr double rigidity = 2.7e-4;
@@ -136,4 +136,4 @@ TEST(Hinges, BadEdgesAreRefused) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::hinges_test

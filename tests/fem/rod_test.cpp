@@ -10,7 +10,7 @@
 #include "support/derivatives.h"
 #include "support/rods.h"
 
-namespace calot {
+namespace calot::rod_test {
 namespace {
 
 using std::numbers::pi;
@@ -197,4 +197,4 @@ TEST(Rod, BadRestLinesAndSectionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::rod_test

@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 #include "support/derivatives.h"
 
-namespace calot {
+namespace calot::shell_test {
 namespace {
 
 struct Body {
@@ -363,4 +363,4 @@ TEST(Shell, CollapsedSurfaceHasInfiniteEnergy) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::shell_test

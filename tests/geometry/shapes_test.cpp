@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "support/long_run.h"
 
-namespace calot::test {
+namespace calot::test::shapes_test {
 namespace {
 
 using namespace units;
@@ -207,4 +207,4 @@ TEST(Rectangle, IsAFlatSheetOfItsAreaFacingUp) {
 }
 
 }  // namespace
-}  // namespace calot::test
+}  // namespace calot::test::shapes_test

@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "lua/scenario_files.h"
 
-namespace calot {
+namespace calot::author_errors_test {
 namespace {
 
 using test::Folder;
@@ -698,4 +698,4 @@ TEST(AuthorErrors, AMissingFileIsAUsageFailureWithASuggestion) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::author_errors_test

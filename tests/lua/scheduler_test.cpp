@@ -9,7 +9,7 @@
 #include "lua/scenario_files.h"
 #include "session/runner.h"
 
-namespace calot {
+namespace calot::scheduler_test {
 namespace {
 
 using test::Folder;
@@ -614,4 +614,4 @@ TEST(Handles, OfTheSimulatorsCoroutinesCannotBeResumed) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::scheduler_test

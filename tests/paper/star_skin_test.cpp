@@ -10,7 +10,7 @@
 #include "paper/star_structure.h"
 #include "skin/subdivision.h"
 
-namespace calot {
+namespace calot::star_skin_test {
 namespace {
 
 constexpr double radius = 20e-3;
@@ -128,4 +128,4 @@ TEST(PaperSkin, MovingPZeroMovesTheSkinAroundItOnly) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::star_skin_test

@@ -7,7 +7,7 @@
 #include "support/bodies.h"
 #include "support/derivatives.h"
 
-namespace calot {
+namespace calot::star_structure_test {
 namespace {
 
 constexpr double radius = 20e-3;
@@ -168,4 +168,4 @@ TEST(PaperStructure, TheSecondStageBringsTheExtensionsNodesIntoBalance) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::star_structure_test

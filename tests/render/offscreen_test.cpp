@@ -12,7 +12,7 @@
 #include "render/seen_at.h"
 #include "support/mock_organ.h"
 
-namespace calot {
+namespace calot::offscreen_test {
 namespace {
 
 /// A flat tissue plate across the view at `depth`, its normal towards the camera.
@@ -351,4 +351,4 @@ TEST(GlFunctions, MissingFunctionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::offscreen_test

@@ -9,7 +9,7 @@
 #include "geometry/shapes.h"
 #include "geometry/tri_mesh.h"
 
-namespace calot {
+namespace calot::skin_difference_test {
 namespace {
 
 /// A ball of `nodes` points that each stand for as much, moved by `motion`.
@@ -60,4 +60,4 @@ TEST(SkinDifference, ItIsOverTheReferencesAreaAndLargestMotion) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::skin_difference_test

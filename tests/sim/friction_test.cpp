@@ -6,7 +6,7 @@
 #include "slide_rig.h"
 #include "support/long_run.h"
 
-namespace calot {
+namespace calot::friction_test {
 namespace {
 
 double furthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -194,4 +194,4 @@ TEST(Rubbing, ASupportThatRubsCarriesItsShareOfASidewaysPush) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::friction_test

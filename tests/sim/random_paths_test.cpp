@@ -11,7 +11,7 @@
 #include "support/long_run.h"
 #include "tools/tool.h"
 
-namespace calot {
+namespace calot::random_paths_test {
 namespace {
 
 constexpr double most_depth = 0.1e-3;  // m
@@ -87,4 +87,4 @@ TEST(RandomPaths, EndInEquilibriumOrSayWhereWhenAndWhatToChange) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::random_paths_test

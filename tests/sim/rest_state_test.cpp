@@ -9,7 +9,7 @@
 #include "triangle_rig.h"
 #include "world/definition_digest.h"
 
-namespace calot {
+namespace calot::rest_state_test {
 namespace {
 
 World made(const SceneDefinition& scene, KeptResults* kept) {
@@ -190,4 +190,4 @@ TEST(RestState, OfAnotherShapeOrFieldHasAnotherKey) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::rest_state_test

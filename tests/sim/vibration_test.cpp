@@ -12,7 +12,7 @@
 #include "skin/subdivision.h"
 #include "support/areas.h"
 
-namespace calot {
+namespace calot::vibration_test {
 namespace {
 
 constexpr double radius = 20e-3, bile_density = 1020;
@@ -168,4 +168,4 @@ TEST(Vibration, TheGallbladderMayBeTreatedAsStaticAtASurgeonsPace) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::vibration_test

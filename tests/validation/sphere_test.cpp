@@ -8,7 +8,7 @@
 
 #include "bodies.h"
 
-namespace calot {
+namespace calot::sphere_test {
 namespace {
 
 constexpr double radius = 20e-3, thickness = 2e-3, shear_modulus = 100e3;
@@ -81,4 +81,4 @@ TEST_P(InflatedSphere, ConvergesToTheClosedForm) {
 INSTANTIATE_TEST_SUITE_P(Validation, InflatedSphere, testing::Values(0.0, 2.0));
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::sphere_test

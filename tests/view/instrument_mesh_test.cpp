@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "collision/shapes.h"
 
-namespace calot {
+namespace calot::instrument_mesh_test {
 namespace {
 
 const Vec3 trocar(-80e-3, 70e-3, -5e-3);
@@ -101,4 +101,4 @@ TEST_P(InstrumentMesh, HasNoHoleButTheGraspersWindow) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::instrument_mesh_test
