@@ -21,7 +21,8 @@ Shape at_gap(const std::vector<Vec3>& skin, double gap, const std::function<Shap
   double way = 0;
   for (int round = 0; round < 60; ++round) {
     double nearest = 1;
-    for (const Vec3& p : skin) nearest = std::min(nearest, signed_distance(shape_at(way), p));
+    const Shape shape = shape_at(way);
+    for (const Vec3& p : skin) nearest = std::min(nearest, signed_distance(shape, p));
     way += gap - nearest;
   }
   return shape_at(way);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "motion/settle_field.h"
 #include "slide_rig.h"
 #include "support/long_run.h"
@@ -54,13 +56,13 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
   const Tool& tool = slide.field.tools[0];
   const auto in_the_jaws = [&] {
     const FrictionLoad load = friction_load(slide.field, slide.organ(), present_poses(slide.field));
-    std::vector<std::tuple<int, int, Vec3, double>> out;
+    std::map<std::pair<int, int>, std::pair<Vec3, double>> out;  // by shape and point
     ContactPlaces places(slide.organ().body->skin(), slide.organ().state.x);
     for (const RubbingPoint& rubbing : load.points)
-      out.emplace_back(rubbing.shape, rubbing.point,
-                       part_frame(tool, tool.pose, slide.field.shape(rubbing.shape).part).inverse() *
-                           places.at(rubbing.point),
-                       rubbing.hold.limit);
+      out[{rubbing.shape, rubbing.point}] = {
+          part_frame(tool, tool.pose, slide.field.shape(rubbing.shape).part).inverse() *
+              places.at(rubbing.point),
+          rubbing.hold.limit};
     return out;
   };
   const auto before = in_the_jaws();
@@ -68,14 +70,15 @@ TEST(Rubbing, BelowTheConeTheSkinSticksAndDoesNotCreep) {
   ASSERT_EQ(slide.go(-4e-3, 3e-3, 3), "");
   const auto after = in_the_jaws();
   double drift = 0, weight = 0, pressed = 0;
-  for (const auto& point : before) pressed += std::get<3>(point);
-  for (const auto& [shape, row, place, limit] : before)
-    for (const auto& [shape_now, row_now, place_now, limit_now] : after) {
-      if (shape != shape_now || row != row_now) continue;
-      // Along the pad, of which the jaw's y and z are the axes.
-      drift += limit * (place_now - place).tail<2>().norm();
-      weight += limit;
-    }
+  for (const auto& [point, held] : before) {
+    const auto& [place, limit] = held;
+    pressed += limit;
+    const auto now = after.find(point);
+    if (now == after.end()) continue;
+    // Along the pad, of which the jaw's y and z are the axes.
+    drift += limit * (now->second.first - place).tail<2>().norm();
+    weight += limit;
+  }
   EXPECT_GT(pressed, 0.5) << "N";
   // Dragged along, the ball tilts: a fifth of it leaves the flat pad, others come to touch.
   EXPECT_GT(weight, 0.75 * pressed) << "most of what pressed still does";

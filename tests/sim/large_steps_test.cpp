@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "base/rng.h"
+#include "geometry/winding.h"
 #include "milestone.h"
 #include "rig.h"
 #include "support/bodies.h"
@@ -13,18 +12,6 @@
 
 namespace calot {
 namespace {
-
-/// How often the closed skin goes round a point: 1 inside, 0 outside (van Oosterom and Strackee 1983).
-double winding_number(const std::vector<Vec3>& skin, const std::vector<Triangle>& triangles, const Vec3& at) {
-  double solid_angle = 0;
-  for (const Triangle& t : triangles) {
-    const Vec3 a = skin[t[0]] - at, b = skin[t[1]] - at, c = skin[t[2]] - at;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    solid_angle +=
-        2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return solid_angle / (4 * std::numbers::pi);
-}
 
 TEST(LargeSteps, AYankEndsWhereASlowPullEnds) {
   CALOT_SLOW_WHEN_SANITIZED("fast motions in many parts");
@@ -63,8 +50,8 @@ TEST(LargeSteps, ATipAt500MillimetresASecondNeverGoesThroughTheWall) {
       const InstrumentState& tool = report.instruments[0];
       const Vec3 back = (driver.trocar() - tool.tip).normalized();
       for (double along : {0.5e-3, 5e-3, 15e-3, 30e-3})
-        EXPECT_LT(std::abs(winding_number(world.skin_positions(OrganIndex(0)),
-                                          world.skin(OrganIndex(0)).triangles, tool.tip + along * back)),
+        EXPECT_LT(std::abs(winding_number(tool.tip + along * back, world.skin_positions(OrganIndex(0)),
+                                          world.skin(OrganIndex(0)).triangles)),
                   0.01)
             << "poke " << poke << ", " << 1e3 * along << " mm behind the tip";
       EXPECT_LT(world.deepest_penetration(), 0.1e-3);
