@@ -139,6 +139,69 @@ local defaults = {
   prepared = {},
 }
 
+-- ---- what a field may be given
+
+local function finite(value) return type(value) == "number" and value == value and math.abs(value) < math.huge end
+
+--- A table of `count` entries 1, 2, ... (nil: of any number) that all pass.
+local function all_pass(value, count, passes)
+  if type(value) ~= "table" or (count and #value ~= count) then return false end
+  for key, entry in pairs(value) do
+    if math.type(key) ~= "integer" or not passes(entry) then return false end
+  end
+  return true
+end
+
+--- What a value is to be, and whether it is that: by the kind of its default, or by its key.
+local above_zero = { "a number above 0", function(value) return finite(value) and value > 0 end }
+local part = { "a share between 0 and 1", function(value) return finite(value) and value > 0 and value < 1 end }
+local three = { "three numbers { x, y, z }", function(value) return all_pass(value, 3, finite) end }
+local by_kind = {
+  number = above_zero,
+  boolean = { "true or false", function(value) return type(value) == "boolean" end },
+  string = { "a name in quotes", function(value) return type(value) == "string" end },
+}
+local by_key = {
+  common_duct_widest = { "a number above 0, or false",
+    function(value) return value == false or above_zero[2](value) end },
+  union = part,
+  aberrant_union = part,
+  union_lies = three,
+  cystic_artery_enters = three,
+  nodes = { "a whole number above 0", function(value) return math.type(value) == "integer" and value > 0 end },
+  without = { "a list of names { \"...\" }",
+    function(value) return all_pass(value, nil, function(name) return type(name) == "string" end) end },
+  prepared = { "a table of shares by tissues' names { triangle_fat = 0.5 }", function(value)
+    if type(value) ~= "table" then return false end
+    for name in pairs(value) do
+      if type(name) ~= "string" then return false end
+    end
+    return true
+  end },
+}
+
+local function shown(value)
+  if value ~= value then return "nan" end
+  if type(value) == "table" then return "this table" end
+  return type(value) == "string" and '"' .. value .. '"' or tostring(value)
+end
+
+--- Refuses, all at once, what is no parameter or no value of one. `level`: of error(), as seen from the caller.
+local function check_given(given, level)
+  if type(given) ~= "table" then error("a field's parameters are a table, not " .. shown(given), level + 1) end
+  local wrong = {}
+  for key, value in pairs(given) do
+    local wanted = by_key[key] or by_kind[type(defaults[key])]
+    if wanted == nil then
+      wrong[#wrong + 1] = 'anatomy.standard has no parameter "' .. tostring(key) .. '"'
+    elseif not wanted[2](value) then
+      wrong[#wrong + 1] = key .. " is " .. wanted[1] .. ", not " .. shown(value)
+    end
+  end
+  table.sort(wrong)
+  if #wrong > 0 then error(table.concat(wrong, "; "), level + 1) end
+end
+
 local function soft_wall(thickness) return { thickness = thickness, density = 1050 } end
 
 --- Places in the bed's frame, and radii, in mm. Its neck bends off its pouch towards the hilum.
@@ -233,7 +296,8 @@ local function take_out(field, name, level)
     return one.name ~= name and one.from ~= name and one.to ~= name
   end)
   if not was_organ and not was_tissue then
-    error('the field has no "' .. tostring(name) .. '" to leave out: there are ' .. table.concat(names, ", "), level)
+    local there = "there are " .. table.concat(names, ", ")
+    error('the field has no "' .. tostring(name) .. '" to leave out: ' .. there, level + 1)
   end
   for _, organ in ipairs(organs) do
     local injury = organ.injury
@@ -246,12 +310,12 @@ local function take_out(field, name, level)
 end
 
 --- Clears a tissue from one of its ends on: its way becomes shorter and its strands fewer, each for as much as before.
-local function clear(tissue, gone)
+local function clear(tissue, gone, level)
   local range = type(gone) == "table" and gone or { 0, gone }
   local from, to = tonumber(range[1]), tonumber(range[2])
-  if not from or not to or from < 0 or to > 1 or from >= to or (from > 0 and to < 1) then
+  if not from or not to or not (from >= 0 and to <= 1 and from < to) or (from > 0 and to < 1) then
     error('what is gone of "' .. tissue.name .. '" is a share of its way, 0 to 1, or a range up to one of its ends, '
-      .. "such as { 0.5, 1 }", 4)
+      .. "such as { 0.5, 1 }", level + 1)
   end
   local start, way = tissue.start or 0, (tissue.stop or 1) - (tissue.start or 0)
   if from == 0 then tissue.start = start + to * way end
@@ -260,7 +324,7 @@ local function clear(tissue, gone)
 end
 
 --- Takes out what is gone of tissues in a field that is prepared.
-local function prepare(field, gone_of)
+local function prepare(field, gone_of, level)
   local names = {}
   for name in pairs(gone_of) do names[#names + 1] = name end
   table.sort(names)
@@ -269,19 +333,17 @@ local function prepare(field, gone_of)
     for _, tissue in ipairs(field.tissue) do
       if tissue.name == name then found = tissue end
     end
-    if found and gone ~= 0 then clear(found, gone) end
-    if not found or found.strands < 1 then take_out(field, name, 4) end
+    if found and gone ~= 0 then clear(found, gone, level + 1) end
+    if not found or found.strands < 1 then take_out(field, name, level + 1) end
   end
 end
 
---- The anatomy of a standard field, or with other lengths: see the top of this file.
-function anatomy.standard(overrides)
+--- The standard field with what is given. `level`: of error(), as seen from the caller.
+local function field_with(given, level)
+  check_given(given, level + 1)
   local p = {}
   for key, value in pairs(defaults) do p[key] = value end
-  for key, value in pairs(overrides or {}) do
-    if defaults[key] == nil then error('anatomy.standard has no parameter "' .. tostring(key) .. '"', 2) end
-    p[key] = value
-  end
+  for key, value in pairs(given) do p[key] = value end
 
   local bladder = gallbladder(p)
   local neck = bladder.shape.along[1].at
@@ -416,9 +478,26 @@ function anatomy.standard(overrides)
     tissue = anatomy.tissue(p),
     ground = anatomy.surroundings(neck),
   }
-  prepare(field, p.prepared)
-  for _, name in ipairs(p.without) do take_out(field, name, 3) end
+  prepare(field, p.prepared, level + 1)
+  for _, name in ipairs(p.without) do take_out(field, name, level + 1) end
   return field
+end
+
+--- The anatomy of a standard field, or with other lengths: see the top of this file.
+function anatomy.standard(overrides)
+  local field = field_with(overrides or {}, 2)
+  return field -- not at once: who is called last has no line of its caller
+end
+
+--- `base` with what differs besides. `level`: of error(), as seen from the caller.
+local function also(base, overrides, level)
+  if overrides ~= nil and type(overrides) ~= "table" then
+    error("what differs is a table, not " .. shown(overrides), level + 1)
+  end
+  local all = {}
+  for key, value in pairs(base) do all[key] = value end
+  for key, value in pairs(overrides or {}) do all[key] = value end
+  return all
 end
 
 --- What differs from the standard field, by name; how often it is seen, as published.
@@ -442,17 +521,15 @@ function anatomy.variant(name, overrides)
     table.sort(names)
     error('no variant "' .. tostring(name) .. '": there are ' .. table.concat(names, ", "), 2)
   end
-  local all = {}
-  for key, value in pairs(changes) do all[key] = value end
-  for key, value in pairs(overrides or {}) do all[key] = value end
-  return anatomy.standard(all)
+  local field = field_with(also(changes, overrides, 2), 2)
+  return field
 end
 
 --- The standard field with lengths drawn from about the published ranges, as far as they fit this field, by the
 --- scenario's own random numbers (calot run --seed N): the same seed, the same patient.
 function anatomy.varied(overrides)
   local function between(low, high) return low + (high - low) * math.random() end
-  local all = {
+  local drawn = {
     gallbladder_length = between(74, 88) * mm,
     gallbladder_width = between(30, 35) * mm,
     fill_pressure = between(10, 15) * mmHg,
@@ -463,8 +540,8 @@ function anatomy.varied(overrides)
     second_cystic_artery = math.random() < 0.13,
     phrygian_cap = math.random() < 0.04,
   }
-  for key, value in pairs(overrides or {}) do all[key] = value end
-  return anatomy.standard(all)
+  local field = field_with(also(drawn, overrides, 2), 2)
+  return field
 end
 
 --- What lies around the field, stays, and is touched: drawn by eye. But for the duodenum it is clear of all that moves.

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/byte_order_mark.h"
+
 namespace calot {
 
 namespace {
@@ -32,6 +34,7 @@ class ObjReader {
     std::string text;
     while (std::getline(in, text)) {
       ++line_;
+      if (line_ == 1) text = std::string(without_byte_order_mark(text));
       while (text.ends_with('\r') || text.ends_with(' ')) text.pop_back();
       // A backslash at the end joins the next line to this one.
       for (std::string more; text.ends_with('\\') && std::getline(in, more); ++joined_) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/byte_order_mark.h"
 #include "process/project.h"
 #include "session/attempt.h"
 #include "session/csv.h"
@@ -18,10 +19,8 @@ constexpr const char* example =
 /// Reads line by line, and keeps what is wrong.
 class RegisterReader {
  public:
-  RegisterReader(const std::string& file, std::string text) : file_(file), text_(std::move(text)) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (text_.starts_with(byte_order_mark)) text_.erase(0, byte_order_mark.size());
-  }
+  RegisterReader(const std::string& file, std::string_view text)
+      : file_(file), text_(without_byte_order_mark(text)) {}
 
   Result<NameRegister> read() {
     std::size_t begin = 0;

@@ -9,6 +9,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/byte_order_mark.h"
 #include "base/suggest.h"
 #include "input/registration.h"
 #include "session/csv.h"
@@ -138,7 +139,7 @@ class CsvReader final : public MotionReader {
   }
 
   bool read_head(std::string_view line) {
-    if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    line = without_byte_order_mark(line);
     for (const char c : {',', ';', '\t'})
       if (line.find(c) != std::string_view::npos) {
         separator_ = c;

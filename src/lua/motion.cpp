@@ -17,7 +17,8 @@ Travel::Travel(double distance, double speed, double ramp)
 }
 
 double Travel::share(double t) const {
-  if (t <= 0 && duration_ > 0) return 0;
+  if (duration_ <= 0) return 1;  // there is no way to go
+  if (t <= 0) return 0;
   if (t >= duration_) return 1;
   const double left = duration_ - t;
   if (t < ramp_) return speed_ * ramp_ * ramp_share(t / ramp_) / distance_;

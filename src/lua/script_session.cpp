@@ -21,6 +21,8 @@ namespace {
 
 constexpr int most_dry_waits = 10'000;
 constexpr int most_dry_asks = 1000;
+constexpr int call_cost =
+    500;  // instructions that a call with arguments counts for: they are copied and checked
 constexpr std::size_t most_problems = 100;
 constexpr std::size_t longest_message = 500;  // bytes
 
@@ -82,10 +84,10 @@ void ScriptSession::complain(lua_State* L, const std::string& message, const std
     luaL_error(L, "too many mistakes");
     std::abort();  // luaL_error does not return
   }
+  const std::string said = shortened(message, longest_message) + sandbox_.callers(L);
   for (const Problem& problem : *problems_)
-    if (problem.place.line == place.line && problem.message == shortened(message, longest_message))
-      return;  // in a loop
-  problems_->push_back({place, shortened(message, longest_message), hint});
+    if (problem.place.line == place.line && problem.message == said) return;  // in a loop
+  problems_->push_back({place, said, hint});
 }
 
 int ScriptSession::organ(lua_State* L, const std::string& name) {
@@ -446,6 +448,7 @@ Arguments::Arguments(lua_State* L, ScriptSession& session, const std::string& ow
       values_(values_of(L, function_, check_)),
       api_(table_of(function_)),
       reader_(check_, &values_, "", api_) {
+  session.sandbox().charge(L, call_cost);
   const int expected = static_cast<int>(function_.parameters.size());
   if (lua_gettop(L) - 1 > expected) {
     check_.problem("", fmt::format("{} arguments are too many", lua_gettop(L) - 1),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 
 #include "base/log.h"
@@ -33,6 +34,13 @@ std::string text_at_top(lua_State* L) {
     return shortened({text, length}, longest_message);
   }
   return fmt::format("an error that is no text was raised (a {} value)", lua_typename(L, type));
+}
+
+/// The lines of a trace, a line of text each, which begins with a new line.
+std::string called_from(std::span<const Place> trace) {
+  std::string text;
+  for (const Place& place : trace) text += fmt::format("\n    called from {}:{}", place.file, place.line);
+  return text;
 }
 
 }  // namespace
@@ -312,6 +320,12 @@ std::vector<Place> Sandbox::trace_of(lua_State* L) const {
   return trace;
 }
 
+std::string Sandbox::callers(lua_State* L) const {
+  const std::vector<Place> trace = trace_of(L);
+  if (trace.empty() || trace.front().file == options_.script.string()) return {};
+  return called_from(std::span(trace).subspan(1));
+}
+
 Place Sandbox::place_of(lua_State* L, int level) const {
   lua_Debug info;
   for (; lua_getstack(L, level, &info) != 0; ++level) {
@@ -371,9 +385,12 @@ Failure Sandbox::failure_of(lua_State* L, int status) const {
     message = "calls are nested too deep (stack overflow)";
     hint = "let the recursion end, or use a loop";
   }
-  std::size_t next = !trace_.empty() && trace_.front().line == place.line ? 1 : 0;
-  for (; next < trace_.size() && kind == FailureKind::scenario; ++next)
-    message += fmt::format("\n    called from {}:{}", trace_[next].file, trace_[next].line);
+  // What lies within the place's own call has put the blame on its caller.
+  const auto own = std::find_if(trace_.begin(), trace_.end(), [&](const Place& called) {
+    return called.file == place.file && called.line == place.line;
+  });
+  if (kind == FailureKind::scenario)
+    message += called_from({own == trace_.end() ? trace_.begin() : own + 1, trace_.end()});
   return fail(kind, std::move(message), std::move(hint), std::move(place));
 }
 

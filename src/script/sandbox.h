@@ -102,6 +102,9 @@ class Sandbox {
   const std::string* file_of(const lua_Debug& info) const;
   /// Where Lua code runs: file and line of the nearest frame of the script, starting at `level`.
   Place place_of(lua_State* L, int level = 1) const;
+  /// Where that line is a module's: the lines that led to it, each as a line of text that begins with a new line. Else
+  /// empty.
+  std::string callers(lua_State* L) const;
 
  private:
   enum class Trip { none, call, second, run, memory };

@@ -45,6 +45,12 @@ TEST_F(ObjFile, GivesPointsTimesScaleAndTriangles) {
   EXPECT_THAT(mesh->triangles, ::testing::ElementsAre(Triangle{0, 1, 2}));
 }
 
+TEST_F(ObjFile, AByteOrderMarkIsNoPartOfTheFirstPoint) {
+  const auto mesh = read_obj(write("\xef\xbb\xbf" + kPoints + "f 1 2 3\n"), 1);
+  ASSERT_TRUE(mesh) << to_text(mesh.failure());
+  EXPECT_EQ(mesh->points.size(), 4u);
+}
+
 TEST_F(ObjFile, CutsPolygonsIntoFansAndReadsEveryFormOfIndex) {
   for (const std::string face :
        {"f 1 2 4 3", "f 1/1 2/2 4/4 3/3", "f 1/1/1 2/2/1 4/4/1 3/3/1", "f 1//1 2//1 4//1 3//1",

@@ -164,6 +164,63 @@ TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
   }
 }
 
+TEST(Anatomy, WhatIsNoValueOfAParameterIsRefusedAtTheAuthorsLine) {
+  struct Wrong {
+    std::string given, what;
+  };
+  const std::vector<Wrong> wrong{
+      {"cystic_duct_diameter = 0", "cystic_duct_diameter is a number above 0, not 0"},
+      {"gallbladder_width = -33 * mm", "gallbladder_width is a number above 0, not -0.033"},
+      {"strands = 0/0", "strands is a number above 0, not nan"},
+      {"strength = 1/0", "strength is a number above 0, not inf"},
+      {"strands = 'x'", "strands is a number above 0, not \"x\""},
+      {"nodes = 200.5", "nodes is a whole number above 0, not 200.5"},
+      {"union = 1", "union is a share between 0 and 1, not 1"},
+      {"aberrant_union = true", "aberrant_union is a share between 0 and 1, not true"},
+      {"common_duct_widest = true", "common_duct_widest is a number above 0, or false, not true"},
+      {"phrygian_cap = 1", "phrygian_cap is true or false, not 1"},
+      {"union_lies = { 1, 2 }", "union_lies is three numbers"},
+      {"cystic_artery_enters = { 1, 2, 0/0 }", "cystic_artery_enters is three numbers"},
+      {"looks = 3", "looks is a name in quotes, not 3"},
+      {"without = 'bile'", "without is a list of names { \"...\" }, not \"bile\""},
+      {"prepared = { 0.5 }", "prepared is a table of shares by tissues' names"}};
+  for (const std::string makes :
+       {"anatomy.standard {", "anatomy.variant('low_union',\n {", "anatomy.varied {"}) {
+    const std::string end = makes.find('(') == std::string::npos ? " }" : " })";
+    for (const Wrong& one : wrong) {
+      const Folder folder;
+      const auto loaded = load_text(folder, field(makes + one.given + end));
+      ASSERT_FALSE(loaded) << one.given;
+      const Problem& problem = loaded.failure().problems[0];
+      EXPECT_THAT(problem.message, ::testing::HasSubstr(one.what));
+      EXPECT_THAT(problem.message, ::testing::Not(::testing::HasSubstr("anatomy.lua")))
+          << "the author's part";
+      EXPECT_THAT(problem.place.file, ::testing::Not(::testing::HasSubstr("anatomy.lua")));
+      EXPECT_GT(problem.place.line, 0);
+    }
+  }
+}
+
+TEST(Anatomy, AllThatIsWrongWithAFieldIsSaidAtOnce) {
+  const Folder folder;
+  const auto loaded =
+      load_text(folder, field("anatomy.variant('low_union', { nodes = 0, strenght = 2, union = 2 })"));
+  ASSERT_FALSE(loaded);
+  const std::string said = to_text(loaded.failure());
+  for (const char* what : {"nodes is", "no parameter \"strenght\"", "union is"})
+    EXPECT_THAT(said, ::testing::HasSubstr(what));
+}
+
+TEST(Anatomy, WhatIsNoTableOfParametersIsRefused) {
+  for (const std::string call :
+       {"anatomy.standard(3)", "anatomy.variant('low_union', 'x')", "anatomy.varied(3)"}) {
+    const Folder folder;
+    const auto loaded = load_text(folder, field(call));
+    ASSERT_FALSE(loaded) << call;
+    EXPECT_THAT(loaded.failure().problems[0].place.file, ::testing::Not(::testing::HasSubstr("anatomy.lua")));
+  }
+}
+
 TEST(Anatomy, RadiiThatAreNoneOrGivenTwiceAreRefusedAtTheirLine) {
   for (const auto& [radii, what] :
        {std::pair{"radius = 2 * mm, radii = { 2 * mm, 1 * mm }", "radius and radii are both given"},

@@ -688,6 +688,15 @@ TEST(AuthorErrors, OfEndlessLoopsAreResourceFailuresWherever) {
   }
 }
 
+TEST(AuthorErrors, WithinAModuleNameTheExercisesLineToo) {
+  ScenarioText text = with_demo("t:time_out('looked')\ntechnique.angle_of_ducts(t)");
+  text.head = "local technique = require 'technique'\n";
+  const std::string said = to_text(failure_of(text.text()));
+  EXPECT_THAT(said, ::testing::HasSubstr("unknown landmark \"cystic_duct.start\""));
+  EXPECT_THAT(said, ::testing::ContainsRegex(fmt::format("called from [^ ]*:{}",
+                                                         line_of(text.text(), "technique.angle_of_ducts"))));
+}
+
 TEST(AuthorErrors, AMissingFileIsAUsageFailureWithASuggestion) {
   const Folder folder;
   folder.write("grasp.lua", "");

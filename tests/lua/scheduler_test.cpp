@@ -137,6 +137,12 @@ TEST(Motion, LastsAsLongAsItsDistanceAndRampTake) {
   EXPECT_DOUBLE_EQ(Travel(0, 20e-3, 0.2).duration(), 0);
 }
 
+TEST(Motion, OfNoDistanceIsDoneAtOnceAndAlwaysANumber) {
+  for (const double ramp : {0.2, 0.15})
+    for (const double t : {-1.0, -1e-17, 0.0, 1e-17, 0.1, 1.0}) EXPECT_EQ(Travel(0, 20e-3, ramp).share(t), 1);
+  EXPECT_EQ(Travel(0, 0, 0.15).share(-1e-17), 1) << "jaws that are told to turn to where they are";
+}
+
 // ---- demo
 
 const char* const busy_demo =
@@ -171,6 +177,27 @@ TEST(Demo, MovesByWhatItSays) {
   // The first moment is one step into the motion, less than a ramp's 0.02 s share of it.
   EXPECT_LT((moved - Vec3(10e-3, -5e-3, -20e-3)).norm(), 0.1e-3);
   EXPECT_EQ(played.moments.back().tips[1], played.moments.front().tips[1]);
+}
+
+TEST(Demo, WhatAsksForNoMotionDoesNothing) {
+  const std::vector<std::string> nothings{"t.left:close()", "t.left:rotate(0)", "t.left:move_by({ 0, 0, 0 })",
+                                          "t.left:open(40 * deg) t.left:open(40 * deg)"};
+  for (const std::string& nothing : nothings)
+    for (const double rate : {25.0, 30.0, 50.0}) {
+      // After a while at which the sums of steps and of durations are rounded otherwise.
+      const Played played =
+          play(with_demo("t.right:move_by({ 4.4 * mm, 3.5 * mm, -1.6 * mm }, { speed = 30 * mm / s }) " +
+                         nothing + " t.left:wait(0.2 * s)"),
+               rate, 2);
+      ASSERT_FALSE(played.failure) << nothing << ": " << to_text(*played.failure);
+      for (const Moment& moment : played.moments) {
+        const InstrumentPose &pose = moment.poses[0], &first = played.moments.front().poses[0];
+        EXPECT_TRUE(std::isfinite(pose.jaw) && std::isfinite(pose.roll) && std::isfinite(pose.insertion));
+        EXPECT_NEAR(pose.roll, first.roll, rounding);
+        EXPECT_NEAR(pose.insertion, first.insertion,
+                    nothing.find("open") == std::string::npos ? rounding : 1);
+      }
+    }
 }
 
 TEST(Demo, MovesToAPlaceWithTheTipOfItsOpenJaws) {
@@ -532,6 +559,16 @@ TEST(Steps, BudgetsEndThemWhileTheyRunToo) {
   ASSERT_TRUE(played.failure);
   EXPECT_EQ(played.failure->kind, FailureKind::resource);
   EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "while t:time()"));
+}
+
+TEST(Demo, ActsInALoopAreCountedAndEndAtItsLine) {
+  for (const std::string act : {"t:time_out('x')", "t.left:move_by({ 0, 0, -1 * mm }, { wrong = 1 })"}) {
+    const Played played =
+        play(with_demo("local n = 0\nwhile true do n = n + 1 pcall(function() " + act + " end) end"), 50, 1);
+    ASSERT_TRUE(played.failure) << act;
+    EXPECT_EQ(played.failure->kind, FailureKind::resource) << to_text(*played.failure);
+    EXPECT_EQ(played.failure->problems[0].place.line, line_of(played.text, "while true")) << act;
+  }
 }
 
 TEST(Steps, LoopsOfWaitsInWhichNoTimePassesAreRefusedAtTheirLine) {
