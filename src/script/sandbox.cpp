@@ -101,9 +101,9 @@ void Sandbox::spend(std::int64_t instructions) {
   used_in_second_ += instructions;
   used_in_run_ += instructions;
   if (trip_ != Trip::none) return;
-  if (used_in_call_ > options_.limits.instructions_per_call) trip_ = Trip::call;
-  if (used_in_second_ > options_.limits.instructions_per_second) trip_ = Trip::second;
   if (used_in_run_ > options_.limits.instructions_per_run) trip_ = Trip::run;
+  if (used_in_second_ > options_.limits.instructions_per_second) trip_ = Trip::second;
+  if (used_in_call_ > options_.limits.instructions_per_call) trip_ = Trip::call;
 }
 
 std::string Sandbox::trip_text() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "base/suggest.h"
@@ -164,7 +165,29 @@ int assert_true(lua_State* L) {
   return lua_error(L);
 }
 
-/// A function of Lua's library (upvalue 1) whose time grows with the texts it is given and gives.
+lua_Unsigned rounds_of(lua_Integer first, lua_Integer last) {
+  return first > last ? 0 : static_cast<lua_Unsigned>(last) - static_cast<lua_Unsigned>(first) + 1;
+}
+
+/// Of a table's places from an argument to its end; a table may say of itself how long it is.
+lua_Unsigned places_from(lua_State* L, int argument) {
+  return lua_istable(L, 1) ? rounds_of(lua_tointeger(L, argument), luaL_len(L, 1)) : 0;
+}
+
+/// Functions of Lua's library that loop as often as they are told, and how many rounds.
+struct Loop {
+  std::string_view name;
+  lua_Unsigned (*rounds)(lua_State* L);
+};
+constexpr std::array loops{
+    Loop{"rep", [](lua_State* L) { return rounds_of(1, lua_tointeger(L, 2)) / bytes_per_instruction; }},
+    Loop{"move", [](lua_State* L) { return rounds_of(lua_tointeger(L, 2), lua_tointeger(L, 3)); }},
+    Loop{"insert", [](lua_State* L) { return lua_gettop(L) < 3 ? lua_Unsigned{0} : places_from(L, 2); }},
+    Loop{"remove", [](lua_State* L) { return lua_gettop(L) < 2 ? lua_Unsigned{0} : places_from(L, 2); }},
+};
+
+/// A function of Lua's library (upvalue 1) whose time grows with the texts it is given and gives, or with the rounds of
+/// its loop (upvalue 2: which of `loops`, or none).
 int charged(lua_State* L) {
   Sandbox& sandbox = Sandbox::of(L);
   const auto texts = [L](int first) {
@@ -175,6 +198,10 @@ int charged(lua_State* L) {
   };
   sandbox.note_place(L);
   sandbox.charge(L, texts(1));
+  const auto loop = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(2)));
+  constexpr lua_Unsigned most = 1'000'000'000'000;  // more than any script may use
+  if (loop < loops.size())
+    sandbox.charge(L, static_cast<std::int64_t>(std::min(loops[loop].rounds(L), most)));
   const int results = lua_tocfunction(L, lua_upvalueindex(1))(L);
   sandbox.charge(L, texts(lua_gettop(L) - results + 1));
   return results;
@@ -187,7 +214,9 @@ void charge_all(lua_State* L) {
     if (lua_iscfunction(L, -1) != 0) names.emplace_back(lua_tostring(L, -2));
   for (const std::string& name : names) {
     lua_getfield(L, -1, name.c_str());
-    lua_pushcclosure(L, charged, 1);
+    const auto loop = std::find_if(loops.begin(), loops.end(), [&](const Loop& l) { return l.name == name; });
+    lua_pushinteger(L, loop - loops.begin());
+    lua_pushcclosure(L, charged, 2);
     lua_setfield(L, -2, name.c_str());
   }
 }

@@ -71,8 +71,7 @@ void Watchdog::end_process() {
   write_to_stderr(fmt::format(
       "error: {}: the script has been running for {:g} s without simulated time going on and cannot "
       "be stopped (look for string.find, match or gsub with nested repetitions, library calls over huge "
-      "texts "
-      "or ranges, or tens of thousands of elseif); the process ends here\n",
+      "texts, or tens of thousands of elseif); the process ends here\n",
       place, seconds_));
   if (flush_) flush_();
   std::_Exit(exit_code_);
