@@ -102,10 +102,12 @@ local towards_fundus = unit(minus(bed_fundus, bed_neck))
 local towards_liver = unit(minus(liver_side, times(towards_fundus, dot(liver_side, towards_fundus))))
 local aside = cross(towards_fundus, towards_liver)
 
---- A place in the bed's frame, in mm, as one of the patient's.
-local function place(x, y, z)
+--- A place in the patient's frame, m, of which x, y, z say in mm how far it is from the neck's end of the liver's bed:
+--- towards the liver, to the patient's right and back, towards the fundus.
+function anatomy.place(x, y, z)
   return add(add(add(bed_neck, towards_liver, x * mm), aside, y * mm), towards_fundus, z * mm)
 end
+local place = anatomy.place
 local caudal, back = { 0, -1, 0 }, { 0, 0, -1 }
 
 -- ---- organs
@@ -263,12 +265,15 @@ local function branches(p, enters, deep_enters)
   }
 end
 
-local function tube(name, points, diameter, wall, held, more)
+--- A duct or a vessel: a tube through points, as wide as `diameter`, with a wall of that thickness (m), held where
+--- `held` says (nil: nowhere); `more` has further keys of the shape, such as nodes, end_radius or carries = "blood".
+function anatomy.tube(name, points, diameter, wall, held, more)
   local shape = { type = "tube", points = points, nodes = 9 }
   for key, value in pairs(more or {}) do shape[key] = value end
   if not shape.radii then shape.radius = diameter / 2 end
   return { name = name, shape = shape, wall = soft_wall(wall), held = held }
 end
+local tube = anatomy.tube
 
 --- The course of a duct or an artery by places relative to one, { left, head, front }, in mm.
 local function course(from, places)
@@ -277,7 +282,9 @@ local function course(from, places)
   return points
 end
 
-local function joint(from, to, radius) return { from = from, to = to, radius = radius } end
+--- One organ's landmark grown to another's, within `radius`: anatomy.joint("duct.end", "gallbladder.neck", 4 * mm).
+function anatomy.joint(from, to, radius) return { from = from, to = to, radius = radius } end
+local joint = anatomy.joint
 
 --- Takes an organ with what ends on it, or a tissue, out of a field.
 local function take_out(field, name, level)

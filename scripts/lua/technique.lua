@@ -109,8 +109,9 @@ function technique.shut(t, tube)
   return count
 end
 
--- How far a shaft from a port is to be turned for its jaws to open across a tube.
-local function roll_across(port, at, along)
+--- How far, rad, a shaft from a port (its place) is to be turned for its jaws to open across a tube, which runs `along`
+--- at the place `at`: t:along says both.
+function technique.roll_across(port, at, along)
   local shaft = unit(minus(at, port))
   local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
   local x = { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) }
@@ -130,7 +131,7 @@ function technique.hand(t, name, port)
   --- Open jaws come about a tube, their tips that far past its middle.
   function self.about(tube, share, past, speed)
     local at, along = t:along(tube, share)
-    local turn = roll_across(port, at, along) - self.rolled
+    local turn = technique.roll_across(port, at, along) - self.rolled
     turn = turn - math.pi * math.floor(turn / math.pi + 0.5) -- jaws are alike on both sides
     if math.abs(turn) > 15 * deg then
       self.tool:rotate(turn, { speed = 300 * deg / s })

@@ -164,6 +164,25 @@ TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
   }
 }
 
+TEST(Anatomy, AnAuthorAddsAVesselByWhatTheModuleIsMadeOf) {
+  const SceneDefinition scene = scene_of(
+      "(function()\n local field = anatomy.standard()\n"
+      "field.organs[#field.organs + 1] = anatomy.tube('own', { anatomy.place(4, -20, 0), anatomy.place(8, "
+      "-28, "
+      "-6) },\n 2 * mm, 0.4 * mm, { { landmark = 'end' } }, { carries = 'blood', nodes = 7 })\n"
+      "field.joints[#field.joints + 1] = anatomy.joint('own.start', 'gallbladder.neck', 4 * mm)\n"
+      "return field end)()");
+  const SceneDefinition standard = scene_of("anatomy.standard()");
+  ASSERT_EQ(scene.anatomy.organs.size(), standard.anatomy.organs.size() + 1);
+  const OrganDefinition& own = scene.anatomy.organs.back();
+  const auto& tube = std::get<TubeShape>(own.shape);
+  EXPECT_EQ(own.name, "own");
+  EXPECT_DOUBLE_EQ(tube.radius, 1e-3);
+  EXPECT_NEAR((tube.points[1] - tube.points[0]).norm(), Vec3(4e-3, 8e-3, 6e-3).norm(), 1e-9) << "by mm";
+  EXPECT_EQ(scene.anatomy.joints.back().from, "own.start");
+  EXPECT_DOUBLE_EQ(scene.anatomy.joints.back().radius, 4e-3);
+}
+
 TEST(Anatomy, WhatIsNoValueOfAParameterIsRefusedAtTheAuthorsLine) {
   struct Wrong {
     std::string given, what;
