@@ -79,6 +79,8 @@ Checked check(const Named& named, bool with_world) {
 /// What an author should think about; none of it is wrong.
 std::vector<std::string> remarks(const ExerciseDefinition& exercise) {
   std::vector<std::string> lines;
+  if (exercise.scene.instruments.empty())
+    lines.emplace_back("the scene has no instruments: calot run plays it, calot operate does not");
   if (exercise.score.parts.empty()) return lines;
   if (exercise.step_names.empty() && exercise.api > 1)
     lines.emplace_back(

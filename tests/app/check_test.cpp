@@ -38,6 +38,22 @@ TEST_F(Check, SaysWhatIsWrongWithThePathNotWithLines) {
   EXPECT_EQ(calot({"run", "unreadable.lua"}).code, 4);
 }
 
+TEST_F(Check, SaysThatASceneWithoutInstrumentsIsNotOperated) {
+  const std::string said = "the scene has no instruments";
+  spill(folder_ / "with.lua", small_scenario());
+  EXPECT_EQ(calot({"check", "with.lua"}).out.find(said), std::string::npos);
+  spill(folder_ / "without.lua",
+        "local calot = require 'calot'\n"
+        "return calot.exercise { api = 2, id = 'without', title = 'Nobody', time_limit = 1,\n"
+        "scene = function() return { anatomy = { organs = { { shape = { type = 'sphere' }, nodes = 61,\n"
+        "  neck = { 0, 0.1, -0.1 }, held = { { landmark = 'bed' } } } } } } end,\n"
+        "steps = function(t) t:wait(0.1) end }");
+  const Outcome without = calot({"check", "without.lua"});
+  EXPECT_EQ(without.code, 0) << without.err;
+  EXPECT_NE(without.out.find(said), std::string::npos) << without.out;
+  EXPECT_NE(calot({"operate", "without.lua"}).code, 0);
+}
+
 TEST_F(Check, WithBuildSaysWhatComesToRestFarFromWhereItIsDrawn) {
   std::string text = small_scenario();
   const std::string anatomy = "anatomy = { ";
