@@ -26,6 +26,9 @@ double left_open(const Tool& tool, const TubeBetween& tube, const RodBody& rod, 
   return open_share(1 - std::clamp(held / (2 * half), 0.0, 1.0));
 }
 
+/// m along a tube from one of its skin points to the next, in the mean.
+double spacing(const RodBody& rod) { return rod.length() / rod.last_point(); }
+
 /// Holds a tube flat where its clips are now, once they have moved or gone, and nowhere else.
 void keep_to_clips(Field& field, OrganIndex index) {
   Organ& organ = field.organ(index);
@@ -45,6 +48,22 @@ void set_clip(Field& field, OrganIndex index, const Clip& clip) {
   keep_to_clips(field, index);
 }
 
+Result<bool> free_of_clips(const Organ& organ, double share, double width, const std::string& done) {
+  const RodBody* rod = organ.body->as_tube();
+  if (rod == nullptr) return true;
+  for (const Clip& clip : organ.clips) {
+    const double apart = std::abs(clip.at - rod->at_share(share)) * spacing(*rod);
+    const double least = 0.5 * (width + clip_row(clip.size).wire);
+    if (apart < least)
+      return fail(FailureKind::scenario,
+                  fmt::format("'{}' cannot be {} at {:g} of its length: a clip lies there",
+                              organ.definition.name, done, share),
+                  fmt::format("stay {:.1f} mm away from its middle, {:.2f} of the length", 1e3 * least,
+                              least / rod->length()));
+  }
+  return true;
+}
+
 Result<bool> clip_body(Field& field, OrganIndex index, double share, ClipSize size) {
   const Organ& organ = field.organ(index);
   const RodBody* rod = organ.body->as_tube();
@@ -53,6 +72,7 @@ Result<bool> clip_body(Field& field, OrganIndex index, double share, ClipSize si
     return fail(FailureKind::scenario,
                 fmt::format("'{}' cannot be clipped at {:g} of its length", organ.definition.name, share),
                 "give a share of it from its start, 0, to its end, 1");
+  if (Result<bool> clear = free_of_clips(organ, share, clip_row(size).wire, "clipped"); !clear) return clear;
   const double at = rod->at_share(share);
   // As far past the tube as legs reach that a careful hand sets.
   constexpr double past = 1e-3;
@@ -99,9 +119,6 @@ bool is_open_at(const Organ& organ, double end) {
   return std::any_of(organ.openings.begin(), organ.openings.end(),
                      [&](const Opening& opening) { return opening.point == static_cast<int>(end); });
 }
-
-/// m along a tube from one of its skin points to the next, in the mean.
-double spacing(const RodBody& rod) { return rod.length() / rod.last_point(); }
 
 /// How near to each other two clips may come, middle to middle, in skin points.
 double least_apart(const Organ& organ, const Clip& one, const Clip& other) {

@@ -22,8 +22,11 @@ inline constexpr double clip_hold = 4.4;
 
 /// Sets a clip on a tube, which is held flat there from now on.
 void set_clip(Field& field, OrganIndex organ, const Clip& clip);
+/// Refuses (scenario) what takes `width` m of a tube's length about a share of it, if a clip lies there; `done`: what the
+/// tube cannot be. An organ that is no tube has none.
+Result<bool> free_of_clips(const Organ& organ, double share, double width, const std::string& done);
 /// Sets one that shuts it at a share of its length, 0 to 1, with its legs across. Fails (scenario) where it is no tube,
-/// or the share is none.
+/// the share is none, or another clip lies there.
 Result<bool> clip_body(Field& field, OrganIndex organ, double share, ClipSize size);
 
 /// Of each tool in which the action begins (`actions`: one a tool, or none) one clip, while it has some. Adds the

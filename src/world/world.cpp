@@ -569,6 +569,8 @@ BodyHandle World::handle(OrganIndex organ) const { return handle_of(impl_->field
 Result<Division> World::divide(const std::string& name, double share) {
   const Result<OrganIndex> organ = this->organ(name);
   if (!organ) return organ.failure();
+  const Result<bool> clear = free_of_clips(impl_->field.organ(organ.value()), share, 0, "divided");
+  if (!clear) return clear.failure();
   return impl_->change(fmt::format("after '{}' was divided", name),
                        [&] { return divide_body(impl_->field, organ.value(), share, impl_->time()); });
 }

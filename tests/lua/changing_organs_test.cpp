@@ -1,5 +1,6 @@
 // Organs that come, go and are divided by a scenario's steps.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "lua/scenario_files.h"
@@ -116,6 +117,16 @@ TEST(ChangingOrgansInSteps, WhatIsGoneSaysWhenAndWhyAtTheAuthorsLine) {
                                         "t:wait(0.04 * s) t:place('stone.centre')"))
                               .why;
   EXPECT_NE(why.find("stone was removed: taken out at 0.02 s"), std::string::npos) << why;
+}
+
+TEST(ChangingOrgansInSteps, WhereAClipLiesNoneIsSetAndNothingDivided) {
+  for (const std::string again : {"t:clip('duct', 0.5)", "t:clip('duct', 0.51)", "t:divide('duct', 0.5)"}) {
+    const Outcome played = outcome(ducts("t:step('a', 'A') t:clip('duct', 0.5) t:wait(0.04 * s)\n" + again));
+    EXPECT_THAT(played.why, ::testing::HasSubstr("a clip lies there")) << again;
+    EXPECT_THAT(played.why, ::testing::ContainsRegex(".lua:18: ")) << again;
+  }
+  for (const std::string beside : {"t:clip('duct', 0.3)", "t:divide('duct', 0.7)"})
+    EXPECT_EQ(outcome(ducts("t:step('a', 'A') t:clip('duct', 0.5) t:wait(0.04 * s)\n" + beside)).why, "");
 }
 
 TEST(ChangingOrgansInSteps, MistakesAreFoundWithoutPlaying) {
