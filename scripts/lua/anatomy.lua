@@ -33,6 +33,7 @@
 -- The gallbladder's pouch, its neck, and the course of duct and arteries are drawn by eye: uncalibrated.
 
 local calot = require "calot"
+local given = require "given"
 local mm, kPa, mmHg = calot.units.mm, calot.units.kPa, calot.units.mmHg
 
 local anatomy = {}
@@ -141,67 +142,20 @@ local defaults = {
   prepared = {},
 }
 
--- ---- what a field may be given
-
-local function finite(value) return type(value) == "number" and value == value and math.abs(value) < math.huge end
-
---- A table of `count` entries 1, 2, ... (nil: of any number) that all pass.
-local function all_pass(value, count, passes)
-  if type(value) ~= "table" or (count and #value ~= count) then return false end
-  for key, entry in pairs(value) do
-    if math.type(key) ~= "integer" or not passes(entry) then return false end
-  end
-  return true
-end
-
---- What a value is to be, and whether it is that: by the kind of its default, or by its key.
-local above_zero = { "a number above 0", function(value) return finite(value) and value > 0 end }
-local part = { "a share between 0 and 1", function(value) return finite(value) and value > 0 and value < 1 end }
-local three = { "three numbers { x, y, z }", function(value) return all_pass(value, 3, finite) end }
-local by_kind = {
-  number = above_zero,
-  boolean = { "true or false", function(value) return type(value) == "boolean" end },
-  string = { "a name in quotes", function(value) return type(value) == "string" end },
+--- What each may be: of the kind of its default, but for some.
+local kinds = {
+  common_duct_widest = given.or_false(given.above_zero),
+  union = given.part,
+  aberrant_union = given.part,
+  union_lies = given.three,
+  cystic_artery_enters = given.three,
+  nodes = given.whole,
+  without = given.names,
+  prepared = given.by_name,
 }
-local by_key = {
-  common_duct_widest = { "a number above 0, or false",
-    function(value) return value == false or above_zero[2](value) end },
-  union = part,
-  aberrant_union = part,
-  union_lies = three,
-  cystic_artery_enters = three,
-  nodes = { "a whole number above 0", function(value) return math.type(value) == "integer" and value > 0 end },
-  without = { "a list of names { \"...\" }",
-    function(value) return all_pass(value, nil, function(name) return type(name) == "string" end) end },
-  prepared = { "a table of shares by tissues' names { triangle_fat = 0.5 }", function(value)
-    if type(value) ~= "table" then return false end
-    for name in pairs(value) do
-      if type(name) ~= "string" then return false end
-    end
-    return true
-  end },
-}
-
-local function shown(value)
-  if value ~= value then return "nan" end
-  if type(value) == "table" then return "this table" end
-  return type(value) == "string" and '"' .. value .. '"' or tostring(value)
-end
-
---- Refuses, all at once, what is no parameter or no value of one. `level`: of error(), as seen from the caller.
-local function check_given(given, level)
-  if type(given) ~= "table" then error("a field's parameters are a table, not " .. shown(given), level + 1) end
-  local wrong = {}
-  for key, value in pairs(given) do
-    local wanted = by_key[key] or by_kind[type(defaults[key])]
-    if wanted == nil then
-      wrong[#wrong + 1] = 'anatomy.standard has no parameter "' .. tostring(key) .. '"'
-    elseif not wanted[2](value) then
-      wrong[#wrong + 1] = key .. " is " .. wanted[1] .. ", not " .. shown(value)
-    end
-  end
-  table.sort(wrong)
-  if #wrong > 0 then error(table.concat(wrong, "; "), level + 1) end
+for key, value in pairs(defaults) do
+  local usual = { number = given.above_zero, boolean = given.yes_or_no, string = given.name }
+  kinds[key] = given.optional(kinds[key] or usual[type(value)])
 end
 
 local function soft_wall(thickness) return { thickness = thickness, density = 1050 } end
@@ -345,12 +299,12 @@ local function prepare(field, gone_of, level)
   end
 end
 
---- The standard field with what is given. `level`: of error(), as seen from the caller.
-local function field_with(given, level)
-  check_given(given, level + 1)
+--- The standard field with what differs from it. `level`: of error(), as seen from the caller.
+local function field_with(changes, level)
+  given.check(changes, kinds, "anatomy.standard", level + 1)
   local p = {}
   for key, value in pairs(defaults) do p[key] = value end
-  for key, value in pairs(given) do p[key] = value end
+  for key, value in pairs(changes) do p[key] = value end
 
   local bladder = gallbladder(p)
   local neck = bladder.shape.along[1].at
@@ -499,7 +453,7 @@ end
 --- `base` with what differs besides. `level`: of error(), as seen from the caller.
 local function also(base, overrides, level)
   if overrides ~= nil and type(overrides) ~= "table" then
-    error("what differs is a table, not " .. shown(overrides), level + 1)
+    error("what differs is a table, not " .. tostring(overrides), level + 1)
   end
   local all = {}
   for key, value in pairs(base) do all[key] = value end

@@ -2,6 +2,7 @@
 -- sums with points, { x, y, z } in the patient's frame.
 
 local calot = require "calot"
+local given = require "given"
 local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
 
 local technique = {}
@@ -60,6 +61,12 @@ local function nearest_strand(t, hook, tissue, wanted)
   return best
 end
 
+local how_to_take = {
+  port = given.three, tries = given.whole, hardest = given.above_zero, wanted = given.optional(given.called),
+  is_done = given.optional(given.called), keep_off = given.optional(given.by_name),
+}
+local where_to_keep_off = { organ = given.name, place = given.three, clear = given.above_zero }
+
 --- Strand by strand: the hook's foot comes down on the nearest one, and current flows until one has parted; else it
 --- comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and then on
 --- all three nearer to its heel. `how`: port, where its shaft comes from; tries, of a tenth of a second; hardest, the
@@ -67,6 +74,8 @@ end
 --- strand; keep_off, an organ and a place of it: current flows no nearer to the organ than `clear`, and beside the
 --- place the heel comes down first, on the middle, and the foot points away.
 function technique.take(t, hook, tissue, how)
+  given.check(how, how_to_take, "technique.take", 2)
+  if how.keep_off then given.check(how.keep_off, where_to_keep_off, "keep_off", 2) end
   local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
   local wanted = how.wanted or function() return true end
   local missed = 0

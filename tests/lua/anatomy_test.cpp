@@ -202,7 +202,7 @@ TEST(Anatomy, WhatIsNoValueOfAParameterIsRefusedAtTheAuthorsLine) {
       {"cystic_artery_enters = { 1, 2, 0/0 }", "cystic_artery_enters is three numbers"},
       {"looks = 3", "looks is a name in quotes, not 3"},
       {"without = 'bile'", "without is a list of names { \"...\" }, not \"bile\""},
-      {"prepared = { 0.5 }", "prepared is a table of shares by tissues' names"}};
+      {"prepared = { 0.5 }", "prepared is a table by names"}};
   for (const std::string makes :
        {"anatomy.standard {", "anatomy.variant('low_union',\n {", "anatomy.varied {"}) {
     const std::string end = makes.find('(') == std::string::npos ? " }" : " })";

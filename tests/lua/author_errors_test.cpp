@@ -697,6 +697,27 @@ TEST(AuthorErrors, WithinAModuleNameTheExercisesLineToo) {
                                                          line_of(text.text(), "technique.angle_of_ducts"))));
 }
 
+TEST(AuthorErrors, OfWhatTechniquesAreGivenAreAtTheExercisesLine) {
+  ScenarioText text = with_demo(
+      "technique.take(t, t.left, 'fat', { port = { 0, 0, 0 / 0 }, tires = 3, hardest = -1,\n"
+      "  wanted = true, keep_off = { organ = 'duct' } })");
+  text.head = "local technique = require 'technique'\n";
+  Failure failure = failure_of(text.text());
+  const std::string said = to_text(failure);
+  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.take")) << said;
+  for (const char* what : {"port is three numbers { x, y, z }, not this table", "no parameter \"tires\"",
+                           "technique.take needs tries, a whole number above 0",
+                           "hardest is a number above 0, not -1", "wanted is a function, not true"})
+    EXPECT_THAT(said, ::testing::HasSubstr(what));
+  text = with_demo(
+      "technique.take(t, t.left, 'fat', { port = { 0, 0, 0 }, tries = 3, hardest = 1,\n"
+      "  keep_off = { organ = 'duct' } })");
+  text.head = "local technique = require 'technique'\n";
+  failure = failure_of(text.text());
+  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.take")) << to_text(failure);
+  EXPECT_THAT(to_text(failure), ::testing::HasSubstr("keep_off needs clear"));
+}
+
 TEST(AuthorErrors, AMissingFileIsAUsageFailureWithASuggestion) {
   const Folder folder;
   folder.write("grasp.lua", "");
