@@ -575,13 +575,13 @@ function Steps:hold(name, predicate, duration) end
 ---@param unit? string its unit, for people
 function Steps:note(name, value, unit) end
 
----Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most). Its pieces are organs of their own, "cystic_duct.patient" and "cystic_duct.specimen", each with the landmarks start, middle and end; the tube's patient_end says which is which. Returns their names, the patient's first, and the share where it was divided.
+---Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most), not where a clip lies. Its pieces are organs of their own, "cystic_duct.patient" and "cystic_duct.specimen", each with the landmarks start, middle and end; the tube's patient_end says which is which. Returns their names, the patient's first, and the share where it was divided.
 ---@param organ string a tube's name
 ---@param share number from its start, 0, to its end, 1; 0 to 1
 ---@return string, string, number
 function Steps:divide(organ, share) end
 
----Sets a clip that shuts a tube, a duct or a vessel, at about a share of its length: in a field that is prepared for a later step, as nobody sets it.
+---Sets a clip that shuts a tube, a duct or a vessel, at about a share of its length: in a field that is prepared for a later step, as nobody sets it. Refused where a clip lies.
 ---@param organ string a tube's name
 ---@param share number from its start, 0, to its end, 1; 0 to 1
 ---@param size? "M"|"ML" the clip's; default ML

@@ -199,7 +199,8 @@ std::vector<ApiFunction> session_functions() {
         text("unit", "", "its unit, for people")},
        ""},
       {"Steps", "divide",
-       "Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most). Its "
+       "Divides a tube, a duct or a vessel, at about a share of its length (a mm or two off at most), "
+       "not where a clip lies. Its "
        "pieces are "
        "organs of their own, \"cystic_duct.patient\" and \"cystic_duct.specimen\", each with the landmarks "
        "start, "
@@ -210,7 +211,7 @@ std::vector<ApiFunction> session_functions() {
       {"Steps", "clip",
        "Sets a clip that shuts a tube, a duct or a vessel, at about a share of its length: in a field that "
        "is prepared "
-       "for a later step, as nobody sets it.",
+       "for a later step, as nobody sets it. Refused where a clip lies.",
        place_on_tube({choice("size", clip_names(), "ML", "the clip's")}), ""},
       {"Steps",
        "remove",
