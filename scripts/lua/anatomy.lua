@@ -299,12 +299,15 @@ local function prepare(field, gone_of, level)
   end
 end
 
---- The standard field with what differs from it. `level`: of error(), as seen from the caller.
-local function field_with(changes, level)
-  given.check(changes, kinds, "anatomy.standard", level + 1)
+--- The standard field with what differs in its variant, and then what its author gives, if anything. `level`: of
+--- error(), as seen from the caller.
+local function field_with(variant, overrides, level)
+  overrides = overrides or {}
+  given.check(overrides, kinds, "anatomy.standard", level + 1)
   local p = {}
-  for key, value in pairs(defaults) do p[key] = value end
-  for key, value in pairs(changes) do p[key] = value end
+  for _, source in ipairs { defaults, variant, overrides } do
+    for key, value in pairs(source) do p[key] = value end
+  end
 
   local bladder = gallbladder(p)
   local neck = bladder.shape.along[1].at
@@ -446,19 +449,8 @@ end
 
 --- The anatomy of a standard field, or with other lengths: see the top of this file.
 function anatomy.standard(overrides)
-  local field = field_with(overrides or {}, 2)
+  local field = field_with({}, overrides, 2)
   return field -- not at once: who is called last has no line of its caller
-end
-
---- `base` with what differs besides. `level`: of error(), as seen from the caller.
-local function also(base, overrides, level)
-  if overrides ~= nil and type(overrides) ~= "table" then
-    error("what differs is a table, not " .. tostring(overrides), level + 1)
-  end
-  local all = {}
-  for key, value in pairs(base) do all[key] = value end
-  for key, value in pairs(overrides or {}) do all[key] = value end
-  return all
 end
 
 --- What differs from the standard field, by name; how often it is seen, as published.
@@ -482,7 +474,7 @@ function anatomy.variant(name, overrides)
     table.sort(names)
     error('no variant "' .. tostring(name) .. '": there are ' .. table.concat(names, ", "), 2)
   end
-  local field = field_with(also(changes, overrides, 2), 2)
+  local field = field_with(changes, overrides, 2)
   return field
 end
 
@@ -501,7 +493,7 @@ function anatomy.varied(overrides)
     second_cystic_artery = math.random() < 0.13,
     phrygian_cap = math.random() < 0.04,
   }
-  local field = field_with(also(drawn, overrides, 2), 2)
+  local field = field_with(drawn, overrides, 2)
   return field
 end
 
