@@ -51,21 +51,16 @@ Mat3 turning_hessian(double turning, const Mat3& mean, const Mat3& forces_by_pla
          forces_by_places.trace() * Mat3::Identity();
 }
 
-/// Each three columns seen from outside a frame.
-Eigen::MatrixXd columns_turned(Eigen::MatrixXd block, const Mat3& frame) {
-  const Mat3 back = frame.transpose();
-  for (Eigen::Index b = 0; b < block.cols(); b += 3)
-    block.middleCols<3>(b) = (block.middleCols<3>(b) * back).eval();
-  return block;
-}
-
-void add_turning(const FramedSolid::Piece& piece, Eigen::MatrixXd& block) {
-  for (Eigen::Index b = 0; b < piece.slopes.cols(); ++b)
-    for (Eigen::Index a = 0; a < piece.slopes.cols(); ++a) {
-      const Vec3 one = piece.slopes.col(a), other = piece.slopes.col(b);
-      block.block<3, 3>(3 * a, 3 * b) +=
-          0.25 * piece.turning * (one.dot(other) * Mat3::Identity() - other * one.transpose());
-    }
+/// How a block of the stiffness, all of one frame's ways by the other's (entry 3 force + motion), is seen from outside the
+/// frames.
+Eigen::Matrix<double, 9, 9> ways_turned(const Mat3& of_forces, const Mat3& of_motions) {
+  Eigen::Matrix<double, 9, 9> out;
+  for (int force = 0; force < 3; ++force)
+    for (int motion = 0; motion < 3; ++motion)
+      for (int row = 0; row < 3; ++row)
+        out.block<1, 3>(3 * force + motion, 3 * row) =
+            of_forces(row, force) * of_motions.col(motion).transpose();
+  return out;
 }
 
 }  // namespace
@@ -246,36 +241,57 @@ Eigen::MatrixXd FramedSolid::forces_on_nodes(const Seen& seen, const TurnSlopes&
   return out;
 }
 
-FramedSolid::HeldStiffness FramedSolid::held_stiffness(const Seen& seen) const {
-  HeldStiffness out{Eigen::MatrixXd::Zero(unknowns(), unknowns()),
-                    Eigen::MatrixXd::Zero(unknowns(), unknowns())};
-  for (const Stiffness& s : parts_.stiffness) {
-    const int p = s.one, q = s.other;
-    Eigen::MatrixXd block = s.block;
-    if (p == q) add_turning(parts_.pieces[static_cast<std::size_t>(p)], block);
-    block = columns_turned(columns_turned(std::move(block), seen.frames[q]).transpose(), seen.frames[p]);
-    Eigen::MatrixXd& sum = p == q ? out.own : out.paired;
-    for (Eigen::Index b = 0; b < count(p); ++b)
-      for (Eigen::Index a = 0; a < count(q); ++a)
-        sum.block<3, 3>(3 * place_[first_[q] + a], 3 * place_[first_[p] + b]) +=
-            block.block<3, 3>(3 * a, 3 * b);
+void FramedSolid::add_half_stiffness(const Seen& seen, Eigen::MatrixXd& half) const {
+  for (std::size_t k = 0; k < by_ways_.size(); ++k) {
+    const auto one = static_cast<std::size_t>(parts_.stiffness[k].one),
+               other = static_cast<std::size_t>(parts_.stiffness[k].other);
+    Eigen::Matrix<double, 9, 9> turn = ways_turned(seen.frames[one], seen.frames[other]);
+    if (one == other)
+      for (int way : {0, 4, 8}) turn.row(way) *= 0.5;  // the others stand for their transposes
+    Eigen::Matrix<double, Eigen::Dynamic, 9> column =
+        Eigen::Matrix<double, Eigen::Dynamic, 9>::Zero(count(one), 9);
+    Eigen::Matrix<double, Eigen::Dynamic, 9> turned(count(one), 9);
+    for (Eigen::Index b = 0; b < count(other); ++b) {
+      for (int force = 0; force < 3; ++force)
+        for (int motion = one == other ? force : 0; motion < 3; ++motion)
+          column.col(3 * force + motion) = by_ways_[k].blocks[motion][force].col(b);
+      turned = column.lazyProduct(turn);
+      for (Eigen::Index a = 0; a < count(one); ++a)
+        for (int row = 0; row < 3; ++row)
+          half.block<1, 3>(3 * place_[first_[one] + a] + row, 3 * place_[first_[other] + b]) +=
+              turned.block<1, 3>(a, 3 * row);
+    }
   }
-  return out;
+}
+
+void FramedSolid::add_half_turning(const Seen& seen, Eigen::MatrixXd& half) const {
+  for (std::size_t p = 0; p < parts_.pieces.size(); ++p) {
+    const Piece& piece = parts_.pieces[p];
+    const Eigen::Matrix3Xd slopes = seen.frames[p] * piece.slopes;
+    for (Eigen::Index b = 0; b < count(p); ++b)
+      for (Eigen::Index a = 0; a < count(p); ++a) {
+        const Vec3 one = slopes.col(a), other = slopes.col(b);
+        half.block<3, 3>(3 * place_[first_[p] + a], 3 * place_[first_[p] + b]) +=
+            0.125 * piece.turning * (one.dot(other) * Mat3::Identity() - other * one.transpose());
+      }
+  }
 }
 
 void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   const Seen seen = see(x);
   if (!seen.admissible) return matrix.add(nodes_[0], nodes_[0], Mat3::Constant(seen.energy));
   const TurnSlopes slopes = turn_slopes(seen);
-  auto [own, paired] = held_stiffness(seen);
   // The frames follow to where the energy is least: by that the nodes' stiffness is less than with frames held.
   const Eigen::MatrixXd turned = forces_on_nodes(seen, slopes);
-  own.noalias() -= turned * Eigen::PartialPivLU<Eigen::MatrixXd>(slopes.second).solve(turned.transpose());
+  Eigen::MatrixXd half(unknowns(), unknowns());
+  half.noalias() =
+      -0.5 * turned * Eigen::PartialPivLU<Eigen::MatrixXd>(slopes.second).solve(turned.transpose());
+  add_half_stiffness(seen, half);
+  add_half_turning(seen, half);
   for (std::size_t b = 0; b < nodes_.size(); ++b)
     for (std::size_t a = b; a < nodes_.size(); ++a) {
       const auto i = 3 * static_cast<Eigen::Index>(a), j = 3 * static_cast<Eigen::Index>(b);
-      matrix.add(nodes_[a], nodes_[b],
-                 own.block<3, 3>(i, j) + paired.block<3, 3>(i, j) + paired.block<3, 3>(j, i).transpose());
+      matrix.add(nodes_[a], nodes_[b], half.block<3, 3>(i, j) + half.block<3, 3>(j, i).transpose());
     }
 }
 

@@ -85,14 +85,11 @@ class FramedSolid {
   TurnSlopes turn_slopes(const Seen& seen) const;
   /// The slopes' forces in the world's directions, N a rad, summed over the pieces: three rows a node of nodes_.
   Eigen::MatrixXd forces_on_nodes(const Seen& seen, const TurnSlopes& slopes) const;
-  /// Stiffness of the nodes where no frame turns, N/m, in the world's directions: three rows and columns a node of
-  /// nodes_.
-  struct HeldStiffness {
-    Eigen::MatrixXd own;     ///< of pieces by themselves
-    Eigen::MatrixXd paired;  ///< of pairs of pieces, each but once: its transpose comes on top
-  };
-  /// This stiffness of all pieces and their pairs.
-  HeldStiffness held_stiffness(const Seen& seen) const;
+  /// Adds the stiffness of the nodes where no frame turns, N/m, in the world's directions, three rows and columns a node
+  /// of nodes_: a half, which the stiffness is the sum of with its transpose.
+  void add_half_stiffness(const Seen& seen, Eigen::MatrixXd& half) const;
+  /// The same of what keeps the frames turned with their pieces.
+  void add_half_turning(const Seen& seen, Eigen::MatrixXd& half) const;
   /// The number of the nodes' coordinates: three a node of nodes_.
   Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(nodes_.size()); }
 

@@ -287,6 +287,12 @@ void GroupProblem::prepare_alone(NewtonWorkspace& work) const {
 
 namespace {
 
+/// Whether each node is coupled with each other one.
+bool couples_all(const BlockMatrix& matrix) {
+  const auto nodes = static_cast<std::size_t>(matrix.nodes());
+  return matrix.block_rows().size() == nodes * (nodes + 1) / 2;
+}
+
 /// Whether all nodes of each group are coupled.
 bool holds(const BlockMatrix& matrix, const std::vector<std::vector<int>>& cliques) {
   for (const std::vector<int>& clique : cliques)
@@ -325,10 +331,14 @@ NewtonWorkspace GroupProblem::workspace() const {
 }
 
 std::vector<char> GroupProblem::kept_nodes() const {
-  std::vector<char> kept;
-  for (const Member& member : members_) {
-    kept.insert(kept.end(), member.body.kept_nodes(), 1);
-    kept.insert(kept.end(), member.body.nodes() - member.body.kept_nodes(), 0);
+  std::vector<char> joined(static_cast<std::size_t>(size_ / 3), 0), kept;
+  for (const std::vector<int>& clique : patterns_.joined)
+    for (int node : clique) joined[static_cast<std::size_t>(node)] = 1;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const Body& body = members_[k].body;
+    const bool full = couples_all(patterns_.own[k]);
+    for (int node = 0; node < body.nodes(); ++node)
+      kept.push_back(node < body.kept_nodes() && (!full || joined[kept.size()]));
   }
   return kept;
 }

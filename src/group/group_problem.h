@@ -88,7 +88,8 @@ class GroupProblem : public ConstrainedEnergy {
   std::vector<const Join*> joins_at(const VecX& x, const VecX* step = nullptr) const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
-  /// One a node: what is not kept is condensed.
+  /// One a node: what is not kept is condensed. Of a body whose nodes are all coupled with each other, such as a solid,
+  /// those that no join meets are condensed too: kept, they would stand in the way of all that comes after them.
   std::vector<char> kept_nodes() const;
   void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
   /// Adds what these joins, found at x, do to the bodies; residuals are judged beside these forces, too.

@@ -143,7 +143,8 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
 VecX Cholesky::solve(const VecX& right) const { return solve_columns(right); }
 Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right, Workers* workers) const {
   if (!impl_->condensation) return solve_columns(right);  // CHOLMOD's workspaces serve one thread
-  constexpr Eigen::Index together = 4;  // columns: more take little longer, but could not be shared
+  // Fewer columns read the factor more often, more could not be shared.
+  constexpr Eigen::Index together = 16;
   const auto chunks = static_cast<int>((right.cols() + together - 1) / together);
   Eigen::MatrixXd out(right.rows(), right.cols());
   for_each_chunk(workers, chunks, [&](int chunk) {
