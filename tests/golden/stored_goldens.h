@@ -39,17 +39,13 @@ inline std::vector<Stored> stored_goldens() {
   return all;
 }
 
-/// The stored golden's state and make with another picture: it fails exactly and by the tolerance for other
-/// machines.
+/// The stored golden's state with another picture: it fails by the tolerance for other machines, and so exactly.
 inline void expect_caught(const Stored& stored, const Image& image, const std::string& what) {
-  for (const bool elsewhere : {false, true}) {
-    Golden changed = stored.golden;
-    changed.image = image;
-    if (elsewhere) changed.sidecar.renderer = "another renderer";
-    const Judgement judgement = judge(stored.golden, changed);
-    EXPECT_FALSE(judgement.passed) << stored.scenario << "/" << stored.frame << " does not notice " << what
-                                   << (elsewhere ? " on another machine" : "");
-  }
+  Golden changed = stored.golden;
+  changed.image = image;
+  changed.sidecar.renderer = "another renderer";
+  EXPECT_FALSE(judge(stored.golden, changed).passed)
+      << stored.scenario << "/" << stored.frame << " does not notice " << what;
 }
 
 /// A moved light, a brighter one and a missing instrument show in every frame.
