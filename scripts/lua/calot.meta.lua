@@ -129,6 +129,11 @@
 ---@class calot.rotate_options
 ---@field speed? number largest angular speed, rad/s; default 90 * deg; 1 to 1000 deg
 
+---Options of t.laparoscope:look_at.
+---@class calot.look_options
+---@field distance? number from the lens to the place; default as the scene's laparoscope has it; 10 to 400 mm
+---@field speed? number largest speed of the tip; default 30 * mm / s; 0.1 to 500 mm / s
+
 ---Options of an exchange.
 ---@class calot.exchange_options
 ---@field speed? number largest speed of the tip; default 150 * mm / s; 0.1 to 500 mm / s
@@ -243,6 +248,7 @@
 ---@field field_of_view? number across the round picture; default 75 * deg; 20 to 120 deg
 ---@field light? number brightness of its light; 1: what it looks at is well lit; 0: it is off; default 1; 0 to 10
 ---@field exposure? number of the camera; a picture is as bright as light times exposure; default 1; 0.05 to 20
+---@field horizon? "level"|"held" who keeps it level: the camera, or who turns the shaft that it is fixed to; default "level"
 ---@field show_structure? boolean draw elements and nodes on the organs, to look into the simulation; default false
 
 ---How the simulation steps.
@@ -363,6 +369,10 @@
 ---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "obj"; default "pear"
 ---@field path string file below the scenario's folder or the project's assets folder
 ---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
+---@field turn? calot.point these are turned about this axis by its length first: { 0, 0, 90 * deg } about z; default { 0 * deg, 0 * deg, 0 * deg }
+---@field offset? calot.point and then moved by this; default { 0, 0, 0 }
+---@field axes? "organ"|"scene" along what these are: the organ's own axes, with its neck in the origin, +z towards its fundus and +x towards its liver side, or the scene's axes and origin; default "organ"
+---@field through_points? boolean the wall passes through the file's points; without it they are control points, and the wall lies inside of them where it bulges; default false
 
 ---A duct or a vessel: a tube along a line; solid where its wall is as thick as its radius.
 ---@class calot.shape_tube
@@ -471,7 +481,7 @@
 ---@field to calot.point its end on the other organ
 ---@field share number of the first organ's way, where it begins: a tube's length, else from neck to fundus; 0 to 1
 
----What steps and demo have in common. Instruments are its fields: t.left, t.right, ...
+---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...; and t.laparoscope.
 ---@class calot.Session
 local Session = {}
 
@@ -537,6 +547,11 @@ function Session:along(organ, share) end
 ---@return number
 function Session:seen_area(a, b, c) end
 
+---Whether the laparoscope sees a place: it is in the round picture, and no organ, instrument or ground lies before it. What is within 2 mm of it does not hide it.
+---@param place calot.point|string a point, m, or a landmark such as "gallbladder.fundus"
+---@return boolean
+function Session:sees(place) end
+
 ---The critical view of safety as it is now, measured: the hepatocystic triangle cleared of tissue, by rays from the laparoscope and from behind; the plate's strands on the gallbladder's lower third torn; two structures and no more still enter the gallbladder, each seen and free. 0 to 2 points each, 0 to 6 in all; from which share on is uncalibrated.
 ---@param options? calot.critical_view_options what the parts are called, and what earns points
 ---@return calot.critical_view
@@ -550,6 +565,7 @@ function Session:strands(tissue) end
 ---The t of steps = function(t, p): the operation's steps, what to wait for, what to measure.
 ---@class calot.Steps: calot.Session
 ---@field [string] calot.Instrument
+---@field laparoscope calot.Laparoscope
 local Steps = {}
 
 ---Ends the running step as done and starts the next.
@@ -618,6 +634,7 @@ function Steps:events() end
 ---The t of demo = function(t, p): moves the instruments.
 ---@class calot.Demo: calot.Session
 ---@field [string] calot.DemoInstrument
+---@field laparoscope calot.DemoLaparoscope
 local Demo = {}
 
 ---A time-out: the act of stopping to say what is seen. The event time_out has the words as its text.
@@ -765,6 +782,68 @@ function DemoInstrument:rotate(angle, options) end
 ---Waits.
 ---@param duration number how long; 0 to 3600 s
 function DemoInstrument:wait(duration) end
+
+---The laparoscope, t.laparoscope. With an angled optic it looks down from its shaft (posteriorly) where it starts, at roll 0; roll turns the way it looks about the shaft.
+---@class calot.Laparoscope
+local Laparoscope = {}
+
+---The place of its lens, {x, y, z} in m.
+---@return calot.point
+function Laparoscope:tip() end
+
+---The direction of its shaft into the body, of length 1.
+---@return number[]
+function Laparoscope:axis() end
+
+---Where it looks, of length 1: along its shaft, or with an angled optic that angle off it.
+---@return number[]
+function Laparoscope:direction() end
+
+---How far it is turned about its shaft from where it started, rad, right-handed about the way into the body.
+---@return number
+function Laparoscope:roll() end
+
+---How far the picture's horizon is from level, rad, clockwise for who stands behind the camera. 0 unless the scene says horizon = "held".
+---@return number
+function Laparoscope:horizon() end
+
+---Whether its end touched an organ when it was moved last.
+---@return boolean
+function Laparoscope:touching() end
+
+---How far its lens is from a place, m.
+---@param place calot.point|string a point, m, or a landmark such as "gallbladder.fundus"
+---@return number
+function Laparoscope:distance(place) end
+
+---Where a place is in the picture, hidden or not: to the right and up from the middle, as shares of the round picture's radius (without the lens's slight barrel distortion). Nothing where it is not before the lens.
+---@param place calot.point|string a point, m, or a landmark such as "gallbladder.fundus"
+---@return number?, number?
+function Laparoscope:picture(place) end
+
+---The laparoscope as the demo moves it.
+---@class calot.DemoLaparoscope: calot.Laparoscope
+local DemoLaparoscope = {}
+
+---Goes where a place is in the middle of the picture, with the optic down from the shaft.
+---@param place calot.point|string a point, m, or a landmark such as "gallbladder.fundus"
+---@param options? calot.look_options from how far, and how fast
+function DemoLaparoscope:look_at(place, options) end
+
+---Moves the lens straight to a place.
+---@param target calot.point|string a point, m, or a landmark
+---@param options? calot.move_options how fast
+function DemoLaparoscope:move_to(target, options) end
+
+---Moves the lens straight by a vector, patient's frame.
+---@param vector calot.point how far, {x, y, z} in m
+---@param options? calot.move_options how fast
+function DemoLaparoscope:move_by(vector, options) end
+
+---Turns about the shaft.
+---@param angle number right-handed about the direction of the tip; -360 to 360 deg
+---@param options? calot.rotate_options how fast
+function DemoLaparoscope:rotate(angle, options) end
 
 ---A session that has ended, as a rule of the score sees it. metrics holds those that were measured by their names, notes what t:note gave last, params what was chosen, events and steps lists in the order of time.
 ---@class calot.Run

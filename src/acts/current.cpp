@@ -50,12 +50,19 @@ bool heat(Tissue& tissue, std::size_t strand, double energy) {
   return true;
 }
 
-/// What of the tool current flows through to a place there, m away.
-double distance_to(const Tool& tool, const std::vector<Shape>& shapes, const Vec3& place) {
+/// Of a tool, what current flows through: its jaws, or the electrode that its rod ends in.
+std::vector<Shape> working_shapes(const Tool& tool) {
+  const std::vector<Shape> all = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
+  std::vector<Shape> out;
+  for (int part = 0; part < shapes_per_tool; ++part)
+    if (conducts(tool.geometry, part)) out.push_back(all[static_cast<std::size_t>(part)]);
+  return out;
+}
+
+/// From a place to the nearest of some shapes, m.
+double distance_to(const std::vector<Shape>& shapes, const Vec3& place) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (int part = 1; part < shapes_per_tool; ++part)
-    if (conducts(tool.geometry, part))
-      nearest = std::min(nearest, signed_distance(shapes[static_cast<std::size_t>(part)], place));
+  for (const Shape& shape : shapes) nearest = std::min(nearest, signed_distance(shape, place));
   return nearest;
 }
 
@@ -68,7 +75,7 @@ std::array<Vec3, 2> ends_of(const Organ& organ, const Clip& clip) {
 }
 
 /// The organ whose clip is touched by what current flows through, and where.
-std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field, const Tool& tool,
+std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field,
                                                           const std::vector<Shape>& shapes) {
   constexpr double half = 0.6e-3;  // m, half as thick as a shut clip, and as near as touches
   constexpr int looks = 8;         // along the legs: less than 1.5 mm apart
@@ -77,7 +84,7 @@ std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field, co
       const auto [from, to] = ends_of(organ, clip);
       for (int k = 0; k <= looks; ++k)
         if (const Vec3 at = from + static_cast<double>(k) / looks * (to - from);
-            distance_to(tool, shapes, at) < half)
+            distance_to(shapes, at) < half)
           return {{&organ, at}};
     }
   return std::nullopt;
@@ -86,9 +93,8 @@ std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field, co
 /// Current in or near what it should be kept from: raised when it begins.
 void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& events) {
   const bool active = is_active(tool);
-  const std::vector<Shape> shapes =
-      active ? instrument_shapes(tool.trocar, tool.pose, tool.geometry) : std::vector<Shape>{};
-  const auto clip = active ? touched_clip(field, tool, shapes) : std::nullopt;
+  const std::vector<Shape> shapes = active ? working_shapes(tool) : std::vector<Shape>{};
+  const auto clip = active ? touched_clip(field, shapes) : std::nullopt;
   if (clip && !tool.on_clip)
     events.push_back({EventKind::activation_on_clip, 0, tool.definition.name, clip->first->definition.name, 0,
                       clip->second, EventCause::current});
@@ -97,7 +103,7 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
   Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
   for (const Organ& organ : field.organs) {
     if (!active || organ.definition.keep_clear == 0) continue;
-    const Clearance found = clearance(tool, organ);
+    const Clearance found = clearance(shapes, organ);
     if (found.distance >= organ.definition.keep_clear || found.distance >= nearest.distance) continue;
     kept = &organ;
     nearest = found;
@@ -187,8 +193,9 @@ std::vector<WorldEvent> apply_current(Field& field, const std::vector<Instrument
   return events;
 }
 
-Clearance clearance(const Tool& tool, const Organ& organ) {
-  const std::vector<Shape> shapes = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
+Clearance clearance(const Tool& tool, const Organ& organ) { return clearance(working_shapes(tool), organ); }
+
+Clearance clearance(const std::vector<Shape>& shapes, const Organ& organ) {
   const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
   const std::vector<double>& radii = organ.body->skin_radii();
   // Of a tube, whose points stand far apart, between them too.
@@ -198,7 +205,7 @@ Clearance clearance(const Tool& tool, const Organ& organ) {
     const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
     const Vec3 at =
         skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
-    const double distance = distance_to(tool, shapes, at) - (radii.empty() ? 0.0 : radii[p]);
+    const double distance = distance_to(shapes, at) - (radii.empty() ? 0.0 : radii[p]);
     if (distance < nearest.distance) nearest = {distance, at};
   }
   nearest.distance = std::max(0.0, nearest.distance);

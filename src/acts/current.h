@@ -19,6 +19,8 @@ struct Clearance {
   double distance = 0;  ///< m; 0 where they touch
   Vec3 place;           ///< m, of the skin, nearest to it
 };
+/// Of the nearest of some shapes.
+Clearance clearance(const std::vector<Shape>& shapes, const Organ& organ);
 /// Of what a tool works with: its jaws, or what its rod ends in (`conducts`), as it is posed now.
 Clearance clearance(const Tool& tool, const Organ& organ);
 

@@ -23,8 +23,8 @@ void visit_members(auto&& visit, MembersOf<SweptShape> auto& definition) {
   visit(along);
 }
 void visit_members(auto&& visit, MembersOf<MeshFile> auto& definition) {
-  auto& [path, scale] = definition;
-  visit(path, scale);
+  auto& [path, scale, turn, offset, axes, through_points] = definition;
+  visit(path, scale, turn, offset, axes, through_points);
 }
 void visit_members(auto&& visit, MembersOf<TubeShape> auto& definition) {
   auto& [points, radius, end_radius, nodes, pressure, patient_end, carries, feed_pressure, feed_resistance,
@@ -117,8 +117,9 @@ void visit_members(auto&& visit, MembersOf<InstrumentDefinition> auto& definitio
         bore_length, suction, pinhole, waits, hand_force, port_friction);
 }
 void visit_members(auto&& visit, MembersOf<LaparoscopeDefinition> auto& definition) {
-  auto& [port, angle, field_of_view, look_at, distance, light, exposure, show_structure] = definition;
-  visit(port, angle, field_of_view, look_at, distance, light, exposure, show_structure);
+  auto& [port, angle, field_of_view, look_at, distance, light, exposure, horizon, show_structure] =
+      definition;
+  visit(port, angle, field_of_view, look_at, distance, light, exposure, horizon, show_structure);
 }
 void visit_members(auto&& visit, MembersOf<SolverDefinition> auto& definition) {
   auto& [rate, motion, tolerance, extension_levels, extension_scheme, extension_view, skip_still] =

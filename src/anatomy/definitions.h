@@ -38,9 +38,18 @@ struct SweptShape {
   bool operator==(const SweptShape&) const = default;
 };
 
+/// Whose axes a mesh file's coordinates are along: the organ's (organ_frame.h), or the scene's.
+enum class MeshAxes { organ, scene };
+constexpr MeshAxes last_of(MeshAxes) { return MeshAxes::scene; }
+
 struct MeshFile {
   std::string path;
   double scale = 1.0;  ///< coordinates of the file times this are metres
+  /// These are turned about this axis by its length, rad, moved by the offset, m, and are then along these axes.
+  Vec3 turn = Vec3::Zero(), offset = Vec3::Zero();
+  MeshAxes axes = MeshAxes::organ;
+  /// The wall passes through the file's points; else they are control points, and the wall is smaller where it bulges.
+  bool through_points = false;
   bool operator==(const MeshFile&) const = default;
 };
 
@@ -364,6 +373,11 @@ InstrumentDefinition default_instrument(InstrumentType type);
 /// What it is called among instruments, by who moves them.
 inline constexpr const char* laparoscope_name = "laparoscope";
 
+/// How the picture's horizon is kept: the camera on the laparoscope is held level, whatever the shaft does, or it is fixed
+/// to the shaft, and who moves it has to turn it so that the horizon is level.
+enum class Horizon { level, held };
+constexpr Horizon last_of(Horizon) { return Horizon::held; }
+
 struct LaparoscopeDefinition {
   std::string port = "umbilical";
   double angle = 0.5235987755982988;           ///< rad; 0 or 30 deg (c)
@@ -372,6 +386,7 @@ struct LaparoscopeDefinition {
   double distance = 90e-3;                     ///< m from the scope's tip to what it looks at
   double light = 1;     ///< brightness of its light, 1: what is looked at is well lit, at any distance
   double exposure = 1;  ///< of the camera; pictures go by light times exposure
+  Horizon horizon = Horizon::level;
   bool show_structure = false;  ///< draw elements and nodes on the organs: a debug view
 };
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <numbers>
+
 #include "anatomy/instruments.h"
 #include "anatomy/key_table.h"
 #include "base/units.h"
@@ -202,6 +204,8 @@ std::vector<KeyTable> field_tables() {
                              "brightness of its light; 1: what it looks at is well lit; 0: it is off"),
                       number("exposure", &Scope::exposure, quantity::number, 0.05, 20, "a camera's exposure",
                              "of the camera; a picture is as bright as light times exposure"),
+                      choice("horizon", &Scope::horizon, {"level", "held"},
+                             "who keeps it level: the camera, or who turns the shaft that it is fixed to"),
                       flag("show_structure", &Scope::show_structure,
                            "draw elements and nodes on the organs, to look into the simulation")}),
       keys_of<Solver>(
@@ -404,7 +408,20 @@ std::vector<KeyTable> shape_tables() {
           {type("obj"),
            required(text("path", "", "file below the scenario's folder or the project's assets folder")),
            number("scale", &MeshFile::scale, quantity::number, 1e-9, 1e3,
-                  "a scale from a mesh file to metres", "the file's coordinates times this are metres")}),
+                  "a scale from a mesh file to metres", "the file's coordinates times this are metres"),
+           bound(point("turn", quantity::angle, 2 * std::numbers::pi, "{ 0 * deg, 0 * deg, 0 * deg }",
+                       "these are turned about this axis by its length first: { 0, 0, 90 * deg } about z"),
+                 &MeshFile::turn),
+           place("offset", &MeshFile::offset, abdomen_reach, "a place in the abdomen",
+                 "and then moved by this"),
+           choice("axes", &MeshFile::axes, {"organ", "scene"},
+                  "along what these are: the organ's own axes, with its neck in the origin, +z towards its "
+                  "fundus and +x "
+                  "towards its liver side, or the scene's axes and origin"),
+           flag("through_points", &MeshFile::through_points,
+                "the wall passes through the file's points; without it they are control points, and the wall "
+                "lies inside "
+                "of them where it bulges")}),
       keys_of<TubeShape>(
           "shape_tube",
           "A duct or a vessel: a tube along a line; solid where its wall is as thick as its radius.",

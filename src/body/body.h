@@ -196,7 +196,9 @@ class Body {
   /// What is drawn: the skin, or what is around it.
   virtual const std::vector<Triangle>& drawn_triangles() const { return skin().triangles; }
   virtual const std::vector<Vec3>& drawn_rest() const { return skin_rest(); }
-  virtual DrawnSurface drawn(const VecX& x) const { return {skin_positions(x), skin_normals(x)}; }
+  /// Its positions alone, which take half of the time.
+  virtual std::vector<Vec3> drawn_positions(const VecX& x) const { return skin_positions(x); }
+  virtual DrawnSurface drawn(const VecX& x) const { return {drawn_positions(x), skin_normals(x)}; }
 
   /// Nodes of finer levels that are active, increasing, and how many levels have some.
   virtual const std::vector<int>& details() const;

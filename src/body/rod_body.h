@@ -115,6 +115,7 @@ class RodBody : public Body {
 
   const std::vector<Triangle>& drawn_triangles() const override { return tube_->triangles(); }
   const std::vector<Vec3>& drawn_rest() const override { return drawn_rest_; }
+  std::vector<Vec3> drawn_positions(const VecX& x) const override { return drawn(x).positions; }
   DrawnSurface drawn(const VecX& x) const override;
 
   const Rod& rod() const { return rod_; }

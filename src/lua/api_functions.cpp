@@ -36,6 +36,20 @@ std::vector<Key> place_on_tube(std::vector<Key> more = {}) {
   return more;
 }
 
+/// A point, or a landmark.
+Key place_or_landmark(std::string name, std::string doc) {
+  Key key{std::move(name), KeyKind::place, std::move(doc), true};
+  key.quantity = &quantity::length;
+  key.low = -500 * mm;
+  key.high = 500 * mm;
+  return key;
+}
+
+Key turn() {
+  return required(number("angle", quantity::angle, -2 * std::numbers::pi, 2 * std::numbers::pi, "",
+                         "right-handed about the direction of the tip"));
+}
+
 Key landmark() { return required(text("landmark", "", "a landmark such as \"gallbladder.fundus\"")); }
 
 std::vector<ApiFunction> module_functions() {
@@ -155,6 +169,13 @@ std::vector<ApiFunction> session_functions() {
         required(point("c", quantity::length, 1.0, "", "the last"))},
        "number"},
       {"Session",
+       "sees",
+       "Whether the laparoscope sees a place: it is in the round picture, and no organ, instrument or ground "
+       "lies "
+       "before it. What is within 2 mm of it does not hide it.",
+       {place_or_landmark("place", "a point, m, or a landmark such as \"gallbladder.fundus\"")},
+       "boolean"},
+      {"Session",
        "critical_view",
        "The critical view of safety as it is now, measured: the hepatocystic triangle cleared of tissue, by "
        "rays "
@@ -267,16 +288,70 @@ std::vector<ApiFunction> run_functions() {
           {"Run", "times", "When there were events of a kind, s, ascending.", {kind, on}, "number[]"}};
 }
 
+std::vector<ApiFunction> laparoscope_functions() {
+  const Key seen = place_or_landmark("place", "a point, m, or a landmark such as \"gallbladder.fundus\"");
+  const Key options = table("options", "move_options", "how fast");
+  return {
+      {"Laparoscope", "tip", "The place of its lens, {x, y, z} in m.", {}, "calot.point"},
+      {"Laparoscope", "axis", "The direction of its shaft into the body, of length 1.", {}, "number[]"},
+      {"Laparoscope",
+       "direction",
+       "Where it looks, of length 1: along its shaft, or with an angled optic that angle off it.",
+       {},
+       "number[]"},
+      {"Laparoscope",
+       "roll",
+       "How far it is turned about its shaft from where it started, rad, right-handed about the way into the "
+       "body.",
+       {},
+       "number"},
+      {"Laparoscope",
+       "horizon",
+       "How far the picture's horizon is from level, rad, clockwise for who stands behind the camera. 0 "
+       "unless the "
+       "scene says horizon = \"held\".",
+       {},
+       "number"},
+      {"Laparoscope", "touching", "Whether its end touched an organ when it was moved last.", {}, "boolean"},
+      {"Laparoscope", "distance", "How far its lens is from a place, m.", {seen}, "number"},
+      {"Laparoscope",
+       "picture",
+       "Where a place is in the picture, hidden or not: to the right and up from the middle, as shares of "
+       "the round "
+       "picture's radius (without the lens's slight barrel distortion). Nothing where it is not before the "
+       "lens.",
+       {seen},
+       "number?, number?"},
+      {"DemoLaparoscope",
+       "look_at",
+       "Goes where a place is in the middle of the picture, with the optic down from the shaft.",
+       {seen, table("options", "look_options", "from how far, and how fast")},
+       ""},
+      {"DemoLaparoscope",
+       "move_to",
+       "Moves the lens straight to a place.",
+       {place_or_landmark("target", "a point, m, or a landmark"), options},
+       ""},
+      {"DemoLaparoscope",
+       "move_by",
+       "Moves the lens straight by a vector, patient's frame.",
+       {required(point("vector", quantity::length, 300 * mm, "", "how far, {x, y, z} in m")), options},
+       ""},
+      {"DemoLaparoscope",
+       "rotate",
+       "Turns about the shaft.",
+       {turn(), table("options", "rotate_options", "how fast")},
+       ""},
+  };
+}
+
 std::vector<ApiFunction> instrument_functions() {
   const Key options = table("options", "move_options", "how fast");
   const double open = InstrumentGeometry{}.jaw_opening;
   const Key part =
       choice("part", tool_part_names(), "",
              "shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip");
-  Key target{"target", KeyKind::place, "a point, m, or a landmark such as \"gallbladder.fundus\"", true};
-  target.quantity = &quantity::length;
-  target.low = -500 * mm;
-  target.high = 500 * mm;
+  const Key target = place_or_landmark("target", "a point, m, or a landmark such as \"gallbladder.fundus\"");
   return {
       {"Instrument",
        "holds",
@@ -404,9 +479,7 @@ std::vector<ApiFunction> instrument_functions() {
       {"DemoInstrument",
        "rotate",
        "Turns about the shaft.",
-       {required(number("angle", quantity::angle, -2 * std::numbers::pi, 2 * std::numbers::pi, "",
-                        "right-handed about the direction of the tip")),
-        table("options", "rotate_options", "how fast")},
+       {turn(), table("options", "rotate_options", "how fast")},
        ""},
       {"DemoInstrument", "wait", "Waits.", {seconds("duration", 0, "how long")}, ""},
   };
@@ -416,7 +489,7 @@ std::vector<ApiFunction> instrument_functions() {
 
 std::vector<ApiFunction> all_functions() {
   std::vector<ApiFunction> all = module_functions();
-  for (auto* more : {&session_functions, &instrument_functions, &run_functions})
+  for (auto* more : {&session_functions, &instrument_functions, &laparoscope_functions, &run_functions})
     for (ApiFunction& function : (*more)()) all.push_back(std::move(function));
   return all;
 }

@@ -55,8 +55,10 @@ std::string annotate_functions(const std::string& owner, const std::string& pref
 std::string annotate_class(const ApiClass& handle) {
   const std::string parent = handle.parent.empty() ? "" : fmt::format(": calot.{}", handle.parent);
   std::string text = fmt::format("\n---{}\n---@class calot.{}{}\n", handle.doc, handle.name, parent);
-  if (handle.name == "Steps") text += "---@field [string] calot.Instrument\n";
-  if (handle.name == "Demo") text += "---@field [string] calot.DemoInstrument\n";
+  if (handle.name == "Steps")
+    text += "---@field [string] calot.Instrument\n---@field laparoscope calot.Laparoscope\n";
+  if (handle.name == "Demo")
+    text += "---@field [string] calot.DemoInstrument\n---@field laparoscope calot.DemoLaparoscope\n";
   if (handle.name == "Run")
     text +=
         "---@field events calot.event[]\n---@field steps calot.step[]\n---@field metrics table<string, "
@@ -207,7 +209,9 @@ std::string describe_names() {
   std::string text = "\n## Ports\n\n| port | place |\n|---|---|\n";
   for (const PortDefinition& port : default_ports())
     text += fmt::format("| `{}` | `{}` |\n", port.name, in_mm(port.position));
-  text += "\n## Landmarks\n\nEach of organs of its kind; `calot list FILE` says which: `gallbladder.fundus`.\n\n| landmark | |\n|---|---|\n";
+  text +=
+      "\n## Landmarks\n\nEach of organs of its kind; `calot list FILE` says which: "
+      "`gallbladder.fundus`.\n\n| landmark | |\n|---|---|\n";
   for (const Landmark& landmark : landmark_rows())
     text += fmt::format("| `{}` | {} |\n", landmark.name, landmark.doc);
   text += "\n## Events\n\n| event | raised when | value |\n|---|---|---|\n";

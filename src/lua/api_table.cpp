@@ -16,6 +16,7 @@ std::string ApiFunction::full_name() const {
   if (owner == "calot") return "calot." + name;
   if (owner == "score") return "calot.score." + name;
   if (owner == "Run") return "run:" + name;
+  if (owner == "Laparoscope" || owner == "DemoLaparoscope") return "t.laparoscope:" + name;
   return (owner == "Instrument" || owner == "DemoInstrument" ? "t.<instrument>:" : "t:") + name;
 }
 
@@ -47,13 +48,20 @@ const ApiFunction& api_function(const std::string& owner, const std::string& nam
 
 const std::vector<ApiClass>& api_classes() {
   static const std::vector<ApiClass> classes = {
-      {"Session", "", "What steps and demo have in common. Instruments are its fields: t.left, t.right, ..."},
+      {"Session", "",
+       "What steps and demo have in common. Instruments are its fields: t.left, t.right, ...; and "
+       "t.laparoscope."},
       {"Steps", "Session",
        "The t of steps = function(t, p): the operation's steps, what to wait for, what to measure."},
       {"Demo", "Session", "The t of demo = function(t, p): moves the instruments."},
       {"Instrument", "", "An instrument as steps see it: what it touches, holds and feels."},
       {"DemoInstrument", "Instrument",
        "An instrument as the demo moves it. Motions return when they have ended."},
+      {"Laparoscope", "",
+       "The laparoscope, t.laparoscope. With an angled optic it looks down from its shaft (posteriorly) "
+       "where it "
+       "starts, at roll 0; roll turns the way it looks about the shaft."},
+      {"DemoLaparoscope", "Laparoscope", "The laparoscope as the demo moves it."},
       {"Run", "",
        "A session that has ended, as a rule of the score sees it. metrics holds those that were measured by "
        "their "

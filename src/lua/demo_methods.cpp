@@ -11,12 +11,6 @@ struct DemoCall {
   int instrument;
 };
 
-DemoScript& demo_of(lua_State* L, ScriptSession& session, const char* method) {
-  auto* demo = dynamic_cast<DemoScript*>(&session);
-  if (demo == nullptr) luaL_error(L, "%s is available in demo only", method);
-  return *demo;
-}
-
 DemoCall demo_call(lua_State* L, const char* method) {
   const HandleTarget target = instrument_target(L, method);
   return {demo_of(L, *target.session, method), target.instrument};
@@ -71,23 +65,12 @@ int close(lua_State* L) {
   return call.demo.set_jaw(L, call.instrument, "close", 0.0);
 }
 
-double speed_option(Arguments& arguments, const char* api, double fallback) {
-  arguments.options(api).take("speed", fallback);
-  return fallback;
-}
-
 int move_to(lua_State* L) {
   const DemoCall call = demo_call(L, "move_to");
   Arguments arguments(L, call.demo, "DemoInstrument", "move_to");
   const double speed = speed_option(arguments, "move_options", default_speed);
-  const Value* target = arguments.read().take("target");
-  if (target != nullptr && target->is(Value::Kind::text)) {
-    if (!arguments.finish() || !call.demo.is_landmark(L, target->text)) return 0;
-    return call.demo.move_to(L, call.instrument, call.demo.landmark(L, target->text), speed);
-  }
-  const std::optional<Vec3> point = target != nullptr ? arguments.point(*target, "target") : std::nullopt;
-  if (!arguments.finish() || !point) return 0;
-  return call.demo.move_to(L, call.instrument, *point, speed);
+  const std::optional<Vec3> target = place_argument(L, call.demo, arguments, "target");
+  return target ? call.demo.move_to(L, call.instrument, *target, speed) : 0;
 }
 
 int move_by(lua_State* L) {
@@ -161,6 +144,17 @@ int instrument_wait(lua_State* L) {
 }
 
 }  // namespace
+
+DemoScript& demo_of(lua_State* L, ScriptSession& session, const char* method) {
+  auto* demo = dynamic_cast<DemoScript*>(&session);
+  if (demo == nullptr) luaL_error(L, "%s is available in demo only", method);
+  return *demo;
+}
+
+double speed_option(Arguments& arguments, const char* api, double usual) {
+  arguments.options(api).take("speed", usual);
+  return usual;
+}
 
 const std::vector<Method>& demo_methods() {
   static const std::vector<Method> rows = {{"Demo", "together", guarded<together>},

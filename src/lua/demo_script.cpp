@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "acts/exchange.h"
 #include "base/units.h"
@@ -23,6 +25,7 @@ DemoScript::DemoScript(Sandbox& sandbox, const ExerciseDefinition& exercise, int
     : ScriptSession(sandbox, exercise, "Demo", "DemoInstrument", parameters, problems), function_(function) {
   for (const InstrumentDefinition& instrument : exercise.scene.instruments)
     waits_.push_back(instrument.waits ? 1 : 0);
+  waits_.push_back(0);
 }
 
 double DemoScript::time() const {
@@ -61,6 +64,7 @@ void DemoScript::make_paths(const World& world) {
   flows_.resize(paths_.size());
   fires_.resize(paths_.size());
   comings_.resize(paths_.size());
+  paths_.emplace_back(world.laparoscope().port(), world.report().laparoscope.pose, geometry(laparoscope()));
 }
 
 Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt) {
@@ -80,10 +84,14 @@ Result<std::optional<StepInput>> DemoScript::next(const World& world, double dt)
   set_world(nullptr);
   if (failure) return *failure;
   StepInput input;
-  for (std::size_t i = 0; i < paths_.size(); ++i) {
+  for (std::size_t i = 0; i < scene().instruments.size(); ++i) {
     const InstrumentState& state = world.report().instruments[i];
     input.instruments.push_back(state.waits ? state.pose : paths_[i].pose(end));
   }
+  // A pose that is made of its place anew differs by rounding: what was never moved stays where it is.
+  if (const InstrumentPose pose = paths_.back().pose(end);
+      paths_.back().busy_until() > 0 && pose != world.report().laparoscope.pose)
+    input.laparoscope = pose;
   input.actions = actions(end);
   input.acts = std::exchange(acts_, {});
   return {std::optional<StepInput>(std::move(input))};
@@ -267,6 +275,7 @@ InstrumentPath* DemoScript::free_path(lua_State* L, int instrument) {
 }
 
 InstrumentGeometry DemoScript::geometry(int instrument) const {
+  if (instrument == laparoscope()) return laparoscope_geometry();
   return instrument_geometry(scene().instruments[static_cast<std::size_t>(instrument)].type);
 }
 
@@ -373,6 +382,20 @@ int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double
     return path.busy_until();
   };
   return play_motion(L, instrument, dry_motion_duration, motion);
+}
+
+int DemoScript::look_at(lua_State* L, const LookAt& how) {
+  const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
+    const InstrumentPose pose = world(L).laparoscope().looking_at(how.place, how.distance);
+    const Vec3 lens = tip_position(path.trocar(), pose, path.geometry());
+    if (!can_reach(L, path, lens)) return std::nullopt;
+    path.move(now, lens, how.speed);
+    // By the shorter way round.
+    path.rotate(now, path.roll() + std::remainder(pose.roll - path.roll(), 2 * std::numbers::pi),
+                default_turning_speed);
+    return path.busy_until();
+  };
+  return play_motion(L, laparoscope(), dry_motion_duration, motion);
 }
 
 int DemoScript::dry_move_until(lua_State* L, const MoveUntil& how) {

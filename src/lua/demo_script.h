@@ -29,6 +29,13 @@ struct MoveUntil {
   double limit = 20e-3;       ///< m
 };
 
+/// Of the laparoscope.
+struct LookAt {
+  Vec3 place = Vec3::Zero();     ///< m, to be in the middle of the picture
+  double distance = 0;           ///< m, from the lens to it
+  double speed = default_speed;  ///< m/s, of the lens
+};
+
 struct Exchange {
   double speed = 150e-3;  ///< m/s, of the tip of the instrument that is drawn out
   double duration = 3;    ///< s that an assistant takes to change one for the other (d)
@@ -53,8 +60,10 @@ class DemoScript final : public ScriptSession, public InputSource {
   int approach(lua_State* L, int instrument, const Approach& how);
   /// `method` for the complaint about an instrument without jaws; no angle: as far as they open.
   int set_jaw(lua_State* L, int instrument, const std::string& method, std::optional<double> angle);
+  /// This and the next, and rotate(): of the laparoscope too.
   int move_to(lua_State* L, int instrument, const Vec3& tip, double speed);
   int move_by(lua_State* L, int instrument, const Vec3& vector, double speed);
+  int look_at(lua_State* L, const LookAt& how);
   /// Returns to Lua whether the predicate came to hold, and how far the tip was moved, m.
   int move_until(lua_State* L, int instrument, const MoveUntil& how);
   /// Lets current flow for a duration, s, and waits for that.
@@ -123,7 +132,7 @@ class DemoScript final : public ScriptSession, public InputSource {
 
   int function_;
   std::vector<Task> tasks_;
-  std::vector<InstrumentPath> paths_;
+  std::vector<InstrumentPath> paths_;  ///< one an instrument, and the laparoscope's
   /// When each instrument acts, s: in the steps that end within it.
   struct Flow {
     double from = 0, to = 0;
@@ -132,7 +141,7 @@ class DemoScript final : public ScriptSession, public InputSource {
   std::vector<Flow> flows_;
   std::vector<SessionAct> acts_;              ///< since the last step
   std::vector<std::optional<double>> fires_;  ///< s, one an instrument: when its trigger is pulled next
-  std::vector<char> waits_;                   ///< one an instrument
+  std::vector<char> waits_;                   ///< one an instrument; the laparoscope never does
   /// Of an instrument that comes in: when, s, and where the script says so.
   struct Coming {
     std::optional<double> at;  ///< none once it was asked for

@@ -24,6 +24,7 @@ const HandleTarget* target_at(lua_State* L, int index) {
 
 std::string name_of(const HandleTarget& target) {
   if (target.instrument < 0) return "t";
+  if (target.instrument == target.session->laparoscope()) return std::string("t.") + laparoscope_name;
   return "t." + target.session->scene().instruments[static_cast<std::size_t>(target.instrument)].name;
 }
 
@@ -41,6 +42,13 @@ int describe_handle(lua_State* L) {
 
 int do_nothing(lua_State*) { return 0; }
 
+std::string class_of(const HandleTarget& target) {
+  const ScriptSession& session = *target.session;
+  if (target.instrument < 0) return session.class_name();
+  return target.instrument == session.laparoscope() ? session.laparoscope_class()
+                                                    : session.instrument_class();
+}
+
 /// Method, or instrument of t. Upvalue 1: the class's methods. In a dry run an unknown name is reported and
 /// stands for something harmless, so that what follows is checked too.
 int index_handle(lua_State* L) {
@@ -56,9 +64,9 @@ int index_handle(lua_State* L) {
     if (lua_rawget(L, -2) != LUA_TNIL) return 1;
   }
   ScriptSession& session = *target->session;
-  std::vector<std::string> names =
-      method_names(is_session ? session.class_name() : session.instrument_class());
+  std::vector<std::string> names = method_names(class_of(*target));
   if (is_session) {
+    names.insert(names.begin(), laparoscope_name);
     for (const InstrumentDefinition& instrument : session.scene().instruments)
       names.insert(names.begin(), instrument.name);
   }
@@ -114,6 +122,8 @@ void push_session_handle(lua_State* L, ScriptSession& session) {
     push_handle(L, {&session, index++}, session.instrument_class(), 0);
     lua_setfield(L, -2, instrument.name.c_str());
   }
+  push_handle(L, {&session, index}, session.laparoscope_class(), 0);
+  lua_setfield(L, -2, laparoscope_name);
   lua_setiuservalue(L, -2, 1);
 }
 

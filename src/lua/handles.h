@@ -13,7 +13,7 @@ void open_handles(lua_State* L);
 /// Pushes a new t for the session.
 void push_session_handle(lua_State* L, ScriptSession& session);
 
-/// What a handle is of. Of t itself the instrument is -1.
+/// What a handle is of. Of t itself the instrument is -1, of the laparoscope ScriptSession::laparoscope().
 struct HandleTarget {
   ScriptSession* session = nullptr;
   int instrument = -1;

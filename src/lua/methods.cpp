@@ -6,9 +6,11 @@
 #include <cstdlib>
 
 #include "base/index_of.h"
+#include "base/suggest.h"
 #include "lua/demo_methods.h"
 #include "lua/demo_script.h"
 #include "lua/handles.h"
+#include "lua/laparoscope_methods.h"
 #include "lua/read_scene.h"
 #include "lua/score_rules.h"
 #include "lua/steps_script.h"
@@ -99,16 +101,6 @@ int clips(lua_State* L) {
   return 1;
 }
 
-/// {x, y, z}
-int push_vector(lua_State* L, const Vec3& vector) {
-  lua_createtable(L, 3, 0);
-  for (int i = 0; i < 3; ++i) {
-    lua_pushnumber(L, vector[i]);
-    lua_rawseti(L, -2, i + 1);
-  }
-  return 1;
-}
-
 /// Where the landmark is; none after a complaint.
 std::optional<Vec3> landmark_argument(lua_State* L, ScriptSession& session, const Arguments& arguments) {
   const std::string name = arguments.text("landmark");
@@ -144,9 +136,12 @@ int seen_area(lua_State* L) {
   return 1;
 }
 
-void set_number(lua_State* L, const char* key, double value) {
-  lua_pushnumber(L, value);
-  lua_setfield(L, -2, key);
+int sees(lua_State* L) {
+  ScriptSession& session = session_target(L, "sees");
+  Arguments arguments(L, session, "Session", "sees");
+  const std::optional<Vec3> place = place_argument(L, session, arguments, "place");
+  lua_pushboolean(L, place && session.sees(L, *place));
+  return 1;
 }
 
 /// Points are whole numbers, as tables and reports show them.
@@ -528,50 +523,51 @@ int untie(lua_State* L) {
   return 0;
 }
 
-const Method methods[] = {{"Session", "wait", guarded<wait>},
-                          {"Session", "wait_until", guarded<wait_until>},
-                          {"Session", "time", guarded<time>},
-                          {"Session", "pressure", guarded<pressure>},
-                          {"Session", "volume", guarded<volume>},
-                          {"Session", "torn", guarded<torn>},
-                          {"Session", "divided", guarded<divided>},
-                          {"Session", "clips", guarded<clips>},
-                          {"Session", "lost", guarded<lost>},
-                          {"Session", "place", guarded<place>},
-                          {"Session", "along", guarded<along>},
-                          {"Session", "seen_area", guarded<seen_area>},
-                          {"Session", "critical_view", guarded<critical_view>},
-                          {"Session", "strands", guarded<strands>},
-                          {"Steps", "step", guarded<step>},
-                          {"Steps", "missed", guarded<missed>},
-                          {"Steps", "hold", guarded<hold>},
-                          {"Steps", "note", guarded<note>},
-                          {"Steps", "divide", guarded<divide>},
-                          {"Steps", "clip", guarded<clip>},
-                          {"Steps", "remove", guarded<remove>},
-                          {"Steps", "add", guarded<add>},
-                          {"Steps", "tie", guarded<tie>},
-                          {"Steps", "untie", guarded<untie>},
-                          {"Steps", "count", guarded<count>},
-                          {"Steps", "events", guarded<events>},
-                          {"Run", "count", guarded<count_events_of_run>},
-                          {"Run", "times", guarded<times_of_events_of_run>},
-                          {"Instrument", "holds", guarded<holds>},
-                          {"Instrument", "force", guarded<force>},
-                          {"Instrument", "handle_force", guarded<handle_force>},
-                          {"Instrument", "touching", guarded<touching>},
-                          {"Instrument", "active", guarded<active>},
-                          {"Instrument", "waits", guarded<waits>},
-                          {"Instrument", "tip", guarded<tip>},
-                          {"Instrument", "distance", guarded<distance>},
-                          {"Instrument", "clearance", guarded<clearance>},
-                          {"Instrument", "force_vector", guarded<force_vector>},
-                          {"Instrument", "pull", guarded<pull>},
-                          {"Instrument", "push", guarded<push>},
-                          {"Instrument", "grip", guarded<grip>},
-                          {"Instrument", "clips_left", guarded<clips_left>},
-                          {"Instrument", "aspirated", guarded<aspirated>},
-                          {"Instrument", "contact", guarded<contact>}};
+const Method own_methods[] = {{"Session", "wait", guarded<wait>},
+                              {"Session", "wait_until", guarded<wait_until>},
+                              {"Session", "time", guarded<time>},
+                              {"Session", "pressure", guarded<pressure>},
+                              {"Session", "volume", guarded<volume>},
+                              {"Session", "torn", guarded<torn>},
+                              {"Session", "divided", guarded<divided>},
+                              {"Session", "clips", guarded<clips>},
+                              {"Session", "lost", guarded<lost>},
+                              {"Session", "place", guarded<place>},
+                              {"Session", "along", guarded<along>},
+                              {"Session", "seen_area", guarded<seen_area>},
+                              {"Session", "sees", guarded<sees>},
+                              {"Session", "critical_view", guarded<critical_view>},
+                              {"Session", "strands", guarded<strands>},
+                              {"Steps", "step", guarded<step>},
+                              {"Steps", "missed", guarded<missed>},
+                              {"Steps", "hold", guarded<hold>},
+                              {"Steps", "note", guarded<note>},
+                              {"Steps", "divide", guarded<divide>},
+                              {"Steps", "clip", guarded<clip>},
+                              {"Steps", "remove", guarded<remove>},
+                              {"Steps", "add", guarded<add>},
+                              {"Steps", "tie", guarded<tie>},
+                              {"Steps", "untie", guarded<untie>},
+                              {"Steps", "count", guarded<count>},
+                              {"Steps", "events", guarded<events>},
+                              {"Run", "count", guarded<count_events_of_run>},
+                              {"Run", "times", guarded<times_of_events_of_run>},
+                              {"Instrument", "holds", guarded<holds>},
+                              {"Instrument", "force", guarded<force>},
+                              {"Instrument", "handle_force", guarded<handle_force>},
+                              {"Instrument", "touching", guarded<touching>},
+                              {"Instrument", "active", guarded<active>},
+                              {"Instrument", "waits", guarded<waits>},
+                              {"Instrument", "tip", guarded<tip>},
+                              {"Instrument", "distance", guarded<distance>},
+                              {"Instrument", "clearance", guarded<clearance>},
+                              {"Instrument", "force_vector", guarded<force_vector>},
+                              {"Instrument", "pull", guarded<pull>},
+                              {"Instrument", "push", guarded<push>},
+                              {"Instrument", "grip", guarded<grip>},
+                              {"Instrument", "clips_left", guarded<clips_left>},
+                              {"Instrument", "aspirated", guarded<aspirated>},
+                              {"Instrument", "contact", guarded<contact>}};
 
 }  // namespace
 
@@ -579,10 +575,11 @@ lua_CFunction method_function(const std::string& class_name, const std::string& 
   const auto found = [&](const Method& candidate) {
     return class_name == candidate.class_name && method == candidate.name;
   };
-  for (const Method& candidate : methods)
+  for (const Method& candidate : own_methods)
     if (found(candidate)) return candidate.function;
-  for (const Method& candidate : demo_methods())
-    if (found(candidate)) return candidate.function;
+  for (const std::vector<Method>* more : {&demo_methods(), &laparoscope_methods()})
+    for (const Method& candidate : *more)
+      if (found(candidate)) return candidate.function;
   for (const ApiClass& handle : api_classes())
     if (handle.name == class_name && !handle.parent.empty()) return method_function(handle.parent, method);
   std::abort();  // declared but not bound

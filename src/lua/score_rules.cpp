@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/suggest.h"
+#include "lua/method_targets.h"
 #include "lua/methods.h"
 #include "script/binding.h"
 #include "script/lua_headers.h"
@@ -41,11 +42,6 @@ void set_text(lua_State* L, const char* key, const std::string& text) {
 /// Absent rather than empty, as `if event.cause then` reads.
 void set_some(lua_State* L, const char* key, const std::string& text) {
   if (!text.empty()) set_text(L, key, text);
-}
-
-void set_number(lua_State* L, const char* key, double number) {
-  lua_pushnumber(L, number);
-  lua_setfield(L, -2, key);
 }
 
 void push_event(lua_State* L, const SessionEvent& event) {

@@ -111,6 +111,29 @@ double ScriptSession::seen_area(lua_State* L, const std::array<Vec3, 3>& corners
   return share_seen[next_level()] * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
 }
 
+bool ScriptSession::sees(lua_State* L, const Vec3& place) {
+  return checking() ? next_guess() : world(L).sees(place);
+}
+
+LaparoscopeState ScriptSession::lens(lua_State* L) {
+  if (checking()) stand_in();
+  if (has_world()) return world(L).report().laparoscope;
+  LaparoscopeState state;
+  const LaparoscopeDefinition& scope = scene().laparoscope;
+  state.view = laparoscope_pose(scope, port_position(scope.port), landmark(L, scope.look_at));
+  return state;
+}
+
+Vec3 ScriptSession::lens_axis(const LaparoscopeState& lens) const {
+  return (lens.view.position - port_position(scene().laparoscope.port)).normalized();
+}
+
+Vec3 ScriptSession::port_position(const std::string& name) const {
+  for (const PortDefinition& port : scene().ports.empty() ? default_ports() : scene().ports)
+    if (port.name == name) return port.position;
+  return Vec3::Zero();  // which is refused elsewhere
+}
+
 double ScriptSession::guessed_loss() { return share_lost[next_level()] * usual_volume; }
 
 double ScriptSession::lost(lua_State* L, bool blood, const std::string& name) {
@@ -347,8 +370,7 @@ InstrumentState ScriptSession::stand_in_instrument(int instrument) {
   const int level = next_level();
   const InstrumentDefinition& definition = scene().instruments[static_cast<std::size_t>(instrument)];
   InstrumentState state;
-  for (const PortDefinition& port : scene().ports.empty() ? default_ports() : scene().ports)
-    if (port.name == definition.port) state.tip = port.position;
+  state.tip = port_position(definition.port);
   if (!scene().anatomy.organs.empty()) {  // from the port to the organ
     const double way = 0.5 + 0.25 * level;
     state.tip += way * (scene().anatomy.organs.front().fundus - state.tip);

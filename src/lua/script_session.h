@@ -41,6 +41,9 @@ class ScriptSession {
   const SceneDefinition& scene() const { return exercise_.scene; }
   const std::string& class_name() const { return class_name_; }
   const std::string& instrument_class() const { return instrument_class_; }
+  /// What the handle of t.laparoscope has for its instrument, behind those of the scene; and its class.
+  int laparoscope() const { return static_cast<int>(scene().instruments.size()); }
+  std::string laparoscope_class() const { return class_name_ == "Demo" ? "DemoLaparoscope" : "Laparoscope"; }
   bool checking() const { return problems_ != nullptr; }
 
   /// Why handles no longer work; empty while they do.
@@ -67,6 +70,12 @@ class ScriptSession {
   double torn(lua_State* L, const std::string& name);
   /// Of a triangle, m^2 (World::seen_area); in a dry run none, half or all of it.
   double seen_area(lua_State* L, const std::array<Vec3, 3>& corners);
+  /// Whether the laparoscope sees a place, m (World::sees); a dry run answers either way.
+  bool sees(lua_State* L, const Vec3& place);
+  /// Where the laparoscope is and what it touches; in a dry run without a world, a stand-in that looks at an organ.
+  LaparoscopeState lens(lua_State* L);
+  /// From its port to its lens there, unit.
+  Vec3 lens_axis(const LaparoscopeState& lens) const;
   /// The critical view of safety (World::critical_view); in a dry run nothing, half or all of it. Complains about names.
   CriticalView critical_view(lua_State* L, const CriticalViewQuestion& question);
   /// A strand of a tissue that stands.
@@ -142,6 +151,8 @@ class ScriptSession {
 
  private:
   int next_level();
+  /// Of the scene's ports or the usual ones, m.
+  Vec3 port_position(const std::string& name) const;
   bool is_tissue(lua_State* L, const std::string& name);
 
   Sandbox& sandbox_;

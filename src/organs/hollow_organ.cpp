@@ -14,9 +14,22 @@
 namespace calot {
 namespace {
 
-/// Vertices of the unstressed surface in the organ's frame, lower pole at the origin.
+/// A file's points in the organ's frame.
+Result<TriMesh> file_mesh(const MeshFile& file, const OrganDefinition& definition) {
+  Result<TriMesh> mesh = read_obj(file.path, file.scale);
+  if (!mesh) return mesh;
+  Pose placed = Pose::Identity();
+  const double angle = file.turn.norm();
+  if (angle > 0) placed.rotate(Eigen::AngleAxisd(angle, file.turn / angle));
+  placed.pretranslate(file.offset);
+  if (file.axes == MeshAxes::scene) placed = organ_frame(definition).inverse() * placed;
+  for (Vec3& p : mesh->points) p = placed * p;
+  return mesh;
+}
+
+/// Vertices of the unstressed surface in the organ's frame; that of ours has its lower pole at the origin.
 Result<TriMesh> unstressed_mesh(const OrganDefinition& definition) {
-  if (const auto* file = std::get_if<MeshFile>(&definition.shape)) return read_obj(file->path, file->scale);
+  if (const auto* file = std::get_if<MeshFile>(&definition.shape)) return file_mesh(*file, definition);
   if (const auto* sphere = std::get_if<SphereShape>(&definition.shape)) {
     Result<TriMesh> mesh = revolve(sphere_profile(sphere->radius), definition.nodes);
     // The profile is centred; the organ stands on its lower pole.
@@ -98,11 +111,12 @@ Result<TriMesh> sound_mesh(const OrganDefinition& definition) {
 }
 
 /// Control mesh in the world whose limit surface passes through the unstressed vertices; a mesh file is a
-/// control mesh already.
+/// control mesh already unless it says otherwise.
 Result<TriMesh> control_mesh(const OrganDefinition& definition) {
   Result<TriMesh> mesh = sound_mesh(definition);
   if (!mesh) return mesh;
-  if (!std::holds_alternative<MeshFile>(definition.shape)) {
+  const auto* file = std::get_if<MeshFile>(&definition.shape);
+  if (file == nullptr || file->through_points) {
     Result<LoopSurface> surface = LoopSurface::create(mesh.value());
     if (!surface) return of_organ(surface.failure(), definition);
     Result<std::vector<Vec3>> fitted = fit_to_limit(surface.value(), mesh->points);
@@ -126,6 +140,17 @@ ShellMaterial wall_material(const OrganDefinition& definition) {
   return material;
 }
 
+/// Of a shape from a file, a landmark's place on the wall: at the ends of the organ's axis (unit) the wall's last point
+/// that way, else the one nearest to where the landmark is in the box around it.
+Vec3 on_wall(const Landmark& row, const Vec3& in_box, const Vec3& axis, const std::vector<Vec3>& wall) {
+  const auto rank = [&](const Vec3& p) {
+    if (row.side != 0 || (row.along > 0 && row.along < 1)) return (p - in_box).squaredNorm();
+    return row.along > 0 ? -p.dot(axis) : p.dot(axis);
+  };
+  return *std::min_element(wall.begin(), wall.end(),
+                           [&](const Vec3& a, const Vec3& b) { return rank(a) < rank(b); });
+}
+
 /// Where the analytic landmarks lie, m, world.
 std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
                                             const std::vector<Vec3>& skin) {
@@ -142,11 +167,13 @@ std::map<std::string, Vec3> landmark_places(const OrganDefinition& definition,
       }
     return places;
   }
+  const bool file = std::holds_alternative<MeshFile>(definition.shape);
   for (const Landmark& row : landmark_rows()) {
     if (!has_landmark(definition.shape, row)) continue;
     const Vec3 share(0.5 * (1 + row.side), 0.5, row.along);
     places[row.name] =
         frame * Vec3(share.cwiseProduct(box.max()) + (Vec3::Ones() - share).cwiseProduct(box.min()));
+    if (file) places[row.name] = on_wall(row, places[row.name], frame.linear().col(2), skin);
   }
   return places;
 }

@@ -147,14 +147,27 @@ void sum_divided(const Progress& progress, const std::string& instrument, Metric
   metrics[instrument + ".divided_mm2"] = area;
 }
 
-void count_events(const Progress& progress, const std::string& instrument, Metrics& metrics) {
+/// Those that are counted of such an owner.
+void count_events(const Progress& progress, MetricOwner owner, const std::string& instrument,
+                  Metrics& metrics) {
   for (const MetricRow& row : metric_rows()) {
-    if (!row.counts) continue;
+    if (!row.counts || row.owner != owner) continue;
     metrics[instrument + "." + row.name] = static_cast<double>(
         std::count_if(progress.events().begin(), progress.events().end(), [&](const SessionEvent& event) {
           return event.kind == row.event && event.instrument == instrument;
         }));
   }
+}
+
+void measure_laparoscope(const Traces& traces, const Progress& progress, Metrics& metrics) {
+  if (traces.laparoscope.empty()) return;
+  const std::string name = laparoscope_name;
+  measure_motion({processed_motion(traces.time, traces.laparoscope)}, leg_ends(progress, name), name + ".",
+                 metrics);
+  count_events(progress, MetricOwner::laparoscope, name, metrics);
+  double sum = 0;
+  for (const double off : traces.off_level) sum += std::abs(off);
+  metrics[name + ".horizon_off_deg"] = sum / static_cast<double>(traces.off_level.size()) / units::deg;
 }
 
 /// By what it can lose; none where it can lose nothing.
@@ -189,9 +202,13 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
   std::vector<std::string> names;
   switch (owner) {
     case MetricOwner::instrument:
+    case MetricOwner::moved:
       for (const InstrumentDefinition& instrument : exercise.scene.instruments)
         names.push_back(instrument.name);
+      if (owner == MetricOwner::moved) names.emplace_back(laparoscope_name);
       return names;
+    case MetricOwner::laparoscope:
+      return {laparoscope_name};
     case MetricOwner::organ:
       for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
         for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
@@ -231,14 +248,14 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
 const std::vector<MetricRow>& metric_rows() {
   using enum MetricOwner;
   static const std::vector<MetricRow> rows = {
-      {"path_length_mm", instrument, "length of the tip's path, sum |dp|"},
-      {"time_s", instrument, "from the first movement to the last (movement: not idle)"},
-      {"idle_time_s", instrument, "time at less than 5 mm/s, counted where it lasts 0.5 s or more"},
-      {"economy", instrument,
+      {"path_length_mm", moved, "length of the tip's path, sum |dp|"},
+      {"time_s", moved, "from the first movement to the last (movement: not idle)"},
+      {"idle_time_s", moved, "time at less than 5 mm/s, counted where it lasts 0.5 s or more"},
+      {"economy", moved,
        "sum of straight legs / path length, 0 to 1; a leg ends at each grasp, release and step"},
-      {"depth_perception_mm", instrument, "way in and out along the shaft, sum |dd|"},
-      {"angular_path_deg", instrument, "sum of the angle between u and the next u"},
-      {"response_orientation_deg", instrument, "turning about the shaft, sum |dpsi|"},
+      {"depth_perception_mm", moved, "way in and out along the shaft, sum |dd|"},
+      {"angular_path_deg", moved, "sum of the angle between u and the next u"},
+      {"response_orientation_deg", moved, "turning about the shaft, sum |dpsi|"},
       {"peak_force_N", instrument,
        "largest force of the tissue on the whole of it, raw: opposite forces on jaws and shaft cancel"},
       {"mean_force_N", instrument, "mean of that force where it is above 1 mN, raw"},
@@ -271,6 +288,9 @@ const std::vector<MetricRow>& metric_rows() {
       {"perforations", instrument, "how often it opened a hollow organ's wall", EventKind::perforation, true},
       {"liver_cuts", instrument, "how often its blades closed on the liver", EventKind::cut_liver, true},
       {"empty_cuts", instrument, "how often its blades closed on nothing", EventKind::empty_cut, true},
+      {"contacts", laparoscope, "how often its end began to touch an organ, where it was moved",
+       EventKind::contact, true},
+      {"horizon_off_deg", laparoscope, "mean angle of its horizon from level"},
       {"peak_pressure_Pa", organ, "largest pressure of its filling"},
       {"max_stretch", organ, "largest principal stretch of its wall", EventKind::overstretch},
       {"bile_lost_mL", holds_bile, "bile that left it by openings", EventKind::bile_leak},
@@ -314,7 +334,10 @@ std::string pattern(const MetricRow& row) {
   const auto of = [&](const char* owner) { return std::string(owner) + "." + row.name; };
   switch (row.owner) {
     case MetricOwner::instrument:
+    case MetricOwner::moved:
       return of("<instrument>");
+    case MetricOwner::laparoscope:
+      return of(laparoscope_name);
     case MetricOwner::organ:
     case MetricOwner::hollow:
     case MetricOwner::holds_bile:
@@ -359,9 +382,10 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
                    metrics);
     measure_forces(traces.instruments[i], name + ".", metrics);
     measure_activation(traces.time, traces.instruments[i], name + ".", metrics);
-    count_events(progress, name, metrics);
+    count_events(progress, MetricOwner::instrument, name, metrics);
     sum_divided(progress, name, metrics);
   }
+  measure_laparoscope(traces, progress, metrics);
   for (std::size_t i = 0; i < traces.organs.size(); ++i) {
     if (traces.organs[i].empty()) continue;
     double pressure = traces.organs[i].front().pressure, stretch = traces.organs[i].front().max_stretch;

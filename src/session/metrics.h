@@ -21,6 +21,8 @@ inline constexpr int measures_version = 2;
 
 enum class MetricOwner {
   instrument,
+  moved,  ///< an instrument or the laparoscope
+  laparoscope,
   organ,
   hollow,  ///< organ
   holds_bile,

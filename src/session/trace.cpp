@@ -60,6 +60,12 @@ void append_sample(const World& world, Traces& traces) {
     sample.pad_pressure = state.pad_pressure;
     traces.instruments[i].push_back(sample);
   }
+  InstrumentSample& lens = traces.laparoscope.emplace_back();
+  lens.tip = report.laparoscope.view.position;
+  lens.axis = (lens.tip - world.laparoscope().port()).normalized();
+  lens.insertion = report.laparoscope.pose.insertion;
+  lens.roll = report.laparoscope.pose.roll;
+  traces.off_level.push_back(horizon_off_level(report.laparoscope.view));
   for (const OrganState& organ : report.organs) {
     const auto row = static_cast<std::size_t>(organ.record);
     if (row >= traces.organs.size()) {

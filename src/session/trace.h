@@ -34,6 +34,8 @@ struct OrganSample {
 struct Traces {
   std::vector<double> time;                                ///< s, one a sample
   std::vector<std::vector<InstrumentSample>> instruments;  ///< [instrument][sample]
+  std::vector<InstrumentSample> laparoscope;               ///< one a sample: its motion alone
+  std::vector<double> off_level;                           ///< rad, of its horizon, one a sample
   /// [organ][sample], in the order in which organs came; of one that came later or went, those of its time.
   std::vector<std::vector<OrganSample>> organs;
   std::vector<std::string> organ_names;

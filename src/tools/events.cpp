@@ -7,7 +7,8 @@ namespace calot {
 const std::vector<EventRow>& event_rows() {
   using enum EventKind;
   static const std::vector<EventRow> rows = {
-      {contact, "contact", "an instrument begins to touch tissue", "", true, true},
+      {contact, "contact",
+       "an instrument, or the end of the laparoscope as it is moved, begins to touch tissue", "", true, true},
       {grasp, "grasp", "jaws close on a fold and hold it", "", true, true},
       {empty_grasp, "empty_grasp", "jaws close and hold nothing", "", true, false, true},
       {release, "release", "what was held is let go, by opening or because it slipped off", "", true, true},

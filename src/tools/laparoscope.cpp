@@ -1,6 +1,7 @@
 #include "tools/laparoscope.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace calot {
 
@@ -34,8 +35,32 @@ InstrumentGeometry laparoscope_geometry() {
   return geometry;
 }
 
+Shape laparoscope_end(const Vec3& port, const InstrumentPose& pose) {
+  const InstrumentGeometry geometry = laparoscope_geometry();
+  const Vec3 tip = tip_position(port, pose, geometry), way = (tip - port).normalized();
+  return Capsule{tip - 30e-3 * way, tip - geometry.shaft_radius * way, geometry.shaft_radius};
+}
+
+double horizon_off_level(const LaparoscopePose& view) {
+  const Vec3 across = view.direction.cross(Vec3::UnitZ());
+  if (across.norm() <= 1e-6) return 0;
+  const Vec3 level = across.cross(view.direction).normalized();
+  return std::atan2(level.cross(view.up).dot(view.direction), level.dot(view.up));
+}
+
+std::optional<Vec2> place_in_picture(const LaparoscopePose& view, double field_of_view, const Vec3& place) {
+  const Vec3 way = place - view.position;
+  const double depth = way.dot(view.direction), edge = depth * std::tan(0.5 * field_of_view);
+  if (!(depth > 0)) return std::nullopt;
+  return Vec2(way.dot(view.direction.cross(view.up)), way.dot(view.up)) / edge;
+}
+
+bool is_in_field(const LaparoscopePose& view, double field_of_view, const Vec3& place) {
+  return (place - view.position).normalized().dot(view.direction) >= std::cos(0.5 * field_of_view);
+}
+
 Laparoscope::Laparoscope(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target)
-    : port_(port), stands_(laparoscope_pose(scope, port, target)) {
+    : scope_(scope), port_(port), stands_(laparoscope_pose(scope, port, target)) {
   const Vec3 shaft = stands_.position - port;
   const bool inside = shaft.dot(target - port) > 0;
   start_ = pose_reaching(port, inside ? stands_.position : Vec3(port - shaft), 0, 0, laparoscope_geometry());
@@ -52,8 +77,22 @@ LaparoscopePose Laparoscope::view(const InstrumentPose& pose) const {
   view.direction = tip.linear() * along_;
   const Vec3 across = view.direction.cross(Vec3::UnitZ());
   // Straight up or down there is no horizon: the camera turns with the shaft.
-  view.up = across.norm() > 1e-6 ? across.cross(view.direction).normalized() : Vec3(tip.linear() * level_up_);
+  const bool level = scope_.horizon == Horizon::level && across.norm() > 1e-6;
+  view.up = level ? across.cross(view.direction).normalized() : Vec3(tip.linear() * level_up_);
   return view;
+}
+
+InstrumentPose Laparoscope::looking_at(const Vec3& place, double distance) const {
+  LaparoscopeDefinition scope = scope_;
+  scope.distance = distance;
+  const LaparoscopePose wanted = laparoscope_pose(scope, port_, place);
+  InstrumentPose pose = pose_reaching(port_, wanted.position, 0, 0, laparoscope_geometry());
+  const Vec3 along = hinge_frame(port_, pose, laparoscope_geometry()).linear().transpose() * wanted.direction;
+  // About the shaft, from the way the optic looks at roll 0 to the way that is wanted; a straight one looks along the shaft.
+  if (along_.head<2>().norm() > 1e-6)
+    pose.roll = std::remainder(std::atan2(along.y(), along.x()) - std::atan2(along_.y(), along_.x()),
+                               2 * std::numbers::pi);
+  return pose;
 }
 
 }  // namespace calot

@@ -1,6 +1,8 @@
 #pragma once
 // Where a laparoscope is, and where it looks.
 
+#include <optional>
+
 #include "tools/instrument.h"
 
 namespace calot {
@@ -20,11 +22,23 @@ void visit_members(auto&& visit, MembersOf<LaparoscopePose> auto& pose) {
 /// out.
 LaparoscopePose laparoscope_pose(const LaparoscopeDefinition& scope, const Vec3& port, const Vec3& target);
 
+/// rad, how far the camera is turned about its line of sight from where its horizon is level, right-handed about the way it
+/// looks: clockwise for who stands behind it. 0 where it looks straight up or down, as there is no horizon.
+double horizon_off_level(const LaparoscopePose& view);
+/// Where a place, m, is in the picture of a lens with this field of view, rad, without the lens' barrel distortion: to the right
+/// and up from the middle, as shares of the round field's radius. None: it is not before the lens.
+std::optional<Vec2> place_in_picture(const LaparoscopePose& view, double field_of_view, const Vec3& place);
+/// Whether it is within the round field, hidden or not.
+bool is_in_field(const LaparoscopePose& view, double field_of_view, const Vec3& place);
+
 /// How far it goes in: a shaft of 10 mm, 310 mm long, without jaws. Tissue does not feel it.
 InstrumentGeometry laparoscope_geometry();
+/// The last 30 mm of its shaft, whose end is the lens.
+Shape laparoscope_end(const Vec3& port, const InstrumentPose& pose);
 
 /// A laparoscope in its port, about which it pivots as an instrument does. Its optic is fixed to the shaft, so roll turns
-/// the way an angled one looks; the camera on it is held so that the horizon stays level.
+/// the way an angled one looks: at roll 0 of where it starts, down from its shaft. The camera on it is held so that the horizon
+/// stays level, or is fixed to the shaft and turns with it (Horizon).
 class Laparoscope {
  public:
   Laparoscope() = default;
@@ -36,8 +50,13 @@ class Laparoscope {
   const InstrumentPose& start() const { return start_; }
   /// From a pose; where that is start(), laparoscope_pose() by every bit.
   LaparoscopePose view(const InstrumentPose& pose) const;
+  /// From where a place, m, is seen in the middle of the picture from `distance` m, with the optic down from the shaft as
+  /// laparoscope_pose() has it.
+  InstrumentPose looking_at(const Vec3& place, double distance) const;
+  const Vec3& port() const { return port_; }
 
  private:
+  LaparoscopeDefinition scope_;
   Vec3 port_ = Vec3::Zero();
   InstrumentPose start_;
   LaparoscopePose stands_;

@@ -78,10 +78,11 @@ struct LaparoscopeState {
   InstrumentPose pose;
   LaparoscopePose view;
   double distance = 0;  ///< m, from the lens to where at rest the place was that the scene has it look at
+  std::string touches = {};  ///< the organ that its end touched when it was moved last; empty: none
 };
 void visit_members(auto&& visit, MembersOf<LaparoscopeState> auto& state) {
-  auto& [pose, view, distance] = state;
-  visit(pose, view, distance);
+  auto& [pose, view, distance, touches] = state;
+  visit(pose, view, distance, touches);
 }
 
 struct OrganState {

@@ -166,7 +166,7 @@ void judge_structures(const Field& field, const CriticalViewQuestion& question,
 
 }  // namespace
 
-CriticalView critical_view(const Field& field, const HepatocysticTriangle& triangle, const Vec3& eye,
+CriticalView critical_view(const Field& field, const HepatocysticTriangle& triangle, const Sight& front,
                            const CriticalViewQuestion& question) {
   std::vector<Standing> standing;
   int lower = 0, lower_torn = 0;
@@ -179,9 +179,8 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
 
   CriticalView out;
   const std::array<Vec3, 3> corners{triangle.neck, triangle.junction, triangle.hilum};
-  const Sight front(field, eye);
-  const Sight back(field, question.behind.value_or(square_behind(corners, eye)),
-                   question.behind ? "" : question.liver);
+  const Sight back = front.from(question.behind.value_or(square_behind(corners, front.eye())),
+                                question.behind ? "" : question.liver);
   std::vector<Standing> fat;
   std::copy_if(standing.begin(), standing.end(), std::back_inserter(fat),
                [](const Standing& strand) { return !strand.of_plate; });

@@ -9,6 +9,8 @@
 
 namespace calot {
 
+class Sight;
+
 struct Field;
 
 struct CriticalViewQuestion {
@@ -44,9 +46,9 @@ struct HepatocysticTriangle {
   Vec3 neck, junction, hilum;
 };
 
-/// `eye`: of the laparoscope's lens, m. Points: for the triangle by the side that is cleared less, for the plate by its share,
+/// `front`: from the laparoscope's lens. Points: for the triangle by the side that is cleared less, for the plate by its share,
 /// for structures two where there are two and both are free, one where one of the two is.
-CriticalView critical_view(const Field& field, const HepatocysticTriangle& triangle, const Vec3& eye,
+CriticalView critical_view(const Field& field, const HepatocysticTriangle& triangle, const Sight& front,
                            const CriticalViewQuestion& question);
 
 }  // namespace calot

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "acts/advance.h"
@@ -75,6 +76,11 @@ struct World::Impl {
   std::vector<RestShift> rest_shifts;  ///< one an organ of the scene
   /// The input of a step that left the field as it was, by every bit: the same again changes nothing either.
   std::optional<StepInput> still;
+  struct Looked {
+    std::uint64_t state_hash = 0;  ///< of the state that it was seen in
+    Sight sight;
+  };
+  std::optional<Looked> looked;  ///< what was seen last
 
   /// Why a step with this input is refused; none: it is not.
   std::optional<Failure> check(const StepInput& input) const;
@@ -83,6 +89,10 @@ struct World::Impl {
   /// What happens on the tools' way.
   Result<std::vector<WorldEvent>> move_tools(const std::vector<InstrumentPose>& commands);
   void place_laparoscope(const InstrumentPose& pose);
+  /// Moves it; what its end begins to touch is an event.
+  void move_laparoscope(const InstrumentPose& pose, std::vector<WorldEvent>& events);
+  /// From the laparoscope's lens, as all stands now.
+  const Sight& look();
   /// Reports all as it stands after a step of `duration` s that raised these events already (without times), and lets
   /// current flow: what begins is an event, too.
   void observe_step(const std::vector<InstrumentAction>& actions, double duration,
@@ -161,6 +171,28 @@ void World::Impl::place_laparoscope(const InstrumentPose& pose) {
   report.laparoscope.distance = pose == laparoscope.start()
                                     ? scene.laparoscope.distance
                                     : (looked_at - report.laparoscope.view.position).norm();
+}
+
+void World::Impl::move_laparoscope(const InstrumentPose& pose, std::vector<WorldEvent>& events) {
+  const std::string touched = report.laparoscope.touches;
+  place_laparoscope(pose);
+  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  std::string& touches = report.laparoscope.touches;
+  touches.clear();
+  for (const Organ& organ : field.organs) {
+    const Clearance found = calot::clearance({laparoscope_end(laparoscope.port(), pose)}, organ);
+    if (found.distance > 0 || found.distance >= nearest.distance) continue;
+    nearest = found;
+    touches = organ.definition.name;
+  }
+  if (!touches.empty() && touches != touched)
+    events.push_back({EventKind::contact, 0, laparoscope_name, touches, 0, nearest.place});
+}
+
+const Sight& World::Impl::look() {
+  const Vec3& lens = report.laparoscope.view.position;
+  if (looked && looked->state_hash == report.state_hash && looked->sight.eye() == lens) return looked->sight;
+  return looked.emplace(Looked{report.state_hash, Sight(field, lens)}).sight;
 }
 
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -381,7 +413,7 @@ Result<StepReport> World::step(const StepInput& input) {
     return self.failure;
   }
   ++self.steps;
-  if (input.laparoscope) self.place_laparoscope(*input.laparoscope);
+  if (input.laparoscope) self.move_laparoscope(*input.laparoscope, events.value());
   self.report.time = self.time();
   self.observe_step(input.actions, 1 / self.scene.solver.rate, std::move(events).value());
   self.keep_hash();
@@ -495,16 +527,25 @@ double World::clearance(ToolIndex instrument, OrganIndex organ) const {
   return calot::clearance(impl_->field.tool(instrument), impl_->field.organ(organ)).distance;
 }
 
+// m before a place: as thick as what a triangle is stretched between.
+constexpr double looked_through = 2e-3;
+
 double World::seen_area(const std::array<Vec3, 3>& corners) const {
-  constexpr double margin = 2e-3;  // m: as thick as what such a triangle is stretched between
-  return calot::seen_area(impl_->field, impl_->report.laparoscope.view,
-                          impl_->scene.laparoscope.field_of_view, corners, margin);
+  return calot::seen_area(impl_->look(), impl_->report.laparoscope.view,
+                          impl_->scene.laparoscope.field_of_view, corners, looked_through);
 }
+
+bool World::sees(const Vec3& place) const {
+  return is_in_field(impl_->report.laparoscope.view, impl_->scene.laparoscope.field_of_view, place) &&
+         impl_->look().sees_past_ground(place, looked_through);
+}
+
+const Laparoscope& World::laparoscope() const { return impl_->laparoscope; }
 
 CriticalView World::critical_view(const CriticalViewQuestion& question) const {
   const HepatocysticTriangle triangle{landmark(question.neck), landmark(question.junction),
                                       landmark(question.hilum)};
-  return calot::critical_view(impl_->field, triangle, impl_->report.laparoscope.view.position, question);
+  return calot::critical_view(impl_->field, triangle, impl_->look(), question);
 }
 
 const Tessellation& World::skin(OrganIndex organ) const { return impl_->field.organ(organ).body->skin(); }

@@ -100,6 +100,9 @@ class World {
   /// Of a triangle's area what the laparoscope sees, m^2, across its line of sight (world/sight.h), from where
   /// it is now.
   double seen_area(const std::array<Vec3, 3>& corners) const;
+  /// Whether it sees a place, m: in its round field, with no organ, instrument or ground on the way but for its last 2 mm.
+  bool sees(const Vec3& place) const;
+  const Laparoscope& laparoscope() const;
   /// The critical view of safety from where the laparoscope is now (world/critical_view.h). Throws as landmark() does.
   CriticalView critical_view(const CriticalViewQuestion& question) const;
   /// How organs had come to rest at the start, one an organ of the scene.

@@ -54,7 +54,7 @@ class ScoredClass : public ProgramTest {
 TEST_F(ScoredClass, TwoHundredRecordingsScoreTheSameWhateverTheNumberOfProcesses) {
   for (int i = 0; i < 200; ++i) {
     std::string text = of_session(text_, i);
-    if (i == 20) text.resize(text.size() / 2);
+    if (i == 20) text.resize(text.find("\"time_s\":0.1,"));
     if (i == 30) text = replaced(text, "\"time_s\":0.1,", "\"time_s\":7,");
     spill(folder_ / "class" / fmt::format("{:03}.jsonl", i), text);
   }
@@ -229,7 +229,7 @@ TEST_F(ScoredClass, MistakesInBenchmarksAreNamedAtTheirLines) {
 
 TEST_F(ScoredClass, ASecondRunTakesWhatIsThereUnlessAnythingButTheNameIsOther) {
   spill(folder_ / "class" / "a.jsonl", text_);
-  spill(folder_ / "class" / "b.jsonl", of_session(text_.substr(0, text_.size() / 2), 2));
+  spill(folder_ / "class" / "b.jsonl", of_session(text_.substr(0, text_.find("\"time_s\":0.1,")), 2));
   spill(folder_ / "class" / "c.jsonl", "no recording");
   const Outcome first = score({"class", "-o", "kept", "--json"});
   EXPECT_EQ(first.code, 4) << first.err;
@@ -313,7 +313,7 @@ std::string of_whom(const std::string& text, const std::string& members) {
 }
 
 TEST_F(ScoredClass, ACopyCountsOnceAndTheLongestWholeOneIsIt) {
-  spill(folder_ / "class" / "a_cut.jsonl", text_.substr(0, text_.size() / 2));
+  spill(folder_ / "class" / "a_cut.jsonl", text_.substr(0, text_.find("\"time_s\":0.1,")));
   spill(folder_ / "class" / "b.jsonl", text_);
   spill(folder_ / "class" / "c.jsonl", text_);
   spill(folder_ / "class" / "d_other.jsonl", of_session(text_, 7));

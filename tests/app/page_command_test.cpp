@@ -68,7 +68,7 @@ TEST_F(PageOfSmall, HasItsScoreAndPicturesWhereStepsBeginAndEndAndNoForeignMarku
 }
 
 TEST_F(PageOfSmall, GoesToTheCutAndListsWhatIsBadAsScoreDoes) {
-  const std::string half = of_session(text_.substr(0, text_.size() / 2), 2);
+  const std::string half = of_session(text_.substr(0, text_.find("\"time_s\":0.1,")), 2);
   spill(folder_ / "cut.jsonl", half);
   spill(folder_ / "foreign.jsonl", std::string(half).replace(half.find("\"small\""), 7, "\"other\""));
   const std::vector<std::string> files{"out/recording.jsonl", "cut.jsonl", "missing.jsonl", "foreign.jsonl"};
@@ -141,7 +141,7 @@ TEST_F(PageOfSmall, ABrowserFindsNothingBrokenAndAsksForNothingElse) {
   if (!long_run()) GTEST_SKIP() << "left to scripts/test --long: it takes a browser of 300 MB";
   Browser browser(folder_ / "browser");
   ASSERT_TRUE(browser.is_there()) << "no chromium, which scripts/test --long installs";
-  spill(folder_ / "cut.jsonl", of_session(text_.substr(0, text_.size() / 2), 2));
+  spill(folder_ / "cut.jsonl", of_session(text_.substr(0, text_.find("\"time_s\":0.1,")), 2));
   EXPECT_EQ(calot({"page", "out/recording.jsonl", "cut.jsonl", "-o", "p.html"}).code, 1);
   const std::string html = slurp(folder_ / "p.html");
   const char* look = R"((() => {

@@ -43,6 +43,8 @@ inline Attempt broken_off(const Played& played, double time) {
                                              traces.time.begin());
   traces.time.resize(kept);
   for (auto& samples : traces.instruments) samples.resize(kept);
+  traces.laparoscope.resize(kept);
+  traces.off_level.resize(kept);
   for (auto& samples : traces.organs) samples.resize(std::min(samples.size(), kept));
   return {measure(played.exercise.scene, traces, progress), progress};
 }

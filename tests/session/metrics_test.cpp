@@ -192,6 +192,8 @@ TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   Traces traces = traced(50, 1, [](double t) { return at({0.05 * t, 0, 0}); });
   traces.organ_names = {"ball"};
   traces.organs.assign(1, std::vector<OrganSample>(traces.time.size()));
+  traces.laparoscope = traces.instruments[0];
+  traces.off_level.assign(traces.time.size(), 0.1);
   Progress progress;
   progress.begin_step(0, "grasp", "", {0});
   progress.begin_step(0.5, "hold", "", {0});
@@ -210,6 +212,8 @@ TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   EXPECT_EQ(found, names);
   EXPECT_EQ(metrics.at("grasp.time_s"), 0.5);
   EXPECT_EQ(metrics.at("total.time_s"), 1);
+  EXPECT_EQ(metrics.at("laparoscope.path_length_mm"), metrics.at("left.path_length_mm"));
+  EXPECT_NEAR(metrics.at("laparoscope.horizon_off_deg"), 0.1 / units::deg, 1e-12);
 }
 
 }  // namespace

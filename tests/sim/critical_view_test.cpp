@@ -7,6 +7,7 @@
 #include "field/field_state.h"
 #include "organs/strand_places.h"
 #include "triangle_rig.h"
+#include "world/sight.h"
 
 namespace calot {
 namespace {
@@ -49,8 +50,8 @@ struct Judged : ::testing::Test {
   static CriticalView judge(const Vec3& eye = beside_neck(22, -100, 0),
                             const CriticalViewQuestion& question = {}) {
     return critical_view(world().field(),
-                         {beside_neck(2, 0, -3), beside_neck(37, 0, -19), beside_neck(37, 0, -3)}, eye,
-                         question);
+                         {beside_neck(2, 0, -3), beside_neck(37, 0, -19), beside_neck(37, 0, -3)},
+                         Sight(world().field(), eye), question);
   }
 };
 constexpr auto everywhere = [](double, const Vec3&) { return true; };

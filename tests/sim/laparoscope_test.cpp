@@ -28,7 +28,7 @@ struct Seen {
     return from({eye, Vec3::UnitY(), Vec3::UnitZ()}, corners);
   }
   double from(const LaparoscopePose& lens, const std::array<Vec3, 3>& corners) const {
-    return seen_area(world.field(), lens, 75 * units::deg, corners, 2e-3);
+    return seen_area(Sight(world.field(), lens.position), lens, 75 * units::deg, corners, 2e-3);
   }
 };
 
@@ -106,6 +106,50 @@ TEST(LaparoscopeInItsPort, APortNearerThanTheLensIsToBeHasItInsideWhenItIsMoved)
   EXPECT_GE(pose.insertion, 0);
   pose.insertion += 1e-3;
   EXPECT_LT(laparoscope.view(pose).position.z(), 0);
+}
+
+TEST(LaparoscopeInItsPort, LookingAtAPlaceHasItInTheMiddleFromThatDistanceWithTheOpticDownFromTheShaft) {
+  const Vec3 port(0.01, -0.01, 0);
+  for (const double angle : {0.0, 30.0})
+    for (const Vec3& place : {Vec3(-0.09, 0.12, -0.12), Vec3(0.05, 0.18, -0.06)}) {
+      LaparoscopeDefinition scope;
+      scope.angle = angle * units::deg;
+      const Laparoscope laparoscope(scope, port, Vec3(-0.05, 0.15, -0.09));
+      const LaparoscopePose view = laparoscope.view(laparoscope.looking_at(place, 70e-3));
+      EXPECT_LT((view.position + 70e-3 * view.direction - place).norm(), 1e-12);
+      EXPECT_LT(place_in_picture(view, 75 * units::deg, place)->norm(), 1e-12);
+      const Vec3 shaft = (view.position - port).normalized();
+      EXPECT_NEAR(shaft.dot(view.direction), std::cos(angle * units::deg), 1e-12);
+      EXPECT_NEAR(shaft.cross(view.direction).z(), 0, 1e-12) << "in the vertical plane";
+      if (angle > 0) {
+        EXPECT_LT(view.direction.z(), shaft.z());
+      }
+    }
+}
+
+TEST(LaparoscopeInItsPort, AHorizonThatIsHeldTurnsByWhatTheShaftIsTurned) {
+  LaparoscopeDefinition scope;
+  scope.angle = 0;
+  scope.horizon = Horizon::held;
+  const Laparoscope laparoscope(scope, Vec3(0.01, -0.01, 0), Vec3(-0.05, 0.15, -0.09));
+  InstrumentPose pose = laparoscope.start();
+  EXPECT_NEAR(horizon_off_level(laparoscope.view(pose)), 0, 1e-12);
+  pose.roll = 25 * units::deg;
+  EXPECT_NEAR(horizon_off_level(laparoscope.view(pose)), pose.roll, 1e-12);
+  pose.roll = -130 * units::deg;
+  EXPECT_NEAR(horizon_off_level(laparoscope.view(pose)), pose.roll, 1e-12);
+}
+
+TEST(LaparoscopeInItsPort, APlaceIsInThePictureWhereTheViewHasIt) {
+  const LaparoscopePose view{Vec3(0.01, 0, 0), Vec3::UnitY(), Vec3::UnitZ()};
+  const double field = 70 * units::deg, edge = 0.1 * std::tan(35 * units::deg);
+  const auto shown = [&](const Vec3& off) { return place_in_picture(view, field, view.position + off); };
+  EXPECT_LT((*shown({edge, 0.1, 0}) - Vec2(1, 0)).norm(), 1e-12) << "the patient's left is right in it";
+  EXPECT_LT((*shown({0, 0.1, 0.5 * edge}) - Vec2(0, 0.5)).norm(), 1e-12);
+  EXPECT_FALSE(shown({0, -0.1, 0}));
+  EXPECT_FALSE(shown({0.1, 0, 0}));
+  EXPECT_TRUE(is_in_field(view, field, view.position + Vec3(0.99 * edge, 0.1, 0)));
+  EXPECT_FALSE(is_in_field(view, field, view.position + Vec3(1.01 * edge, 0.1, 0)));
 }
 
 TEST(LaparoscopeInItsPort, AWorldsLaparoscopeGoesWhereItsInputSaysAndBackWithItsState) {
