@@ -208,7 +208,7 @@
 ---@field divide_energy? number of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; uncalibrated; default 2.5e+06; 1000 to 1e+08
 ---@field covered? boolean true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is torn; default false
 
----A shape that stays and is touched.
+---A shape that stays and is touched. Instruments stop at it.
 ---@class calot.ground
 ---@field name? string its name, unique; default "ground"
 ---@field type? "plane"|"capsule"|"box" a plane (point, normal), a capsule (point, to, radius), a box with round edges (point, size, radius); default "plane"
@@ -219,6 +219,8 @@
 ---@field radius? number of a capsule, and of a box' edges; default 5 * mm; 0.5 to 250 mm
 ---@field friction? number coefficient of friction of what touches it; default 0; 0 to 1
 ---@field looks? "usual"|"liver"|"bowel"|"fat"|"peritoneum" how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as peritoneum; a bowel has to be a capsule; default "usual"
+---@field injury? string what it is called when it is hurt by blades, current or a thrust; left out: liver and bowel by their looks, and nothing else
+---@field thrust_limit? number the force of jaws, or of what a shaft ends in, that hurts it; uncalibrated; default 8 * N; 0.1 to 1000 N
 
 ---An instrument through a port.
 ---@class calot.instrument
@@ -438,7 +440,7 @@
 ---@field organ? string or tissue, that it happened to
 ---@field value? number as the kind says, in the unit that it says
 ---@field place? calot.point where, m
----@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped"|"turned" what did it
+---@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped"|"turned"|"thrust" what did it
 ---@field text? string an injury's class; what was said at a time-out or a bail-out
 
 ---A step of a session, as a rule sees it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "group/equilibrium.h"
+#include "tools/ground_meeting.h"
 #include "tools/tool_body.h"
 #include "tools/tool_meeting.h"
 
@@ -91,11 +92,82 @@ std::vector<Pair> near_pairs(const Field& field, const Poses& to) {
   return out;
 }
 
-/// Tools of some pairs between their hands and each other.
+/// A tool and what ground it may meet on its way.
+struct Grounded {
+  std::size_t tool = 0;
+  std::vector<const Ground*> ground;
+};
+
+std::vector<Shape> shapes_of(const std::vector<const Ground*>& ground) {
+  std::vector<Shape> out;
+  for (const Ground* one : ground) out.push_back(one->shape);
+  return out;
+}
+
+/// Whether a shape may come nearer than `reach` m to what lies in a box: quick, and false only where it does not.
+bool may_meet(const Shape& shape, const Eigen::AlignedBox3d& box, double reach) {
+  const auto* plane = std::get_if<Plane>(&shape);
+  if (plane == nullptr) return box.intersects(box_around(shape, reach));
+  const Vec3 half = 0.5 * box.sizes();
+  return signed_distance(shape, box.center()) - plane->normal.cwiseAbs().dot(half) < reach;
+}
+
+std::vector<Grounded> near_ground(const Field& field, const Poses& to) {
+  std::vector<Grounded> out;
+  for (std::size_t k = 0; k < field.tools.size(); ++k) {
+    const Tool& tool = field.tools[k];
+    if (tool.waits) continue;
+    const double reach = travel_bound(tool, tool.pose, to[k]) + field.barrier.range;
+    const VecX here = tool_coordinates(tool.pose);
+    const std::vector<Shape> parts = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
+    Grounded found{k, {}};
+    for (const Ground& ground : field.ground) {
+      const bool near = std::any_of(parts.begin(), parts.end(), [&](const Shape& part) {
+        return may_meet(ground.shape, box_around(part, 0), reach);
+      });
+      if (near && GroundMeeting(tool, 0, {ground.shape}).gap(here, reach) < reach)
+        found.ground.push_back(&ground);
+    }
+    if (!found.ground.empty()) out.push_back(std::move(found));
+  }
+  return out;
+}
+
+/// N at the tip that have the moment of what presses on a tool's unknowns.
+Vec3 force_at_tip_of(const Tool& tool, const InstrumentPose& pose, const ToolVector& pressed) {
+  const Mat3 tip_by_unknowns =
+      PosedPart(tool, pose, 0).slopes(tip_position(tool.trocar, pose, tool.geometry)).leftCols<3>();
+  return tip_by_unknowns.transpose().fullPivLu().solve(pressed.head<3>());
+}
+
+/// What ground presses a tool's parts with, at a pose.
+PartLoads ground_parts(const Tool& tool, const InstrumentPose& pose, const Grounded& grounded,
+                       const std::vector<GroundMeeting::Press>& presses) {
+  PartLoads out;
+  const Vec3 tip = tip_position(tool.trocar, pose, tool.geometry), way = (tip - tool.trocar).normalized();
+  for (const GroundMeeting::Press& press : presses) {
+    const auto add = [&](ToolPart which) {
+      PartLoad& part = out[static_cast<std::size_t>(which)];
+      part.force += press.force;
+      if (part.touches++ > 0 && press.force.norm() <= part.largest) return;
+      part.at = press.at;
+      part.largest = press.force.norm();
+      part.organ = grounded.ground[press.ground]->name;
+    };
+    add(press.part == 0 ? ToolPart::shaft : ToolPart::jaws);
+    if (press.part != 0 && way.dot(tip - press.at) <= tip_length) add(ToolPart::tip);
+  }
+  return out;
+}
+
+/// Tools between their hands, each other and ground.
 class MetTools {
  public:
-  MetTools(const Field& field, const std::vector<Pair>& pairs, const Poses& commands) : field_(field) {
+  MetTools(const Field& field, const std::vector<Pair>& pairs, const std::vector<Grounded>& grounded,
+           const Poses& commands)
+      : field_(field), grounded_(grounded) {
     for (const Pair& pair : pairs) tools_.insert(tools_.end(), pair.begin(), pair.end());
+    for (const Grounded& one : grounded) tools_.push_back(one.tool);
     std::sort(tools_.begin(), tools_.end());
     tools_.erase(std::unique(tools_.begin(), tools_.end()), tools_.end());
     for (std::size_t tool : tools_) {
@@ -107,6 +179,12 @@ class MetTools {
       meetings_.push_back(std::make_shared<const ToolMeeting>(side(pair[0]), side(pair[1]), field.barrier));
       joins_.push_back(meetings_.back());
       pairs_.push_back(pair);
+    }
+    for (const Grounded& one : grounded) {
+      const ToolMeeting::Side here = side(one.tool);
+      grounds_.push_back(std::make_shared<const GroundMeeting>(*here.tool, here.first_node,
+                                                               shapes_of(one.ground), field.barrier));
+      joins_.push_back(grounds_.back());
     }
   }
 
@@ -127,18 +205,21 @@ class MetTools {
     VecX x(6 * static_cast<Eigen::Index>(tools_.size()));
     for (std::size_t k = 0; k < tools_.size(); ++k)
       x.segment<6>(6 * static_cast<Eigen::Index>(k)) = states_[k].x;
-    VecX gradient = VecX::Zero(x.size());
-    for (const auto& meeting : meetings_) meeting->add_gradient(x, gradient);
+    VecX by_tools = VecX::Zero(x.size()), by_ground = by_tools;
+    for (const auto& meeting : meetings_) meeting->add_gradient(x, by_tools);
+    for (const auto& ground : grounds_) ground->add_gradient(x, by_ground);
     for (std::size_t k = 0; k < tools_.size(); ++k) {
-      const ToolVector pressed = -gradient.segment<6>(6 * static_cast<Eigen::Index>(k));
-      if (pressed.isZero(0)) continue;
+      const ToolVector tools_press = -by_tools.segment<6>(6 * static_cast<Eigen::Index>(k)),
+                       ground_presses = -by_ground.segment<6>(6 * static_cast<Eigen::Index>(k));
+      if (tools_press.isZero(0) && ground_presses.isZero(0)) continue;
       Tool& tool = tools[tools_[k]];
       poses[tools_[k]] = without_rounding(tool.pose, poses[tools_[k]], pose_at(states_[k].x));
-      const Mat3 tip_by_unknowns = PosedPart(tool, poses[tools_[k]], 0)
-                                       .slopes(tip_position(tool.trocar, poses[tools_[k]], tool.geometry))
-                                       .leftCols<3>();
-      tool.meeting.force = tip_by_unknowns.transpose().fullPivLu().solve(pressed.head<3>());
+      tool.meeting.force = force_at_tip_of(tool, poses[tools_[k]], tools_press);
+      tool.ground.force = force_at_tip_of(tool, poses[tools_[k]], ground_presses);
     }
+    for (std::size_t k = 0; k < grounds_.size(); ++k)
+      tools[grounded_[k].tool].ground.parts = ground_parts(tools[grounded_[k].tool], poses[grounded_[k].tool],
+                                                           grounded_[k], grounds_[k]->presses(x));
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       if (meetings_[k]->force(x).isZero(0)) continue;
       for (int side : {0, 1}) {
@@ -165,11 +246,13 @@ class MetTools {
   }
 
   const Field& field_;
+  const std::vector<Grounded>& grounded_;
   std::vector<std::size_t> tools_;  ///< increasing
   std::vector<Pair> pairs_;
   std::vector<ToolBody> bodies_;
   std::vector<BodyState> states_;
   std::vector<std::shared_ptr<const ToolMeeting>> meetings_;
+  std::vector<std::shared_ptr<const GroundMeeting>> grounds_;  ///< as grounded_
   std::vector<JoinPointer> joins_;
   ContactLoads no_loads_;
 };
@@ -187,19 +270,23 @@ Result<Poses> bring_tools(Field& field, const Poses& commands, const std::vector
   Poses to;
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
+    tool.closes = !tool.waits && commands[i].jaw < tool.command.jaw - turn_slack;
     tool.command = tool.waits ? tool.pose : commands[i];
     tool.meeting = {};
+    tool.ground = {};
     to.push_back(tool.waits ? tool.pose : within_strength(tool, last[i], commands[i]));
   }
   const std::vector<Pair> pairs = near_pairs(field, to);
-  if (pairs.empty()) return to;
-  MetTools met(field, pairs, to);
+  const std::vector<Grounded> grounded = near_ground(field, to);
+  if (pairs.empty() && grounded.empty()) return to;
+  MetTools met(field, pairs, grounded, to);
   const NewtonResult result = met.balance();
   if (!result.converged())
-    return fail(FailureKind::simulation,
-                fmt::format("instruments that press on each other find no balance: {} (residual {:.2g})",
-                            to_text(result.status), result.residual),
-                "move them more slowly, or apart first");
+    return fail(
+        FailureKind::simulation,
+        fmt::format("instruments that press on each other or on ground find no balance: {} (residual {:.2g})",
+                    to_text(result.status), result.residual),
+        "move them more slowly, or apart first");
   met.keep(field.tools, to);
   return to;
 }
@@ -267,12 +354,30 @@ std::string tool_met(const Field& field, ToolIndex instrument) {
   return {};
 }
 
+namespace {
+
+/// The ground that a tool is in; empty: none.
+std::string ground_around(const Field& field, const Tool& tool) {
+  for (const Ground& ground : field.ground)
+    if (GroundMeeting(tool, 0, {ground.shape}).gap(tool_coordinates(tool.pose), 0) < 0) return ground.name;
+  return {};
+}
+
+}  // namespace
+
 Result<bool> check_apart(const Field& field) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     const Tool& tool = field.tools[i];
+    const std::string& name = tool.definition.name;
+    const std::string in = tool.waits ? std::string() : ground_around(field, tool);
+    if (!in.empty())
+      return fail(FailureKind::scenario,
+                  fmt::format("instrument '{}' that waits in its trocar, 30 mm deep, is in the ground '{}'",
+                              name, in),
+                  "put the port or the ground elsewhere",
+                  {"", 0, fmt::format("scene.instruments.{}.port", name)});
     const std::string met = tool.waits ? std::string() : tool_met(field, ToolIndex(i));
     if (met.empty()) continue;
-    const std::string& name = tool.definition.name;
     return fail(
         FailureKind::scenario,
         fmt::format("instrument '{}' meets '{}' where both wait in their trocars, 30 mm deep", name, met),

@@ -7,8 +7,8 @@
 // a step of motion the force may be off by as much as that secant is.
 // In the same way a hand turns its tool about the shaft up to a torque of its strength times HandStrength::roll_arm, N m.
 // Tools that meet press on each other by the contact barrier (tool_meeting.h) against the springs of their hands (hand.h),
-// solved together: each gives way until both hands carry the force. What touches no other tool comes exactly to where its
-// hand takes it.
+// solved together: each gives way until both hands carry the force. Ground stops a tool in the same way
+// (ground_meeting.h). What touches neither comes exactly to where its hand takes it.
 
 #include "field/field.h"
 
@@ -19,7 +19,7 @@ namespace calot {
 Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment);
 
 /// Where tools come by the end of a step, one a tool, as commands and last states are. Waiting tools stay. Keeps each
-/// tool's command and what other tools press it with. Fails (simulation) where tools that meet find no balance.
+/// tool's command and what other tools and ground press it with. Fails (simulation) where tools that meet find no balance.
 Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
                                                 const std::vector<InstrumentState>& last);
 
@@ -37,7 +37,7 @@ void feel_stiffness(std::vector<Tool>& tools, const std::vector<InstrumentState>
 /// that wait.
 std::string tool_met(const Field& field, ToolIndex instrument);
 
-/// Fails (scenario) where tools that do not wait meet at the start.
+/// Fails (scenario) where tools that do not wait meet, or are in ground, at the start.
 Result<bool> check_apart(const Field& field);
 
 }  // namespace calot

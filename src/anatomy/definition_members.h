@@ -93,8 +93,8 @@ void visit_members(auto&& visit, MembersOf<TissueDefinition> auto& definition) {
         density, radius, divide_energy, covered);
 }
 void visit_members(auto&& visit, MembersOf<GroundDefinition> auto& definition) {
-  auto& [name, type, point, normal, to, size, radius, friction, looks] = definition;
-  visit(name, type, point, normal, to, size, radius, friction, looks);
+  auto& [name, type, point, normal, to, size, radius, friction, looks, injury, thrust_limit] = definition;
+  visit(name, type, point, normal, to, size, radius, friction, looks, injury, thrust_limit);
 }
 void visit_members(auto&& visit, MembersOf<SupportDefinition> auto& definition) {
   auto& [point, normal, friction] = definition;

@@ -261,6 +261,9 @@ struct GroundDefinition {
   double radius = 5e-3;         ///< m, of a capsule, and of a box' edges
   double friction = 0;          ///< Coulomb's, of what touches it (d); the rest state is found without
   GroundLooks looks = GroundLooks::usual;
+  /// What the event `injury` calls it when it is hurt; empty: as its looks say, liver and bowel are hurt and nothing else.
+  std::string injury = {};
+  double thrust_limit = 8;  ///< N, from jaws or what a shaft ends in, that hurts it; uncalibrated
 };
 
 struct SupportDefinition {

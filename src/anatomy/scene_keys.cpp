@@ -120,7 +120,7 @@ std::vector<KeyTable> field_tables() {
                 "true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is "
                 "torn")}),
       keys_of<GroundDefinition>(
-          "ground", "A shape that stays and is touched.",
+          "ground", "A shape that stays and is touched. Instruments stop at it.",
           {text("name", &GroundDefinition::name, "its name, unique"),
            choice(
                "type", &GroundDefinition::type, {"plane", "capsule", "box"},
@@ -139,7 +139,14 @@ std::vector<KeyTable> field_tables() {
            choice("looks", &GroundDefinition::looks, {"usual", "liver", "bowel", "fat", "peritoneum"},
                   "how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as "
                   "peritoneum; a bowel has to "
-                  "be a capsule")}),
+                  "be a capsule"),
+           text("injury", &GroundDefinition::injury,
+                "what it is called when it is hurt by blades, current or a thrust; left out: liver and bowel "
+                "by their looks, "
+                "and nothing else"),
+           number("thrust_limit", &GroundDefinition::thrust_limit, quantity::force, 0.1, 1000,
+                  "a thrust that hurts",
+                  "the force of jaws, or of what a shaft ends in, that hurts it; uncalibrated")}),
       keys_of<Instrument>(
           "instrument", "An instrument through a port.",
           {choice("type", &Instrument::type, instrument_type_names(),

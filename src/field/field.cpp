@@ -26,6 +26,16 @@ std::vector<VecX> present_places(const Field& field) {
   return out;
 }
 
+namespace {
+
+std::string injury_of(const GroundDefinition& ground) {
+  if (!ground.injury.empty()) return ground.injury;
+  if (ground.looks == GroundLooks::bowel) return "bowel injured";
+  return ground.looks == GroundLooks::liver ? "liver injured" : std::string();
+}
+
+}  // namespace
+
 std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
   std::vector<Ground> out;
   for (const GroundDefinition& g : anatomy.ground) {
@@ -33,7 +43,7 @@ std::vector<Ground> ground_of(const AnatomyDefinition& anatomy) {
     if (g.type == GroundType::capsule) shape = Capsule{g.point, g.to, g.radius};
     if (g.type == GroundType::box)
       shape = RoundedBox{Pose(Eigen::Translation3d(g.point)), 0.5 * g.size, g.radius};
-    out.push_back({g.name, shape, g.friction});
+    out.push_back({g.name, shape, g.friction, true, injury_of(g), g.thrust_limit});
   }
   if (const std::optional<SupportDefinition>& support = anatomy.support)
     out.push_back({"support", Plane{support->point, support->normal.normalized()}, support->friction, false});

@@ -47,9 +47,21 @@ struct Group {
 struct Ground {
   std::string name;
   Shape shape;
-  double friction = 0;  ///< Coulomb's
-  bool broad = true;    ///< felt by few points; by all as instruments are where it is false
+  double friction = 0;      ///< Coulomb's
+  bool broad = true;        ///< felt by few points; by all as instruments are where it is false
+  std::string injury = {};  ///< what it is called when it is hurt; empty: nothing hurts it
+  double thrust_limit = 0;  ///< N, from which on a thrust does
 };
+
+/// Where ground was hurt.
+struct Wound {
+  std::string ground;
+  Vec3 at = Vec3::Zero();  ///< m
+};
+void visit_members(auto&& visit, MembersOf<Wound> auto& wound) {
+  auto& [ground, at] = wound;
+  visit(ground, at);
+}
 
 /// Newton iterations of a step where masses count.
 struct StepBudget {
@@ -74,12 +86,13 @@ struct Field {
   /// What is solved for now is on the way to where the step ends: balanced to rough_tolerance it serves. At the end of
   /// each step it is false.
   bool rough = false;
-  bool tools_move = false;  ///< in the present step, by their commands
-  double step_time = 0;     ///< s that a step takes where masses count; 0: statics
-  double time = 0;          ///< s, at the end of the present step
-  StepBudget budget;        ///< what a step may take where masses count (motion/step_budget.h)
-  Spill spill;              ///< what has left the organs
-  double heart_rate = 0;    ///< a minute
+  bool tools_move = false;    ///< in the present step, by their commands
+  double step_time = 0;       ///< s that a step takes where masses count; 0: statics
+  double time = 0;            ///< s, at the end of the present step
+  StepBudget budget;          ///< what a step may take where masses count (motion/step_budget.h)
+  Spill spill;                ///< what has left the organs
+  std::vector<Wound> wounds;  ///< of ground, in their order
+  double heart_rate = 0;      ///< a minute
   Vec3 up = Vec3::UnitZ();
   Vec3 middle = Vec3::Zero();        ///< m, of the first organ at rest
   std::optional<OrganPoint> viewed;  ///< what the laparoscope looks at from near by

@@ -9,6 +9,7 @@ FieldState field_state(const Field& field) {
   state.members = field.members;
   state.group = snapshot(field);
   state.spill = field.spill;
+  state.wounds = field.wounds;
   state.tools.assign(field.tools.begin(), field.tools.end());
   return state;
 }
@@ -17,6 +18,7 @@ void restore(Field& field, const FieldState& state) {
   restore_members(field, state.members);
   restore(field, state.group);
   field.spill = state.spill;
+  field.wounds = state.wounds;
   for (std::size_t i = 0; i < field.tools.size(); ++i)
     static_cast<ToolState&>(field.tools[i]) = state.tools[i];
 }

@@ -13,6 +13,7 @@ struct FieldState {
   GroupSnapshot group;
   std::vector<ToolState> tools;
   Spill spill;
+  std::vector<Wound> wounds;
   StepReport report;  ///< of the step that led here: events are raised by what differs from it
 };
 

@@ -22,13 +22,13 @@ std::vector<std::vector<int>> details_of(const Field& field);
 void visit_moving(auto&& visit, MembersOf<Field> auto& field) {
   // What else there is follows from scene and steps, is of a world's process, or is remembered.
   auto& [organs, tissues, group, tools, ground, barrier, tolerance, rough, tools_move, step_time, time,
-         budget, spill, heart_rate, up, middle, viewed, scheme, assembly, stop, membership, members, lives] =
-      field;
+         budget, spill, wounds, heart_rate, up, middle, viewed, scheme, assembly, stop, membership, members,
+         lives] = field;
   for (auto& organ : organs) visit_members(visit, motion_of(organ));
   for (auto& tissue : tissues) visit(tissue.now);
   visit(group);
   for (auto& tool : tools) visit_members(visit, state_of(tool));
-  visit(spill);
+  visit(spill, wounds);
 }
 
 }  // namespace calot

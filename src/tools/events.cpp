@@ -53,7 +53,9 @@ const std::vector<EventRow>& event_rows() {
       {cut_liver, "cut_liver", "blades close on the liver", "", true, true, true},
       {empty_cut, "empty_cut", "blades close and cut nothing", "", true, false, true},
       {injury, "injury",
-       "what should be kept is cut, clipped or burnt; its text says what that is called (the organ's injury)",
+       "what should be kept is cut, clipped, burnt or thrust at; its text says what that is called (the "
+       "injury of the "
+       "organ or the ground)",
        "", true, true, true},
       {activation_on_clip, "activation_on_clip",
        "current flows in an instrument that touches a clip: it loosens, and burns what it holds", "", true,
@@ -102,7 +104,7 @@ namespace {
 
 const std::vector<std::string>& cause_names() {
   static const std::vector<std::string> names = {
-      "", "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned"};
+      "", "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned", "thrust"};
   return names;
 }
 

@@ -61,9 +61,9 @@ struct EventRow {
 };
 
 /// What did it.
-enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping, turning };
-constexpr EventCause last_of(EventCause) { return EventCause::turning; }
-/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned"; of none empty.
+enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping, turning, thrust };
+constexpr EventCause last_of(EventCause) { return EventCause::thrust; }
+/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned", "thrust"; of none empty.
 std::string to_text(EventCause cause);
 std::optional<EventCause> event_cause_called(const std::string& name);
 /// But for none.

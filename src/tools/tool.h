@@ -7,6 +7,7 @@
 #include "collision/shapes.h"
 #include "joins/strand_touch.h"
 #include "tools/instrument.h"
+#include "tools/part_load.h"
 
 namespace calot {
 
@@ -33,6 +34,29 @@ void visit_members(auto&& visit, MembersOf<MeetingState> auto& meeting) {
   visit(force, with);
 }
 
+/// What ground does to it, as it was when hands brought it there last (hands.h).
+struct GroundLoad {
+  Vec3 force = Vec3::Zero();  ///< N at the tip, of the same moment about the trocar
+  PartLoads parts;            ///< by ToolPart; the organ is the ground's name
+  bool touches() const {
+    return parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0 ||
+           parts[static_cast<std::size_t>(ToolPart::shaft)].touches > 0;
+  }
+};
+void visit_members(auto&& visit, MembersOf<GroundLoad> auto& load) {
+  auto& [force, parts] = load;
+  visit(force, parts);
+}
+
+/// How it hurts the ground that it touches, for events: until it is off it, each of these is one.
+struct GroundHurt {
+  bool thrust = false, current = false, blades = false, clip = false;
+};
+void visit_members(auto&& visit, MembersOf<GroundHurt> auto& hurt) {
+  auto& [thrust, current, blades, clip] = hurt;
+  visit(thrust, current, blades, clip);
+}
+
 /// All of a tool that a step changes.
 struct ToolState {
   InstrumentPose pose;
@@ -53,11 +77,14 @@ struct ToolState {
   bool waits = false;     ///< outside: another one is in its port (acts/exchange.h)
   NeedleState needle = {};
   InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
+  bool closes = false;          ///< its jaws were commanded to close further in the last step
   /// N/m, how the force on the tip grew with its way: along the force and across it; 0: none that counts.
   double tissue_stiffness = 0, stiffness_across = 0;
   double roll_stiffness =
       0;  ///< N m/rad, how the tissue's torque about the shaft grew with its roll; 0: none that counts
   MeetingState meeting = {};
+  GroundLoad ground = {};
+  GroundHurt hurts_ground = {};
   Vec3 drag = Vec3::Zero();  ///< N at the hand, of the port's seal in the last step (hands.h)
   bool pressing =
       false;  ///< what is between its jaws carries the pinch: they turn as that gives way or pushes
@@ -70,11 +97,11 @@ struct ToolState {
 };
 void visit_members(auto&& visit, MembersOf<ToolState> auto& state) {
   auto& [pose, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
-         beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
-         roll_stiffness, meeting, drag, pressing, pinch_slope] = state;
+         beside_kept, burnt, burnt_record, waits, needle, command, closes, tissue_stiffness, stiffness_across,
+         roll_stiffness, meeting, ground, hurts_ground, drag, pressing, pinch_slope] = state;
   visit(pose, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
-        beside_kept, burnt, burnt_record, waits, needle, command, tissue_stiffness, stiffness_across,
-        roll_stiffness, meeting, drag, pressing, pinch_slope);
+        beside_kept, burnt, burnt_record, waits, needle, command, closes, tissue_stiffness, stiffness_across,
+        roll_stiffness, meeting, ground, hurts_ground, drag, pressing, pinch_slope);
 }
 
 struct Tool : ToolState {

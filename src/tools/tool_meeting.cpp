@@ -7,83 +7,6 @@
 #include "tools/part_path.h"
 
 namespace calot {
-namespace {
-
-constexpr double rod_spacing = 0.5e-3, jaw_spacing = 1e-3;  ///< m, at most
-
-/// Even places from `first` to `last`, no further apart than `spacing`.
-std::vector<double> even_places(double first, double last, double spacing) {
-  const int parts = std::max(1, static_cast<int>(std::ceil((last - first) / spacing)));
-  std::vector<double> out;
-  for (int k = 0; k <= parts; ++k) out.push_back(first + (last - first) * k / parts);
-  return out;
-}
-
-void add_rod(int part, const Capsule& rod, std::vector<ToolPoint>& out) {
-  const double length = (rod.b - rod.a).norm();
-  const std::vector<double> places = even_places(0, length, rod_spacing);
-  const Vec3 along = (rod.b - rod.a) / length;
-  const double spacing = places[1] - places[0];
-  for (double place : places)
-    out.push_back({part, rod.a + place * along, rod.radius, 2 * rod.radius * spacing});
-}
-
-void add_jaw(int part, const RoundedBox& box, std::vector<ToolPoint>& out) {
-  const auto along = [&](int axis) { return even_places(-box.half[axis], box.half[axis], jaw_spacing); };
-  const std::vector<double> xs = along(0), ys = along(1), zs = along(2);
-  const double area = (ys[1] - ys[0]) * (zs[1] - zs[0]);
-  for (double x : {xs.front(), xs.back()})
-    for (double y : ys)
-      for (double z : zs) out.push_back({part, box.pose * Vec3(x, y, z), box.radius, area});
-}
-
-/// By how much a point that a tool carries departs from its straight way, at most, m: an eighth of what its path would be
-/// bent by in a unit of time.
-double path_bend(const Tool& tool, const InstrumentPose& a, const InstrumentPose& b, const Vec3& p) {
-  const double turn = std::abs(b.pitch - a.pitch) + std::abs(b.yaw - a.yaw) + std::abs(b.roll - a.roll) +
-                      0.5 * std::abs(b.jaw - a.jaw);
-  const double pushed = std::abs(b.insertion - a.insertion);
-  return 0.125 * turn * (turn * ((p - tool.trocar).norm() + pushed) + 2 * pushed);
-}
-
-/// A tool at a pose.
-struct PosedTool {
-  const Tool& tool;
-  InstrumentPose pose;
-  std::vector<PosedPart> parts;
-  std::vector<Shape> shapes;
-
-  PosedTool(const Tool& posed, const ToolVector& q)
-      : tool(posed), pose(pose_at(q)), shapes(instrument_shapes(posed.trocar, pose, posed.geometry)) {
-    for (int part = 0; part < shapes_per_tool; ++part) parts.emplace_back(posed, pose, part);
-  }
-};
-
-Eigen::AlignedBox3d box_around(const Shape& shape, double wider) {
-  const Bounds b = bounds(offset(shape, wider));
-  return {b.lower, b.upper};
-}
-
-}  // namespace
-
-std::vector<ToolPoint> tool_points(const InstrumentGeometry& geometry) {
-  // With the hinge in the trocar and pointing straight, places in the hinge's frame are the world's turned back.
-  InstrumentPose closed;
-  closed.insertion = geometry.jaw_length;
-  const Pose to_hinge = hinge_frame(Vec3::Zero(), closed, geometry).inverse();
-  const std::vector<Shape> shapes = instrument_shapes(Vec3::Zero(), closed, geometry);
-  std::vector<ToolPoint> out;
-  for (int part = 0; part < shapes_per_tool; ++part) {
-    if (const auto* rod = std::get_if<Capsule>(&shapes[part])) {
-      add_rod(part, {to_hinge * rod->a, to_hinge * rod->b, rod->radius}, out);
-    } else {
-      RoundedBox jaw = std::get<RoundedBox>(shapes[part]);
-      jaw.pose = jaw_frame(Vec3::Zero(), closed, geometry, part - 1).inverse() * jaw.pose;
-      add_jaw(part, jaw, out);
-    }
-  }
-  return out;
-}
 
 ToolMeeting::ToolMeeting(const Side& one, const Side& other, const Barrier& barrier)
     : sides_{one, other},
@@ -99,17 +22,10 @@ void ToolMeeting::for_near(const VecX& x, double reach, const Use& use) const {
     for (int part = 0; part < shapes_per_tool; ++part) {
       const Shape shape = contact_shape(other.shapes[part]);
       const Eigen::AlignedBox3d near = box_around(shape, reach);
-      for (std::size_t first = 0, last = 0; first < points_[side].size(); first = last) {
-        const int carrier = points_[side][first].part;
-        while (last < points_[side].size() && points_[side][last].part == carrier) ++last;
-        if (!near.intersects(box_around(own.shapes[carrier], 0))) continue;
-        for (std::size_t k = first; k < last; ++k) {
-          const ToolPoint& point = points_[side][k];
-          const Vec3 at = own.parts[carrier].frame() * point.local;
-          if (signed_distance(shape, at) - point.radius < reach)
-            use(side, point, at, own.parts[carrier], other.parts[part], shape, part);
-        }
-      }
+      for_points_near(own, points_[side], shape, near, reach,
+                      [&](const ToolPoint& point, const Vec3& at, const PosedPart& carrier) {
+                        use(side, point, at, carrier, other.parts[part], shape, part);
+                      });
     }
   }
 }
@@ -234,7 +150,7 @@ double share_kept_off(const MeetingWay& way, int side, const ToolPoint& point, c
   const Tool &own = *way.tools[side], &other = *way.tools[1 - side];
   for (int halvings = 0; halvings < 60; ++halvings) {
     const InstrumentPose own_end = way.pose(side, share);
-    const double bend = path_bend(own, way.from[side], own_end, at);
+    const double bend = point_bend(own, way.from[side], own_end, at);
     if (bend > 0.25 * gap) {
       share *= 0.5;
       continue;

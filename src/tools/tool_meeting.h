@@ -10,19 +10,9 @@
 
 #include "group/contact_search.h"
 #include "group/join.h"
-#include "tools/posed_part.h"
+#include "tools/tool_points.h"
 
 namespace calot {
-
-/// A ball that a part carries.
-struct ToolPoint {
-  int part = 0;
-  Vec3 local = Vec3::Zero();  ///< m, in the part's frame
-  double radius = 0;          ///< m
-  double area = 0;            ///< m^2 of the tool's shadow that it stands for
-};
-/// Of all parts, in their order.
-std::vector<ToolPoint> tool_points(const InstrumentGeometry& geometry);
 
 class ToolMeeting : public Join {
  public:

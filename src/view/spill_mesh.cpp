@@ -29,6 +29,8 @@ const SceneMesh& ball() {
   return mesh;
 }
 
+constexpr double wound_drop = 0.05e-6;  // m^3, that marks where ground was hurt: 4.6 mm across
+
 /// Drawn out along its way as far as it goes while one looks.
 void add_drop(const Vec3& at, const Vec3& velocity, double volume, SceneMesh& out) {
   constexpr double look = 4e-3, longest = 5;  // s; times as long as it is thick
@@ -127,6 +129,8 @@ std::vector<SceneMesh> spill_meshes(const World& world) {
         if (opening.drop > 0.1e-9 && static_cast<int>(carries) == liquid)
           add_drop(hanging_place(organ, opening), Vec3::Zero(), opening.drop, mesh);
       }
+    if (static_cast<Carries>(liquid) == Carries::blood)
+      for (const Wound& wound : field.wounds) add_drop(wound.at, Vec3::Zero(), wound_drop, mesh);
     if (!mesh.triangles.empty()) out.push_back(std::move(mesh));
   }
   return out;

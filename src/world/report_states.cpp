@@ -13,15 +13,47 @@
 namespace calot {
 namespace {
 
+const PartLoad& on(const GroundLoad& ground, ToolPart part) {
+  return ground.parts[static_cast<std::size_t>(part)];
+}
+
+/// N, of ground on the whole tool.
+Vec3 force_of(const GroundLoad& ground) {
+  return on(ground, ToolPart::jaws).force + on(ground, ToolPart::shaft).force;
+}
+
+/// The ground that presses hardest.
+std::string hardest_of(const GroundLoad& ground) {
+  const PartLoad &jaws = on(ground, ToolPart::jaws), &shaft = on(ground, ToolPart::shaft);
+  return (jaws.largest >= shaft.largest ? jaws : shaft).organ;
+}
+
+/// What organs and ground do to a tool's parts together.
+PartLoads with_ground(PartLoads parts, const GroundLoad& ground) {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    PartLoad& part = parts[k];
+    const PartLoad& more = ground.parts[k];
+    part.force += more.force;
+    if (more.touches > 0 && (part.touches == 0 || more.largest > part.largest)) {
+      part.at = more.at;
+      part.largest = more.largest;
+      part.organ = more.organ;
+    }
+    part.touches += more.touches;
+  }
+  return parts;
+}
+
 InstrumentState instrument_state(const Field& field, std::size_t index, const ToolLoad& load) {
   const Tool& tool = field.tools[index];
   InstrumentState state;
   state.pose = tool.pose;
   state.tip = tip_position(tool.trocar, tool.pose, tool.geometry);
-  state.force = load.force;
+  state.force = load.force + force_of(tool.ground);
   state.at_tip = force_at_tip(tool, load.force, load.moment);
-  state.handle_force =
-      handle_force(tool.trocar, tool.pose, tool.geometry, state.at_tip + tool.meeting.force) + tool.drag;
+  state.handle_force = handle_force(tool.trocar, tool.pose, tool.geometry,
+                                    state.at_tip + tool.meeting.force + tool.ground.force) +
+                       tool.drag;
   // Jaws that rest on a fold are no lag of the hand.
   InstrumentPose asked = tool.command;
   if (tool.jaws_rest()) asked.jaw = tool.pose.jaw;
@@ -37,9 +69,9 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   state.clips = tool.clips;
   state.waits = tool.waits;
   state.aspirated = tool.needle.drawn_ever;
-  state.touching = load.touches > 0;
-  state.touches = load.organ;
-  state.parts = load.parts;
+  state.touching = load.touches > 0 || tool.ground.touches();
+  state.parts = with_ground(load.parts, tool.ground);
+  state.touches = load.touches > 0 ? load.organ : hardest_of(tool.ground);
   const bool closed = tool.pose.jaw <= 0.5 * grip_grid || tool.pressing;
   const bool touches_jaws = state.load_on(ToolPart::jaws).touches > 0;
   if (!state.holds.empty()) {

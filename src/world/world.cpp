@@ -11,6 +11,7 @@
 #include "acts/clips.h"
 #include "acts/current.h"
 #include "acts/exchange.h"
+#include "acts/ground_injury.h"
 #include "acts/hands.h"
 #include "base/hash.h"
 #include "base/suggest.h"
@@ -152,9 +153,11 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
       tool.over_limit = presses_too_hard(report.instruments[i], tool.definition.force_limit);
   }
   feel_stiffness(field.tools, before.instruments, report.instruments);
+  const std::vector<WorldEvent> hurt = hurt_ground(field, report.balanced);
   const std::vector<WorldEvent> burnt = apply_current(field, report.instruments, duration);
   report_tissues(field, report);
   events.insert(events.end(), begun.begin(), begun.end());
+  events.insert(events.end(), hurt.begin(), hurt.end());
   events.insert(events.end(), burnt.begin(), burnt.end());
   place_events(field, report, events);
   report.events = std::move(events);
