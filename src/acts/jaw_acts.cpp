@@ -32,29 +32,36 @@ void judge_tearing(Tissue& tissue, int torn_before, std::vector<WorldEvent>& eve
     events.push_back({EventKind::parted, 0, {}, name, 0, std::nullopt, EventCause::stretch});
 }
 
-/// What it is that jaws close on what they hold.
-EventKind closed_on(const Field& field, ToolIndex instrument) {
-  if (instrument_row(field.tool(instrument).definition.type).jaws != JawUse::cut) return EventKind::grasp;
-  const bool liver = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
-    return grip_count(organ, instrument) > 0 && std::holds_alternative<LobeShape>(organ.definition.shape);
-  });
-  return liver ? EventKind::cut_liver : EventKind::perforation;
+/// Blades closed on what they hold: each wall is cut, a hollow one opened; a rigid thing is not.
+void note_cut(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
+  const std::string& tool = field.tool(instrument).definition.name;
+  bool cut = false;
+  for (Organ& organ : field.organs) {
+    if (grip_count(organ, instrument) == 0 || std::holds_alternative<RigidShape>(organ.definition.shape))
+      continue;
+    const bool liver = std::holds_alternative<LobeShape>(organ.definition.shape);
+    events.push_back({liver ? EventKind::cut_liver : EventKind::perforation, 0, tool, organ.definition.name,
+                      0, std::nullopt, EventCause::blades});
+    perforate(organ, instrument, tool);
+    cut = true;
+  }
+  if (!cut)
+    events.push_back({EventKind::empty_cut, 0, tool, between_pads(field, instrument), 0, std::nullopt,
+                      EventCause::blades});
 }
 
 /// A wall that jaws pinch harder than it bears is opened; so is one that blades stand on.
 void note_hold(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
   const InstrumentDefinition& tool = field.tool(instrument).definition;
-  const EventKind kind = closed_on(field, instrument);
-  const bool cuts = kind != EventKind::grasp;
-  events.push_back({kind, 0, tool.name, between_pads(field, instrument), 0, std::nullopt,
-                    cuts ? EventCause::blades : EventCause::none});
-  for (const Organ& organ : field.organs) {
-    if (cuts || !is_hollow(organ.definition.shape) || grip_count(organ, instrument) == 0) continue;
+  if (instrument_row(tool.type).jaws == JawUse::cut) return note_cut(field, instrument, events);
+  events.push_back({EventKind::grasp, 0, tool.name, between_pads(field, instrument), 0});
+  for (Organ& organ : field.organs) {
+    if (!is_hollow(organ.definition.shape) || grip_count(organ, instrument) == 0) continue;
     if (tool.pinch_force <= organ.definition.wall.pinch_limit) continue;
     events.push_back(
         {EventKind::perforation, 0, tool.name, organ.definition.name, 0, std::nullopt, EventCause::pinch});
+    perforate(organ, instrument, tool.name);
   }
-  if (events.back().kind == EventKind::perforation) perforate(field, instrument);
 }
 
 /// Whether neither pad holds what both press on.
@@ -86,7 +93,7 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
     if (closing || (tool.jaws_rest() && targets[i].jaw == tool.pose.jaw)) continue;
     const ToolIndex index(i);
     const std::string organ = between_pads(field, index);
-    const bool held = tool.jaw_stopped && closed_on(field, index) == EventKind::grasp;
+    const bool held = tool.jaw_stopped && instrument_row(tool.definition.type).jaws != JawUse::cut;
     if (!held_organ(field, index).empty())
       if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     if (held)

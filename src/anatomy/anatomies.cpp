@@ -62,7 +62,7 @@ const std::vector<Landmark>& landmark_rows() {
       {"start", "of a tube", 0, 0, Landmark::Of::tube},
       {"middle", "of a tube", 0.5, 0, Landmark::Of::tube},
       {"end", "of a tube", 1, 0, Landmark::Of::tube},
-      {"centre", "of a rigid thing", 0.5, 0, Landmark::Of::rigid},
+      {"centre", "of a rigid thing, in its middle", 0.5, 0, Landmark::Of::rigid},
       {"back", "of a lobe: the middle of where it is held", 0, 0, Landmark::Of::lobe},
       {"edge", "of a lobe: the middle of its edge", 1, 0, Landmark::Of::lobe},
       {"underside", "of a lobe: the middle of its underside, where its bed is", 0.5, -1, Landmark::Of::lobe},

@@ -192,6 +192,8 @@ class Body {
   std::map<std::string, int> nearest_points(const std::map<std::string, Vec3>& places) const;
   /// Where the surface is at a skin point, along its normal there.
   Vec3 surface_point(int row, const VecX& x) const;
+  /// Where a landmark at a skin point is, m: on the surface, but a rigid thing's is its centre.
+  virtual Vec3 landmark_place(int row, const VecX& x) const { return surface_point(row, x); }
 
   /// What is drawn: the skin, or what is around it.
   virtual const std::vector<Triangle>& drawn_triangles() const { return skin().triangles; }

@@ -52,6 +52,8 @@ class RigidBody : public Body {
     for (const std::string& name : setup_.landmarks) out[name] = 0;
     return out;
   }
+  /// Its nodes have its moments: their middle is its centre.
+  Vec3 landmark_place(int /*row*/, const VecX& x) const override { return x.reshaped(3, 4).rowwise().mean(); }
   bool is_bitten() const override { return false; }
   const AffineBody& affine() const { return *affine_; }
 

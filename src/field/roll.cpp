@@ -10,7 +10,7 @@ void note_departure(Field& field, const Organ& organ, Departure departure) {
   const std::vector<Vec3> at = organ.body->skin_positions(organ.state.x),
                           normals = organ.body->skin_normals(organ.state.x);
   for (const auto& [name, point] : organ.landmarks)
-    departure.landmarks[name] = {organ.body->surface_point(point, organ.state.x), normals[point]};
+    departure.landmarks[name] = {organ.body->landmark_place(point, organ.state.x), normals[point]};
   field.membership.roll[organ.record].gone = std::move(departure);
 }
 

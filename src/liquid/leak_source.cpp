@@ -42,7 +42,7 @@ class SourceSearch {
       return *found;
     }
     // What it holds runs out if nothing shuts it, by the tightest place.
-    return {LeakSource::Kind::rest, organ, {}, whole * open_between(field_, organ, from, to)};
+    return {LeakSource::Kind::rest, organ, {}, open_between(field_, organ, from, to)};
   }
 
  private:
@@ -51,8 +51,7 @@ class SourceSearch {
     const Organ& tube = field_.organ(organ);
     const RodBody& rod = *tube.body->as_tube();
     visited_[organ.value] = 1;
-    area = std::min(
-        area, std::min(lumen_area(rod, from), lumen_area(rod, to)) * open_between(field_, organ, from, to));
+    area = std::min(area, open_between(field_, organ, from, to));
     for (const Opening& opening : tube.openings)
       if (opening.point == to) return std::nullopt;
     for (const FieldJoint& joint : field_.membership.joints) {
@@ -101,8 +100,13 @@ Carries liquid_of(const Organ& organ) {
 double lumen_area(const RodBody& rod, double at) { return pi * std::pow(rod.lumen_radius(at), 2); }
 
 double lumen_volume(const RodBody& rod) {
-  const double first = lumen_area(rod, 0), last = lumen_area(rod, rod.last_point());
-  return rod.length() * (first + std::sqrt(first * last) + last) / 3;
+  double sum = 0;
+  const int last = static_cast<int>(rod.last_point());
+  for (int k = 0; k < last; ++k) {
+    const double here = lumen_area(rod, k), next = lumen_area(rod, k + 1);
+    sum += (rod.way_to(k + 1) - rod.way_to(k)) * (here + std::sqrt(here * next) + next) / 3;
+  }
+  return sum;
 }
 
 LeakSource source_of(const Field& field, OrganIndex organ, const Opening& opening) {
@@ -125,17 +129,19 @@ double open_between(const Field& field, OrganIndex index, double one, double oth
   const Organ& organ = field.organ(index);
   const RodBody& rod = *organ.body->as_tube();
   const auto [low, high] = std::minmax(one, other);
-  double open = 1;
+  double open = std::min(lumen_area(rod, low), lumen_area(rod, high));
+  for (int point = static_cast<int>(std::ceil(low)); point < high; ++point)
+    open = std::min(open, lumen_area(rod, point));
   for (const Clip& clip : organ.clips)
-    if (clip.at >= low && clip.at <= high) open = std::min(open, clip.opening);
+    if (clip.at >= low && clip.at <= high) open = std::min(open, clip.opening * lumen_area(rod, clip.at));
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     if (!has_jaws(field.tools[i].definition.type)) continue;
     for (const TubeBetween& tube : tubes_between(field, ToolIndex(i))) {
       if (tube.organ != index || tube.at < low || tube.at > high) continue;
       // Jaws that hold it have pressed it flat, to the angle that they stop at.
       if (field.tools[i].jaws_rest() && grip_count(organ, ToolIndex(i)) > 0) open = 0;
-      const double lumen = 2 * rod.lumen_radius(tube.at);
-      open = std::min(open, open_share((tube.gap - 2 * rod.setup().wall) / lumen));
+      const double share = open_share((tube.gap - 2 * rod.setup().wall) / (2 * rod.lumen_radius(tube.at)));
+      open = std::min(open, share * lumen_area(rod, tube.at));
     }
   }
   return open;

@@ -30,8 +30,8 @@ double lumen_volume(const RodBody& rod);
 /// As its definition has it; else what it carries, and of an artery its width, say.
 TubeFeed feed_of(const OrganDefinition& tube);
 
-/// Share of a tube's lumen that is open at its tightest between two of its places (skin points from its start), where
-/// clips and jaws are on it.
+/// m^2, what a tube leaves open at its tightest between two of its places (skin points from its start): its lumen, or less
+/// where clips and jaws are on it.
 double open_between(const Field& field, OrganIndex organ, double one, double other);
 
 }  // namespace calot

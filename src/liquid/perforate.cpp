@@ -10,30 +10,28 @@ constexpr double least_slit = 1.0e-3;  // m: blades that stand on a wall have cu
 
 }  // namespace
 
-void perforate(Field& field, ToolIndex instrument) {
-  for (Organ& organ : field.organs) {
-    if (organ.body->liquid() == nullptr) continue;
-    Vec3 sum = Vec3::Zero();
-    double low = 1, high = -1;  // m, along the jaws
-    std::vector<int> held;
-    for (const GripPoint& grip : organ.grips) {
-      if (grip.instrument != instrument) continue;
-      held.push_back(grip.skin_point);
-      sum += organ.body->skin_rest()[grip.skin_point];
-      low = std::min(low, grip.local.z());
-      high = std::max(high, grip.local.z());
-    }
-    if (held.empty()) continue;
-    const Vec3 middle = sum / static_cast<double>(held.size());
-    const auto nearer = [&](int a, int b) {
-      return (organ.body->skin_rest()[a] - middle).norm() < (organ.body->skin_rest()[b] - middle).norm();
-    };
-    Opening hole;
-    hole.point = *std::min_element(held.begin(), held.end(), nearer);
-    hole.area = gape * std::max(least_slit, high - low);
-    hole.cause = field.tool(instrument).definition.name;
-    organ.openings.push_back(hole);
+void perforate(Organ& organ, ToolIndex instrument, const std::string& name) {
+  if (organ.body->liquid() == nullptr) return;
+  Vec3 sum = Vec3::Zero();
+  double low = 1, high = -1;  // m, along the jaws
+  std::vector<int> held;
+  for (const GripPoint& grip : organ.grips) {
+    if (grip.instrument != instrument) continue;
+    held.push_back(grip.skin_point);
+    sum += organ.body->skin_rest()[grip.skin_point];
+    low = std::min(low, grip.local.z());
+    high = std::max(high, grip.local.z());
   }
+  if (held.empty()) return;
+  const Vec3 middle = sum / static_cast<double>(held.size());
+  const auto nearer = [&](int a, int b) {
+    return (organ.body->skin_rest()[a] - middle).norm() < (organ.body->skin_rest()[b] - middle).norm();
+  };
+  Opening hole;
+  hole.point = *std::min_element(held.begin(), held.end(), nearer);
+  hole.area = gape * std::max(least_slit, high - low);
+  hole.cause = name;
+  organ.openings.push_back(hole);
 }
 
 void perforate(Organ& organ, const Vec3& at, const std::string& instrument) {

@@ -5,8 +5,8 @@
 
 namespace calot {
 
-/// Makes the holes that a tool's jaws, which hold them, cut or crush into hollow organs.
-void perforate(Field& field, ToolIndex instrument);
+/// Makes the hole that a tool's jaws, which hold it, cut or crush into an organ; what holds no liquid has nothing to lose.
+void perforate(Organ& organ, ToolIndex instrument, const std::string& name);
 /// Makes one where current has burnt a wall, at the skin point nearest to `at`; what holds no liquid has nothing to lose.
 void perforate(Organ& organ, const Vec3& at, const std::string& instrument);
 

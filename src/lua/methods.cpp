@@ -139,8 +139,10 @@ int seen_area(lua_State* L) {
 int sees(lua_State* L) {
   ScriptSession& session = session_target(L, "sees");
   Arguments arguments(L, session, "Session", "sees");
+  const Value* asked = arguments.read().take("place");
+  const std::string landmark = asked != nullptr && asked->is(Value::Kind::text) ? asked->text : std::string();
   const std::optional<Vec3> place = place_argument(L, session, arguments, "place");
-  lua_pushboolean(L, place && session.sees(L, *place));
+  lua_pushboolean(L, place && (landmark.empty() ? session.sees(L, *place) : session.sees(L, landmark)));
   return 1;
 }
 

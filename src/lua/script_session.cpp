@@ -115,6 +115,10 @@ bool ScriptSession::sees(lua_State* L, const Vec3& place) {
   return checking() ? next_guess() : world(L).sees(place);
 }
 
+bool ScriptSession::sees(lua_State* L, const std::string& landmark) {
+  return checking() ? next_guess() : world(L).sees(landmark);
+}
+
 LaparoscopeState ScriptSession::lens(lua_State* L) {
   if (checking()) stand_in();
   if (has_world()) return world(L).report().laparoscope;

@@ -72,6 +72,7 @@ class ScriptSession {
   double seen_area(lua_State* L, const std::array<Vec3, 3>& corners);
   /// Whether the laparoscope sees a place, m (World::sees); a dry run answers either way.
   bool sees(lua_State* L, const Vec3& place);
+  bool sees(lua_State* L, const std::string& landmark);
   /// Where the laparoscope is and what it touches; in a dry run without a world, a stand-in that looks at an organ.
   LaparoscopeState lens(lua_State* L);
   /// From its port to its lens there, unit.

@@ -40,10 +40,12 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
   if (result.status == NewtonStatus::stopped)
     return fail(FailureKind::interrupted,
                 fmt::format("interrupted while organ '{}' came to rest {}", organ, when));
-  const std::string hint = result.status == NewtonStatus::mechanism
-                               ? "give the organ a held region, or let something support it"
-                               : "move more slowly or less far, raise solver.rate, or give the organ more "
-                                 "nodes where it is handled";
+  const std::string hint =
+      result.status == NewtonStatus::mechanism
+          ? "give the organ a held region (a rigid thing is not held), let something support it, or let it "
+            "fall: solver = { motion = \"dynamic\" }"
+          : "move more slowly or less far, raise solver.rate, or give the organ more "
+            "nodes where it is handled";
   return fail(FailureKind::simulation,
               fmt::format("organ '{}' found no equilibrium {}: {} (residual {:.2g}, {} iterations)", organ,
                           when, to_text(result.status), result.residual, result.iterations),

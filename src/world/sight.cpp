@@ -82,12 +82,13 @@ bool meets(const Eigen::AlignedBox3d& box, const Vec3& from, const Vec3& along, 
 
 }  // namespace
 
-bool Sight::sees(const Vec3& place, double margin) const {
+bool Sight::sees(const Vec3& place, double margin, const std::string& through) const {
   const Vec3 way = place - eye_;
   const double length = way.norm() - margin;
   if (!(length > 0)) return true;
   const Vec3 along = way.normalized();
-  for (const Drawn& organ : organs_)
+  for (const Drawn& organ : organs_) {
+    if (organ.organ == through) continue;
     for (std::size_t box = 0; box < organ.boxes.size(); ++box) {
       if (!meets(organ.boxes[box], eye_, along, length)) continue;
       const std::size_t end = std::min(organ.triangles.size(), (box + 1) * boxed);
@@ -96,11 +97,12 @@ bool Sight::sees(const Vec3& place, double margin) const {
             at && *at > 0 && *at < length)
           return false;
     }
+  }
   return !is_met(tools_, place, margin);
 }
 
-bool Sight::sees_past_ground(const Vec3& place, double margin) const {
-  return !is_met(ground_, place, margin) && sees(place, margin);
+bool Sight::sees_past_ground(const Vec3& place, double margin, const std::string& through) const {
+  return !is_met(ground_, place, margin) && sees(place, margin, through);
 }
 
 double Sight::first_organ(const Vec3& along, double from) const {

@@ -23,9 +23,10 @@ class Sight {
 
   const Vec3& eye() const { return eye_; }
   /// Whether nothing is met on the way to a place, m, but for the last `margin` m of it.
-  bool sees(const Vec3& place, double margin) const;
+  /// `through`: an organ that hides nothing; empty: none.
+  bool sees(const Vec3& place, double margin, const std::string& through = {}) const;
   /// The same with the ground around the organs in the way, too.
-  bool sees_past_ground(const Vec3& place, double margin) const;
+  bool sees_past_ground(const Vec3& place, double margin, const std::string& through = {}) const;
   /// How far from the eye, m, an organ is met first on the way along a unit direction, `from` m away at least; infinite
   /// where none is.
   double first_organ(const Vec3& along, double from) const;

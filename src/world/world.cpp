@@ -518,7 +518,7 @@ Vec3 World::landmark(const std::string& name) const {
   const std::optional<OrganPoint> there = find_landmark(impl_->field.organs, name);
   if (!there) return last_place(impl_->field, name).at;
   const Organ& organ = impl_->field.organ(there->organ);
-  return organ.body->surface_point(there->skin_point, organ.state.x);
+  return organ.body->landmark_place(there->skin_point, organ.state.x);
 }
 
 Vec3 World::landmark_normal(const std::string& name) const {
@@ -538,9 +538,17 @@ double World::seen_area(const std::array<Vec3, 3>& corners) const {
                           impl_->scene.laparoscope.field_of_view, corners, looked_through);
 }
 
-bool World::sees(const Vec3& place) const {
+bool World::sees(const Vec3& place, const std::string& through) const {
   return is_in_field(impl_->report.laparoscope.view, impl_->scene.laparoscope.field_of_view, place) &&
-         impl_->look().sees_past_ground(place, looked_through);
+         impl_->look().sees_past_ground(place, looked_through, through);
+}
+
+bool World::sees(const std::string& landmark) const {
+  const std::optional<OrganPoint> there = find_landmark(impl_->field.organs, landmark);
+  const bool rigid =
+      there && std::holds_alternative<RigidShape>(impl_->field.organ(there->organ).definition.shape);
+  return sees(this->landmark(landmark),
+              rigid ? impl_->field.organ(there->organ).definition.name : std::string());
 }
 
 const Laparoscope& World::laparoscope() const { return impl_->laparoscope; }

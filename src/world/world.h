@@ -101,7 +101,10 @@ class World {
   /// it is now.
   double seen_area(const std::array<Vec3, 3>& corners) const;
   /// Whether it sees a place, m: in its round field, with no organ, instrument or ground on the way but for its last 2 mm.
-  bool sees(const Vec3& place) const;
+  /// `through`: an organ that does not hide it; empty: none.
+  bool sees(const Vec3& place, const std::string& through = {}) const;
+  /// A landmark; a rigid thing does not hide its centre.
+  bool sees(const std::string& landmark) const;
   const Laparoscope& laparoscope() const;
   /// The critical view of safety from where the laparoscope is now (world/critical_view.h). Throws as landmark() does.
   CriticalView critical_view(const CriticalViewQuestion& question) const;

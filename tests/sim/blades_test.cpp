@@ -150,5 +150,40 @@ TEST(Scissors, ClosedOnAWallPerforateItAndGoOn) {
   EXPECT_GT(path.world.report().lost[0].bile, 1e-9);
 }
 
+TEST(Scissors, ClosedOnARigidThingCutNothing) {
+  SceneDefinition definition = test::ball_scene();
+  InstrumentDefinition tool = default_instrument(InstrumentType::scissors);
+  tool.name = "left";
+  tool.port = definition.instruments[0].port;
+  tool.friction = 0.3;
+  definition.instruments = {tool};
+  OrganDefinition block;
+  block.name = "block";
+  RigidShape shape;
+  shape.size = Vec3(2e-3, 16e-3, 14e-3);
+  shape.rounding = 1e-3;
+  shape.centre = Vec3(-80e-3, 70e-3, -112e-3);
+  block.shape = shape;
+  definition.anatomy.organs = {block};
+  definition.anatomy.support = SupportDefinition{Vec3(0, 0, -120.2e-3), Vec3::UnitZ(), 0.3};
+  definition.anatomy.friction = 0.3;
+  definition.solver.motion = SolverMotion::dynamics;
+  definition.laparoscope.look_at = "block.centre";
+  Result<World> made = World::create(definition);
+  ASSERT_TRUE(made) << to_text(made.failure());
+  World& world = made.value();
+  EXPECT_LT((world.landmark("block.centre") - shape.centre).norm(), 1e-3)
+      << "its centre, not a point of its skin";
+  test::Driver driver(world);
+  const Vec3 top(-80e-3, 70e-3, -104e-3);
+  ASSERT_TRUE(driver.go(top + Vec3(0, 0, 15e-3), 0.5, 5) && driver.go(top - Vec3(0, 0, 8e-3), 0.5, 5) &&
+              driver.go(top - Vec3(0, 0, 8e-3), 0, 12) && driver.stay(2))
+      << driver.why();
+  EXPECT_EQ(driver.count(EventKind::perforation), 0);
+  EXPECT_EQ(driver.count(EventKind::cut), 0);
+  EXPECT_EQ(driver.count(EventKind::grasp), 0);
+  EXPECT_GT(world.report().instruments[0].pose.jaw, 0.1) << "it is between them";
+}
+
 }  // namespace
 }  // namespace calot

@@ -156,6 +156,32 @@ TEST(Leaks, AnOpenDuctLosesByItsLumenAndThePressureThere) {
   EXPECT_NEAR(events[1].value, 60e6 * wanted / 0.02, 1e-6 * events[1].value);
 }
 
+TEST(Leaks, ATubeLeaksByItsNarrowestPlaceAndHoldsWhatItsWidthsMake) {
+  SceneDefinition scene = bag_and_duct();
+  auto& tube = std::get<TubeShape>(scene.anatomy.organs[1].shape);
+  const Vec3 start = tube.points.front(), way = tube.points.back() - start;
+  tube.points.clear();
+  for (int k = 0; k <= 8; ++k) tube.points.push_back(start + k / 8.0 * way);
+  tube.radii.assign(9, tube.radius);
+  tube.radii[2] = 1.3e-3;  // between the bag and the cut
+  Bodies bodies(scene);
+  const RodBody& rod = *bodies.field.organs[1].body->as_tube();
+  double narrowest = lumen, sum = 0;
+  const int last = static_cast<int>(rod.last_point());
+  for (int k = 0; k <= last; ++k) {
+    narrowest = std::min(narrowest, lumen_area(rod, k));
+    sum += lumen_area(rod, k) / (last + 1);
+  }
+  EXPECT_LT(narrowest, 0.4 * lumen);
+  EXPECT_NEAR(lumen_volume(rod) / (sum * rod.length()), 1, 0.03);
+  const Division pieces = bodies.cut(OrganIndex(1));
+  bodies.field.group.work.factored = false;
+  const double wanted = 0.02 * orifice(bodies.pressure(OrganIndex(0), pieces.specimen, true), narrowest);
+  bodies.run(0.02);
+  EXPECT_NEAR(bodies.lost(Carries::bile, "duct") - 0.02 * fed_flow({1e3, 0}, 1e3, lumen, bile_density),
+              wanted, 1e-6 * wanted);
+}
+
 TEST(Leaks, AClipLeaksByWhatItLeavesOpenAndAShutOneNothing) {
   for (const double opening : {0.4, 0.1, 0.0}) {
     Bodies bodies(bag_and_duct());
@@ -415,8 +441,7 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   const double deep = test::tube_depth + 14e-3;
   const auto open = [&] {
     const RodBody& rod = *acting.world.field().organs[0].body->as_tube();
-    return open_between(acting.world.field(), OrganIndex(0), 0,
-                        static_cast<double>(rod.skin_rest().size() - 1));
+    return open_between(acting.world.field(), OrganIndex(0), 0, rod.last_point()) / lumen_area(rod, 0);
   };
   ASSERT_TRUE(acting.go(test::about(0.7, test::tube_depth - 20e-3), 2) &&
               acting.go(test::about(0.7, deep), 8));
@@ -428,7 +453,8 @@ TEST(Bleeding, EndsBetweenJawsThatCloseOnTheStump) {
   EXPECT_EQ(open(), 0);
   Field without = acting.world.field();
   without.tools[0].waits = true;
-  EXPECT_EQ(open_between(without, OrganIndex(0), 0, without.organs[0].body->as_tube()->last_point()), 1)
+  const RodBody& tube = *without.organs[0].body->as_tube();
+  EXPECT_EQ(open_between(without, OrganIndex(0), 0, tube.last_point()), lumen_area(tube, 0))
       << "an instrument that waits outside shuts nothing";
   // Cut beyond the jaws: what the specimen's piece holds is all that is lost, until they open.
   ASSERT_TRUE(acting.world.divide("duct", 0.75));
