@@ -117,6 +117,10 @@ void add_run(Program& program) {
   command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
   add_new_session_options(command, program.run);
   add_session_options(command, program.run);
+  command.add_flag("--show-refused", program.run.show_refused,
+                   "play nothing: draw a scene that is refused as it is drawn up, pins where organs are in "
+                   "each other or in "
+                   "ground");
   add_dry_run(command, program.run);
   command.callback([&program] { program.chosen = [&program] { return run_command(program.run); }; });
 }

@@ -36,6 +36,7 @@ struct RunCommand : SessionCommand {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> params;  ///< "key=value"
   bool overwrite = false;           ///< see PlayRequest
+  bool show_refused = false;        ///< draw a scene that is refused instead of playing it
 };
 ExitCode run_command(const RunCommand& command);
 

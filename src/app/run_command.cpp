@@ -2,14 +2,68 @@
 
 #include "app/commands.h"
 #include "app/conclude.h"
+#include "field/field.h"
 #include "play/play.h"
 #include "play/replay_checks.h"
 #include "process/terminal.h"
+#include "render/offscreen.h"
+#include "render/png.h"
+#include "view/build_scene.h"
+#include "view/pins.h"
+#include "world/world.h"
 
 namespace calot {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::optional<Failure> draw_refused(const World& world, const std::vector<Vec3>& overlaps,
+                                    const PlayRequest& request, const fs::path& file) {
+  Scene scene = build_scene(world);
+  for (SceneMesh& pin : pin_meshes(overlaps, scene.camera.position)) scene.meshes.push_back(std::move(pin));
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(request.width, request.height);
+  if (!renderer) return renderer.failure();
+  const Result<Image> image = renderer->render(scene);
+  if (!image) return image.failure();
+  const Result<std::string> png = write_png(file.string(), image.value());
+  return png ? std::nullopt : std::optional<Failure>(png.failure());
+}
+
+/// What the laparoscope's lens is in, so that it sees nothing else; empty: nothing.
+std::string around_lens(const World& world) {
+  for (const Ground& ground : world.field().ground)
+    if (signed_distance(ground.shape, world.report().laparoscope.view.position) < 0) return ground.name;
+  return {};
+}
+
+/// Draws a scene that is refused into <folder>/refused.png, and says why it is.
+ExitCode show_refused(const PlayRequest& request, bool json) {
+  const Result<std::unique_ptr<ExerciseScript>> script = load_scenario(request);
+  const std::string file = shell_word(request.scenario.string());
+  if (!script) return print_failure(script.failure(), "calot check " + file, json);
+  const ExerciseDefinition& exercise = script.value()->definition();
+  const Result<World> made = World::create(exercise.scene, nullptr, request.threads);
+  if (made) {
+    print("The scene is not refused: there is nothing to show.\nNext: calot run " + file);
+    return ExitCode::ok;
+  }
+  std::vector<Vec3> overlaps;
+  const Result<World> drawn = World::as_drawn(exercise.scene, overlaps);
+  if (!drawn) return print_failure(drawn.failure(), "calot check --build " + file, json);
+  const fs::path folder = request.output.empty() ? fs::path("out") / exercise.id : request.output;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (std::optional<Failure> failed = draw_refused(drawn.value(), overlaps, request, folder / "refused.png"))
+    return print_failure(*failed, "calot run --help", json);
+  print(fmt::format("{}: {}.", (folder / "refused.png").string(),
+                    overlaps.empty() ? "no organ is in another or in ground"
+                                     : fmt::format("{} {}, where organs are in each other or in ground",
+                                                   overlaps.size(), overlaps.size() == 1 ? "pin" : "pins")));
+  if (const std::string around = around_lens(drawn.value()); !around.empty())
+    print(fmt::format("The laparoscope is in '{}' and sees nothing else: have it look_at another organ.",
+                      around));
+  return print_failure(made.failure(), "calot check --build " + file, json);
+}
 
 }  // namespace
 
@@ -28,6 +82,7 @@ ExitCode run_command(const RunCommand& command) {
   request.output = command.output;
   request.overwrite = command.overwrite;
   request.dry_run = command.dry_run;
+  if (command.show_refused && !command.dry_run) return show_refused(request, command.json);
   const Result<Played> played = play(request);
   const std::string file = shell_word(command.scenario);
   if (!played) {

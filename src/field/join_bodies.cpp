@@ -70,25 +70,17 @@ void renew_joins(Field& field) {
     }
 }
 
-std::optional<Problem> overlap_problem(const SkinJoin& join, const Organ& one, const Organ& other,
-                                       const VecX& x) {
-  const auto hollow = [](const Organ& organ) { return is_hollow(organ.definition.shape); };
-  const std::optional<SkinOverlap> found = join.overlap(x, {hollow(one), hollow(other)});
-  if (!found) return std::nullopt;
-  const Vec3 at = 1e3 * found->place;
-  return Problem{
-      {},
-      fmt::format(
-          "organ '{}' and organ '{}' are {:.2g} mm deep in each other, at ({:.0f}, {:.0f}, {:.0f}) mm",
-          one.definition.name, other.definition.name, 1e3 * found->depth, at.x(), at.y(), at.z()),
-      "move one away by as much and a little more; where one grows out of the other, tie them "
-      "there by a joint"};
-}
-
 namespace {
 
-std::vector<Problem> overlap_problems(const Field& field) {
-  std::vector<Problem> problems;
+std::optional<SkinOverlap> overlap_of(const SkinJoin& join, const Organ& one, const Organ& other,
+                                      const VecX& x) {
+  const auto hollow = [](const Organ& organ) { return is_hollow(organ.definition.shape); };
+  return join.overlap(x, {hollow(one), hollow(other)});
+}
+
+/// Calls use(join, one organ's index, the other's, where all are) for the contact of each two organs.
+template <class Use>
+void for_pairs(const Field& field, const Use& use) {
   std::vector<GroupPlace> places;
   std::vector<double> all;
   for (const Organ& organ : field.organs) {
@@ -100,12 +92,53 @@ std::vector<Problem> overlap_problems(const Field& field) {
     const SkinJoin* skins = join->skins();
     if (skins == nullptr) continue;
     skins->begin(places);
-    const auto [one, other] = skins->bodies();
-    std::optional<Problem> problem = overlap_problem(*skins, field.organs[one], field.organs[other], x);
-    if (!problem) continue;
+    use(*skins, skins->bodies()[0], skins->bodies()[1], x);
+  }
+}
+
+}  // namespace
+
+std::optional<Problem> overlap_problem(const SkinJoin& join, const Organ& one, const Organ& other,
+                                       const VecX& x) {
+  const std::optional<SkinOverlap> found = overlap_of(join, one, other, x);
+  if (!found) return std::nullopt;
+  const Vec3 at = 1e3 * found->place;
+  return Problem{
+      {},
+      fmt::format(
+          "organ '{}' and organ '{}' are {:.2g} mm deep in each other, at ({:.0f}, {:.0f}, {:.0f}) mm",
+          one.definition.name, other.definition.name, 1e3 * found->depth, at.x(), at.y(), at.z()),
+      "move one away by as much and a little more; where one grows out of the other, tie them "
+      "there by a joint"};
+}
+
+std::vector<Vec3> overlap_places(const Field& field) {
+  std::vector<Vec3> out;
+  for_pairs(field, [&](const SkinJoin& join, int one, int other, const VecX& x) {
+    if (const auto found = overlap_of(join, field.organs[one], field.organs[other], x))
+      out.push_back(found->place);
+  });
+  for (const Organ& organ : field.organs)
+    for (const Ground& ground : field.ground) {
+      const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+      const auto deepest = std::min_element(skin.begin(), skin.end(), [&](const Vec3& a, const Vec3& b) {
+        return signed_distance(ground.shape, a) < signed_distance(ground.shape, b);
+      });
+      if (deepest != skin.end() && signed_distance(ground.shape, *deepest) < 0) out.push_back(*deepest);
+    }
+  return out;
+}
+
+namespace {
+
+std::vector<Problem> overlap_problems(const Field& field) {
+  std::vector<Problem> problems;
+  for_pairs(field, [&](const SkinJoin& join, int one, int other, const VecX& x) {
+    std::optional<Problem> problem = overlap_problem(join, field.organs[one], field.organs[other], x);
+    if (!problem) return;
     problem->place.path = fmt::format("scene.anatomy.organs[{}]", other + 1);
     problems.push_back(std::move(*problem));
-  }
+  });
   return problems;
 }
 

@@ -19,6 +19,9 @@ Result<bool> add_joint(const JointDefinition& joint, bool at_rest, Field& field)
 std::optional<Problem> overlap_problem(const SkinJoin& join, const Organ& one, const Organ& other,
                                        const VecX& x);
 
+/// Where organs that are not tied there are deepest in each other or in ground, m: for a picture of a scene that is refused.
+std::vector<Vec3> overlap_places(const Field& field);
+
 /// The field's joins anew, of its joints and of where its bodies are tied.
 void renew_joins(Field& field);
 

@@ -29,6 +29,8 @@ struct OrganSetting {
   int levels = 0;                   ///< of structural extensions that may refine it
   FillingLimits* limits = nullptr;  ///< may be null
   KeptResults* kept = nullptr;      ///< as of World::create
+  /// Only to be looked at: where it is drawn, in ground or not, and empty.
+  bool only_drawn = false;
 };
 
 struct BodyKind {
@@ -60,7 +62,8 @@ Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kin
     return failure;
   }
   const auto drawn = std::make_shared<const Kind>(std::move(body).value());
-  if (std::optional<Failure> failure = check_clear_of_ground(*drawn, setting.loads)) return *failure;
+  if (!setting.only_drawn)
+    if (std::optional<Failure> failure = check_clear_of_ground(*drawn, setting.loads)) return *failure;
   RestedOrgan made{Organ(definition, drawn), NewtonWorkspace(drawn->pattern())};
   made.organ.search.own.active = false;
   return made;

@@ -395,6 +395,7 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   RestedOrgan made{Organ(definition, shell), std::move(work)};
   Organ& organ = made.organ;
   organ.state.volume = shell->bile()->volume(organ.state.x);
+  if (setting.only_drawn) return made;
   if (std::optional<Failure> failure = check_clear_of_ground(*shell, setting.loads)) return *failure;
   organ.search.own.active = !swells(organ);
   const NewtonSettings settings = filling_settings(setting, control->points.size());

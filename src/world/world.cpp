@@ -89,6 +89,9 @@ struct World::Impl {
   Result<std::vector<WorldEvent>> act(const StepInput& input);
   /// What happens on the tools' way.
   Result<std::vector<WorldEvent>> move_tools(const std::vector<InstrumentPose>& commands);
+  /// Instruments in their ports, and the laparoscope where the scene has it.
+  void bring_in_tools(const World& world);
+  void bring_in_laparoscope(const World& world);
   void place_laparoscope(const InstrumentPose& pose);
   /// Moves it; what its end begins to touch is an event.
   void move_laparoscope(const InstrumentPose& pose, std::vector<WorldEvent>& events);
@@ -226,18 +229,20 @@ std::vector<RestShift> shifts_from_drawn(const std::vector<Organ>& organs) {
 /// All organs of a scene, in its order, each as make_organ() has it; after a failure that is not the scenario's there may be
 /// fewer. A lobe is half of the time that it takes: two threads make lobes and what is filled at once.
 std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinition& scene,
-                                                            const ContactLoads& still, const Vec3& up,
-                                                            FillingLimits& limits, Workers& workers,
-                                                            KeptResults* kept) {
+                                                            const OrganSetting& setting, Workers& workers) {
   const std::vector<OrganDefinition>& organs = scene.anatomy.organs;
   std::vector<std::optional<Result<RestedOrgan>>> out(organs.size());
   const auto make_those = [&](bool lobes) {
     for (std::size_t k = 0; k < organs.size(); ++k) {
       if (std::holds_alternative<LobeShape>(organs[k].shape) != lobes) continue;
       // No lobe is filled, and nothing of the others is kept: limits and kept results are each one thread's alone.
-      out[k] = make_organ(organs[k], still, up, scene.solver.tolerance,
-                          organs[k].extensions ? scene.solver.extension_levels : 0, lobes ? nullptr : &limits,
-                          lobes ? kept : nullptr);
+      OrganSetting own = setting;
+      if (organs[k].extensions) own.levels = scene.solver.extension_levels;
+      if (lobes)
+        own.limits = nullptr;
+      else
+        own.kept = nullptr;
+      out[k] = make_organ(body_kinds()[organs[k].shape.index()], organs[k], own);
       if (!*out[k] && out[k]->failure().kind != FailureKind::scenario) return;
     }
   };
@@ -268,12 +273,10 @@ FillingLimits filling_limits(const SolverDefinition& solver, const std::atomic<b
   return out;
 }
 
-/// Adds the organs of a scene, each at rest alone. Fails (scenario) with the problems of all of them.
-Result<bool> add_organs(const SceneDefinition& scene, const Vec3& up, const std::atomic<bool>* stop,
-                        KeptResults* kept, Workers& workers, Field& field) {
-  const ContactLoads still = loads_of_ground(field);
-  FillingLimits limits = filling_limits(scene.solver, stop);
-  auto organs = make_organs(scene, still, up, limits, workers, kept);
+/// Adds the organs of a scene, each as make_organ() has it. Fails (scenario) with the problems of all of them.
+Result<bool> add_organs(const SceneDefinition& scene, const OrganSetting& setting, Workers& workers,
+                        Field& field) {
+  auto organs = make_organs(scene, setting, workers);
   std::vector<Problem> problems;
   for (std::size_t k = 0; k < organs.size(); ++k) {
     if (!organs[k]) continue;  // after what failed
@@ -327,30 +330,67 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   self.up = up_direction(scene.anatomy);
   set_field(scene, self.field);
   self.field.stop = stop;
-  if (Result<bool> added = add_organs(scene, self.up, stop, kept, self.workers, self.field); !added)
+  const ContactLoads still = loads_of_ground(self.field);
+  FillingLimits limits = filling_limits(scene.solver, stop);
+  if (Result<bool> added = add_organs(scene, {still, self.up, scene.solver.tolerance, 0, &limits, kept},
+                                      self.workers, self.field);
+      !added)
     return added.failure();
   if (Result<bool> joined = join_bodies(scene.anatomy, self.field); !joined) return joined.failure();
   if (Result<bool> made = add_tissues(scene.anatomy, self.up, self.field); !made) return made.failure();
   if (Result<bool> rested = come_to_rest(scene, self.field, kept); !rested) return rested.failure();
   self.rest_shifts = shifts_from_drawn(self.field.organs);
-  self.field.up = self.up;
-  self.field.heart_rate = scene.anatomy.heart_rate;
-  if (!self.field.organs.empty())
-    self.field.middle = self.field.organs[0].body->skin_point(0, self.field.organs[0].state.x);
-  for (const InstrumentDefinition& definition : scene.instruments)
-    self.field.tools.push_back(tool_at_port(definition, world.port_position(definition.port), self.field));
+  self.bring_in_tools(world);
   if (scene.laparoscope.distance < scene.solver.extension_view)
     look_closely(scene.laparoscope.look_at, self.field);
-  self.looked_at = world.landmark(scene.laparoscope.look_at);
-  self.laparoscope =
-      Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), self.looked_at);
-  self.place_laparoscope(self.laparoscope.start());
+  self.bring_in_laparoscope(world);
   if (Result<bool> clear = check_clear(self.field); !clear) return clear.failure();
   if (Result<bool> apart = check_apart(self.field); !apart) return apart.failure();
   keep_members(self.field);
   self.scene_digest = calot::scene_digest(self.scene, self.field);
   self.observe_step({}, 1 / scene.solver.rate, {});
   self.keep_hash();
+  return world;
+}
+
+void World::Impl::bring_in_tools(const World& world) {
+  field.up = up;
+  field.heart_rate = scene.anatomy.heart_rate;
+  if (!field.organs.empty()) field.middle = field.organs[0].body->skin_point(0, field.organs[0].state.x);
+  for (const InstrumentDefinition& definition : scene.instruments)
+    field.tools.push_back(tool_at_port(definition, world.port_position(definition.port), field));
+}
+
+void World::Impl::bring_in_laparoscope(const World& world) {
+  looked_at = world.landmark(scene.laparoscope.look_at);
+  laparoscope = Laparoscope(scene.laparoscope, world.port_position(scene.laparoscope.port), looked_at);
+  place_laparoscope(laparoscope.start());
+}
+
+Result<World> World::as_drawn(const SceneDefinition& scene, std::vector<Vec3>& overlaps, KeptResults* kept) {
+  std::vector<Problem> problems = validate(scene);
+  if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
+  World world(std::make_unique<Impl>(1));
+  Impl& self = *world.impl_;
+  self.scene = scene;
+  if (self.scene.ports.empty()) self.scene.ports = default_ports();
+  self.up = up_direction(scene.anatomy);
+  set_field(scene, self.field);
+  const ContactLoads still = loads_of_ground(self.field);
+  OrganSetting setting{still, self.up, scene.solver.tolerance, 0, nullptr, kept, true};
+  if (Result<bool> added = add_organs(scene, setting, self.workers, self.field); !added)
+    return added.failure();
+  // Where they are tied they may be in each other: a joint that cannot be made ties nothing.
+  for (const JointDefinition& joint : scene.anatomy.joints)
+    static_cast<void>(add_joint(joint, true, self.field));
+  renew_joins(self.field);
+  overlaps = overlap_places(self.field);
+  self.bring_in_tools(world);
+  self.bring_in_laparoscope(world);
+  keep_members(self.field);
+  report_states(self.field, self.report);
+  self.failed = true;
+  self.failure = fail(FailureKind::scenario, "a scene that is refused can be looked at, and not played");
   return world;
 }
 

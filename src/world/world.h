@@ -38,6 +38,11 @@ class World {
   /// no bit depends on whether it was there; null: nothing is.
   static Result<World> create(const SceneDefinition& scene, const std::atomic<bool>* stop = nullptr,
                               int threads = 1, KeptResults* kept = nullptr);
+  /// A scene that create() refuses, to be looked at: its organs as they are drawn, empty, neither tied nor at rest, its
+  /// instruments in their ports, and the laparoscope. No step can be made of it. `overlaps` receives where organs are deepest in
+  /// each other or in ground, m. Fails (scenario) where not even that can be built.
+  static Result<World> as_drawn(const SceneDefinition& scene, std::vector<Vec3>& overlaps,
+                                KeptResults* kept = nullptr);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();

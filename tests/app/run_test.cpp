@@ -519,6 +519,25 @@ TEST_F(Run, AnOrganThatCannotBeFilledIsNotToldToMoveMoreSlowly) {
   EXPECT_EQ(outcome.err.find("move more slowly"), std::string::npos) << outcome.err;
 }
 
+TEST_F(Run, ASceneThatIsRefusedCanBeLookedAtWithPinsWhereItsOrgansAreInEachOther) {
+  std::string text = small_scenario();
+  const std::string ball = "{ name = \"ball\",",
+                    at = "neck = { 0.02, 0.1, -0.12 }, fundus = { 0.02, 0.1, -0.08 }";
+  text.replace(text.find(ball), ball.size(), ball + " neck = { 0, 0.1, -0.12 }, fundus = { 0, 0.1, -0.08 },");
+  text.insert(text.find("} } } },\n"), "} }, { name = 'other', shape = { type = 'sphere' }, nodes = 61, " +
+                                           at + ", held = { { landmark = 'bed' } ");
+  spill(folder_ / "refused.lua", text);
+  const Outcome outcome = calot({"run", "refused.lua", "--show-refused", "-o", "there", "--size", "320x180"});
+  EXPECT_EQ(outcome.code, 6) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.err.find("deep in each other"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("there/refused.png: 1 pin,"), std::string::npos) << outcome.out;
+  expect_next_command(outcome);
+  EXPECT_TRUE(fs::exists(folder_ / "there" / "refused.png"));
+  const Outcome sound = calot({"run", "small.lua", "--show-refused"});
+  EXPECT_EQ(sound.code, 0) << sound.err;
+  EXPECT_NE(sound.out.find("not refused"), std::string::npos) << sound.out;
+}
+
 TEST_F(Run, CheckTellsGoodScenariosFromBadOnesAndPlaysNeither) {
   spill(folder_ / "set" / "good.lua", small_scenario());
   spill(folder_ / "set" / "bad.lua", small_scenario() + "\n)");
