@@ -219,7 +219,7 @@
 ---@field radius? number of a capsule, and of a box' edges; default 5 * mm; 0.5 to 250 mm
 ---@field friction? number coefficient of friction of what touches it; default 0; 0 to 1
 ---@field looks? "usual"|"liver"|"bowel"|"fat"|"peritoneum" how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as peritoneum; a bowel has to be a capsule; default "usual"
----@field injury? string what it is called when it is hurt by blades, current or a thrust; left out: liver and bowel by their looks, and nothing else
+---@field injury? string what it is called when it is hurt by blades, clips, current or a thrust; left out: liver and bowel by their looks, and nothing else
 ---@field thrust_limit? number the force of jaws, or of what a shaft ends in, that hurts it; uncalibrated; default 8 * N; 0.1 to 1000 N
 
 ---An instrument through a port.

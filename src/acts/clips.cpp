@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "acts/ground_injury.h"
 #include "acts/injury.h"
 #include "body/rod_body.h"
 #include "field/between_jaws.h"
@@ -108,6 +109,7 @@ void fire(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
     holds = true;
   }
   if (holds) return;
+  hurt_by_clip(field, instrument, events);
   const Vec3 middle =
       hinge_frame(tool.trocar, tool.pose, tool.geometry).translation() + (tip - 0.5 * row.leg) * hinge.col(2);
   drop_clip(field, row.size, middle, hinge.col(2));

@@ -156,13 +156,12 @@ void burn_wall(Organ* wall, Tool& tool, const Vec3& at, double energy, std::vect
 
 }  // namespace
 
-std::vector<WorldEvent> apply_current(Field& field, const std::vector<InstrumentState>& instruments,
-                                      double duration) {
+std::vector<WorldEvent> apply_current(Field& field, const std::vector<ToolLoad>& loads, double duration) {
   std::vector<WorldEvent> events;
   const std::vector<std::vector<Heated>> heated = heated_strands(field);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    if (!is_active(tool) || instruments[i].touching) {
+    if (!is_active(tool) || loads[i].touches > 0 || tool.ground.touches()) {
       tool.dry = 0;
     } else if (tool.dry < dry_limit) {
       tool.dry = std::min(tool.dry + duration, dry_limit);
@@ -171,7 +170,7 @@ std::vector<WorldEvent> apply_current(Field& field, const std::vector<Instrument
     }
     judge_neighbours(field, tool, events);
     const ToolPart end = tool.geometry.has_jaws() ? ToolPart::jaws : ToolPart::tip;
-    const PartLoad& load = instruments[i].parts[static_cast<std::size_t>(end)];
+    const PartLoad& load = loads[i].parts[static_cast<std::size_t>(end)];
     burn_wall(touched_wall(field, tool, load), tool, load.at,
               heated[i].empty() ? tool.definition.power * duration : 0, events);
     std::vector<double> areas(field.tissues.size(), 0.0);

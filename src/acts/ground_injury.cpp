@@ -14,31 +14,48 @@ const Ground* tender_ground(const Field& field, const std::string& name) {
   return found == field.ground.end() || found->injury.empty() ? nullptr : &*found;
 }
 
+void wound(Field& field, const Tool& tool, const GroundTouch& touch, EventCause cause,
+           std::vector<WorldEvent>& events) {
+  const Ground* ground = tender_ground(field, touch.ground);
+  if (ground == nullptr) return;
+  field.wounds.push_back({ground->name, touch.at});
+  events.push_back(
+      {EventKind::injury, 0, tool.definition.name, ground->name, 0, touch.at, cause, ground->injury});
+}
+
+/// How the tool has hurt that ground since it came on it.
+GroundHurt hurt_before(const Tool& tool, const std::string& ground) {
+  for (const GroundHurt& hurt : tool.hurts_ground)
+    if (hurt.ground == ground) return hurt;
+  return {ground};
+}
+
 }  // namespace
 
 std::vector<WorldEvent> hurt_ground(Field& field, bool balanced) {
   std::vector<WorldEvent> events;
   for (Tool& tool : field.tools) {
-    const PartLoad& jaws = tool.ground.parts[static_cast<std::size_t>(ToolPart::jaws)];
-    const Ground* ground = jaws.touches > 0 ? tender_ground(field, jaws.organ) : nullptr;
-    if (ground == nullptr) {
-      tool.hurts_ground = {};
-      continue;
+    std::vector<GroundHurt> hurts;
+    for (const GroundTouch& touch : tool.ground.touched) {
+      const Ground* ground = tender_ground(field, touch.ground);
+      if (ground == nullptr) continue;
+      GroundHurt& hurt = hurts.emplace_back(hurt_before(tool, touch.ground));
+      const auto judge = [&](bool hurts_now, bool& known, EventCause cause) {
+        if (hurts_now && !std::exchange(known, true)) wound(field, tool, touch, cause, events);
+      };
+      judge(tool.closes && instrument_row(tool.definition.type).jaws == JawUse::cut, hurt.blades,
+            EventCause::blades);
+      judge(tool.action == InstrumentAction::activate && touch.conducts, hurt.current, EventCause::current);
+      judge(balanced && touch.force.norm() > ground->thrust_limit, hurt.thrust, EventCause::thrust);
     }
-    const auto hurt = [&](bool& known, EventCause cause) {
-      if (std::exchange(known, true)) return;
-      field.wounds.push_back({ground->name, jaws.at});
-      events.push_back(
-          {EventKind::injury, 0, tool.definition.name, ground->name, 0, jaws.at, cause, ground->injury});
-    };
-    if (tool.closes && instrument_row(tool.definition.type).jaws == JawUse::cut)
-      hurt(tool.hurts_ground.blades, EventCause::blades);
-    if (tool.action == InstrumentAction::fire) hurt(tool.hurts_ground.clip, EventCause::clip);
-    if (tool.action == InstrumentAction::activate) hurt(tool.hurts_ground.current, EventCause::current);
-    if (balanced && jaws.force.norm() > ground->thrust_limit)
-      hurt(tool.hurts_ground.thrust, EventCause::thrust);
+    tool.hurts_ground = std::move(hurts);
   }
   return events;
+}
+
+void hurt_by_clip(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
+  const Tool& tool = field.tool(instrument);
+  for (const GroundTouch& touch : tool.ground.touched) wound(field, tool, touch, EventCause::clip, events);
 }
 
 }  // namespace calot

@@ -140,6 +140,24 @@ Vec3 force_at_tip_of(const Tool& tool, const InstrumentPose& pose, const ToolVec
   return tip_by_unknowns.transpose().fullPivLu().solve(pressed.head<3>());
 }
 
+/// What each ground presses a tool's jaws with, or what its shaft ends in.
+std::vector<GroundTouch> ground_touches(const Tool& tool, const Grounded& grounded,
+                                        const std::vector<GroundMeeting::Press>& presses) {
+  std::vector<GroundTouch> out;
+  for (const GroundMeeting::Press& press : presses) {
+    if (press.part == 0) continue;
+    const std::string& name = grounded.ground[press.ground]->name;
+    if (out.empty() || out.back().ground != name) out.push_back({name});  // one ground's follow each other
+    GroundTouch& touch = out.back();
+    touch.force += press.force;
+    touch.conducts |= conducts(tool.geometry, press.part);
+    if (press.force.norm() <= touch.largest) continue;
+    touch.largest = press.force.norm();
+    touch.at = press.at;
+  }
+  return out;
+}
+
 /// What ground presses a tool's parts with, at a pose.
 PartLoads ground_parts(const Tool& tool, const InstrumentPose& pose, const Grounded& grounded,
                        const std::vector<GroundMeeting::Press>& presses) {
@@ -217,9 +235,12 @@ class MetTools {
       tool.meeting.force = force_at_tip_of(tool, poses[tools_[k]], tools_press);
       tool.ground.force = force_at_tip_of(tool, poses[tools_[k]], ground_presses);
     }
-    for (std::size_t k = 0; k < grounds_.size(); ++k)
-      tools[grounded_[k].tool].ground.parts = ground_parts(tools[grounded_[k].tool], poses[grounded_[k].tool],
-                                                           grounded_[k], grounds_[k]->presses(x));
+    for (std::size_t k = 0; k < grounds_.size(); ++k) {
+      Tool& tool = tools[grounded_[k].tool];
+      const std::vector<GroundMeeting::Press> presses = grounds_[k]->presses(x);
+      tool.ground.parts = ground_parts(tool, poses[grounded_[k].tool], grounded_[k], presses);
+      tool.ground.touched = ground_touches(tool, grounded_[k], presses);
+    }
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       if (meetings_[k]->force(x).isZero(0)) continue;
       for (int side : {0, 1}) {

@@ -141,7 +141,8 @@ std::vector<KeyTable> field_tables() {
                   "peritoneum; a bowel has to "
                   "be a capsule"),
            text("injury", &GroundDefinition::injury,
-                "what it is called when it is hurt by blades, current or a thrust; left out: liver and bowel "
+                "what it is called when it is hurt by blades, clips, current or a thrust; left out: liver "
+                "and bowel "
                 "by their looks, "
                 "and nothing else"),
            number("thrust_limit", &GroundDefinition::thrust_limit, quantity::force, 0.1, 1000,

@@ -43,6 +43,9 @@ ExitCode show_refused(const PlayRequest& request, bool json) {
   if (!script) return print_failure(script.failure(), "calot check " + file, json);
   const ExerciseDefinition& exercise = script.value()->definition();
   const Result<World> made = World::create(exercise.scene, nullptr, request.threads);
+  if (made && json)
+    return print_failure(fail(FailureKind::usage, "the scene is not refused: there is nothing to show"),
+                         "calot run " + file, json);
   if (made) {
     print("The scene is not refused: there is nothing to show.\nNext: calot run " + file);
     return ExitCode::ok;
@@ -55,6 +58,7 @@ ExitCode show_refused(const PlayRequest& request, bool json) {
   fs::create_directories(folder, error);
   if (std::optional<Failure> failed = draw_refused(drawn.value(), overlaps, request, folder / "refused.png"))
     return print_failure(*failed, "calot run --help", json);
+  if (json) return print_failure(made.failure(), "calot check --build " + file, json);
   print(fmt::format("{}: {}.", (folder / "refused.png").string(),
                     overlaps.empty() ? "no organ is in another or in ground"
                                      : fmt::format("{} {}, where organs are in each other or in ground",

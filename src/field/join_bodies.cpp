@@ -121,10 +121,14 @@ std::vector<Vec3> overlap_places(const Field& field) {
   for (const Organ& organ : field.organs)
     for (const Ground& ground : field.ground) {
       const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-      const auto deepest = std::min_element(skin.begin(), skin.end(), [&](const Vec3& a, const Vec3& b) {
-        return signed_distance(ground.shape, a) < signed_distance(ground.shape, b);
-      });
-      if (deepest != skin.end() && signed_distance(ground.shape, *deepest) < 0) out.push_back(*deepest);
+      double least = 0;
+      const Vec3* deepest = nullptr;
+      for (std::size_t row = 0; row < skin.size(); ++row) {
+        const double radius = organ.body->is_line() ? organ.body->skin_radii()[row] : 0;
+        const double distance = signed_distance(ground.shape, skin[row]) - radius;
+        if (distance < least) least = distance, deepest = &skin[row];
+      }
+      if (deepest != nullptr) out.push_back(*deepest);
     }
   return out;
 }

@@ -386,12 +386,19 @@ int DemoScript::move_by(lua_State* L, int instrument, const Vec3& vector, double
 
 int DemoScript::look_at(lua_State* L, const LookAt& how) {
   const auto motion = [&](InstrumentPath& path, double now) -> std::optional<double> {
-    const InstrumentPose pose = world(L).laparoscope().looking_at(how.place, how.distance);
-    const Vec3 lens = tip_position(path.trocar(), pose, path.geometry());
+    const std::optional<InstrumentPose> pose = world(L).laparoscope().looking_at(how.place, how.distance);
+    if (!pose) {
+      complain(L,
+               fmt::format("the laparoscope cannot look at it from {:.0f} mm: its port is nearer than that",
+                           how.distance / units::mm),
+               "give a smaller distance");
+      return std::nullopt;
+    }
+    const Vec3 lens = tip_position(path.trocar(), *pose, path.geometry());
     if (!can_reach(L, path, lens)) return std::nullopt;
     path.move(now, lens, how.speed);
     // By the shorter way round.
-    path.rotate(now, path.roll() + std::remainder(pose.roll - path.roll(), 2 * std::numbers::pi),
+    path.rotate(now, path.roll() + std::remainder(pose->roll - path.roll(), 2 * std::numbers::pi),
                 default_turning_speed);
     return path.busy_until();
   };

@@ -255,12 +255,13 @@ std::vector<std::string> likely(const std::string& name, const std::vector<std::
   return same.empty() ? names : same;
 }
 
-/// Of all organs and tissues that there are or may be.
+/// Of all organs and tissues that there are or may be, and of ground.
 std::vector<std::string> organ_names(const ExerciseDefinition& exercise) {
   std::vector<std::string> names;
   for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
     for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
   for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
+  for (const GroundDefinition& ground : exercise.scene.anatomy.ground) names.push_back(ground.name);
   return names;
 }
 

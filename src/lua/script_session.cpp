@@ -120,11 +120,15 @@ bool ScriptSession::sees(lua_State* L, const std::string& landmark) {
 }
 
 LaparoscopeState ScriptSession::lens(lua_State* L) {
-  if (checking()) stand_in();
-  if (has_world()) return world(L).report().laparoscope;
+  if (!checking()) return world(L).report().laparoscope;
   LaparoscopeState state;
   const LaparoscopeDefinition& scope = scene().laparoscope;
   state.view = laparoscope_pose(scope, port_position(scope.port), landmark(L, scope.look_at));
+  // As it stands; near and not level; beyond what it looked at, with that behind it.
+  constexpr double further[levels] = {0, 0.5, 1.2}, turned[levels] = {0, 0.5, 0};
+  const int level = next_level();
+  state.view.position += further[level] * scope.distance * state.view.direction;
+  state.view.up = Eigen::AngleAxisd(turned[level], state.view.direction) * state.view.up;
   return state;
 }
 

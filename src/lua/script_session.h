@@ -73,7 +73,7 @@ class ScriptSession {
   /// Whether the laparoscope sees a place, m (World::sees); a dry run answers either way.
   bool sees(lua_State* L, const Vec3& place);
   bool sees(lua_State* L, const std::string& landmark);
-  /// Where the laparoscope is and what it touches; in a dry run without a world, a stand-in that looks at an organ.
+  /// Where the laparoscope is and what it touches; in a dry run stand-ins, near what it looks at and far, level and not.
   LaparoscopeState lens(lua_State* L);
   /// From its port to its lens there, unit.
   Vec3 lens_axis(const LaparoscopeState& lens) const;

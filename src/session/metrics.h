@@ -17,7 +17,8 @@ namespace calot {
 
 /// Raised with every change of what a metric or an event means, so that figures of two meanings never stand under one name.
 /// 1: overforce judged the sum of all forces on an instrument. 2: it judges those on its jaws.
-inline constexpr int measures_version = 2;
+/// 3: ground is among what an instrument touches, is pressed by and hurts; a perforation is counted for each wall.
+inline constexpr int measures_version = 3;
 
 enum class MetricOwner {
   instrument,

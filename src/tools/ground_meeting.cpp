@@ -16,10 +16,13 @@ GroundMeeting::GroundMeeting(const Tool& tool, int first_node, const std::vector
 template <class Use>
 void GroundMeeting::for_near(const VecX& x, double reach, const Use& use) const {
   const PosedTool posed(tool_, unknowns(x));
+  const Vec3 inwards = posed.parts[0].frame().linear().col(2);
+  const auto is_inside = [&](const Vec3& at) { return (at - tool_.trocar).dot(inwards) >= 0; };
   for (std::size_t k = 0; k < ground_.size(); ++k)
-    for_points_near(
-        posed, points_, ground_[k], box_around(ground_[k], reach), reach,
-        [&](const ToolPoint& point, const Vec3& at, const PosedPart& part) { use(k, point, at, part); });
+    for_points_near(posed, points_, ground_[k], box_around(ground_[k], reach), reach,
+                    [&](const ToolPoint& point, const Vec3& at, const PosedPart& part) {
+                      if (is_inside(at)) use(k, point, at, part);
+                    });
 }
 
 double GroundMeeting::value(const VecX& x) const {

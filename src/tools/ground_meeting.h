@@ -1,7 +1,7 @@
 #pragma once
 // An instrument and what lies around the organs and stays: ground. Points fixed in the instrument's parts are kept off it by
 // the contact barrier, a ball of their radius each (tool_points.h), against the spring of its hand (hand.h): it stops there,
-// and presses with no more than its hand can do.
+// and presses with no more than its hand can do. What of its shaft is outside of its trocar meets nothing.
 
 #include "group/contact_search.h"
 #include "group/join.h"

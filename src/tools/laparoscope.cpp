@@ -82,16 +82,18 @@ LaparoscopePose Laparoscope::view(const InstrumentPose& pose) const {
   return view;
 }
 
-InstrumentPose Laparoscope::looking_at(const Vec3& place, double distance) const {
+std::optional<InstrumentPose> Laparoscope::looking_at(const Vec3& place, double distance) const {
   LaparoscopeDefinition scope = scope_;
   scope.distance = distance;
   const LaparoscopePose wanted = laparoscope_pose(scope, port_, place);
+  if (!((wanted.position - port_).dot(place - port_) > 0)) return std::nullopt;
   InstrumentPose pose = pose_reaching(port_, wanted.position, 0, 0, laparoscope_geometry());
-  const Vec3 along = hinge_frame(port_, pose, laparoscope_geometry()).linear().transpose() * wanted.direction;
-  // About the shaft, from the way the optic looks at roll 0 to the way that is wanted; a straight one looks along the shaft.
-  if (along_.head<2>().norm() > 1e-6)
-    pose.roll = std::remainder(std::atan2(along.y(), along.x()) - std::atan2(along_.y(), along_.x()),
-                               2 * std::numbers::pi);
+  // About the shaft, from the way that the picture's upward direction has at roll 0 to where it is to be: an angled optic's
+  // view is in one plane with it.
+  const Mat3 to_tip = hinge_frame(port_, pose, laparoscope_geometry()).linear().transpose();
+  const Vec3 up = to_tip * wanted.up;
+  pose.roll = std::remainder(std::atan2(up.y(), up.x()) - std::atan2(level_up_.y(), level_up_.x()),
+                             2 * std::numbers::pi);
   return pose;
 }
 

@@ -51,8 +51,8 @@ class Laparoscope {
   /// From a pose; where that is start(), laparoscope_pose() by every bit.
   LaparoscopePose view(const InstrumentPose& pose) const;
   /// From where a place, m, is seen in the middle of the picture from `distance` m, with the optic down from the shaft as
-  /// laparoscope_pose() has it.
-  InstrumentPose looking_at(const Vec3& place, double distance) const;
+  /// laparoscope_pose() has it, and the horizon level. None: the port is nearer to the place than that.
+  std::optional<InstrumentPose> looking_at(const Vec3& place, double distance) const;
   const Vec3& port() const { return port_; }
 
  private:

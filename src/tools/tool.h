@@ -34,27 +34,42 @@ void visit_members(auto&& visit, MembersOf<MeetingState> auto& meeting) {
   visit(force, with);
 }
 
+/// One ground that jaws, or what a shaft ends in, press on.
+struct GroundTouch {
+  std::string ground;
+  Vec3 force = Vec3::Zero();  ///< N, on the tool
+  Vec3 at = Vec3::Zero();     ///< m, where it presses hardest
+  double largest = 0;         ///< N, there
+  bool conducts = false;      ///< by what current flows through, too
+};
+void visit_members(auto&& visit, MembersOf<GroundTouch> auto& touch) {
+  auto& [ground, force, at, largest, conducts] = touch;
+  visit(ground, force, at, largest, conducts);
+}
+
 /// What ground does to it, as it was when hands brought it there last (hands.h).
 struct GroundLoad {
   Vec3 force = Vec3::Zero();  ///< N at the tip, of the same moment about the trocar
   PartLoads parts;            ///< by ToolPart; the organ is the ground's name
+  std::vector<GroundTouch> touched = {};
   bool touches() const {
     return parts[static_cast<std::size_t>(ToolPart::jaws)].touches > 0 ||
            parts[static_cast<std::size_t>(ToolPart::shaft)].touches > 0;
   }
 };
 void visit_members(auto&& visit, MembersOf<GroundLoad> auto& load) {
-  auto& [force, parts] = load;
-  visit(force, parts);
+  auto& [force, parts, touched] = load;
+  visit(force, parts, touched);
 }
 
-/// How it hurts the ground that it touches, for events: until it is off it, each of these is one.
+/// How it hurts a ground that it touches, for events: until it is off it, each of these is one.
 struct GroundHurt {
-  bool thrust = false, current = false, blades = false, clip = false;
+  std::string ground;
+  bool thrust = false, current = false, blades = false;
 };
 void visit_members(auto&& visit, MembersOf<GroundHurt> auto& hurt) {
-  auto& [thrust, current, blades, clip] = hurt;
-  visit(thrust, current, blades, clip);
+  auto& [ground, thrust, current, blades] = hurt;
+  visit(ground, thrust, current, blades);
 }
 
 /// All of a tool that a step changes.
@@ -84,7 +99,7 @@ struct ToolState {
       0;  ///< N m/rad, how the tissue's torque about the shaft grew with its roll; 0: none that counts
   MeetingState meeting = {};
   GroundLoad ground = {};
-  GroundHurt hurts_ground = {};
+  std::vector<GroundHurt> hurts_ground = {};
   Vec3 drag = Vec3::Zero();  ///< N at the hand, of the port's seal in the last step (hands.h)
   bool pressing =
       false;  ///< what is between its jaws carries the pinch: they turn as that gives way or pushes

@@ -157,7 +157,11 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
   }
   feel_stiffness(field.tools, before.instruments, report.instruments);
   const std::vector<WorldEvent> hurt = hurt_ground(field, report.balanced);
-  const std::vector<WorldEvent> burnt = apply_current(field, report.instruments, duration);
+  const bool flows = std::any_of(field.tools.begin(), field.tools.end(),
+                                 [](const Tool& tool) { return tool.action == InstrumentAction::activate; });
+  // Of organs and strands alone: the report's have ground's in them.
+  const std::vector<ToolLoad> loads = flows ? tool_loads(field) : std::vector<ToolLoad>(field.tools.size());
+  const std::vector<WorldEvent> burnt = apply_current(field, loads, duration);
   report_tissues(field, report);
   events.insert(events.end(), begun.begin(), begun.end());
   events.insert(events.end(), hurt.begin(), hurt.end());
@@ -563,7 +567,10 @@ Vec3 World::landmark(const std::string& name) const {
 
 Vec3 World::landmark_normal(const std::string& name) const {
   const std::optional<OrganPoint> there = find_landmark(impl_->field.organs, name);
-  return there ? skin_normals(there->organ)[there->skin_point] : last_place(impl_->field, name).normal;
+  if (!there) return last_place(impl_->field, name).normal;
+  // A centre has no skin around it: what comes to it comes from above.
+  if (std::holds_alternative<RigidShape>(impl_->field.organ(there->organ).definition.shape)) return up();
+  return skin_normals(there->organ)[there->skin_point];
 }
 
 double World::clearance(ToolIndex instrument, OrganIndex organ) const {

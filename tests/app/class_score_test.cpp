@@ -419,7 +419,7 @@ TEST_F(ScoredClass, OtherParametersAreAScoreOfTheirOwn) {
 TEST_F(ScoredClass, WhatWasMeasuredByAnOlderVersionIsMeasuredAnew) {
   const Json newer = entry(sealed(replaced(text_, "\"measures\":2", "\"measures\":1")));
   EXPECT_EQ(newer["from"], "simulation");
-  EXPECT_EQ(newer["measures"], 2);
+  EXPECT_EQ(newer["measures"], 3);
   EXPECT_EQ(newer["recorded"]["measures"], 1);
   EXPECT_NE(outcome_.err.find("measured by version 1, and this program measures by version 2"),
             std::string::npos)

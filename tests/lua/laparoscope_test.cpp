@@ -134,6 +134,11 @@ TEST(LaparoscopeInLua, WrongUseIsRefusedAtItsLine) {
   EXPECT_THAT(refused("t.laparoscope.horizon(t.left)"), HasSubstr("horizon is a method of the laparoscope"));
   EXPECT_THAT(refused("t.laparoscope:look_at({ 0, 0, 0 }, { distance = 0 })"), HasSubstr("distance"));
   EXPECT_THAT(refused("t:sees(7)"), HasSubstr("place"));
+  // What a guard may keep from being asked is looked at all the same.
+  EXPECT_THAT(
+      refused("t:wait_until(function()\nlocal x = t.laparoscope:picture('ball.fundus')\n"
+              "return x and t.laparoscope:distance('ball.fundus') < 60 * mm and t:sees('ball.fundis') end)"),
+      HasSubstr("unknown landmark \"ball.fundis\""));
 }
 
 }  // namespace

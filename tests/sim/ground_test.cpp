@@ -161,6 +161,44 @@ TEST(InstrumentOnGround, AThrustBeyondItsLimitHurtsBowelAndLiverOnceUntilItIsLet
     }
 }
 
+TEST(InstrumentOnGround, WoundsAndWhatIsHurtAlreadyAreInTheStateAndItsBytes) {
+  SceneDefinition scene = Slab::scene(InstrumentType::atraumatic_grasper, GroundType::box);
+  scene.anatomy.ground[0].looks = GroundLooks::liver;
+  Slab slab(scene);
+  ASSERT_TRUE(slab.driver.go(slab.above, 0, 5) && slab.driver.go(slab.above - Vec3(0, 0, 30e-3), 0, 8));
+  ASSERT_EQ(slab.world.field().wounds.size(), 1u);
+  Result<World> other = World::from_bytes(scene, slab.world.to_bytes());
+  ASSERT_TRUE(other) << to_text(other.failure());
+  EXPECT_EQ(other->field().wounds.size(), 1u);
+  EXPECT_EQ(other->state_hash(), slab.world.state_hash());
+  StepInput input;
+  input.instruments = {slab.world.report().instruments[0].pose};
+  input.instruments[0].insertion += 1e-3;
+  const Result<StepReport> here = slab.world.step(input), there = other->step(input);
+  ASSERT_TRUE(here && there);
+  EXPECT_EQ(here->state_hash, there->state_hash);
+  EXPECT_EQ(slab.world.field().wounds.size(), 1u) << "it was never off it";
+}
+
+TEST(InstrumentOnGround, TwoGroundsAreHurtEachByItself) {
+  SceneDefinition scene = Slab::scene(InstrumentType::atraumatic_grasper, GroundType::box);
+  GroundDefinition& one = scene.anatomy.ground[0];
+  one.looks = GroundLooks::liver;
+  one.size.x() = 10e-3;
+  one.point.x() -= 2e-3;
+  GroundDefinition other = one;
+  other.name = "other";
+  other.point.x() += 17e-3;  // their round edges meet where the tip comes down
+  scene.anatomy.ground.push_back(other);
+  Slab slab(scene);
+  ASSERT_TRUE(slab.driver.go(slab.above, 0, 5) && slab.driver.go(slab.above - Vec3(0, 0, 35e-3), 0, 20))
+      << slab.driver.why();
+  int hurt = 0;
+  for (const WorldEvent& event : slab.driver.events) hurt += event.kind == EventKind::injury ? 1 : 0;
+  EXPECT_EQ(hurt, 2);
+  EXPECT_EQ(slab.world.report().instruments[0].load_on(ToolPart::jaws).organ.empty(), false);
+}
+
 TEST(InstrumentOnGround, BladesThatCloseOnItCurrentAndClipsHurtIt) {
   for (const InstrumentType type : {InstrumentType::scissors, InstrumentType::atraumatic_grasper}) {
     SceneDefinition scene = Slab::scene(type, GroundType::box);

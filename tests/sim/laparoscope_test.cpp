@@ -114,10 +114,13 @@ TEST(LaparoscopeInItsPort, LookingAtAPlaceHasItInTheMiddleFromThatDistanceWithTh
     for (const Vec3& place : {Vec3(-0.09, 0.12, -0.12), Vec3(0.05, 0.18, -0.06)}) {
       LaparoscopeDefinition scope;
       scope.angle = angle * units::deg;
+      scope.horizon = Horizon::held;
       const Laparoscope laparoscope(scope, port, Vec3(-0.05, 0.15, -0.09));
-      const LaparoscopePose view = laparoscope.view(laparoscope.looking_at(place, 70e-3));
+      const LaparoscopePose view = laparoscope.view(laparoscope.looking_at(place, 70e-3).value());
       EXPECT_LT((view.position + 70e-3 * view.direction - place).norm(), 1e-12);
       EXPECT_LT(place_in_picture(view, 75 * units::deg, place)->norm(), 1e-12);
+      EXPECT_NEAR(horizon_off_level(view), 0, 1e-12) << "the shaft is turned for that";
+      EXPECT_FALSE(laparoscope.looking_at(place, 300e-3)) << "that is outside of the port";
       const Vec3 shaft = (view.position - port).normalized();
       EXPECT_NEAR(shaft.dot(view.direction), std::cos(angle * units::deg), 1e-12);
       EXPECT_NEAR(shaft.cross(view.direction).z(), 0, 1e-12) << "in the vertical plane";
