@@ -36,6 +36,16 @@ Channels local_line(const std::vector<double>& time, const std::vector<Instrumen
   return (s2 * y0 - s1 * y1) / determinant;
 }
 
+void append_laparoscope(const World& world, Traces& traces) {
+  const LaparoscopeState& state = world.report().laparoscope;
+  InstrumentSample& lens = traces.laparoscope.emplace_back();
+  lens.tip = state.view.position;
+  lens.axis = (lens.tip - world.laparoscope().port()).normalized();
+  lens.insertion = state.pose.insertion;
+  lens.roll = state.pose.roll;
+  traces.off_level.push_back(horizon_off_level(state.view));
+}
+
 }  // namespace
 
 void append_sample(const World& world, Traces& traces) {
@@ -60,12 +70,7 @@ void append_sample(const World& world, Traces& traces) {
     sample.pad_pressure = state.pad_pressure;
     traces.instruments[i].push_back(sample);
   }
-  InstrumentSample& lens = traces.laparoscope.emplace_back();
-  lens.tip = report.laparoscope.view.position;
-  lens.axis = (lens.tip - world.laparoscope().port()).normalized();
-  lens.insertion = report.laparoscope.pose.insertion;
-  lens.roll = report.laparoscope.pose.roll;
-  traces.off_level.push_back(horizon_off_level(report.laparoscope.view));
+  append_laparoscope(world, traces);
   for (const OrganState& organ : report.organs) {
     const auto row = static_cast<std::size_t>(organ.record);
     if (row >= traces.organs.size()) {
