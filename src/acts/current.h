@@ -9,8 +9,9 @@
 namespace calot {
 
 /// The step after which all stand as they do has lasted `duration` s with the tools' actions. `loads`: what organs and
-/// strands do to each tool, where current flows in any. Strands that have taken enough are torn from now on. Of what current should not be let into
-/// (a wall, a clip, what is to be kept clear of) there are only events. They have no time yet.
+/// strands do to each tool, where current flows in any. Strands that have taken enough are torn from now on. Of what
+/// current should not be let into (a wall, a clip, what is to be kept clear of) there are only events. They have no time
+/// yet.
 std::vector<WorldEvent> apply_current(Field& field, const std::vector<ToolLoad>& loads, double duration);
 
 /// How near something is to an organ's skin.

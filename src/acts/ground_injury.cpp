@@ -1,6 +1,7 @@
 #include "acts/ground_injury.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "anatomy/instruments.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "group/equilibrium.h"
+#include "motion/tool_loads.h"
 #include "tools/ground_meeting.h"
 #include "tools/tool_body.h"
 #include "tools/tool_meeting.h"
@@ -162,19 +163,10 @@ std::vector<GroundTouch> ground_touches(const Tool& tool, const Grounded& ground
 PartLoads ground_parts(const Tool& tool, const InstrumentPose& pose, const Grounded& grounded,
                        const std::vector<GroundMeeting::Press>& presses) {
   PartLoads out;
-  const Vec3 tip = tip_position(tool.trocar, pose, tool.geometry), way = (tip - tool.trocar).normalized();
-  for (const GroundMeeting::Press& press : presses) {
-    const auto add = [&](ToolPart which) {
-      PartLoad& part = out[static_cast<std::size_t>(which)];
-      part.force += press.force;
-      if (part.touches++ > 0 && press.force.norm() <= part.largest) return;
-      part.at = press.at;
-      part.largest = press.force.norm();
-      part.organ = grounded.ground[press.ground]->name;
-    };
-    add(press.part == 0 ? ToolPart::shaft : ToolPart::jaws);
-    if (press.part != 0 && way.dot(tip - press.at) <= tip_length) add(ToolPart::tip);
-  }
+  const Vec3 tip = tip_position(tool.trocar, pose, tool.geometry);
+  for (const GroundMeeting::Press& press : presses)
+    add_load(tool, tip, press.part == 0, press.at, press.force, true, grounded.ground[press.ground]->name,
+             out);
   return out;
 }
 
@@ -389,15 +381,15 @@ std::string ground_around(const Field& field, const Tool& tool) {
 Result<bool> check_apart(const Field& field) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     const Tool& tool = field.tools[i];
+    if (tool.waits) continue;
     const std::string& name = tool.definition.name;
-    const std::string in = tool.waits ? std::string() : ground_around(field, tool);
-    if (!in.empty())
+    if (const std::string in = ground_around(field, tool); !in.empty())
       return fail(FailureKind::scenario,
                   fmt::format("instrument '{}' that waits in its trocar, 30 mm deep, is in the ground '{}'",
                               name, in),
                   "put the port or the ground elsewhere",
                   {"", 0, fmt::format("scene.instruments.{}.port", name)});
-    const std::string met = tool.waits ? std::string() : tool_met(field, ToolIndex(i));
+    const std::string met = tool_met(field, ToolIndex(i));
     if (met.empty()) continue;
     return fail(
         FailureKind::scenario,

@@ -6,14 +6,9 @@
 namespace calot {
 namespace {
 
-struct DemoCall {
-  DemoScript& demo;
-  int instrument;
-};
-
 DemoCall demo_call(lua_State* L, const char* method) {
   const HandleTarget target = instrument_target(L, method);
-  return {demo_of(L, *target.session, method), target.instrument};
+  return {demo_of(L, *target.session, method), target.instrument, "DemoInstrument"};
 }
 
 int time_out(lua_State* L) {
@@ -41,6 +36,11 @@ int together(lua_State* L) {
   return demo.together(L);
 }
 
+double speed_option(Arguments& arguments, const char* api, double usual) {
+  arguments.options(api).take("speed", usual);
+  return usual;
+}
+
 int approach(lua_State* L) {
   const DemoCall call = demo_call(L, "approach");
   Arguments arguments(L, call.demo, "DemoInstrument", "approach");
@@ -65,23 +65,9 @@ int close(lua_State* L) {
   return call.demo.set_jaw(L, call.instrument, "close", 0.0);
 }
 
-int move_to(lua_State* L) {
-  const DemoCall call = demo_call(L, "move_to");
-  Arguments arguments(L, call.demo, "DemoInstrument", "move_to");
-  const double speed = speed_option(arguments, "move_options", default_speed);
-  const std::optional<Vec3> target = place_argument(L, call.demo, arguments, "target");
-  return target ? call.demo.move_to(L, call.instrument, *target, speed) : 0;
-}
+int instrument_move_to(lua_State* L) { return move_to(L, demo_call(L, "move_to")); }
 
-int move_by(lua_State* L) {
-  const DemoCall call = demo_call(L, "move_by");
-  Arguments arguments(L, call.demo, "DemoInstrument", "move_by");
-  const double speed = speed_option(arguments, "move_options", default_speed);
-  Vec3 vector = Vec3::Zero();
-  arguments.read().take("vector", vector);
-  if (!arguments.finish()) return 0;
-  return call.demo.move_by(L, call.instrument, vector, speed);
-}
+int instrument_move_by(lua_State* L) { return move_by(L, demo_call(L, "move_by")); }
 
 int move_until(lua_State* L) {
   const DemoCall call = demo_call(L, "move_until");
@@ -103,13 +89,7 @@ int move_until(lua_State* L) {
   return call.demo.move_until(L, call.instrument, how);
 }
 
-int rotate(lua_State* L) {
-  const DemoCall call = demo_call(L, "rotate");
-  Arguments arguments(L, call.demo, "DemoInstrument", "rotate");
-  const double speed = speed_option(arguments, "rotate_options", default_turning_speed);
-  if (!arguments.finish()) return 0;
-  return call.demo.rotate(L, call.instrument, arguments.number("angle"), speed);
-}
+int instrument_rotate(lua_State* L) { return rotate(L, demo_call(L, "rotate")); }
 
 int aspirate(lua_State* L) {
   const DemoCall call = demo_call(L, "aspirate");
@@ -151,9 +131,27 @@ DemoScript& demo_of(lua_State* L, ScriptSession& session, const char* method) {
   return *demo;
 }
 
-double speed_option(Arguments& arguments, const char* api, double usual) {
-  arguments.options(api).take("speed", usual);
-  return usual;
+int move_to(lua_State* L, const DemoCall& call) {
+  Arguments arguments(L, call.demo, call.api, "move_to");
+  const double speed = speed_option(arguments, "move_options", default_speed);
+  const std::optional<Vec3> target = place_argument(L, call.demo, arguments, "target");
+  return target ? call.demo.move_to(L, call.instrument, *target, speed) : 0;
+}
+
+int move_by(lua_State* L, const DemoCall& call) {
+  Arguments arguments(L, call.demo, call.api, "move_by");
+  const double speed = speed_option(arguments, "move_options", default_speed);
+  Vec3 vector = Vec3::Zero();
+  arguments.read().take("vector", vector);
+  if (!arguments.finish()) return 0;
+  return call.demo.move_by(L, call.instrument, vector, speed);
+}
+
+int rotate(lua_State* L, const DemoCall& call) {
+  Arguments arguments(L, call.demo, call.api, "rotate");
+  const double speed = speed_option(arguments, "rotate_options", default_turning_speed);
+  if (!arguments.finish()) return 0;
+  return call.demo.rotate(L, call.instrument, arguments.number("angle"), speed);
 }
 
 const std::vector<Method>& demo_methods() {
@@ -168,9 +166,9 @@ const std::vector<Method>& demo_methods() {
                                            {"DemoInstrument", "aspirate", guarded<aspirate>},
                                            {"DemoInstrument", "fire", guarded<fire>},
                                            {"DemoInstrument", "exchange", guarded<exchange>},
-                                           {"DemoInstrument", "move_to", guarded<move_to>},
-                                           {"DemoInstrument", "move_by", guarded<move_by>},
-                                           {"DemoInstrument", "rotate", guarded<rotate>},
+                                           {"DemoInstrument", "move_to", guarded<instrument_move_to>},
+                                           {"DemoInstrument", "move_by", guarded<instrument_move_by>},
+                                           {"DemoInstrument", "rotate", guarded<instrument_rotate>},
                                            {"DemoInstrument", "wait", guarded<instrument_wait>}};
   return rows;
 }

@@ -77,29 +77,14 @@ int lens_look_at(lua_State* L) {
   return demo.look_at(L, how);
 }
 
-int lens_move_to(lua_State* L) {
-  DemoScript& demo = mover(L, "move_to");
-  Arguments arguments(L, demo, "DemoLaparoscope", "move_to");
-  const double speed = speed_option(arguments, "move_options", default_speed);
-  const std::optional<Vec3> target = place_argument(L, demo, arguments, "target");
-  return target ? demo.move_to(L, demo.laparoscope(), *target, speed) : 0;
+DemoCall lens_call(lua_State* L, const char* method) {
+  DemoScript& demo = mover(L, method);
+  return {demo, demo.laparoscope(), "DemoLaparoscope"};
 }
 
-int lens_move_by(lua_State* L) {
-  DemoScript& demo = mover(L, "move_by");
-  Arguments arguments(L, demo, "DemoLaparoscope", "move_by");
-  const double speed = speed_option(arguments, "move_options", default_speed);
-  Vec3 vector = Vec3::Zero();
-  arguments.read().take("vector", vector);
-  return arguments.finish() ? demo.move_by(L, demo.laparoscope(), vector, speed) : 0;
-}
-
-int lens_rotate(lua_State* L) {
-  DemoScript& demo = mover(L, "rotate");
-  Arguments arguments(L, demo, "DemoLaparoscope", "rotate");
-  const double speed = speed_option(arguments, "rotate_options", default_turning_speed);
-  return arguments.finish() ? demo.rotate(L, demo.laparoscope(), arguments.number("angle"), speed) : 0;
-}
+int lens_move_to(lua_State* L) { return move_to(L, lens_call(L, "move_to")); }
+int lens_move_by(lua_State* L) { return move_by(L, lens_call(L, "move_by")); }
+int lens_rotate(lua_State* L) { return rotate(L, lens_call(L, "rotate")); }
 
 }  // namespace
 

@@ -27,16 +27,21 @@ class LoadSum {
     load.moment += (at - tool.trocar).cross(force);
     if (touches && load.touches++ == 0) load.organ = organ;
     if (!shape.is_shaft()) load.on_jaws[shape.jaw()] += force;
-    add(load.parts, shape.is_shaft() ? ToolPart::shaft : ToolPart::jaws, at, force, touches, organ);
-    const Vec3& tip = tips_[shape.tool.value];
-    if (!shape.is_shaft() && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length)
-      add(load.parts, ToolPart::tip, at, force, touches, organ);
+    add_load(tool, tips_[shape.tool.value], shape.is_shaft(), at, force, touches, organ, load.parts);
   }
   std::vector<ToolLoad> take() { return std::move(loads_); }
 
  private:
-  static void add(PartLoads& parts, ToolPart which, const Vec3& at, const Vec3& force, bool touches,
-                  const std::string& organ) {
+  const Field& field_;
+  std::vector<Vec3> tips_;  ///< of the tools, m
+  std::vector<ToolLoad> loads_;
+};
+
+}  // namespace
+
+void add_load(const Tool& tool, const Vec3& tip, bool on_shaft, const Vec3& at, const Vec3& force,
+              bool touches, const std::string& organ, PartLoads& parts) {
+  const auto add = [&](ToolPart which) {
     PartLoad& part = parts[static_cast<std::size_t>(which)];
     part.force += force;
     if (!touches) return;
@@ -44,14 +49,10 @@ class LoadSum {
     part.at = at;
     part.largest = force.norm();
     part.organ = organ;
-  }
-
-  const Field& field_;
-  std::vector<Vec3> tips_;  ///< of the tools, m
-  std::vector<ToolLoad> loads_;
-};
-
-}  // namespace
+  };
+  add(on_shaft ? ToolPart::shaft : ToolPart::jaws);
+  if (!on_shaft && (tip - tool.trocar).normalized().dot(tip - at) <= tip_length) add(ToolPart::tip);
+}
 
 std::vector<ToolLoad> tool_loads(const Field& field) {
   LoadSum sum(field);

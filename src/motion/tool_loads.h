@@ -19,6 +19,11 @@ struct ToolLoad {
 };
 std::vector<ToolLoad> tool_loads(const Field& field);
 
+/// Adds a force (N) at a point (m) to what a tool's parts carry: to its shaft, or to its jaws and, near the `tip` (m), to
+/// that. `touches`: the point counts, with its organ.
+void add_load(const Tool& tool, const Vec3& tip, bool on_shaft, const Vec3& at, const Vec3& force,
+              bool touches, const std::string& organ, PartLoads& parts);
+
 /// Fails (scenario) when a tool starts inside an organ or among strands.
 Result<bool> check_clear(const Field& field);
 
