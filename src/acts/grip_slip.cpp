@@ -38,10 +38,14 @@ Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(c
                   double weaken, const Budget& budget, SolveStatistics& statistics) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
+  // What is hard does not unfold: it is let go at once.
+  bool hard = false;
+  for (Organ& organ : field.organs)
+    if (!is_bitten(organ)) hard |= std::erase_if(organ.grips, leaves) > 0;
   const bool any = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
     return std::any_of(organ.grips.begin(), organ.grips.end(), leaves);
   });
-  if (!any) return true;
+  if (!any) return hard && field.step_time == 0 ? settle_in_step(field, when, statistics) : true;
   double stiffness = grip_stiffness;
   for (; stiffness > last_stiffness && !is_spent(field, statistics); stiffness *= weaken) {
     if (budget.spent()) return without_end(field, instrument, "what leaves");
@@ -246,7 +250,13 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
     demand = now;
   }
   restore(field, start);
-  return without_end(field, instrument, "the fold that slips through");
+  if (field.step_time == 0) return without_end(field, instrument, "the fold that slips through");
+  statistics.cut_short = true;
+  return out;
+}
+
+double asked_share(const Field& field, ToolIndex instrument) {
+  return largest_demand(field, instrument, false).share();
 }
 
 }  // namespace calot

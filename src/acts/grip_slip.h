@@ -40,6 +40,9 @@ double holding_limit(const Tool& tool);
 /// The same of what the tool holds now: clips between its pads may give way before these do.
 double holding_limit(const Field& field, ToolIndex instrument);
 
+/// The largest share of what a tool's pads hold, by pull or couple, that is asked of them; above 1 it is not held.
+double asked_share(const Field& field, ToolIndex instrument);
+
 /// What has been drawn off its pad by more than the teeth reach is let go, step by step. Fails (simulation) where it
 /// finds no rest; the grip holds as before then.
 Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics);
@@ -55,7 +58,8 @@ struct Slipped {
 /// it; skin that slides off the pads is let go step by step, as in a release; clips that give way first are drawn along
 /// (clips.h). Does nothing where no more is asked for than holding_limit and couple_limit. Afterwards friction is asked for
 /// at most 100.1% of its limit, and near it unless part of the fold has left the pads. On failure (simulation) the grip
-/// holds as before.
+/// holds as before; where masses count it does so, too, where no end is found within hold_iterations, and the step is one
+/// that was cut short.
 Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 }  // namespace calot

@@ -19,9 +19,10 @@ namespace calot {
 Vec3 force_at_tip(const Tool& tool, const Vec3& force, const Vec3& moment);
 
 /// Where tools come by the end of a step, one a tool, as commands and last states are. Waiting tools stay. Keeps each
-/// tool's command and what other tools and ground press it with. Fails (simulation) where tools that meet find no balance.
-Result<std::vector<InstrumentPose>> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
-                                                const std::vector<InstrumentState>& last);
+/// tool's command and what other tools and ground press it with. Where tools that meet find no balance they come a part of
+/// their way, or stay.
+std::vector<InstrumentPose> bring_tools(Field& field, const std::vector<InstrumentPose>& commands,
+                                        const std::vector<InstrumentState>& last);
 
 /// Sets each tool's drag: what its port's seal drags at it after a step of `duration` s. `before`: the states at the step's
 /// begin, of which there may be none.

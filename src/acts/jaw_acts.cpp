@@ -7,6 +7,7 @@
 #include "acts/clips.h"
 #include "acts/exchange.h"
 #include "acts/grip_slip.h"
+#include "acts/hard_hold.h"
 #include "acts/pads.h"
 #include "field/grip.h"
 #include "field/take_hold.h"
@@ -109,8 +110,9 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     const ToolIndex index(i);
+    let_slide_on_hard(field, index);
     const std::string organ = held_organ(field, index);
-    if (organ.empty() || !tool.jaws_rest()) continue;
+    if (organ.empty() || !tool.jaws_rest() || holds_hard(field, index)) continue;
     if (Result<bool> left = leave_pads(field, index, statistics); !left) return left.failure();
     const Result<Slipped> slipped =
         held_organ(field, index).empty() ? Slipped{} : slip(field, index, statistics);
@@ -174,7 +176,11 @@ void judge_clasps(Field& field, const std::vector<char>& slipped_before, std::ve
           {EventKind::release, 0, tool.definition.name, {}, 0, std::nullopt, EventCause::slipping});
     }
     const std::optional<Clasped> rubbed = before && tool.jaw_stopped ? clasped(field, index) : std::nullopt;
-    if (!rubbed || !slides(*rubbed, tool)) continue;
+    if (!rubbed) continue;
+    if (!slides(*rubbed, tool)) {
+      catch_hard(field, index, *rubbed);
+      continue;
+    }
     tool.slipping = true;
     if (!slipped_before[i])
       events.push_back(

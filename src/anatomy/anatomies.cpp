@@ -64,6 +64,10 @@ const std::vector<Landmark>& landmark_rows() {
       {"end", "of a tube", 1, 0, Landmark::Of::tube},
       {"centre", "of a rigid thing, in its middle; joints tie a point of its surface", 0.5, 0,
        Landmark::Of::rigid},
+      {"rim_1", "of a ring: on the circle in its middle, towards its own +x", 0, 0, Landmark::Of::ring},
+      {"rim_2", "of a ring: a quarter further round, towards its own +y", 0.25, 0, Landmark::Of::ring},
+      {"rim_3", "of a ring: opposite to rim_1", 0.5, 0, Landmark::Of::ring},
+      {"rim_4", "of a ring: opposite to rim_2", 0.75, 0, Landmark::Of::ring},
       {"back", "of a lobe: the middle of where it is held", 0, 0, Landmark::Of::lobe},
       {"edge", "of a lobe: the middle of its edge", 1, 0, Landmark::Of::lobe},
       {"underside", "of a lobe: the middle of its underside, where its bed is", 0.5, -1, Landmark::Of::lobe},
@@ -78,10 +82,18 @@ const std::vector<std::string>& shape_names() {
 
 const std::string& shape_name(const OrganShape& shape) { return shape_names()[shape.index()]; }
 
+const std::string* mesh_path(const OrganShape& shape) {
+  if (const auto* file = std::get_if<MeshFile>(&shape)) return &file->path;
+  const auto* rigid = std::get_if<RigidShape>(&shape);
+  return rigid != nullptr && !rigid->path.empty() ? &rigid->path : nullptr;
+}
+
 bool has_landmark(const OrganShape& shape, const Landmark& landmark) {
   if (is_hollow(shape)) return landmark.of == Landmark::Of::hollow;
   if (std::holds_alternative<TubeShape>(shape)) return landmark.of == Landmark::Of::tube;
-  return landmark.of == (std::holds_alternative<LobeShape>(shape) ? Landmark::Of::lobe : Landmark::Of::rigid);
+  if (std::holds_alternative<LobeShape>(shape)) return landmark.of == Landmark::Of::lobe;
+  return landmark.of == Landmark::Of::rigid ||
+         (landmark.of == Landmark::Of::ring && std::get<RigidShape>(shape).ring > 0);
 }
 
 std::vector<std::string> landmarks_of(const OrganShape& shape) {

@@ -33,8 +33,8 @@ void visit_members(auto&& visit, MembersOf<TubeShape> auto& definition) {
         radii);
 }
 void visit_members(auto&& visit, MembersOf<RigidShape> auto& definition) {
-  auto& [size, rounding, centre, density, stiffness] = definition;
-  visit(size, rounding, centre, density, stiffness);
+  auto& [size, rounding, centre, density, stiffness, ring, path, scale, turn] = definition;
+  visit(size, rounding, centre, density, stiffness, ring, path, scale, turn);
 }
 void visit_members(auto&& visit, MembersOf<LobeShape> auto& definition) {
   auto& [width, depth, thickness, edge, edge_angle, overhang, bed_length, bed_width, bed_depth, young,

@@ -81,13 +81,18 @@ struct TubeShape {
   bool operator==(const TubeShape&) const = default;
 };
 
-/// A rigid thing, or one that strains alike everywhere: a box with round edges, a ball where it has no size.
+/// A rigid thing, or one that strains alike everywhere: a box with round edges, a ball where it has no size, a ring, or a
+/// closed surface from a file.
 struct RigidShape {
   Vec3 size = Vec3::Zero();    ///< m, edges of the box without its rounding, along x, y and z
-  double rounding = 5e-3;      ///< m, radius of the edges
-  Vec3 centre = Vec3::Zero();  ///< m
+  double rounding = 5e-3;      ///< m, radius of the edges, of the ball, or of what a ring is bent from
+  Vec3 centre = Vec3::Zero();  ///< m; of a file, where its origin is
   double density = 1500;       ///< kg/m^3; a gallstone sinks in bile (d)
   double stiffness = 8e8;      ///< Pa, Young's modulus; 10 N across a stone of 10 mm strain it by 3e-4
+  double ring = 0;             ///< m, radius of the circle in a ring's middle, about z; 0: it is no ring
+  std::string path = {};       ///< of an OBJ file; empty: it is none of these
+  double scale = 1;            ///< coordinates of the file times this are metres
+  Vec3 turn = Vec3::Zero();    ///< rad: it is turned about this axis, through its centre, by the axis' length
   bool operator==(const RigidShape&) const = default;
 };
 
@@ -113,6 +118,8 @@ using OrganShape =
     std::variant<PearShape, SphereShape, SweptShape, MeshFile, TubeShape, RigidShape, LobeShape>;
 /// Of its own kind, "pear", "sphere", "swept", "obj", "tube", "rigid", "lobe".
 const std::string& shape_name(const OrganShape& shape);
+/// The file that a shape is read from; null: none is.
+const std::string* mesh_path(const OrganShape& shape);
 const std::vector<std::string>& shape_names();
 /// A closed shell with bile; else it has neither neck nor fundus, and no filling that is kept.
 inline bool is_hollow(const OrganShape& shape) { return shape.index() <= 3; }
@@ -193,9 +200,10 @@ struct WallVessel {
   double radius = 0.5e-3;    ///< m, there; it tapers towards its end
 };
 
-/// How a hollow organ is drawn: full of bile, or pale, as one that mucus has filled (hydrops).
-enum class OrganLooks { bile, pale };
-constexpr OrganLooks last_of(OrganLooks) { return OrganLooks::pale; }
+/// How an organ is drawn: a hollow one full of bile, or pale, as one that mucus has filled (hydrops); a rigid thing as a
+/// stone, or as plastic. `bile` is what each kind usually looks like.
+enum class OrganLooks { bile, pale, plastic };
+constexpr OrganLooks last_of(OrganLooks) { return OrganLooks::plastic; }
 
 struct OrganDefinition {
   std::string name = "gallbladder";
@@ -247,8 +255,9 @@ struct TissueDefinition {
 
 enum class GroundType { plane, capsule, box };
 
-/// How ground is drawn. Usual: beside a lobe of the liver as peritoneum, as planes always; else as the liver.
-enum class GroundLooks { usual, liver, bowel, fat, peritoneum };
+/// How ground is drawn. Usual: beside a lobe of the liver as peritoneum, as planes always; else as the liver. Board and
+/// plastic are what a training box has in it.
+enum class GroundLooks { usual, liver, bowel, fat, peritoneum, board, plastic };
 
 /// What stays, and is touched: the liver before there is one, a bone, a table.
 struct GroundDefinition {
@@ -429,15 +438,17 @@ struct SceneDefinition {
 std::vector<PortDefinition> default_ports();
 
 /// A place on every organ of its kind: of hollow ones on the skin next to a point of the box around it, of tubes along
-/// their middle; rigid things have their centre, lobes places on their skin.
+/// their middle; rigid things have their centre, rings also places on the circle in their middle, lobes places on their
+/// skin.
 struct Landmark {
   const char* name;
   const char* doc;
   double
-      along;  ///< share of the way from the neck's end to the fundus' end, from start to end, from back to edge
+      along;  ///< share of the way from the neck's end to the fundus' end, from start to end, from back to edge; of a ring
+              ///< of the way round it from +x towards +y, as it was turned
   double
       side;  ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side; of a lobe -1 below, 1 above
-  enum class Of { hollow, tube, rigid, lobe } of = Of::hollow;
+  enum class Of { hollow, tube, rigid, ring, lobe } of = Of::hollow;
 };
 const std::vector<Landmark>& landmark_rows();
 bool has_landmark(const OrganShape& shape, const Landmark& landmark);
@@ -460,5 +471,7 @@ const std::vector<std::string>& anatomy_names();
 std::vector<Problem> validate(const SceneDefinition& scene);
 /// The same of an organ that comes later, with paths from "organ": ".wall.thickness" is "organ.wall.thickness".
 std::vector<Problem> validate(const OrganDefinition& organ);
+/// The same of a tissue that comes later, rooted at "tissue"; `organs`: the names of those that there are then.
+std::vector<Problem> validate(const TissueDefinition& tissue, const std::vector<std::string>& organs);
 
 }  // namespace calot

@@ -136,10 +136,11 @@ std::vector<KeyTable> field_tables() {
                   "a ground's radius", "of a capsule, and of a box' edges"),
            number("friction", &GroundDefinition::friction, quantity::number, 0, 1,
                   "a coefficient of friction of ground", "coefficient of friction of what touches it"),
-           choice("looks", &GroundDefinition::looks, {"usual", "liver", "bowel", "fat", "peritoneum"},
+           choice("looks", &GroundDefinition::looks,
+                  {"usual", "liver", "bowel", "fat", "peritoneum", "board", "plastic"},
                   "how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as "
-                  "peritoneum; a bowel has to "
-                  "be a capsule"),
+                  "peritoneum; a bowel has to be a capsule; board and plastic are of a training box, whose walls "
+                  "are then around"),
            text("injury", &GroundDefinition::injury,
                 "what it is called when it is hurt by blades, clips, current or a thrust; left out: liver "
                 "and bowel "
@@ -269,8 +270,9 @@ std::vector<KeyTable> organ_tables() {
            table("bile", &Organ::bile, "bile", "what fills it"),
            list("held", "held", "elastic attachments; a list given here replaces the anatomy's own"),
            choice(
-               "looks", &Organ::looks, {"bile", "pale"},
-               "how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops)"),
+               "looks", &Organ::looks, {"bile", "pale", "plastic"},
+               "how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops); a "
+               "rigid thing is a stone, or plastic"),
            flag("extensions", &Organ::extensions, "false: no structural extensions on this organ"),
            text("compared_with", &Organ::compared_with,
                 "another organ of the same shape; the metrics mean_difference_pct and "
@@ -464,13 +466,24 @@ std::vector<KeyTable> shape_tables() {
                "the end that stays with the patient where it is divided: what is held, itself or by what it "
                "is tied to (its end where both ends are, or neither), or always the start or the end")}),
       keys_of<RigidShape>(
-          "shape_rigid", "A rigid thing, such as a stone: a box with round edges, or a ball.",
+          "shape_rigid",
+          "A rigid thing, such as a stone: a box with round edges, a ball, a ring, or what an OBJ file holds.",
           {type("rigid"),
            place("size", &RigidShape::size, 200 * mm, "a size of a rigid thing",
                  "edges of the box without its rounding; { 0, 0, 0 }: a ball"),
            number("rounding", &RigidShape::rounding, quantity::length, 0.5 * mm, 50 * mm,
-                  "a rigid thing's rounding", "radius of its edges, or of the ball"),
-           place("centre", &RigidShape::centre, abdomen_reach, "a place in the abdomen", "where it is"),
+                  "a rigid thing's rounding",
+                  "radius of its edges, of the ball, or of the rod that a ring is bent from"),
+           number("ring", &RigidShape::ring, quantity::length, 0, 100 * mm, "a ring's radius",
+                  "radius of the circle in the middle of a ring about z; 0: it is no ring"),
+           text("path", "", "a closed OBJ file below the scenario's folder or the project's assets folder"),
+           number("scale", &RigidShape::scale, quantity::number, 1e-9, 1e3,
+                  "a scale from a mesh file to metres", "the file's coordinates times this are metres"),
+           bound(point("turn", quantity::angle, 2 * std::numbers::pi, "{ 0 * deg, 0 * deg, 0 * deg }",
+                       "it is turned about this axis by its length: { 90 * deg, 0, 0 } stands a ring up"),
+                 &RigidShape::turn),
+           place("centre", &RigidShape::centre, abdomen_reach, "a place in the abdomen",
+                 "where its middle is then; of a file, its origin"),
            number("density", &RigidShape::density, quantity::density, 100, 20000, "a density", "kg/m^3"),
            number("stiffness", &RigidShape::stiffness, quantity::pressure, 10 * kPa, 1e10,
                   "a Young's modulus of a rigid thing",

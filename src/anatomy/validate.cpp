@@ -149,6 +149,24 @@ void check_lobe(FieldCheck& check, const std::string& path, const LobeShape& lob
     check.problem(path + ".bed_depth", "a bed deeper than half its width", "make it shallower");
 }
 
+void check_rigid(FieldCheck& check, const std::string& path, const RigidShape& rigid) {
+  check_limits(check, path, "shape_rigid", rigid);
+  if (rigid.size.minCoeff() < 0)
+    check.problem(path + ".size", "a box has an edge below zero", "give edges of zero or more");
+  if (rigid.ring > 0 && rigid.size != Vec3::Zero())
+    check.problem(path + ".ring", "a box is no ring", "leave size out, or ring");
+  if (!rigid.path.empty() && (rigid.ring > 0 || rigid.size != Vec3::Zero()))
+    check.problem(path + ".path", "what a file holds is neither a box nor a ring", "leave size and ring out");
+  // Its hole has to let the thinnest instrument through.
+  constexpr double least_hole = 1e-3;  // m, radius
+  if (rigid.ring > 0 && check.is_fine(path + ".ring") && check.is_fine(path + ".rounding") &&
+      rigid.ring < rigid.rounding + least_hole)
+    check.problem(path + ".ring",
+                  fmt::format("a ring of radius {:g} mm, bent from a rod of radius {:g} mm, leaves no hole",
+                              rigid.ring / mm, rigid.rounding / mm),
+                  fmt::format("give at least {:g} mm", (rigid.rounding + least_hole) / mm));
+}
+
 void check_shape(FieldCheck& check, const std::string& path, const OrganShape& shape, const Vec3& side) {
   if (const auto* pear = std::get_if<PearShape>(&shape)) {
     check_pear(check, path, *pear);
@@ -159,9 +177,7 @@ void check_shape(FieldCheck& check, const std::string& path, const OrganShape& s
   } else if (const auto* tube = std::get_if<TubeShape>(&shape)) {
     check_tube(check, path, *tube);
   } else if (const auto* rigid = std::get_if<RigidShape>(&shape)) {
-    check_limits(check, path, "shape_rigid", *rigid);
-    if (rigid->size.minCoeff() < 0)
-      check.problem(path + ".size", "a box has an edge below zero", "give edges of zero or more");
+    check_rigid(check, path, *rigid);
   } else if (const auto* lobe = std::get_if<LobeShape>(&shape)) {
     check_lobe(check, path, *lobe);
   } else {
@@ -278,6 +294,9 @@ void check_organ(FieldCheck& check, const std::string& path, const OrganDefiniti
   if (organ.looks == OrganLooks::pale && !is_hollow(organ.shape))
     check.problem(path + ".looks", fmt::format("a {} is not filled with mucus", shape_name(organ.shape)),
                   "leave looks out");
+  if (organ.looks == OrganLooks::plastic && !std::holds_alternative<RigidShape>(organ.shape))
+    check.problem(path + ".looks", fmt::format("a {} is not of plastic", shape_name(organ.shape)),
+                  "leave looks out");
   if (!is_hollow(organ.shape) && (organ.bile.fill_volume || organ.bile.fill_pressure))
     check.problem(path + ".bile", fmt::format("a {} keeps no filling", shape_name(organ.shape)),
                   "leave fill_volume and fill_pressure out; a tube has a pressure");
@@ -340,6 +359,22 @@ void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
   }
 }
 
+/// `organs`: that there are.
+void check_one_tissue(FieldCheck& check, const std::string& at, const TissueDefinition& tissue,
+                      const std::vector<std::string>& organs) {
+  if (std::find(organs.begin(), organs.end(), tissue.name) != organs.end())
+    check.problem(at + ".name", fmt::format("an organ is called \"{}\" too", tissue.name),
+                  "give the tissue another name");
+  const bool from_known = check.known(at + ".from", tissue.from, organs, "organ");
+  const bool known = check.known(at + ".to", tissue.to, organs, "organ") && from_known;
+  check_limits(check, at, "tissue", tissue);
+  if (known && tissue.from == tissue.to)
+    check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");
+  if (tissue.start >= tissue.stop && check.is_fine(at + ".start") && check.is_fine(at + ".stop"))
+    check.problem(at + ".stop", fmt::format("it ends at {:.3g}, before it begins", tissue.stop),
+                  fmt::format("give more than its start, {:.3g}", tissue.start));
+}
+
 void check_tissue(FieldCheck& check, const AnatomyDefinition& anatomy) {
   std::vector<std::string> organs;
   for (const OrganDefinition& organ : anatomy.organs) organs.push_back(organ.name);
@@ -349,17 +384,7 @@ void check_tissue(FieldCheck& check, const AnatomyDefinition& anatomy) {
     const TissueDefinition& tissue = anatomy.tissue[i];
     const std::string at = fmt::format("scene.anatomy.tissue[{}]", i + 1);
     names.add(at + ".name", tissue.name);
-    if (std::find(organs.begin(), organs.end(), tissue.name) != organs.end())
-      check.problem(at + ".name", fmt::format("an organ is called \"{}\" too", tissue.name),
-                    "give the tissue another name");
-    const bool from_known = check.known(at + ".from", tissue.from, organs, "organ");
-    const bool known = check.known(at + ".to", tissue.to, organs, "organ") && from_known;
-    check_limits(check, at, "tissue", tissue);
-    if (known && tissue.from == tissue.to)
-      check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");
-    if (tissue.start >= tissue.stop && check.is_fine(at + ".start") && check.is_fine(at + ".stop"))
-      check.problem(at + ".stop", fmt::format("it ends at {:.3g}, before it begins", tissue.stop),
-                    fmt::format("give more than its start, {:.3g}", tissue.start));
+    check_one_tissue(check, at, tissue, organs);
     strands += tissue.strands;
   }
   if (strands > most_strands && anatomy.tissue.size() > 1)
@@ -517,6 +542,13 @@ std::vector<Problem> validate(const OrganDefinition& organ) {
   if (!organ.compared_with.empty())
     check.problem("organ.compared_with", "only organs that the scene has from the start are compared",
                   "leave compared_with out");
+  return check.take();
+}
+
+std::vector<Problem> validate(const TissueDefinition& tissue, const std::vector<std::string>& organs) {
+  FieldCheck check;
+  check.identifier("tissue.name", tissue.name, "tissue");
+  check_one_tissue(check, "tissue", tissue, organs);
   return check.take();
 }
 

@@ -20,6 +20,7 @@ namespace calot {
 class Assembly;
 class RodBody;
 class ShellBody;
+class SolidBody;
 struct BodyCut;
 
 /// How freely a detail moves (detail_fading.h).
@@ -140,6 +141,8 @@ class Body {
   /// Energy of the deformed body alone, J, and the largest principal stretch in it: for reports.
   virtual double strain_energy(const VecX& x) const = 0;
   virtual double max_stretch(const VecX& x) const = 0;
+  /// Whether its wall's time of retardation counts: what is asked ahead along straight ways must not turn far in a step.
+  virtual bool is_retarded() const { return true; }
 
   /// What is touched, by triangles; see skin_radii().
   virtual const Tessellation& skin() const = 0;
@@ -226,6 +229,7 @@ class Body {
   /// The body as the one kind that has a lumen and takes clips, or that details refine; null: it is of another kind.
   virtual const RodBody* as_tube() const { return nullptr; }
   virtual const ShellBody* as_shell() const { return nullptr; }
+  virtual const SolidBody* as_solid() const { return nullptr; }
 };
 
 using BodyPointer = std::shared_ptr<const Body>;

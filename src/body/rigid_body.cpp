@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "base/units.h"
 #include "numerics/parts.h"
@@ -42,7 +42,34 @@ Result<RigidBody> RigidBody::create(const Setup& setup) {
     body.weight_.segment<3>(3 * node) = -quarter * units::standard_gravity * setup.up;
     body.mass_.add_to_diagonal(node, quarter);
   }
+  body.choose_landmark_points();
   return body;
+}
+
+void RigidBody::choose_landmark_points() {
+  landmark_points_["centre"] = 0;
+  std::set<int> taken = {0};
+  const std::vector<Vec3>& points = setup_.surface.points;
+  for (const auto& landmark : setup_.landmarks) {
+    const auto squared = [&](int point) { return (points[point] - landmark.second).squaredNorm(); };
+    int nearest = -1;
+    for (int point = 0; point < static_cast<int>(points.size()); ++point)
+      if (!taken.contains(point) && (nearest < 0 || squared(point) < squared(nearest))) nearest = point;
+    landmark_points_[landmark.first] = nearest;
+    taken.insert(nearest);
+  }
+}
+
+Vec3 RigidBody::landmark_place(int row, const VecX& x) const {
+  for (const auto& [name, place] : setup_.landmarks) {
+    if (landmark_points_.at(name) != row) continue;
+    const std::array<double, AffineBody::nodes> weights = affine_->weights(place);
+    Vec3 at = Vec3::Zero();
+    for (int node = 0; node < AffineBody::nodes; ++node) at += weights[node] * x.segment<3>(3 * node);
+    return at;
+  }
+  // Its nodes have its moments: their middle is its centre.
+  return x.reshaped(3, 4).rowwise().mean();
 }
 
 double RigidBody::value(const VecX& x) const { return affine_->value(x); }
@@ -69,44 +96,6 @@ std::vector<Vec3> RigidBody::skin_normals(const VecX& x) const {
   }
   for (Vec3& normal : normals) normal.normalize();
   return normals;
-}
-
-TriMesh rounded_box(const Vec3& size, double rounding, const Vec3& centre, double spacing) {
-  const double longest = size.maxCoeff() + 2 * rounding;
-  const int parts = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 4, 24);
-  TriMesh mesh;
-  std::map<std::array<int, 3>, int> known;  // points of the cube's grid, which faces share
-  const auto point = [&](const std::array<int, 3>& grid) {
-    const auto [found, fresh] = known.try_emplace(grid, static_cast<int>(mesh.points.size()));
-    if (fresh) {
-      Vec3 on_cube, even;
-      for (int c = 0; c < 3; ++c) {
-        on_cube[c] = 2.0 * grid[c] / parts - 1;
-        even[c] = std::tan(0.25 * M_PI * on_cube[c]);  // the ball's triangles are then nearly alike
-      }
-      mesh.points.push_back(centre + 0.5 * size.cwiseProduct(on_cube) + rounding * even.normalized());
-    }
-    return found->second;
-  };
-  for (int axis = 0; axis < 3; ++axis)
-    for (int end : {0, parts})
-      for (int i = 0; i < parts; ++i)
-        for (int j = 0; j < parts; ++j) {
-          const auto at = [&](int u, int v) {
-            std::array<int, 3> grid{};
-            grid[axis] = end, grid[(axis + 1) % 3] = u, grid[(axis + 2) % 3] = v;
-            return point(grid);
-          };
-          const int a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-          if (end > 0) {
-            mesh.triangles.push_back({a, b, c});
-            mesh.triangles.push_back({a, c, d});
-          } else {
-            mesh.triangles.push_back({a, c, b});
-            mesh.triangles.push_back({a, d, c});
-          }
-        }
-  return mesh;
 }
 
 }  // namespace calot

@@ -19,7 +19,8 @@ class RigidBody : public Body {
     /// take many short steps to roll to rest, and so does tissue that turns them.
     double stiffness = RigidShape{}.stiffness;
     Vec3 up = Vec3::UnitZ();
-    std::vector<std::string> landmarks = {};  ///< names of its first skin point
+    /// Places that move along, m, where it is at rest; its centre is one of itself.
+    std::map<std::string, Vec3> landmarks = {};
   };
   /// Fails (scenario) where the surface encloses nothing.
   static Result<RigidBody> create(const Setup& setup);
@@ -36,6 +37,7 @@ class RigidBody : public Body {
   const VecX& kept_load() const override { return weight_; }
   double strain_energy(const VecX& x) const override { return value(x); }
   double max_stretch(const VecX& x) const override { return 1 + affine_->distortion(x); }
+  bool is_retarded() const override { return false; }
 
   const Tessellation& skin() const override { return skin_; }
   const std::vector<double>& skin_areas() const override { return skin_areas_; }
@@ -47,30 +49,26 @@ class RigidBody : public Body {
   std::vector<Vec3> skin_normals(const VecX& x) const override;
 
   const BlockMatrix* mass() const override { return &mass_; }
-  std::map<std::string, int> landmarks() const override {
-    std::map<std::string, int> out;
-    for (const std::string& name : setup_.landmarks) out[name] = 0;
-    return out;
-  }
-  /// Its nodes have its moments: their middle is its centre.
-  Vec3 landmark_place(int /*row*/, const VecX& x) const override { return x.reshaped(3, 4).rowwise().mean(); }
+  /// Each has a skin point of its own; the centre the first.
+  std::map<std::string, int> landmarks() const override { return landmark_points_; }
+  /// Where it lies in the body, not on its skin.
+  Vec3 landmark_place(int row, const VecX& x) const override;
   bool is_bitten() const override { return false; }
   const AffineBody& affine() const { return *affine_; }
 
  private:
+  void choose_landmark_points();
+
   Setup setup_;
   std::optional<AffineBody> affine_;
   VecX rest_, weight_;
   double size_ = 0, farthest_weights_ = 1;  ///< the largest sum of a skin point's weights without their signs
   std::vector<double> edge_lengths_, areas_, skin_areas_;
+  std::map<std::string, int> landmark_points_;
   std::vector<std::vector<int>> face_nodes_{{0, 1, 2, 3}};
   BlockMatrix mass_{4, {{std::vector<int>{0, 1, 2, 3}}}};
   BlockMatrix pattern_{4, {{std::vector<int>{0, 1, 2, 3}}}};
   Tessellation skin_;
 };
-
-/// A box of these edges, m, with edges of radius `rounding` and faces that bulge a little; without edges a ball. Points
-/// stand about `spacing` apart.
-TriMesh rounded_box(const Vec3& size, double rounding, const Vec3& centre, double spacing);
 
 }  // namespace calot

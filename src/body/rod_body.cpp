@@ -68,6 +68,16 @@ Result<RodBody> RodBody::create(const Setup& setup) {
   return body;
 }
 
+RodBody RodBody::without_held(std::size_t which) const {
+  RodBody out = *this;
+  out.setup_.held.erase(out.setup_.held.begin() + static_cast<std::ptrdiff_t>(which));
+  out.held_at_.erase(out.held_at_.begin() + static_cast<std::ptrdiff_t>(which));
+  out.constant_ = constant_.blank();
+  out.bed_ = {};
+  out.lay_bed();
+  return out;
+}
+
 RodBody RodBody::pinched(const std::vector<Pinch>& pinches) const {
   RodBody out = *this;
   out.pinches_.clear();

@@ -45,6 +45,8 @@ class RodBody : public Body {
   /// Its part between two of its skin points, first < last: the same curve with the same sections, bed and skin points
   /// there.
   Result<RodBody> part(int first, int last) const;
+  /// The same without one of the places that it is held at: of Setup::held, by its place there.
+  RodBody without_held(std::size_t which) const;
   /// The same held flat at these places and at no others: there it does not give way to what presses, and is drawn
   /// flat.
   RodBody pinched(const std::vector<Pinch>& pinches) const;

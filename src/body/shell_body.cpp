@@ -118,7 +118,10 @@ void ShellBody::lay_bed(const VecX& rest, Base& base) {
 Result<ShellBody> ShellBody::with_foundation(std::function<double(const Vec3& x)> foundation) const {
   Setup setup = base_->setup;
   setup.foundation = std::move(foundation);
-  return create(setup);
+  Result<ShellBody> out = create(setup);
+  if (!out) return out;
+  if (kept_) out->keep_in_equilibrium(kept_->state);
+  return details().empty() ? out : out->with_details(details());
 }
 
 Result<ShellBody> ShellBody::with_details(std::vector<int> details) const {

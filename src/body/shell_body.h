@@ -86,7 +86,7 @@ class ShellBody : public Body {
   /// structural extensions. The faces that they split have quadrature and bile of their own; the bed stays where
   /// it was. Fails (scenario) where too many details reach one face.
   Result<ShellBody> with_details(std::vector<int> details) const;
-  /// The same without details on another foundation (Setup::foundation), with nothing kept in equilibrium.
+  /// The same, with its details, on another foundation (Setup::foundation).
   Result<ShellBody> with_foundation(std::function<double(const Vec3& x)> foundation) const;
   /// From here on details refine the answer to instruments, not the state `rest` (of this structure, which has no
   /// details, in equilibrium): with any details the same shape is in equilibrium, held by a constant load and volume

@@ -102,21 +102,9 @@ void SolidBody::build_matrices(const ReducedSolid& reduced) {
   std::vector<int> all(static_cast<std::size_t>(nodes()));
   std::iota(all.begin(), all.end(), 0);
   constant_ = BlockMatrix(nodes(), std::vector<std::vector<int>>{all});
-  for (int row = 0; setup_.foundation && row < skin_.stencils.rows(); ++row) {
-    const double stiffness = setup_.foundation(skin_rest_[row], skin_.at[row].face) * skin_areas_[row];
-    if (stiffness <= 0) continue;
-    bed_.row.push_back(row);
-    bed_.target.push_back(skin_rest_[row]);
-    bed_.stiffness.push_back(stiffness);
-  }
-  bed_.add_hessian(skin_.stencils, constant_);
-  const int places = coarse_nodes();
   mode_stiffness_ = reduced.mode_stiffness;
-  const auto add_modes = [&](const VecX& diagonal, BlockMatrix& matrix) {
-    for (int k = 0; k < mode_nodes; ++k)
-      matrix.add(places + k, places + k, Mat3(diagonal.segment<3>(3 * k).asDiagonal()));
-  };
-  add_modes(mode_stiffness_, constant_);
+  lay_bed(setup_.foundation);
+  const int places = coarse_nodes();
   if (!(setup_.density > 0)) return;
   mass_ = constant_.blank();
   for (int b = 0; b < places; ++b) {
@@ -130,6 +118,33 @@ void SolidBody::build_matrices(const ReducedSolid& reduced) {
   load_ = VecX::Zero(rest_.size());
   const VecX up = setup_.up.replicate(places, 1);
   load_.head(up.size()) = -units::standard_gravity * setup_.density * (reduced.mass * up);
+}
+
+void SolidBody::lay_bed(const std::function<double(const Vec3& x, int triangle)>& foundation) {
+  bed_ = {};
+  for (int row = 0; foundation && row < skin_.stencils.rows(); ++row) {
+    const double stiffness = foundation(skin_rest_[row], skin_.at[row].face) * skin_areas_[row];
+    if (stiffness <= 0) continue;
+    bed_.row.push_back(row);
+    bed_.target.push_back(skin_rest_[row]);
+    bed_.stiffness.push_back(stiffness);
+  }
+  bed_.add_hessian(skin_.stencils, constant_);
+  add_modes(mode_stiffness_, constant_);
+}
+
+void SolidBody::add_modes(const VecX& diagonal, BlockMatrix& matrix) const {
+  const int places = coarse_nodes();
+  for (int k = 0; k < mode_nodes; ++k)
+    matrix.add(places + k, places + k, Mat3(diagonal.segment<3>(3 * k).asDiagonal()));
+}
+
+SolidBody SolidBody::with_foundation(
+    const std::function<double(const Vec3& x, int triangle)>& foundation) const {
+  SolidBody out = *this;
+  out.constant_ = constant_.blank();
+  out.lay_bed(foundation);
+  return out;
 }
 
 double SolidBody::value(const VecX& x) const {

@@ -36,6 +36,10 @@ class SolidBody : public Body {
   /// Fails (scenario) where the shape folds over itself. `kept` as of World::create: for its reduction.
   static Result<SolidBody> create(const Setup& setup, KeptResults* kept = nullptr);
 
+  /// The same on another foundation.
+  SolidBody with_foundation(const std::function<double(const Vec3& x, int triangle)>& foundation) const;
+  const SolidBody* as_solid() const override { return this; }
+
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }
   /// The nodes after them are no places, but how far the modes of the inside are (solid_reduction.h), m, three a node.
@@ -70,6 +74,9 @@ class SolidBody : public Body {
  private:
   void build_skin();
   void build_matrices(const ReducedSolid& reduced);
+  /// The foundation's springs and the modes' own stiffness.
+  void lay_bed(const std::function<double(const Vec3& x, int triangle)>& foundation);
+  void add_modes(const VecX& diagonal, BlockMatrix& matrix) const;
 
   Setup setup_;
   SolidMesh mesh_;

@@ -45,6 +45,8 @@ std::optional<Organ> organ_of(const OrganNote& note, const std::vector<Organ>& o
                               const OrganMaker& make) {
   std::optional<Organ> out = organ_at_first(note.origin, of_scene, make);
   if (!out) return out;
+  for (const std::string& held : note.origin.released)
+    if (!release_held(*out, held)) return std::nullopt;
   for (const BodyOrigin::Cut& cut : note.origin.cuts)
     if (!cut_off(cut, *out)) return std::nullopt;
   if (!hold_flat(note.pinches, *out)) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "base/suggest.h"
 #include "field/grip.h"
 #include "field/join_bodies.h"
 #include "field/members_note.h"
@@ -110,6 +111,40 @@ Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, con
   field.organs.push_back(std::move(made->organ));
   finish_change(field);
   return OrganIndex(field.organs.size() - 1);
+}
+
+Result<bool> release_body(Field& field, OrganIndex organ, const std::string& held) {
+  if (Result<bool> released = release_held(field.organ(organ), held); !released) return released;
+  finish_change(field);
+  return true;
+}
+
+Result<bool> add_tissue(Field& field, const TissueDefinition& definition) {
+  int strands = definition.strands;
+  for (const Tissue& tissue : field.tissues) {
+    strands += static_cast<int>(tissue.strands->strands().size());
+    if (tissue.definition.name == definition.name)
+      return fail(FailureKind::scenario, fmt::format("there is a tissue '{}' already", definition.name),
+                  "give it another name", {"", 0, ".name"});
+  }
+  if (strands > most_strands)
+    return fail(FailureKind::scenario, fmt::format("the tissues would have {} strands together", strands),
+                fmt::format("give them at most {}", most_strands), {"", 0, ".strands"});
+  Result<Tissue> made = make_tissue(definition, field.organs, field.up);
+  if (!made) return made.failure();
+  field.tissues.push_back(std::move(made).value());
+  finish_change(field);
+  return true;
+}
+
+Result<bool> remove_tissue(Field& field, const std::string& name) {
+  const auto is_it = [&](const Tissue& tissue) { return tissue.definition.name == name; };
+  std::vector<std::string> names;
+  for (const Tissue& tissue : field.tissues) names.push_back(tissue.definition.name);
+  if (std::erase_if(field.tissues, is_it) == 0)
+    return fail(FailureKind::scenario, fmt::format("there is no tissue '{}'", name), suggestion(name, names));
+  finish_change(field);
+  return true;
 }
 
 Result<bool> tie_bodies(Field& field, const JointDefinition& joint) {

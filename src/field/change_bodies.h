@@ -24,6 +24,15 @@ using OrganMaker = std::function<Result<RestedOrgan>(const OrganDefinition& defi
 /// another body or a tool. It stands behind all others.
 Result<OrganIndex> add_body(Field& field, const OrganDefinition& definition, const OrganMaker& make);
 
+/// Lets an organ go where one of its held regions, by its name, holds it. Fails (scenario) where it has none of that name.
+Result<bool> release_body(Field& field, OrganIndex organ, const std::string& held);
+
+/// Lays strands between two organs where they are now. Fails (scenario) as make_tissue() does, and where a tissue or an organ
+/// has that name or the field would have too many strands.
+Result<bool> add_tissue(Field& field, const TissueDefinition& definition);
+/// Takes a tissue away with all of its strands. Fails (scenario) where there is none of that name.
+Result<bool> remove_tissue(Field& field, const std::string& name);
+
 /// Ties "organ.landmark" to another where they are now: without a load. The names are the field's.
 Result<bool> tie_bodies(Field& field, const JointDefinition& joint);
 /// Undoes all joints between two bodies. Where they were tied they never press on each other.

@@ -74,7 +74,7 @@ bool fold_fills_jaws(const Field& field, ToolIndex instrument) {
       ++count[grip.jaw];
       depth += grip.local.z();
     }
-    if (count[0] == 0 || count[1] == 0) continue;
+    if (count[0] == 0 || count[1] == 0 || !organ.body->is_bitten()) continue;
     const double reach = 2.0 * depth / (count[0] + count[1]);
     if (organ.body->is_line()) {
       // A tube is pressed flat where the next angle leaves it no room.

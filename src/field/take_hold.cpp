@@ -16,12 +16,6 @@ bool faces_pad(const Vec3& local, const InstrumentGeometry& g, double range) {
   return local.x() < contact_inset && local.x() > -range && before_pad(local, g);
 }
 
-void sort_grips(Organ& organ) {
-  std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
-    return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
-  });
-}
-
 /// Both pads take hold of a tube's point where it is.
 void hold_point(const Tool& tool, ToolIndex instrument, Organ& organ, int point) {
   for (int jaw : {0, 1}) {
@@ -72,6 +66,12 @@ void hold_clips(const Tool& tool, ToolIndex instrument, Organ& organ, const std:
 }
 
 }  // namespace
+
+void sort_grips(Organ& organ) {
+  std::sort(organ.grips.begin(), organ.grips.end(), [](const GripPoint& a, const GripPoint& b) {
+    return std::tie(a.instrument, a.jaw, a.skin_point) < std::tie(b.instrument, b.jaw, b.skin_point);
+  });
+}
 
 void take_hold(Field& field, ToolIndex instrument) {
   const Tool& tool = field.tool(instrument);

@@ -7,6 +7,11 @@
 namespace calot {
 
 // As Eigen::umeyama, in whose instance for three rows gcc 12 sees an array's bound passed, wrongly.
+Mat3 turned_about(const Vec3& turn) {
+  const double angle = turn.norm();
+  return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
+}
+
 Mat3 best_turn(const Points3& from, const Points3& to) {
   const Vec3 from_middle = from.rowwise().mean(), to_middle = to.rowwise().mean();
   Mat3 together = Mat3::Zero();

@@ -5,6 +5,9 @@
 
 namespace calot {
 
+/// The rotation about this axis by its length, rad.
+Mat3 turned_about(const Vec3& turn);
+
 using Points3 = Eigen::Ref<const Eigen::Matrix3Xd>;  ///< a point a column
 
 /// The rotation R for which R `from` comes nearest to `to` but for a shift, by the sum of squared distances (Kabsch

@@ -27,18 +27,13 @@ std::optional<double> crosses(const std::array<Vec3, 3>& t, const Vec3& from, co
   return share && *share >= 0 && *share <= 1 ? share : std::nullopt;
 }
 
-/// Of an opening: where it is, and which way out.
-std::pair<Vec3, Vec3> mouth_of(const Organ& organ, const Opening& opening) {
-  const VecX& x = organ.state.x;
-  const Vec3 at = organ.body->skin_point(opening.point, x);
-  if (!organ.body->is_line()) return {at, organ.body->skin_normals(x)[opening.point]};
-  const int inner = opening.point == 0 ? 1 : opening.point - 1;
-  return {at, (at - organ.body->skin_point(inner, x)).normalized()};
+bool is_end(const RodBody& rod, const Opening& opening) {
+  return opening.point == 0 || opening.point == static_cast<int>(rod.last_point());
 }
 
 double width_of(const Organ& organ, const Opening& opening) {
   const RodBody* rod = organ.body->as_tube();
-  if (rod == nullptr) return opening.area;
+  if (rod == nullptr || !is_end(*rod, opening)) return opening.area;
   return std::numbers::pi * std::pow(std::max(rod->lumen_radius(opening.point), 1e-4), 2);
 }
 
@@ -105,6 +100,17 @@ bool fall(Field& field, const FallenOn& skins, Drop& drop, double part) {
   if (!has_fallen_away(field, to)) return false;
   field.spill.out_of_sight[static_cast<std::size_t>(drop.liquid)] += drop.volume;
   return true;
+}
+
+Mouth mouth_of(const Organ& organ, const Opening& opening) {
+  const VecX& x = organ.state.x;
+  const Vec3 at = organ.body->skin_point(opening.point, x);
+  if (!organ.body->is_line()) return {at, organ.body->skin_normals(x)[opening.point]};
+  const RodBody* rod = organ.body->as_tube();
+  if (rod != nullptr && !is_end(*rod, opening))
+    return {organ.body->surface_point(opening.point, x), organ.body->skin_normals(x)[opening.point]};
+  const int inner = opening.point == 0 ? 1 : opening.point - 1;
+  return {at, (at - organ.body->skin_point(inner, x)).normalized()};
 }
 
 void let_fall(Field& field, double duration, std::optional<FallenOn>& skins) {

@@ -34,6 +34,12 @@ class FallenOn {
 /// Moves a drop on by `part` s. Returns whether it is gone: into the film where it met something, or out of sight.
 bool fall(Field& field, const FallenOn& skins, Drop& drop, double part);
 
+/// Where an opening is, m, and which way out (unit): a tube's end along it, a hole from the middle of its wall upwards.
+struct Mouth {
+  Vec3 at, out;
+};
+Mouth mouth_of(const Organ& organ, const Opening& opening);
+
 /// Makes drops of what hangs on openings and is heavy enough or was let out fast, each with the way that it has made
 /// since, in a step of `duration` s. `skins` is made where there is a drop.
 void let_fall(Field& field, double duration, std::optional<FallenOn>& skins);

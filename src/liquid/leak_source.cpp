@@ -31,10 +31,17 @@ class SourceSearch {
   LeakSource of(OrganIndex organ, const Opening& opening) {
     const RodBody* rod = field_.organ(organ).body->as_tube();
     if (rod == nullptr) return {LeakSource::Kind::organ, organ, {}, opening.area};
-    const double from = opening.point, to = rod->last_point() - from;
-    const double whole = lumen_area(*rod, from);
-    visited_.assign(field_.organs.size(), 0);
-    if (std::optional<LeakSource> found = along(organ, from, to, whole)) {
+    const double from = opening.point, last = rod->last_point();
+    const bool hole = from > 0 && from < last;
+    const double whole = hole ? std::min(opening.area, lumen_area(*rod, from)) : lumen_area(*rod, from);
+    std::optional<LeakSource> found;
+    // A hole is fed from both sides, by the wider way.
+    for (const double to : hole ? std::vector<double>{0, last} : std::vector<double>{last - from}) {
+      visited_.assign(field_.organs.size(), 0);
+      const std::optional<LeakSource> here = along(organ, from, to, whole);
+      if (here && (!found || here->area > found->area)) found = here;
+    }
+    if (found) {
       const OrganDefinition& tube = field_.organ(organ).definition;
       found->feed.resistance = feed_of(tube).resistance;
       if (found->kind == LeakSource::Kind::organ)
@@ -42,7 +49,9 @@ class SourceSearch {
       return *found;
     }
     // What it holds runs out if nothing shuts it, by the tightest place.
-    return {LeakSource::Kind::rest, organ, {}, open_between(field_, organ, from, to)};
+    const double open = hole ? std::max(open_between(field_, organ, from, 0), open_between(field_, organ, from, last))
+                             : open_between(field_, organ, from, last - from);
+    return {LeakSource::Kind::rest, organ, {}, std::min(whole, open)};
   }
 
  private:

@@ -1,6 +1,13 @@
 #include "liquid/perforate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "body/rod_body.h"
+#include "field/divide_body.h"
 
 namespace calot {
 namespace {
@@ -42,6 +49,26 @@ void perforate(Organ& organ, const Vec3& at, const std::string& instrument) {
   hole.area = burnt;
   hole.cause = instrument;
   organ.openings.push_back(hole);
+}
+
+Result<double> open_tube(Organ& tube, double share, double width) {
+  const RodBody* rod = tube.body->as_tube();
+  if (rod == nullptr) return no_tube(tube.definition, "open", "opened");
+  const int last = static_cast<int>(rod->last_point());
+  int nearest = -1;
+  for (int point = 1; point < last; ++point)
+    if (nearest < 0 || std::abs(rod->share_of_length(point) - share) < std::abs(rod->share_of_length(nearest) - share))
+      nearest = point;
+  if (nearest < 0)
+    return fail(FailureKind::scenario, fmt::format("'{}' is too short to be opened", tube.definition.name));
+  Opening hole;
+  hole.point = nearest;
+  hole.area = 0.25 * std::numbers::pi * width * width;
+  // A tube's openings stand in the order of their points.
+  const auto behind = std::find_if(tube.openings.begin(), tube.openings.end(),
+                                   [&](const Opening& opening) { return opening.point > nearest; });
+  tube.openings.insert(behind, hole);
+  return rod->share_of_length(nearest);
 }
 
 }  // namespace calot

@@ -1,5 +1,5 @@
 #pragma once
-// Holes that instruments make in the walls of hollow organs; what leaves by them is in leak.h.
+// Holes in walls: of hollow organs, that instruments make, and of tubes; what leaves by them is in leak.h.
 
 #include "field/field.h"
 
@@ -9,5 +9,9 @@ namespace calot {
 void perforate(Organ& organ, ToolIndex instrument, const std::string& name);
 /// Makes one where current has burnt a wall, at the skin point nearest to `at`; what holds no liquid has nothing to lose.
 void perforate(Organ& organ, const Vec3& at, const std::string& instrument);
+
+/// Makes one of a width (m, > 0) in the wall of a tube at a share of its length, 0 to 1, and says at which: not where it
+/// ends or a clip lies. Fails (scenario) where the organ is no tube, or is too short.
+Result<double> open_tube(Organ& tube, double share, double width);
 
 }  // namespace calot

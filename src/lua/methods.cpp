@@ -509,6 +509,41 @@ int add(lua_State* L) {
   return 0;
 }
 
+int release(lua_State* L) {
+  StepsScript& steps = steps_of(L, "release");
+  const Arguments arguments(L, steps, "Steps", "release");
+  if (arguments.good()) steps.release(L, arguments.text("organ"), arguments.text("held"));
+  return 0;
+}
+
+int add_tissue(lua_State* L) {
+  StepsScript& steps = steps_of(L, "add_tissue");
+  Arguments arguments(L, steps, "Steps", "add_tissue");
+  TissueDefinition tissue;
+  arguments.table("tissue", "tissue").read(tissue);
+  if (arguments.finish()) steps.add_tissue(L, tissue);
+  return 0;
+}
+
+int remove_tissue(lua_State* L) {
+  StepsScript& steps = steps_of(L, "remove_tissue");
+  const Arguments arguments(L, steps, "Steps", "remove_tissue");
+  if (arguments.good()) steps.remove_tissue(L, arguments.text("tissue"));
+  return 0;
+}
+
+int bleed(lua_State* L) {
+  StepsScript& steps = steps_of(L, "bleed");
+  const Arguments arguments(L, steps, "Steps", "bleed");
+  constexpr double usual_width = 1e-3;  // m, as the API says
+  double share = 0;
+  if (arguments.good())
+    share = steps.bleed(L, arguments.text("organ"), arguments.number("share"),
+                        arguments.number("width", usual_width));
+  lua_pushnumber(L, share);
+  return 1;
+}
+
 int tie(lua_State* L) {
   StepsScript& steps = steps_of(L, "tie");
   Arguments arguments(L, steps, "Steps", "tie");
@@ -548,6 +583,10 @@ const Method own_methods[] = {{"Session", "wait", guarded<wait>},
                               {"Steps", "clip", guarded<clip>},
                               {"Steps", "remove", guarded<remove>},
                               {"Steps", "add", guarded<add>},
+                              {"Steps", "release", guarded<release>},
+                              {"Steps", "add_tissue", guarded<add_tissue>},
+                              {"Steps", "remove_tissue", guarded<remove_tissue>},
+                              {"Steps", "bleed", guarded<bleed>},
                               {"Steps", "tie", guarded<tie>},
                               {"Steps", "untie", guarded<untie>},
                               {"Steps", "count", guarded<count>},

@@ -260,7 +260,8 @@ std::vector<std::string> organ_names(const ExerciseDefinition& exercise) {
   std::vector<std::string> names;
   for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
     for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
-  for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
+  for (const auto* tissues : {&exercise.scene.anatomy.tissue, &exercise.later_tissues})
+    for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
   for (const GroundDefinition& ground : exercise.scene.anatomy.ground) names.push_back(ground.name);
   return names;
 }

@@ -140,7 +140,9 @@ class SceneReader {
       read_tube(reader, std::get<TubeShape>(shape));
     } else if (wanted == "rigid") {
       if (wanted != present) shape = RigidShape{};
-      reader.read(std::get<RigidShape>(shape));
+      auto& rigid = std::get<RigidShape>(shape);
+      reader.read(rigid);
+      read_path(reader, rigid.path);
     } else if (wanted == "lobe") {
       if (wanted != present) shape = LobeShape{};
       reader.read(std::get<LobeShape>(shape));
@@ -148,10 +150,15 @@ class SceneReader {
       if (wanted != present) shape = MeshFile{};
       MeshFile& mesh = std::get<MeshFile>(shape);
       reader.read(mesh);
-      std::string file;
-      reader.take("path", file);
-      if (!file.empty()) mesh.path = find_mesh(file, path + ".path");
+      read_path(reader, mesh.path);
     }
+  }
+
+  /// Of a mesh file, where one is named.
+  void read_path(const TableReader& reader, std::string& out) {
+    std::string file;
+    reader.take("path", file);
+    if (!file.empty()) out = find_mesh(file, reader.path_of("path"));
   }
 
   /// A list replaces the radii that there were, and a radius the list.

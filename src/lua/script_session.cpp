@@ -160,7 +160,8 @@ double ScriptSession::lost(lua_State* L, bool blood, const std::string& name) {
 
 bool ScriptSession::is_tissue(lua_State* L, const std::string& name) {
   std::vector<std::string> names;
-  for (const TissueDefinition& tissue : scene().anatomy.tissue) names.push_back(tissue.name);
+  for (const auto* tissues : {&scene().anatomy.tissue, &later_tissues()})
+    for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
   if (std::find(names.begin(), names.end(), name) != names.end()) return true;
   complain(L, fmt::format("unknown tissue \"{}\"", name), suggestion(name, names));
   return false;

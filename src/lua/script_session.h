@@ -140,6 +140,9 @@ class ScriptSession {
   virtual std::optional<Vec3> known_tip(int /*instrument*/) const { return std::nullopt; }
   /// Of a dry run: what steps may bring, beside the scene's organs.
   virtual const std::vector<OrganDefinition>& later_organs() const { return exercise_.later_organs; }
+  virtual const std::vector<TissueDefinition>& later_tissues() const { return exercise_.later_tissues; }
+  /// Complains where no tissue has that name, or may have it later.
+  bool is_tissue(lua_State* L, const std::string& name);
   /// In a dry run: counts a wait, and ends the run (by a yield) when it would last too long. True: it does.
   /// No duration: the wait lasts as long as the world makes it.
   bool end_dry_run(lua_State* L, std::optional<double> duration);
@@ -154,7 +157,6 @@ class ScriptSession {
   int next_level();
   /// Of the scene's ports or the usual ones, m.
   Vec3 port_position(const std::string& name) const;
-  bool is_tissue(lua_State* L, const std::string& name);
 
   Sandbox& sandbox_;
   const ExerciseDefinition& exercise_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/suggest.h"
 #include "field/divide_body.h"
 #include "script/lua_headers.h"
 
@@ -336,6 +337,53 @@ void StepsScript::add(lua_State* L, const OrganDefinition& organ) {
     return bring_later(organ);
   }
   if (const Result<OrganIndex> done = changing_->add(organ); !done) complain(L, done.failure());
+}
+
+void StepsScript::release(lua_State* L, const std::string& name, const std::string& held) {
+  if (!may_change(L, "release")) return;
+  const int organ = this->organ(L, name);
+  if (organ < 0) return;
+  if (!checking()) {
+    if (const Result<bool> done = changing_->release(name, held); !done) complain(L, done.failure());
+    return;
+  }
+  std::vector<std::string> names;
+  for (const HeldRegion& region : known_organ(organ).held)
+    if (!region.while_filled) names.push_back(region.name);
+  if (!contains(names, held))
+    complain(L, fmt::format("nothing called \"{}\" holds '{}'", held, name),
+             names.empty() ? "nothing holds it" : suggestion(held, names));
+}
+
+void StepsScript::add_tissue(lua_State* L, const TissueDefinition& tissue) {
+  if (!may_change(L, "add_tissue")) return;
+  if (!checking()) {
+    if (const Result<bool> done = changing_->add_tissue(tissue); !done) complain(L, done.failure());
+    return;
+  }
+  std::vector<std::string> organs;
+  for (const OrganDefinition& organ : known_organs()) organs.push_back(organ.name);
+  if (std::vector<Problem> problems = validate(tissue, organs); !problems.empty())
+    return complain(L, Failure{FailureKind::scenario, std::move(problems)});
+  declared_.later_tissues.push_back(tissue);
+}
+
+void StepsScript::remove_tissue(lua_State* L, const std::string& name) {
+  if (!may_change(L, "remove_tissue") || !is_tissue(L, name) || checking()) return;
+  if (const Result<bool> done = changing_->remove_tissue(name); !done) complain(L, done.failure());
+}
+
+double StepsScript::bleed(lua_State* L, const std::string& name, double share, double width) {
+  if (!may_change(L, "bleed")) return share;
+  const int organ = this->organ(L, name);
+  if (organ < 0) return share;
+  if (checking()) {
+    expect_tube(L, known_organ(organ), "open", "opened");
+    return share;
+  }
+  const Result<double> done = changing_->open_tube(name, share, width);
+  if (!done) complain(L, done.failure());
+  return done ? done.value() : share;
 }
 
 void StepsScript::tie(lua_State* L, const JointDefinition& joint) {

@@ -19,6 +19,7 @@ class StepsScript final : public ScriptSession {
     std::vector<std::string> steps, holds, notes;  ///< holds are "step.hold"; notes those of numbers
     std::vector<std::string> waited;               ///< steps that ask no condition: time alone ends them
     std::vector<OrganDefinition> later;            ///< organs that may come: pieces of others too
+    std::vector<TissueDefinition> later_tissues;   ///< likewise
     bool complete = false;
   };
   /// Runs the function with waits that return at once. A failure is the script's.
@@ -41,6 +42,11 @@ class StepsScript final : public ScriptSession {
   void clip(lua_State* L, const std::string& organ, double share, ClipSize size);
   void remove(lua_State* L, const std::string& organ, const std::string& why);
   void add(lua_State* L, const OrganDefinition& organ);
+  void release(lua_State* L, const std::string& organ, const std::string& held);
+  void add_tissue(lua_State* L, const TissueDefinition& tissue);
+  void remove_tissue(lua_State* L, const std::string& name);
+  /// Returns at which share of the tube.
+  double bleed(lua_State* L, const std::string& organ, double share, double width);
   void tie(lua_State* L, const JointDefinition& joint);
   void untie(lua_State* L, const std::string& one, const std::string& other);
   int hold(lua_State* L, const std::string& name, int predicate, double duration);
@@ -48,6 +54,9 @@ class StepsScript final : public ScriptSession {
  protected:
   const std::vector<OrganDefinition>& later_organs() const override {
     return checking() ? declared_.later : ScriptSession::later_organs();
+  }
+  const std::vector<TissueDefinition>& later_tissues() const override {
+    return checking() ? declared_.later_tissues : ScriptSession::later_tissues();
   }
 
  private:

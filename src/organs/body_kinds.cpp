@@ -2,16 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+
+#include "base/suggest.h"
 
 namespace calot {
 
 const std::vector<BodyKind>& body_kinds() {
-  static const std::vector<BodyKind> kinds = {{"pear", make_hollow_organ},  {"sphere", make_hollow_organ},
-                                              {"swept", make_hollow_organ}, {"obj", make_hollow_organ},
-                                              {"tube", make_tube},          {"rigid", make_rigid_organ},
-                                              {"lobe", make_lobe}};
+  static const std::vector<BodyKind> kinds = {{"pear", make_hollow_organ, released_hollow_organ},
+                                              {"sphere", make_hollow_organ, released_hollow_organ},
+                                              {"swept", make_hollow_organ, released_hollow_organ},
+                                              {"obj", make_hollow_organ, released_hollow_organ},
+                                              {"tube", make_tube, released_tube},
+                                              {"rigid", make_rigid_organ},
+                                              {"lobe", make_lobe, released_lobe}};
   return kinds;
+}
+
+Failure of_organ(Failure failure, const OrganDefinition& definition) {
+  const std::string* path = mesh_path(definition.shape);
+  for (Problem& problem : failure.problems) {
+    const std::string mesh = path != nullptr && problem.place.line == 0 ? " (" + *path + ")" : "";
+    problem.message = fmt::format("organ '{}'{}: {}", definition.name, mesh, problem.message);
+    if (problem.place.line == 0) problem.place = {"", 0, ".shape"};
+  }
+  return failure;
 }
 
 Result<RestedOrgan> make_organ(const BodyKind& kind, const OrganDefinition& definition,
@@ -25,6 +41,25 @@ Result<RestedOrgan> make_organ(const OrganDefinition& definition, const ContactL
                                double tolerance, int levels, FillingLimits* limits, KeptResults* kept) {
   return make_organ(body_kinds()[definition.shape.index()], definition,
                     {loads, up, tolerance, levels, limits, kept});
+}
+
+Result<bool> release_held(Organ& organ, const std::string& held) {
+  std::vector<HeldRegion> left = organ.definition.held;
+  std::vector<std::string> names;
+  for (const HeldRegion& region : left) names.push_back(region.name);
+  const auto found = std::find(names.begin(), names.end(), held);
+  if (found == names.end())
+    return fail(FailureKind::scenario,
+                fmt::format("nothing called \"{}\" holds '{}'", held, organ.definition.name),
+                names.empty() ? "nothing holds it" : suggestion(held, names));
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  left.erase(left.begin() + (found - names.begin()));
+  Result<BodyPointer> body = body_kinds()[organ.definition.shape.index()].released(organ, left, index);
+  if (!body) return body.failure();
+  organ.body = std::move(body).value();
+  organ.definition.held = std::move(left);
+  organ.origin.released.push_back(held);
+  return true;
 }
 
 std::optional<Failure> check_clear_of_ground(const Body& body, const ContactLoads& loads) {

@@ -39,6 +39,9 @@ struct BodyKind {
   /// alone. Failures: scenario (a definition that cannot be built), simulation (no rest state found), resource or
   /// interrupted (`limits`); see at_organ.
   Result<RestedOrgan> (*make)(const OrganDefinition& definition, const OrganSetting& setting);
+  /// Its body held by what is `left` of the regions of its definition, all but the one at `released`. Null: it is not held.
+  Result<BodyPointer> (*released)(const Organ& organ, const std::vector<HeldRegion>& left,
+                                  std::size_t released) = nullptr;
 };
 const std::vector<BodyKind>& body_kinds();
 
@@ -69,10 +72,22 @@ Result<RestedOrgan> organ_as_drawn(const OrganDefinition& definition, Result<Kin
   return made;
 }
 
+/// Problems of a mesh know no organ: what is wrong in a file stays there, the rest is the shape's.
+Failure of_organ(Failure failure, const OrganDefinition& definition);
+/// The surface of a rigid thing where it begins, m. Fails (scenario) where its file holds none that can be touched.
+Result<TriMesh> rigid_surface(const OrganDefinition& definition);
 /// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
 std::vector<Problem> mesh_problems(const SceneDefinition& scene);
 
 Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting);
+/// Takes away a region that an organ is held by, and leaves it where it is. Fails (scenario) where it has none of that name.
+Result<bool> release_held(Organ& organ, const std::string& held);
+Result<BodyPointer> released_hollow_organ(const Organ& organ, const std::vector<HeldRegion>& left,
+                                          std::size_t released);
+Result<BodyPointer> released_tube(const Organ& organ, const std::vector<HeldRegion>& left,
+                                  std::size_t released);
+Result<BodyPointer> released_lobe(const Organ& organ, const std::vector<HeldRegion>& left,
+                                  std::size_t released);
 /// Takes away what held an organ only while it was filled, and leaves it where it is; whether there was any.
 Result<bool> release_filled(Organ& organ);
 Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSetting& setting);

@@ -16,6 +16,7 @@ struct BodyOrigin {
   };
   int of_scene = -1;                     ///< that organ of the scene; below 0:
   std::optional<OrganDefinition> added;  ///< what came later, as it was added
+  std::vector<std::string> released;     ///< regions that it is held by no more
   std::vector<Cut> cuts;                 ///< what befell it since, in that order
 };
 void visit_members(auto&& visit, MembersOf<BodyOrigin::Cut> auto& cut) {
@@ -24,8 +25,8 @@ void visit_members(auto&& visit, MembersOf<BodyOrigin::Cut> auto& cut) {
 }
 /// Who visits it needs a definition's members, too (anatomy/definition_members.h).
 void visit_members(auto&& visit, MembersOf<BodyOrigin> auto& origin) {
-  auto& [of_scene, added, cuts] = origin;
-  visit(of_scene, added, cuts);
+  auto& [of_scene, added, released, cuts] = origin;
+  visit(of_scene, added, released, cuts);
 }
 
 }  // namespace calot

@@ -7,6 +7,7 @@
 #include "anatomy/organ_frame.h"
 #include "geometry/mesh_io.h"
 #include "geometry/shapes.h"
+#include "geometry/turn.h"
 #include "organs/body_kinds.h"
 #include "skin/subdivision.h"
 #include "tools/instrument.h"
@@ -18,10 +19,7 @@ namespace {
 Result<TriMesh> file_mesh(const MeshFile& file, const OrganDefinition& definition) {
   Result<TriMesh> mesh = read_obj(file.path, file.scale);
   if (!mesh) return mesh;
-  Pose placed = Pose::Identity();
-  const double angle = file.turn.norm();
-  if (angle > 0) placed.rotate(Eigen::AngleAxisd(angle, file.turn / angle));
-  placed.pretranslate(file.offset);
+  Pose placed = Pose(turned_about(file.turn)).pretranslate(file.offset);
   if (file.axes == MeshAxes::scene) placed = organ_frame(definition).inverse() * placed;
   for (Vec3& p : mesh->points) p = placed * p;
   return mesh;
@@ -83,17 +81,6 @@ std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ)
         fmt::format("the mesh of organ '{}' has {} vertices", organ, mesh.points.size()),
         fmt::format("simplify it to at most {}: they are control points, the skin is smooth", most_nodes));
   return std::nullopt;
-}
-
-/// Problems of the mesh itself know no organ: what is wrong in a file stays there, the rest is the shape's.
-Failure of_organ(Failure failure, const OrganDefinition& definition) {
-  const auto* file = std::get_if<MeshFile>(&definition.shape);
-  for (Problem& problem : failure.problems) {
-    const std::string mesh = file != nullptr && problem.place.line == 0 ? " (" + file->path + ")" : "";
-    problem.message = fmt::format("organ '{}'{}: {}", definition.name, mesh, problem.message);
-    if (problem.place.line == 0) problem.place = {"", 0, ".shape"};
-  }
-  return failure;
 }
 
 /// The unstressed mesh where it can be a control mesh.
@@ -356,6 +343,9 @@ std::vector<Problem> mesh_problems(const SceneDefinition& scene) {
       nodes += more;
       if (organ.extensions) extended += more;
     };
+    if (const auto* rigid = std::get_if<RigidShape>(&organ.shape); rigid && !rigid->path.empty())
+      if (const Result<TriMesh> mesh = rigid_surface(organ); !mesh)
+        for (Problem& problem : at_organ(mesh.failure(), i).problems) problems.push_back(std::move(problem));
     if (!is_hollow(organ.shape)) continue;
     if (!file) count(static_cast<std::size_t>(std::clamp(organ.nodes, 0, most_nodes)));
     if (!file) continue;
@@ -406,15 +396,23 @@ Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const O
   return made;
 }
 
-Result<bool> release_filled(Organ& organ) {
-  std::vector<HeldRegion> left = organ.definition.held;
-  if (std::erase_if(left, [](const HeldRegion& region) { return region.while_filled; }) == 0) return false;
+Result<BodyPointer> released_hollow_organ(const Organ& organ, const std::vector<HeldRegion>& left,
+                                          std::size_t /*released*/) {
   const ShellBody& shell = *organ.body->as_shell();
   const Result<Places> places = places_on(organ.definition, shell.control());
   if (!places) return places.failure();
   Result<ShellBody> released = shell.with_foundation(foundation_of(left, places.value()));
   if (!released) return released.failure();
-  organ.body = std::make_shared<const ShellBody>(std::move(released).value());
+  return BodyPointer(std::make_shared<const ShellBody>(std::move(released).value()));
+}
+
+Result<bool> release_filled(Organ& organ) {
+  std::vector<HeldRegion> left = organ.definition.held;
+  if (std::erase_if(left, [](const HeldRegion& region) { return region.while_filled; }) == 0) return false;
+  Result<BodyPointer> released = released_hollow_organ(organ, left, 0);
+  if (!released) return released.failure();
+  organ.body = std::move(released).value();
+  organ.definition.held = std::move(left);
   return true;
 }
 

@@ -24,6 +24,29 @@ LobeForm form_of(const LobeShape& shape) {
   return form;
 }
 
+std::map<std::string, Vec3> places_of(const OrganDefinition& definition) {
+  const LobeForm form = form_of(std::get<LobeShape>(definition.shape));
+  const Pose frame = organ_frame(definition);
+  std::map<std::string, Vec3> places;
+  for (const Landmark& landmark : landmark_rows())
+    if (has_landmark(definition.shape, landmark))
+      places[landmark.name] = frame * lobe_place(form, {0.5, landmark.along, 0.5 * (landmark.side + 1)});
+  return places;
+}
+
+/// N/m per m^2: of its back, and around the landmarks that it is held at.
+auto foundation_of(const LobeShape& shape, const std::vector<HeldRegion>& held, const BoxSurface& box,
+                   const std::map<std::string, Vec3>& places) {
+  return [hold = shape.hold, held, box, places](const Vec3& x, int triangle) {
+    double stiffness = box.on_side(triangle, 1, 0) ? hold : 0.0;
+    for (const HeldRegion& region : held)
+      if (const auto at = places.find(region.landmark);
+          at != places.end() && (x - at->second).norm() < region.radius)
+        stiffness += region.stiffness;
+    return stiffness;
+  };
+}
+
 }  // namespace
 
 Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSetting& setting) {
@@ -45,19 +68,18 @@ Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSett
   setup.density = shape.density;
   setup.up = setting.up;
   setup.sags = shape.sags;
-  for (const Landmark& landmark : landmark_rows())
-    if (has_landmark(definition.shape, landmark))
-      setup.landmarks[landmark.name] =
-          frame * lobe_place(form, {0.5, landmark.along, 0.5 * (landmark.side + 1)});
-  setup.foundation = [&](const Vec3& x, int triangle) {
-    double stiffness = setup.box.on_side(triangle, 1, 0) ? shape.hold : 0.0;
-    for (const HeldRegion& held : definition.held)
-      if (const auto at = setup.landmarks.find(held.landmark);
-          at != setup.landmarks.end() && (x - at->second).norm() < held.radius)
-        stiffness += held.stiffness;
-    return stiffness;
-  };
+  setup.landmarks = places_of(definition);
+  setup.foundation = foundation_of(shape, definition.held, setup.box, setup.landmarks);
   return organ_as_drawn(definition, SolidBody::create(setup, setting.kept), setting);
+}
+
+Result<BodyPointer> released_lobe(const Organ& organ, const std::vector<HeldRegion>& left,
+                                  std::size_t /*released*/) {
+  const OrganDefinition& definition = organ.definition;
+  const auto& shape = std::get<LobeShape>(definition.shape);
+  const SolidBody& solid = *organ.body->as_solid();
+  return BodyPointer(std::make_shared<const SolidBody>(
+      solid.with_foundation(foundation_of(shape, left, lobe_cells(form_of(shape)).surface, places_of(definition)))));
 }
 
 }  // namespace calot

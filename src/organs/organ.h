@@ -76,7 +76,7 @@ void visit_members(auto&& visit, MembersOf<Clip> auto& clip) {
 
 /// Where what an organ holds can leave it: the end of a divided tube, or a hole in a wall (leak.h).
 struct Opening {
-  int point = 0;      ///< skin point: a tube's first or last, or where the hole is
+  int point = 0;      ///< skin point: a tube's first or last where it was divided, else where the hole is
   double area = 0;    ///< m^2, of a hole; a tube's end is as wide as its lumen
   std::string cause;  ///< the instrument that made it; may be empty
   double rate = 0;    ///< m^3/s, in the last step

@@ -26,4 +26,9 @@ Result<RestedOrgan> make_tube(const OrganDefinition& definition, const OrganSett
   return organ_as_drawn(definition, RodBody::create(setup), setting);
 }
 
+Result<BodyPointer> released_tube(const Organ& organ, const std::vector<HeldRegion>& /*left*/,
+                                  std::size_t released) {
+  return BodyPointer(std::make_shared<const RodBody>(organ.body->as_tube()->without_held(released)));
+}
+
 }  // namespace calot

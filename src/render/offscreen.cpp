@@ -20,12 +20,13 @@ namespace {
 constexpr std::array all_materials{
     Material::gallbladder, Material::membrane,   Material::liver,  Material::fat,     Material::peritoneum,
     Material::steel,       Material::insulation, Material::artery, Material::capsule, Material::bowel,
-    Material::hydrops,     Material::bile,       Material::blood,  Material::leaf};
+    Material::hydrops,     Material::bile,       Material::blood,  Material::leaf,
+    Material::board,       Material::plastic};
 
-/// Omentum, bowel and walls lie behind all else: their shadows are never seen. Light goes through a leaf.
+/// Omentum, bowel, boards and walls lie behind all else: their shadows are never seen. Light goes through a leaf.
 bool casts_shadow(Material material) {
   return material != Material::fat && material != Material::peritoneum && material != Material::bowel &&
-         material != Material::leaf;
+         material != Material::leaf && material != Material::board;
 }
 
 /// A vessel map on the card's side. Holding the map keeps its address from being given to another one.

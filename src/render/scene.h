@@ -26,6 +26,8 @@ enum class Material {
   bile,     ///< film and drops: golden where thin, green where deep; rest positions: (0, 0, its depth, m)
   blood,    ///< likewise, red and dark red
   leaf,     ///< a thin leaf of peritoneum with fine vessels; rest positions: along, across, and 1 mm where it is whole
+  board,    ///< a training box's floor and walls: grey, matt
+  plastic,  ///< what lies and stands on it: blue, smooth, dry
 };
 
 /// What lies behind it shines through: drawn after all that does not.

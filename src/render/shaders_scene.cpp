@@ -203,6 +203,16 @@ Surface surface_at(vec3 p) {
 }
 )";
 
+// What is not alive: neither wet nor red within; a training box's walls throw white light back.
+const char* const dry_material = R"(
+#define NEUTRAL
+Surface surface_at(vec3 p) {
+  vec4 grain = noise(p, 1.3);
+  vec3 albedo = COLOUR * (1.0 + GRAIN * grain.a);
+  return Surface(albedo, vec3(0.12), GRAIN * grain.rgb, 0.5, GLOSS, FILM);
+}
+)";
+
 // Noise, light and shadow on wet tissue.
 const char* const tissue_lighting = R"(
 // The normal of a surface raised by a height whose gradient by rest position is `slope` (Mikkelsen 2010, with
@@ -235,6 +245,9 @@ void main() {
   vec3 film_n = raised(n, s.slope);
   vec3 tissue_n = normalize(mix(n, film_n, s.relief));
   Light l = light_at(n);
+#ifdef NEUTRAL
+  l.around = vec3(dot(l.around, vec3(0.4)));
+#endif
 
   vec3 wrapped = clamp((dot(tissue_n, l.towards) + s.scatter) / (1.0 + s.scatter), 0.0, 1.0);
   vec3 shaded = mix(s.scatter * vec3(0.35, 0.12, 0.08), vec3(1.0), l.seen);
@@ -348,6 +361,8 @@ double broad_cell(Material material) {
       return 9;
     case Material::steel:
     case Material::insulation:
+    case Material::board:
+    case Material::plastic:
     case Material::bile:
     case Material::blood:
       return 10;
@@ -408,6 +423,14 @@ std::string scene_fragment_shader(Material material) {
       return common + peritoneum_material + tissue_lighting;
     case Material::artery:
       return common + artery_material + tissue_lighting;
+    case Material::board:
+      return common +
+             "#define COLOUR vec3(0.30, 0.31, 0.32)\n#define GRAIN 0.10\n#define GLOSS 60.0\n#define FILM 0.15\n" +
+             dry_material + tissue_lighting;
+    case Material::plastic:
+      return common +
+             "#define COLOUR vec3(0.035, 0.13, 0.34)\n#define GRAIN 0.02\n#define GLOSS 120.0\n#define FILM 0.8\n" +
+             dry_material + tissue_lighting;
     case Material::steel:
       return common +
              "#define METAL vec3(0.60, 0.59, 0.57)\n#define EDGE 0.2\n#define BASE vec3(0.03)\n#define BRUSH "

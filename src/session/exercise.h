@@ -106,6 +106,7 @@ struct ExerciseDefinition {
   std::vector<std::string> waited_steps;                        ///< steps that nothing but time ends
   /// What the script may bring into the field, pieces of divided ducts too, likewise.
   std::vector<OrganDefinition> later_organs;
+  std::vector<TissueDefinition> later_tissues;
   std::string file;                             ///< the scenario's path
   std::uint64_t source_hash = 0;                ///< of the scenario's text and the modules it required
   std::map<std::string, std::string> params;    ///< every parameter's value as text, defaults included

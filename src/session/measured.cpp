@@ -19,9 +19,9 @@ void add_text(Hash& hash, const std::string& text) {
 
 void add_meshes(Hash& hash, const std::vector<OrganDefinition>& organs) {
   for (const OrganDefinition& organ : organs) {
-    const auto* mesh = std::get_if<MeshFile>(&organ.shape);
-    if (mesh == nullptr) continue;
-    std::ifstream in(mesh->path, std::ios::binary);
+    const std::string* path = mesh_path(organ.shape);
+    if (path == nullptr) continue;
+    std::ifstream in(*path, std::ios::binary);
     add_text(hash, {std::istreambuf_iterator<char>(in), {}});
   }
 }

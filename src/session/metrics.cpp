@@ -225,7 +225,8 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
           if (owner_by_filling(organ) == owner) names.push_back(organ.name);
       return names;
     case MetricOwner::tissue:
-      for (const TissueDefinition& tissue : exercise.scene.anatomy.tissue) names.push_back(tissue.name);
+      for (const auto* tissues : {&exercise.scene.anatomy.tissue, &exercise.later_tissues})
+        for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
       return names;
     case MetricOwner::compared_organ:
       for (const OrganDefinition& organ : exercise.scene.anatomy.organs)

@@ -19,6 +19,7 @@ namespace {
 Material material_of(const OrganDefinition& organ) {
   const OrganShape& shape = organ.shape;
   if (organ.looks == OrganLooks::pale && is_hollow(shape)) return Material::hydrops;
+  if (organ.looks == OrganLooks::plastic) return Material::plastic;
   const auto* tube = std::get_if<TubeShape>(&shape);
   if (tube != nullptr && tube->carries == Carries::blood) return Material::artery;
   constexpr std::array materials = {Material::gallbladder, Material::membrane, Material::gallbladder,

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "liquid/drops.h"
 #include "liquid/films.h"
 #include "view/surfaces.h"
 
@@ -100,10 +101,8 @@ std::map<int, double> depths_of(const Film& film, const WetMesh& mesh, int liqui
 }
 
 Vec3 hanging_place(const Organ& organ, const Opening& opening) {
-  const Vec3 at = organ.body->skin_point(opening.point, organ.state.x);
-  if (!organ.body->is_line()) return at + 0.5e-3 * organ.body->skin_normals(organ.state.x)[opening.point];
-  const Vec3 inner = organ.body->skin_point(opening.point == 0 ? 1 : opening.point - 1, organ.state.x);
-  return at + 0.4e-3 * (at - inner).normalized();
+  const Mouth mouth = mouth_of(organ, opening);
+  return mouth.at + (organ.body->is_line() ? 0.4e-3 : 0.5e-3) * mouth.out;
 }
 
 }  // namespace

@@ -33,6 +33,10 @@ Material material_of(const GroundDefinition& ground, bool lobe) {
       return Material::fat;
     case GroundLooks::peritoneum:
       return Material::peritoneum;
+    case GroundLooks::board:
+      return Material::board;
+    case GroundLooks::plastic:
+      return Material::plastic;
     case GroundLooks::usual:
       return lobe || ground.type == GroundType::plane ? Material::peritoneum : Material::liver;
   }
@@ -62,7 +66,11 @@ std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
     if (!liver) meshes.push_back(liver_mesh(*hollow));
     add(abdomen_meshes(*hollow));
   } else {
-    meshes.push_back(abdominal_wall(meshes.empty() ? about : foot_of(anatomy, about)));
+    const bool box = std::any_of(anatomy.ground.begin(), anatomy.ground.end(), [](const GroundDefinition& g) {
+      return g.looks == GroundLooks::board || g.looks == GroundLooks::plastic;
+    });
+    meshes.push_back(
+        cavity_wall(meshes.empty() ? about : foot_of(anatomy, about), box ? Material::board : Material::peritoneum));
   }
   return meshes;
 }

@@ -65,9 +65,9 @@ class LiverSection {
 
 }  // namespace
 
-SceneMesh abdominal_wall(const Vec3& centre) {
+SceneMesh cavity_wall(const Vec3& centre, Material material) {
   const Vec3 half(210 * mm, 230 * mm, 135 * mm);
-  SceneMesh wall = sheet(Material::peritoneum, 28, 20, [&](double u, double v) {
+  SceneMesh wall = sheet(material, 28, 20, [&](double u, double v) {
     const double a = 2 * pi * u, b = pi * v;  // runs so that its normals point inward, whence it is seen
     const Vec3 d(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b));
     const double fold = 1 + 0.04 * lobes(9 * d.x() + 3 * d.z(), 8 * d.y());
@@ -125,7 +125,7 @@ std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ) {
     const Vec3 line = neck + Vec3((28 + 70 * t) * mm, (-16 + 14 * t * t) * mm, (-19 - 6 * t * t) * mm);
     return Vec3(line + radius * Vec3(0.1 * std::cos(a), std::cos(a), std::sin(a)));
   });
-  return {duodenum, omentum, abdominal_wall(middle + Vec3(40 * mm, -20 * mm, -30 * mm))};
+  return {duodenum, omentum, cavity_wall(middle + Vec3(40 * mm, -20 * mm, -30 * mm), Material::peritoneum)};
 }
 
 SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about, Material material) {
@@ -134,7 +134,8 @@ SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about, M
   return sheet(material, 36, 36, [&](double u, double v) {
     const double x = (2 * u - 1) * 200 * mm, y = (2 * v - 1) * 200 * mm;
     // Flat where the organ lies, for contact must look like contact; wavy further out.
-    const double wave = 4 * mm * lobes(x / (23 * mm), y / (20 * mm)) - 4 * mm;
+    const double wave =
+        material == Material::board ? 0 : 4 * mm * lobes(x / (23 * mm), y / (20 * mm)) - 4 * mm;
     return Vec3(foot + x * a + y * b + n * wave * (1 - bump(std::hypot(x, y), 70 * mm)));
   });
 }

@@ -16,13 +16,13 @@ SceneMesh liver_mesh(const OrganDefinition& organ);
 /// Omentum and bowel below and behind the gallbladder, and the wall of the abdomen around all.
 std::vector<SceneMesh> abdomen_meshes(const OrganDefinition& organ);
 
-/// A plane that carries organs as a moist drape of tissue around the foot of a place on it.
+/// A plane that carries organs around the foot of a place on it: a moist drape of tissue, or a flat board.
 SceneMesh plane_mesh(const Vec3& point, const Vec3& normal, const Vec3& about, Material material);
 /// A capsule as bowel, between whose folds it is up to a tenth of its radius thinner than what is touched.
 SceneMesh bowel_mesh(const GroundDefinition& capsule);
 /// What stays and is touched: planes as drapes, the rest as it is, of a material.
 SceneMesh ground_mesh(const GroundDefinition& ground, const Vec3& about, Material material);
-/// A dark wall far around a place.
-SceneMesh abdominal_wall(const Vec3& centre);
+/// A wall far around a place.
+SceneMesh cavity_wall(const Vec3& centre, Material material);
 
 }  // namespace calot

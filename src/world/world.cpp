@@ -27,6 +27,7 @@
 #include "group/vibration.h"
 #include "liquid/aspirate.h"
 #include "liquid/leak.h"
+#include "liquid/perforate.h"
 #include "liquid/spill.h"
 #include "motion/settle_field.h"
 #include "motion/structural_extension.h"
@@ -136,9 +137,7 @@ std::uint64_t World::Impl::hash(std::uint64_t but_steps) const {
 }
 
 Result<std::vector<WorldEvent>> World::Impl::move_tools(const std::vector<InstrumentPose>& commands) {
-  const Result<std::vector<InstrumentPose>> brought = bring_tools(field, commands, report.instruments);
-  if (!brought) return brought.failure();
-  return advance(field, brought.value(), report.statistics);
+  return advance(field, bring_tools(field, commands, report.instruments), report.statistics);
 }
 
 void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, double duration,
@@ -688,17 +687,55 @@ Result<bool> World::remove(const std::string& name, const std::string& why) {
                        [&] { return remove_body(impl_->field, organ.value(), why, impl_->time()); });
 }
 
+namespace {
+
+/// Paths of what was added begin with what it is.
+Failure of_added(Failure failure, const char* what) {
+  for (Problem& problem : failure.problems)
+    if (problem.place.path.starts_with('.')) problem.place.path.insert(0, what);
+  return failure;
+}
+
+}  // namespace
+
 Result<OrganIndex> World::add(const OrganDefinition& definition) {
   if (std::vector<Problem> problems = validate(definition); !problems.empty())
     return Failure{FailureKind::scenario, std::move(problems)};
   const auto make = [&](const OrganDefinition& one) { return impl_->make_later(one); };
   Result<OrganIndex> added = impl_->change(fmt::format("after '{}' came", definition.name),
                                            [&] { return add_body(impl_->field, definition, make); });
-  if (added) return added;
-  Failure failure = added.failure();
-  for (Problem& problem : failure.problems)  // of its definition
-    if (problem.place.path.starts_with('.')) problem.place.path.insert(0, "organ");
-  return failure;
+  return added ? added : of_added(added.failure(), "organ");
+}
+
+Result<bool> World::release(const std::string& name, const std::string& held) {
+  const Result<OrganIndex> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  return impl_->change(fmt::format("after '{}' was let go", name),
+                       [&] { return release_body(impl_->field, organ.value(), held); });
+}
+
+Result<bool> World::add_tissue(const TissueDefinition& definition) {
+  std::vector<std::string> organs;
+  for (const Organ& organ : impl_->field.organs) organs.push_back(organ.definition.name);
+  if (std::vector<Problem> problems = validate(definition, organs); !problems.empty())
+    return Failure{FailureKind::scenario, std::move(problems)};
+  Result<bool> added = impl_->change(fmt::format("after '{}' came", definition.name),
+                                     [&] { return calot::add_tissue(impl_->field, definition); });
+  return added ? added : of_added(added.failure(), "tissue");
+}
+
+Result<bool> World::remove_tissue(const std::string& name) {
+  return impl_->change(fmt::format("after '{}' was removed", name),
+                       [&] { return calot::remove_tissue(impl_->field, name); });
+}
+
+Result<double> World::open_tube(const std::string& name, double share, double width) {
+  const Result<OrganIndex> organ = this->organ(name);
+  if (!organ) return organ.failure();
+  const Result<bool> clear = free_of_clips(impl_->field.organ(organ.value()), share, 0, "opened");
+  if (!clear) return clear.failure();
+  return impl_->change(fmt::format("after '{}' was opened", name),
+                       [&] { return calot::open_tube(impl_->field.organ(organ.value()), share, width); });
 }
 
 Result<bool> World::tie(const JointDefinition& joint) {

@@ -86,6 +86,13 @@ class World {
   Result<bool> remove(const std::string& organ, const std::string& why);
   /// It stands behind all others; problems have paths as of validate(organ).
   Result<OrganIndex> add(const OrganDefinition& definition);
+  /// Lets an organ go where a held region of this name holds it.
+  Result<bool> release(const std::string& organ, const std::string& held);
+  /// Lays strands between two organs where they are now; problems have paths as of validate(tissue).
+  Result<bool> add_tissue(const TissueDefinition& definition);
+  Result<bool> remove_tissue(const std::string& name);
+  /// Makes a hole of a width (m, > 0) in a tube's wall, at about this share of its length, 0 to 1. Returns at which.
+  Result<double> open_tube(const std::string& tube, double share, double width);
   /// Where they are now.
   Result<bool> tie(const JointDefinition& joint);
   /// Undoes all joints of two organs.

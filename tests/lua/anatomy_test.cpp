@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/rng.h"
 #include "base/units.h"
 #include "field/field.h"
 #include "lua/scenario_files.h"
@@ -218,6 +219,46 @@ TEST(Anatomy, WhatIsNoValueOfAParameterIsRefusedAtTheAuthorsLine) {
       EXPECT_GT(problem.place.line, 0);
     }
   }
+}
+
+/// A parameter of anatomy.standard, or nearly, and a value that may or may not be one of its own.
+std::string random_option(Rng& rng) {
+  static const std::vector<std::string> keys{
+      "gallbladder_length",    "gallbladder_width",       "fill_pressure",        "phrygian_cap",
+      "cystic_duct_length",    "cystic_duct_diameter",    "common_duct_diameter", "common_duct_widest",
+      "union",                 "union_lies",              "cystic_artery_length", "cystic_artery_diameter",
+      "cystic_artery_enters",  "second_cystic_artery",    "hepatic_ducts",        "hepatic_artery_near_neck",
+      "aberrant_duct",         "aberrant_union",          "node_diameter",        "assistant",
+      "looks",                 "nodes",                   "strands",              "strength",
+      "without",               "prepared"};
+  static const std::vector<std::string> values{
+      "0/0",   "-1 * mm", "0",       "1e-9",          "1e9",      "1/0",   "'x'",          "true",
+      "false", "{}",      "{ 1 }",   "{ 1, 2, 0/0 }", "0.5",      "3.5",   "200",          "12 * mm",
+      "80",    "1 * mm",  "300 * mm", "{ 'liver' }",  "{ 'livr' }", "'pale'", "{ cystic_plate = 0.5 }",
+      "{ cystic_plate = { 0.5, 2 } }", "{ plate = 0.5 }", "function() end", "{ 5, 5, 5 }", "{ 900, 0, 0 }"};
+  std::string key = keys[rng.next() % keys.size()];
+  if (rng.uniform() < 0.15) key.erase(rng.next() % key.size(), 1);
+  return key + " = " + values[rng.next() % values.size()];
+}
+
+TEST(Anatomy, WhateverItIsGivenIsTakenOrRefusedAtTheAuthorsLine) {
+  Rng rng(39);
+  int refused = 0;
+  for (int k = 0; k < 200; ++k) {
+    const std::string option = random_option(rng);
+    SCOPED_TRACE(option);
+    const Folder folder;
+    const auto loaded = load_text(folder, field("anatomy.standard {\n " + option + " }"));
+    if (loaded) continue;
+    ++refused;
+    EXPECT_EQ(loaded.failure().kind, FailureKind::scenario);
+    for (const Problem& problem : loaded.failure().problems) {
+      EXPECT_THAT(problem.place.file, ::testing::EndsWith("test.lua")) << to_text(loaded.failure());
+      EXPECT_GT(problem.place.line, 0) << to_text(loaded.failure());
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(refused, 195) << "nothing is taken";
 }
 
 TEST(Anatomy, AllThatIsWrongWithAFieldIsSaidAtOnce) {

@@ -65,6 +65,36 @@ TEST(ChangingOrgansInSteps, AreDividedRemovedTiedAndAdded) {
   EXPECT_EQ(played.organs, (std::vector<std::string>{"duct.patient", "duct.specimen", "other"}));
 }
 
+TEST(ChangingOrgansInSteps, AreReleasedBoundByTissueAndOpened) {
+  const Outcome played = outcome(
+      ducts("t:step('cut', 'Cut')\n t:wait(0.04 * s)\n"
+            "t:add_tissue { name = 'bands', from = 'duct', to = 'stone', within = 20 * mm, strands = 8 }\n"
+            "assert(t:torn('bands') == 0)\n"
+            "local share = t:bleed('duct', 0.5, 2 * mm)\n"
+            "assert(math.abs(share - 0.5) < 0.1)\n"
+            "t:wait(0.04 * s)\n assert(t:lost('bile', 'duct') > 0 and t:count('bile_leak', 'duct') == 1)\n"
+            "t:remove_tissue('bands')\n assert(t:torn('bands') == 1)\n"
+            "local from = t:place('duct.end')\n"
+            "t:release('duct', 'bed')\n t:wait(0.1 * s)\n"
+            "assert(t:place('duct.end')[3] < from[3] - 5 * mm)"));
+  EXPECT_EQ(played.why, "");
+  EXPECT_EQ(played.result.end, SessionEnd::steps_done);
+}
+
+TEST(ChangingOrgansInSteps, WhatCannotBeReleasedOrBoundIsSaidByCheck) {
+  for (const auto& [use, text] : std::vector<std::pair<std::string, std::string>>{
+           {"t:release('duct', 'hand')", "nothing called \"hand\" holds 'duct'"},
+           {"t:release('stone', 'bed')", "nothing holds it"},
+           {"t:add_tissue { name = 'bands', from = 'duct', to = 'stones' }", "unknown organ \"stones\""},
+           {"t:add_tissue { name = 'duct', from = 'duct', to = 'stone' }", "an organ is called \"duct\" too"},
+           {"t:remove_tissue('bands')", "unknown tissue \"bands\""},
+           {"t:bleed('stone', 0.5)", "'stone' cannot be opened"},
+           {"t:bleed('duct', 0.5, 0)", "width"}}) {
+    const std::string why = outcome(ducts("t:step('cut', 'Cut')\n" + use)).why;
+    EXPECT_NE(why.find(text), std::string::npos) << use << ": " << why;
+  }
+}
+
 TEST(ChangingOrgansInSteps, AreClippedAndCutInAFieldThatIsPrepared) {
   const Outcome played = outcome(ducts(
       "t:step('prepared', 'Prepared')\n"

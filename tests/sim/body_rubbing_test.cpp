@@ -7,6 +7,7 @@
 #include "body/rigid_body.h"
 #include "field/field_state.h"
 #include "field_rig.h"
+#include "geometry/solid_surface.h"
 #include "group/self_contact.h"
 #include "group_rig.h"
 #include "joins/skin_join.h"

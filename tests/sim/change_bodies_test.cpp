@@ -445,6 +445,54 @@ TEST_F(ChangedBodies, AreFollowedStepByStepAfterEachChange) {
   shake(world, 2);
 }
 
+/// How a place moves in four steps, m.
+Vec3 way_of(World& world, const std::string& place) {
+  const Vec3 from = world.landmark(place);
+  shake(world, 4);
+  return world.landmark(place) - from;
+}
+
+TEST_F(ChangedBodies, WhatIsReleasedFallsThereAndStaysWhereItIsHeldStill) {
+  shake(world, 4);
+  EXPECT_LT(way_of(world, "artery.start").norm(), 0.1e-3) << "it was at rest";
+  ASSERT_TRUE(world.release("artery", "first"));
+  EXPECT_EQ(organ_of(world, "artery").definition.held.size(), 1u);
+  const Vec3 start = way_of(world, "artery.start"), end = world.landmark("artery.end");
+  EXPECT_LT(start.dot(world.up()), -5e-3);
+  EXPECT_LT((end - (world.landmark("artery.end"))).norm(), 1e-3);
+  ASSERT_TRUE(world.release("artery", "second"));
+  const Vec3 fallen = way_of(world, "artery.end");
+  EXPECT_LT(fallen.dot(world.up()), -5e-3) << "now nothing holds it";
+}
+
+TEST_F(ChangedBodies, APieceIsReleasedAloneOfTheOther) {
+  ASSERT_TRUE(world.divide("common_duct", 0.5));
+  ASSERT_TRUE(world.release("common_duct.patient", "second"));
+  EXPECT_EQ(organ_of(world, "common_duct.patient").definition.held.size(), 1u);
+  EXPECT_EQ(organ_of(world, "common_duct.specimen").definition.held.size(), 2u);
+  EXPECT_EQ(*organ_of(world, "common_duct.patient").body->bedded(), false);
+  EXPECT_EQ(*organ_of(world, "common_duct.specimen").body->bedded(), true);
+}
+
+TEST_F(ChangedBodies, TissueThatIsAddedHoldsWhatItIsBetweenAndNotOnceItIsRemoved) {
+  ASSERT_TRUE(world.release("artery", "second"));
+  TissueDefinition tissue;
+  tissue.name = "bands";
+  tissue.from = "artery", tissue.to = "cystic_duct";
+  tissue.within = 30e-3;
+  tissue.strands = 12;
+  tissue.slack = 0;
+  tissue.stiffness = 400e3, tissue.strength = 4e6, tissue.break_energy = 1e5;
+  ASSERT_TRUE(world.add_tissue(tissue)) << why(world.add_tissue(tissue).failure());
+  ASSERT_EQ(world.report().tissues.size(), 1u);
+  EXPECT_GT(world.report().tissues[0].strands, 6);
+  const Vec3 held = way_of(world, "artery.end");
+  ASSERT_TRUE(world.remove_tissue("bands"));
+  EXPECT_TRUE(world.report().tissues.empty());
+  const Vec3 loose = way_of(world, "artery.end");
+  EXPECT_LT(loose.dot(world.up()), 2 * held.dot(world.up()) - 2e-3);
+}
+
 TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
   const std::uint64_t hash = world.state_hash();
   const auto says = [&](const auto& result, const std::string& text) {
@@ -463,6 +511,18 @@ TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
   says(world.untie("stone", "artery"), "'stone' and 'artery' are not tied to each other");
   says(world.tie({"stone.centre", "stone.centre", 4e-3, 2e3}), "an organ is tied to itself");
   says(world.tie({"stone.centre", "artery.mitte", 4e-3, 2e3}), "unknown landmark \"artery.mitte\"");
+  says(world.release("stone", "bed"), "nothing called \"bed\" holds 'stone' (nothing holds it)");
+  says(world.release("artery", "frist"),
+       "nothing called \"frist\" holds 'artery' (did you mean \"first\"?)");
+  says(world.remove_tissue("plate"), "there is no tissue 'plate'");
+  TissueDefinition tissue;
+  tissue.name = "plate";
+  tissue.from = "artery", tissue.to = "liver";
+  says(world.add_tissue(tissue), "tissue.to: unknown organ \"liver\"");
+  tissue.to = "stone";
+  tissue.within = 0.5e-3;
+  says(world.add_tissue(tissue), "tissue.within");
+  says(world.open_tube("stone", 0.5, 1e-3), "'stone' cannot be opened: it is a rigid (open a tube");
   OrganDefinition thin = stone("second", Vec3(-60e-3, 60e-3, -60e-3));
   std::get<RigidShape>(thin.shape).density = -1;
   says(world.add(thin), "organ.shape.density");

@@ -197,6 +197,36 @@ TEST(Leaks, AClipLeaksByWhatItLeavesOpenAndAShutOneNothing) {
   }
 }
 
+TEST(Leaks, AHoleInATubeIsFedFromEitherSideUntilBothAreShut) {
+  Bodies bodies(bag_and_duct());
+  Organ& duct = bodies.field.organs[1];
+  const Result<double> share = open_tube(duct, 0.5, 1e-3);
+  ASSERT_TRUE(share);
+  EXPECT_NEAR(share.value(), 0.5, 0.1);
+  const double area = 0.25 * pi * 1e-3 * 1e-3;
+  EXPECT_DOUBLE_EQ(source_of(bodies.field, OrganIndex(1), duct.openings[0]).area, area);
+  // The bag's side is shut: the patient feeds it from the far end.
+  bodies.clip(OrganIndex(1), 0.1, 0);
+  EXPECT_EQ(source_of(bodies.field, OrganIndex(1), duct.openings[0]).kind, LeakSource::Kind::patient);
+  bodies.field.group.work.factored = false;
+  const std::vector<WorldEvent> events = bodies.run(0.02);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, EventKind::bile_leak);
+  EXPECT_NEAR(bodies.lost(Carries::bile), 0.02 * fed_flow({1e3, 0}, 1e3, area, bile_density), 1e-15);
+  bodies.clip(OrganIndex(1), 0.9, 0);
+  const std::vector<WorldEvent> stopped = bodies.run(0.02);
+  ASSERT_EQ(stopped.size(), 1u);
+  EXPECT_EQ(stopped[0].kind, EventKind::leak_stopped);
+}
+
+TEST(Leaks, AHoleInATubeThatIsDividedStaysOnItsPiece) {
+  Bodies bodies(bag_and_duct());
+  ASSERT_TRUE(open_tube(bodies.field.organs[1], 0.25, 1e-3));
+  const Division pieces = bodies.cut(OrganIndex(1), 0.6);
+  EXPECT_EQ(bodies.field.organ(pieces.specimen).openings.size(), 2u) << "the bag's side, with the hole and the cut";
+  EXPECT_EQ(bodies.field.organ(pieces.patient).openings.size(), 1u);
+}
+
 TEST(Leaks, AHoleInTheWallLeaksByItsArea) {
   Bodies bodies(bag_and_duct());
   Opening hole;

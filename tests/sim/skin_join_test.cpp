@@ -10,6 +10,7 @@
 #include "body/rigid_body.h"
 #include "field_rig.h"
 #include "geometry/self_touch.h"
+#include "geometry/solid_surface.h"
 #include "group/self_contact.h"
 #include "group_rig.h"
 #include "joins/joint.h"

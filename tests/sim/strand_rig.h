@@ -4,6 +4,7 @@
 #include "body/inertia.h"
 #include "body/rigid_body.h"
 #include "body/tissue_body.h"
+#include "geometry/solid_surface.h"
 #include "group_rig.h"
 #include "joins/skin_place.h"
 #include "joins/strand_join.h"

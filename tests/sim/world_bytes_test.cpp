@@ -130,6 +130,20 @@ TEST(WorldBytes, OfBodiesThatCameWereTiedAndLeftGoOnAlike) {
             world.report().organs.size());
 }
 
+TEST(WorldBytes, OfAFieldThatWasReleasedBoundAnewAndOpenedGoOnAlike) {
+  CALOT_SLOW_WHEN_SANITIZED("a field that is operated on");
+  World world = operated_triangle(SolverMotion::dynamics);
+  const std::string bed = world.scene().anatomy.organs[0].held.front().name;
+  ASSERT_TRUE(world.release("gallbladder", bed));
+  ASSERT_TRUE(world.release("cystic_duct.patient", "last"));
+  ASSERT_TRUE(world.remove_tissue("cystic_plate"));
+  ASSERT_TRUE(world.add_tissue(test::tissue_between("bands", "gallbladder", "liver", 12e-3, 12)));
+  ASSERT_TRUE(world.open_tube("common_duct", 0.5, 1e-3));
+  hashes_of(world, 2);
+  EXPECT_EQ(world.report().tissues.back().name, "bands");
+  expect_goes_on_alike(world, 6);
+}
+
 TEST(WorldBytes, OfATubeBetweenJawsAndItsClipsGoOnAlike) {
   test::Acting applier(test::across(InstrumentType::clip_applier));
   ASSERT_TRUE(applier.reach(0.35) && applier.fire());

@@ -1,0 +1,22 @@
+#pragma once
+// How teeth hold what is hard. They do not sink in: friction holds what both pads press on (rubbing.h). Where it neither
+// slides nor asks for more than friction holds, the places that the pads touch are held in the pads' frames, by the springs
+// of a grip (grip.h): so what is carried rests between the pads instead of being balanced on them anew in each step. As soon
+// as more is asked of it than friction holds (holding_limit(), couple_limit()) the springs are gone, and it slides by
+// friction.
+
+#include "acts/pads.h"
+#include "field/field.h"
+
+namespace calot {
+
+/// Whether a tool holds something hard by such springs.
+bool holds_hard(const Field& field, ToolIndex instrument);
+
+/// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.
+void catch_hard(Field& field, ToolIndex instrument, const Clasped& held);
+
+/// Takes those springs away where more is asked of a tool than friction holds.
+void let_slide_on_hard(Field& field, ToolIndex instrument);
+
+}  // namespace calot
