@@ -7,10 +7,10 @@ local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
 local plus, minus, unit, length = technique.plus, technique.minus, technique.unit, technique.length
 
 local board = -120 * mm
-local rod = 2 * mm -- radius of what the ring is bent from
+local rod = 2.5 * mm -- radius of what the ring is bent from
 local peg_height = 18 * mm
-local first = { -80 * mm, 95 * mm, board }
-local second = { -30 * mm, 95 * mm, board }
+local first = { -74 * mm, 95 * mm, board }
+local second = { -36 * mm, 95 * mm, board }
 local ports = { left = { -115 * mm, 60 * mm, -5 * mm }, right = { 5 * mm, 60 * mm, -5 * mm } }
 
 local function peg(name, foot)
@@ -25,7 +25,7 @@ local function peg(name, foot)
   }
 end
 
---- A ring that falls has come down on the board where no hand put it: how often that was.
+--- How often the ring came down on the board.
 local function judge_drops(run)
   local drops = run.notes.drops or 0
   return math.max(0, 1 - 0.5 * drops), drops == 0 and "the ring never fell"
@@ -63,7 +63,7 @@ return calot.exercise {
             name = "ring",
             shape = {
               type = "rigid",
-              ring = 10 * mm,
+              ring = 11 * mm,
               rounding = rod,
               centre = plus(first, { 0, 0, rod + 0.3 * mm }),
               density = 1100,
@@ -83,23 +83,23 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    --- Waits, and counts how often the ring comes down with no hand on it.
-    local drops, was_held = 0, false
-    t:note("drops", drops)
-    local function watched(is_done)
-      return function()
-        local held = t.left:holds() or t.right:holds()
-        if was_held and not held and t:place("ring.centre")[3] > board + 8 * mm then
-          drops = drops + 1
-          t:note("drops", drops)
-        end
-        was_held = held
-        return is_done()
-      end
-    end
     local function over(peg)
       local at = t:place("ring.centre")
       return length({ at[1] - peg[1], at[2] - peg[2], 0 }) < 6 * mm
+    end
+    --- Whether it is done; counts how often the ring comes down elsewhere than round the second peg.
+    local drops, lifted = 0, false
+    t:note("drops", drops)
+    local function watched(is_done)
+      return function()
+        local height = t:place("ring.centre")[3] - board
+        if lifted and height < 8 * mm and not over(second) then
+          drops = drops + 1
+          t:note("drops", drops)
+        end
+        lifted = height > 12 * mm or lifted and height > 8 * mm
+        return is_done()
+      end
     end
 
     t:step("lift", "Lift the ring off its peg with the left hand", {
@@ -122,25 +122,25 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
-    --- Open jaws come about the rim at one of its places, from where they point on, and close.
-    local function take(hand, name, at, next_to)
-      local along = minus(t:place(next_to[1]), t:place(next_to[2]))
+    --- Open jaws come about the rim at one of its places, their tips that far past its middle, and close.
+    local function take(hand, name, at, past)
+      local along = minus(t:place("ring.rim_2"), t:place("ring.rim_4"))
       local place = t:place(at)
       hand:rotate(technique.roll_across(ports[name], place, unit(along)), { speed = 300 * deg / s })
       hand:open(24 * deg)
       local back = unit(minus(ports[name], place))
       hand:move_to(plus(place, back, 20 * mm), { speed = 120 * mm / s })
-      hand:move_to(plus(t:place(at), back, -2 * mm), { speed = 40 * mm / s })
+      hand:move_to(plus(t:place(at), back, -past), { speed = 40 * mm / s })
       hand:close()
     end
     --- The ring's middle is carried to a place.
     local function carry(hand, to, speed) hand:move_by(minus(to, t:place("ring.centre")), { speed = speed }) end
 
-    take(t.left, "left", "ring.rim_3", { "ring.rim_2", "ring.rim_4" })
+    take(t.left, "left", "ring.rim_3", 1.5 * mm)
     carry(t.left, plus(first, { 0, 0, peg_height + 16 * mm }), 60 * mm / s)
-    carry(t.left, plus(first, { 25 * mm, -5 * mm, peg_height + 20 * mm }), 60 * mm / s)
+    carry(t.left, plus(first, { 19 * mm, -5 * mm, peg_height + 20 * mm }), 60 * mm / s)
     if p.demo == "clumsy" then t.left:open() end
-    take(t.right, "right", "ring.rim_1", { "ring.rim_2", "ring.rim_4" })
+    take(t.right, "right", "ring.rim_1", 3 * mm)
     t.left:open()
     t.left:move_by({ -20 * mm, -10 * mm, 12 * mm }, { speed = 60 * mm / s })
     carry(t.right, plus(second, { 0, 0, peg_height + 16 * mm }), 60 * mm / s)
@@ -158,4 +158,6 @@ return calot.exercise {
     { calot.score.penalty { event = "empty_grasp", each = 0.25 }, weight = 0.1 },
     pass = 70,
   },
+
+  golden = { at = { 0, 2.8 * s, 3.48 * s, 6.9 * s, 8.7 * s, 10 * s } },
 }

@@ -203,19 +203,6 @@ void end_in_balance(Field& field, SolveStatistics& statistics) {
   note_cut_short(result, statistics);
 }
 
-namespace {
-
-/// A rigid thing that lies on what carries it and may roll or slide on there, as nothing rubs: it is at rest but for that.
-bool only_rolls(const Field& field, const NewtonResult& result) {
-  const auto part = static_cast<std::size_t>(result.part);
-  const bool no_end = result.status == NewtonStatus::mechanism || result.status == NewtonStatus::stalled ||
-                      result.status == NewtonStatus::iteration_limit;
-  return no_end && result.residual < rough_tolerance && part < field.organs.size() &&
-         std::holds_alternative<RigidShape>(field.organs[part].definition.shape);
-}
-
-}  // namespace
-
 Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
   const NewtonSettings settings = solver_settings(field, std::numeric_limits<int>::max());
   std::vector<ContactLoads> loads;
@@ -228,7 +215,7 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
       sink(members, all_joins(field, present_poses(field)), group.patterns, settings, group.work);
   ++statistics.solves;
   count(field, result, statistics);
-  if (!result.converged() && !only_rolls(field, result))
+  if (!result.converged())
     return solve_failure(result, member_name(field, result.part), "as it sank to rest");
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -27,6 +28,12 @@ constexpr std::array all_materials{
 bool casts_shadow(Material material) {
   return material != Material::fat && material != Material::peritoneum && material != Material::bowel &&
          material != Material::leaf && material != Material::board;
+}
+
+/// What lies around is no tissue.
+bool is_training_box(const SceneArrays& arrays) {
+  return std::any_of(arrays.parts.begin(), arrays.parts.end(),
+                     [](const ScenePart& part) { return part.material == Material::board; });
 }
 
 /// A vessel map on the card's side. Holding the map keeps its address from being given to another one.
@@ -263,6 +270,7 @@ void OffscreenRenderer::Impl::draw_scene(const SceneCamera& camera) {
       set(program, "light", light);
       set(program, "view_axis", camera.direction.normalized());
       gl.Uniform1f(at(program, "intensity"), static_cast<float>(camera.light_intensity));
+      gl.Uniform1f(at(program, "alive"), is_training_box(arrays) ? 0.0f : 1.0f);
       current = program;
     }
     bind_vessels(program, part);
@@ -319,6 +327,7 @@ void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   set(lens_program, "field", Vec2(0.5 * width / radius, 0.5 * height / radius));
   set(lens_program, "extent", extent);
   gl.Uniform1f(at(lens_program, "barrel"), static_cast<float>(lens.barrel));
+  gl.Uniform1f(at(lens_program, "alive"), is_training_box(arrays) ? 0.0f : 1.0f);
   // In software a pixel outside the round field costs as much as one inside, though its shader returns at once.
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture.framebuffer);
   gl.ClearColor(0, 0, 0, 1);

@@ -40,6 +40,7 @@ uniform mat4 shadow_from_place;
 uniform vec3 light;        // place of the light
 uniform vec3 view_axis;    // where the laparoscope looks
 uniform float intensity;
+uniform float alive;       // 1: what lies around is tissue, and its light red; 0: a training box' walls
 uniform sampler3D noise_volume;
 uniform sampler2DShadow shadow_map;
 #ifdef SHINES_THROUGH
@@ -203,9 +204,8 @@ Surface surface_at(vec3 p) {
 }
 )";
 
-// What is not alive: neither wet nor red within; a training box's walls throw white light back.
+// What is not alive: neither wet nor red within.
 const char* const dry_material = R"(
-#define NEUTRAL
 Surface surface_at(vec3 p) {
   vec4 grain = noise(p, 1.3);
   vec3 albedo = COLOUR * (1.0 + GRAIN * grain.a);
@@ -245,9 +245,6 @@ void main() {
   vec3 film_n = raised(n, s.slope);
   vec3 tissue_n = normalize(mix(n, film_n, s.relief));
   Light l = light_at(n);
-#ifdef NEUTRAL
-  l.around = vec3(dot(l.around, vec3(0.4)));
-#endif
 
   vec3 wrapped = clamp((dot(tissue_n, l.towards) + s.scatter) / (1.0 + s.scatter), 0.0, 1.0);
   vec3 shaded = mix(s.scatter * vec3(0.35, 0.12, 0.08), vec3(1.0), l.seen);
@@ -300,7 +297,7 @@ Light light_at(vec3 n) {
   float cone = clamp(dot(-l.towards, view_axis), 0.0, 1.0);
   l.strength = intensity * 0.0081 / squared * cone * cone;
   l.seen = lit_share(n, l.towards);
-  l.around = intensity * 0.0081 / (squared + 0.006) * vec3(0.115, 0.055, 0.040);
+  l.around = intensity * 0.0081 / (squared + 0.006) * mix(vec3(0.08), vec3(0.115, 0.055, 0.040), alive);
   return l;
 }
 
@@ -320,6 +317,7 @@ vec3 cavity(vec3 r, vec3 around) {
   vec4 blotch = noise(r * 30.0, 24.0);
   around = mix(around, vec3(dot(around, vec3(0.4))), 0.75);
   vec3 tissue = mix(vec3(0.8, 0.42, 0.32), vec3(3.2, 2.7, 2.2), smoothstep(-0.25, 0.35, blotch.a));
+  tissue = mix(vec3(dot(tissue, vec3(0.4))), tissue, alive);
   float lamp = max(front, 0.0);
   return around * (tissue * (0.9 - 0.75 * front) + 4.0 * lamp * lamp * lamp * lamp);
 }

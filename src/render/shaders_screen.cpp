@@ -101,6 +101,7 @@ uniform sampler2D glow;
 uniform vec2 field;    // half the picture over the round field's radius
 uniform vec2 extent;   // of the undistorted picture over the tangent at the field's edge
 uniform float barrel;
+uniform float alive;   // 1: what shades itself is tissue, and shines red; 0: a training box
 out vec4 colour;
 void main() {
   vec2 d = (2.0 * uv - 1.0) * field;
@@ -112,7 +113,7 @@ void main() {
   vec2 at = d * (1.0 - barrel + barrel * squared) / extent * 0.5 + 0.5;
   vec4 seen = texture(picture, at);
   float ao = texture(occlusion, at).r;
-  vec3 c = seen.rgb * mix(mix(vec3(1.0), vec3(ao, ao * ao, ao * ao), 0.85), vec3(1.0), seen.a);
+  vec3 c = seen.rgb * mix(mix(vec3(1.0), mix(vec3(ao), vec3(ao, ao * ao, ao * ao), alive), 0.85), vec3(1.0), seen.a);
   c += 0.55 * texture(glow, at).r * vec3(1.0, 0.94, 0.90);
   float grey = dot(c, vec3(0.30, 0.59, 0.11));
   c = grey + 1.08 * (c - grey);

@@ -1,7 +1,10 @@
 #include "world/come_to_rest.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "acts/advance.h"
+#include "field/moving_bodies.h"
 #include "motion/settle_field.h"
 #include "organs/body_kinds.h"
 #include "world/definition_digest.h"
@@ -29,7 +32,60 @@ bool rests_alone(const AnatomyDefinition& anatomy, const Field& field) {
                      [](const Organ& organ) { return is_hollow(organ.definition.shape); });
 }
 
-Result<bool> search_rest(Field& field, bool dynamic) {
+/// What rubs in a field.
+struct Roughness {
+  std::vector<Ground> ground;
+  double between = 0;
+
+  explicit Roughness(const Field& field) : ground(field.ground), between(field.group.friction) {}
+  void give(Field& field) const {
+    field.ground = ground;
+    field.group.friction = between;
+  }
+  static void take(Field& field) {
+    for (Ground& one : field.ground) one.friction = 0;
+    field.group.friction = 0;
+  }
+};
+
+/// m/s, faster than anything at rest; and of how many steps in a row.
+constexpr double still_speed = 1e-3;
+constexpr int still_steps = 5;
+
+double fastest(const Field& field) {
+  double speed = 0;
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) {
+    const BodyState& state = state_of(field, k);
+    speed = std::max(speed, body_of(field, k).largest_motion(present_motion(body_of(field, k), state).velocity));
+  }
+  return speed;
+}
+
+/// Lets all bodies fall as they would in a session, but in longer steps, which damp what swings, until they lie still:
+/// where no solve finds a rest at once, as of what folds, rolls or hangs by a thread. Whether they do within half a minute
+/// of their time.
+Result<bool> fall_to_rest(const Roughness& rough, Field& field) {
+  constexpr double step = 0.04, longest = 30;  // s
+  const double usual = std::exchange(field.step_time, step);
+  rough.give(field);
+  int still = 0;
+  Result<bool> fell = true;
+  for (int k = 0; k < longest / step && still < still_steps && fell; ++k) {
+    SolveStatistics statistics;
+    const Result<std::vector<WorldEvent>> events = advance(field, {}, statistics);
+    if (!events) fell = events.failure();
+    still = events && fastest(field) < still_speed ? still + 1 : 0;
+  }
+  Roughness::take(field);
+  field.step_time = usual;
+  for (std::size_t k = 0; k < moving_bodies(field); ++k) state_of(field, k).motion = {};
+  for (Organ& organ : field.organs) organ.friction = {};
+  field.group.rubbing.clear();
+  return fell ? still == still_steps : fell;
+}
+
+Result<bool> search_rest(const SceneDefinition& scene, const Roughness& rough, Field& field) {
+  const bool dynamic = scene.solver.motion == SolverMotion::dynamics;
   SolveStatistics statistics;
   const GroupSnapshot before = snapshot(field);
   Result<bool> rested = settle_field(field, "at rest", statistics);
@@ -37,18 +93,20 @@ Result<bool> search_rest(Field& field, bool dynamic) {
     restore(field, before);
     rested = sink_field(field, statistics);
   }
-  return rested;
+  if (rested || !dynamic) return rested;
+  restore(field, before);
+  const Result<bool> fallen = fall_to_rest(rough, field);
+  return fallen && !fallen.value() ? rested : fallen;
 }
 
-Result<bool> find_rest(const SceneDefinition& scene, Field& field, KeptResults* kept) {
-  const bool dynamic = scene.solver.motion == SolverMotion::dynamics;
+Result<bool> find_rest(const SceneDefinition& scene, const Roughness& rough, Field& field, KeptResults* kept) {
   const bool in_company = field.organs.size() + field.tissues.size() > 1;
-  if (kept == nullptr || !in_company) return search_rest(field, dynamic);
+  if (kept == nullptr || !in_company) return search_rest(scene, rough, field);
   const std::string key = rest_key(scene, field);
   if (const std::optional<std::string> bytes = kept->find(key))
     if (const std::optional<RestState> state = rest_state_of(*bytes); state && take_rest_state(*state, field))
       return true;
-  Result<bool> rested = search_rest(field, dynamic);
+  Result<bool> rested = search_rest(scene, rough, field);
   if (rested) kept->keep(key, to_bytes(rest_state(field)));
   return rested;
 }
@@ -59,12 +117,10 @@ Result<bool> come_to_rest(const SceneDefinition& scene, Field& field, KeptResult
   const Result<bool> released = release_all(field);
   if (!released) return released;
   if (!released.value() && rests_alone(scene.anatomy, field)) return true;
-  const std::vector<Ground> rough = field.ground;
-  for (Ground& ground : field.ground) ground.friction = 0;
-  field.group.friction = 0;
-  const Result<bool> rested = find_rest(scene, field, kept);
-  field.ground = rough;
-  field.group.friction = scene.anatomy.friction;
+  const Roughness rough(field);
+  Roughness::take(field);
+  const Result<bool> rested = find_rest(scene, rough, field, kept);
+  rough.give(field);
   if (!rested) return rested;
   for (Organ& organ : field.organs) {
     const ShellBody* shell = organ.body->as_shell();
