@@ -1,5 +1,5 @@
--- A training box: a ring is lifted off one peg with the left hand, handed over in the air, and put over another peg with
--- the right one. The mistake is a parameter, demo = "clumsy": the left hand lets go before the right one holds.
+-- A training box: a ring is lifted off one peg with the left hand, handed over in the air, and put over another peg
+-- with the right one. The mistake is a parameter, demo = "clumsy": the left hand lets go before the right one holds.
 
 local calot = require "calot"
 local technique = require "technique"
@@ -83,9 +83,9 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    local function over(peg)
+    local function over(foot)
       local at = t:place("ring.centre")
-      return length({ at[1] - peg[1], at[2] - peg[2], 0 }) < 6 * mm
+      return length({ at[1] - foot[1], at[2] - foot[2], 0 }) < 6 * mm
     end
     --- Whether it is done; counts how often the ring comes down elsewhere than round the second peg.
     local drops, lifted = 0, false

@@ -218,7 +218,7 @@
 ---@field size? calot.point a box' edges along x, y and z, without its rounding; default { 0, 0, 0 }
 ---@field radius? number of a capsule, and of a box' edges; default 5 * mm; 0.5 to 250 mm
 ---@field friction? number coefficient of friction of what touches it; default 0; 0 to 1
----@field looks? "usual"|"liver"|"bowel"|"fat"|"peritoneum" how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as peritoneum; a bowel has to be a capsule; default "usual"
+---@field looks? "usual"|"liver"|"bowel"|"fat"|"peritoneum"|"board"|"plastic" how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as peritoneum; a bowel has to be a capsule; board and plastic are of a training box, whose walls are then around; default "usual"
 ---@field injury? string what it is called when it is hurt by blades, clips, current or a thrust; left out: liver and bowel by their looks, and nothing else
 ---@field thrust_limit? number the force of jaws, or of what a shaft ends in, that hurts it; uncalibrated; default 8 * N; 0.1 to 1000 N
 
@@ -278,7 +278,7 @@
 ---@field wall? calot.wall its wall
 ---@field bile? calot.bile what fills it
 ---@field held? calot.held[] elastic attachments; a list given here replaces the anatomy's own
----@field looks? "bile"|"pale" how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops); default "bile"
+---@field looks? "bile"|"pale"|"plastic" how a gallbladder is drawn: full of bile, or pale, as one that mucus has filled (hydrops); a rigid thing is a stone, or plastic; default "bile"
 ---@field extensions? boolean false: no structural extensions on this organ; default true
 ---@field compared_with? string another organ of the same shape; the metrics mean_difference_pct and largest_difference_pct then say how far this one's skin is from moving like that one's
 ---@field injury? calot.injury what it is called when this organ, which should be kept, is hurt
@@ -337,7 +337,7 @@
 ---An elastic foundation under the skin near a landmark: the cystic plate, the duct's root.
 ---@class calot.held
 ---@field name? string its name, unique within the organ; default "bed"
----@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed"|"start"|"middle"|"end"|"centre"|"back"|"edge"|"underside"|"upper_side" the landmark it surrounds
+---@field landmark "neck"|"fundus"|"infundibulum"|"free_side"|"liver_side"|"body"|"bed"|"start"|"middle"|"end"|"centre"|"rim_1"|"rim_2"|"rim_3"|"rim_4"|"back"|"edge"|"underside"|"upper_side" the landmark it surrounds
 ---@field radius? number how far it reaches; default 10 * mm; 0.5 to 250 mm
 ---@field stiffness? number N/m per m^2 of skin; default 300000; 1 to 1e+10 N/m^3
 ---@field while_filled? boolean true: only until the organ is filled; then it is held by what it is tied to, such as tissue; default false
@@ -390,12 +390,16 @@
 ---@field feed_resistance? number of the way to where it is cut open, Pa s/m^3; usually such that an open cystic artery loses some 45 mL a minute, a cystic duct 3 of what the patient feeds, and 18 of a gallbladder's; uncalibrated; 0 to 1e+15
 ---@field patient_end? "held"|"start"|"end" the end that stays with the patient where it is divided: what is held, itself or by what it is tied to (its end where both ends are, or neither), or always the start or the end; default "held"
 
----A rigid thing, such as a stone: a box with round edges, or a ball.
+---A rigid thing, such as a stone: a box with round edges, a ball, a ring, or what an OBJ file holds.
 ---@class calot.shape_rigid
 ---@field type? "pear"|"sphere"|"swept"|"obj"|"tube"|"rigid"|"lobe" which shape: this one is "rigid"; default "pear"
 ---@field size? calot.point edges of the box without its rounding; { 0, 0, 0 }: a ball; default { 0, 0, 0 }
----@field rounding? number radius of its edges, or of the ball; default 5 * mm; 0.5 to 50 mm
----@field centre? calot.point where it is; default { 0, 0, 0 }
+---@field rounding? number radius of its edges, of the ball, or of the rod that a ring is bent from; default 5 * mm; 0.5 to 50 mm
+---@field ring? number radius of the circle in the middle of a ring about z; 0: it is no ring; default 0 * mm; 0 to 100 mm
+---@field path? string a closed OBJ file below the scenario's folder or the project's assets folder
+---@field scale? number the file's coordinates times this are metres; default 1; 1e-09 to 1000
+---@field turn? calot.point it is turned about this axis by its length: { 90 * deg, 0, 0 } stands a ring up; default { 0 * deg, 0 * deg, 0 * deg }
+---@field centre? calot.point where its middle is then; of a file, its origin; default { 0, 0, 0 }
 ---@field density? number kg/m^3; default 1500; 100 to 20000 kg/m^3
 ---@field stiffness? number a stone's is some 0.8 GPa, a lymph node's below 100 kPa; it strains alike everywhere; default 800000 * kPa; 10 to 1e+07 kPa
 
@@ -613,6 +617,26 @@ function Steps:remove(organ, why) end
 ---Brings an organ into the field, where its definition has it; mesh files are not read here.
 ---@param organ calot.organ as in the scene's anatomy
 function Steps:add(organ) end
+
+---Lets an organ go where one of its held regions holds it, such as the assistant's hand at the fundus.
+---@param organ string an organ's name
+---@param held string the held region's name
+function Steps:release(organ, held) end
+
+---Lays the strands of a tissue between two organs where they are now.
+---@param tissue calot.tissue as in the scene's anatomy
+function Steps:add_tissue(tissue) end
+
+---Takes a tissue out of the field, with all of its strands; t:torn says 1 of it then.
+---@param tissue string its name
+function Steps:remove_tissue(tissue) end
+
+---Opens a hole in the wall of a tube at about a share of its length, not where a clip lies: a vessel bleeds there and a duct leaks, until clips or jaws shut it on both sides. Returns the share where it is.
+---@param organ string a tube's name
+---@param share number from its start, 0, to its end, 1; 0 to 1
+---@param width? number across the hole; default 1 * mm; 0.1 to 10 mm
+---@return number
+function Steps:bleed(organ, share, width) end
 
 ---Ties a place on one organ to one on another where they are now.
 ---@param joint calot.joint as in the scene's anatomy

@@ -285,7 +285,8 @@ namespace {
 
 /// Lets tools that meet come as far on their ways `to` as they find a balance: all the way, or a half, a quarter, an eighth
 /// of it; else they stay where they are, which is free of the others and of ground. Others go all the way.
-void bring_met_tools(Field& field, const std::vector<Pair>& pairs, const std::vector<Grounded>& grounded, Poses& to) {
+void bring_met_tools(Field& field, const std::vector<Pair>& pairs, const std::vector<Grounded>& grounded,
+                     Poses& to) {
   const Poses from = present_poses(field);
   constexpr double least_share = 0.125;
   for (double share = 1; share >= least_share; share *= 0.5) {

@@ -50,7 +50,8 @@ void catch_hard(Field& field, ToolIndex instrument, const Clasped& held) {
   for (int jaw : {0, 1}) {
     const Pose to_jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, jaw).inverse();
     for (int point : points[static_cast<std::size_t>(jaw)])
-      organ.grips.push_back({instrument, jaw, point, to_jaw * organ.body->skin_point(point, organ.state.x), grip_stiffness});
+      organ.grips.push_back(
+          {instrument, jaw, point, to_jaw * organ.body->skin_point(point, organ.state.x), grip_stiffness});
   }
   constexpr double most = 0.95;  // of what friction holds: what was caught would slide again at once
   if (asked_share(field, instrument) > most) return take_away(organ, instrument);

@@ -445,7 +445,7 @@ struct Landmark {
   const char* doc;
   double
       along;  ///< share of the way from the neck's end to the fundus' end, from start to end, from back to edge; of a ring
-              ///< of the way round it from +x towards +y, as it was turned
+      ///< of the way round it from +x towards +y, as it was turned
   double
       side;  ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side; of a lobe -1 below, 1 above
   enum class Of { hollow, tube, rigid, ring, lobe } of = Of::hollow;

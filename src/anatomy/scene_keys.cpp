@@ -139,7 +139,8 @@ std::vector<KeyTable> field_tables() {
            choice("looks", &GroundDefinition::looks,
                   {"usual", "liver", "bowel", "fat", "peritoneum", "board", "plastic"},
                   "how it is drawn; usual: beside a lobe as peritoneum, else as liver, a plane as "
-                  "peritoneum; a bowel has to be a capsule; board and plastic are of a training box, whose walls "
+                  "peritoneum; a bowel has to be a capsule; board and plastic are of a training box, whose "
+                  "walls "
                   "are then around"),
            text("injury", &GroundDefinition::injury,
                 "what it is called when it is hurt by blades, clips, current or a thrust; left out: liver "
@@ -467,7 +468,8 @@ std::vector<KeyTable> shape_tables() {
                "is tied to (its end where both ends are, or neither), or always the start or the end")}),
       keys_of<RigidShape>(
           "shape_rigid",
-          "A rigid thing, such as a stone: a box with round edges, a ball, a ring, or what an OBJ file holds.",
+          "A rigid thing, such as a stone: a box with round edges, a ball, a ring, or what an OBJ file "
+          "holds.",
           {type("rigid"),
            place("size", &RigidShape::size, 200 * mm, "a size of a rigid thing",
                  "edges of the box without its rounding; { 0, 0, 0 }: a ball"),

@@ -49,8 +49,9 @@ class SourceSearch {
       return *found;
     }
     // What it holds runs out if nothing shuts it, by the tightest place.
-    const double open = hole ? std::max(open_between(field_, organ, from, 0), open_between(field_, organ, from, last))
-                             : open_between(field_, organ, from, last - from);
+    const double open =
+        hole ? std::max(open_between(field_, organ, from, 0), open_between(field_, organ, from, last))
+             : open_between(field_, organ, from, last - from);
     return {LeakSource::Kind::rest, organ, {}, std::min(whole, open)};
   }
 

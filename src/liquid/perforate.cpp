@@ -57,7 +57,8 @@ Result<double> open_tube(Organ& tube, double share, double width) {
   const int last = static_cast<int>(rod->last_point());
   int nearest = -1;
   for (int point = 1; point < last; ++point)
-    if (nearest < 0 || std::abs(rod->share_of_length(point) - share) < std::abs(rod->share_of_length(nearest) - share))
+    if (nearest < 0 ||
+        std::abs(rod->share_of_length(point) - share) < std::abs(rod->share_of_length(nearest) - share))
       nearest = point;
   if (nearest < 0)
     return fail(FailureKind::scenario, fmt::format("'{}' is too short to be opened", tube.definition.name));

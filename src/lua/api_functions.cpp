@@ -262,7 +262,8 @@ std::vector<ApiFunction> session_functions() {
        ""},
       {"Steps", "bleed",
        "Opens a hole in the wall of a tube at about a share of its length, not where a clip lies: a vessel "
-       "bleeds there and a duct leaks, until clips or jaws shut it on both sides. Returns the share where it is.",
+       "bleeds there and a duct leaks, until clips or jaws shut it on both sides. Returns the share where it "
+       "is.",
        place_on_tube({number("width", quantity::length, 0.1 * mm, 10 * mm, "1 * mm", "across the hole")}),
        "number"},
       {"Steps",

@@ -78,8 +78,8 @@ Result<BodyPointer> released_lobe(const Organ& organ, const std::vector<HeldRegi
   const OrganDefinition& definition = organ.definition;
   const auto& shape = std::get<LobeShape>(definition.shape);
   const SolidBody& solid = *organ.body->as_solid();
-  return BodyPointer(std::make_shared<const SolidBody>(
-      solid.with_foundation(foundation_of(shape, left, lobe_cells(form_of(shape)).surface, places_of(definition)))));
+  return BodyPointer(std::make_shared<const SolidBody>(solid.with_foundation(
+      foundation_of(shape, left, lobe_cells(form_of(shape)).surface, places_of(definition)))));
 }
 
 }  // namespace calot

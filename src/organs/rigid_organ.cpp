@@ -13,7 +13,7 @@ namespace calot {
 namespace {
 
 using units::mm;
-constexpr double spacing = 1.5 * mm;  // contact points lie between
+constexpr double spacing = 1.5 * mm;     // contact points lie between
 constexpr double longest_edge = 2 * mm;  // of a file's surface: what touches it is thicker
 constexpr double least_size = 2 * mm, largest_size = 200 * mm;
 constexpr std::size_t most_contact_triangles = 12000;
@@ -29,9 +29,10 @@ Result<TriMesh> file_surface(const RigidShape& rigid) {
   for (const Vec3& p : mesh->points) box.extend(p);
   const double size = box.diagonal().norm();
   if (!(size >= least_size && size <= largest_size))
-    return wrong_mesh(fmt::format("is {:.3g} mm across", size / mm),
-                      fmt::format("its coordinates times its scale are metres: give a thing of {:g} to {:g} mm",
-                                  least_size / mm, largest_size / mm));
+    return wrong_mesh(
+        fmt::format("is {:.3g} mm across", size / mm),
+        fmt::format("its coordinates times its scale are metres: give a thing of {:g} to {:g} mm",
+                    least_size / mm, largest_size / mm));
   if (mesh->triangles.size() > most_contact_triangles)
     return wrong_mesh(fmt::format("has {} triangles", mesh->triangles.size()),
                       fmt::format("simplify it to at most {}", most_contact_triangles));
@@ -61,8 +62,8 @@ std::map<std::string, Vec3> rim_places(const RigidShape& rigid) {
   for (const Landmark& row : landmark_rows())
     if (row.of == Landmark::Of::ring && rigid.ring > 0) {
       const double angle = 2 * M_PI * row.along;
-      places[row.name] =
-          rigid.centre + turned_about(rigid.turn) * Vec3(rigid.ring * std::cos(angle), rigid.ring * std::sin(angle), 0);
+      places[row.name] = rigid.centre + turned_about(rigid.turn) * Vec3(rigid.ring * std::cos(angle),
+                                                                        rigid.ring * std::sin(angle), 0);
     }
   return places;
 }

@@ -19,10 +19,10 @@ namespace calot {
 namespace {
 
 constexpr std::array all_materials{
-    Material::gallbladder, Material::membrane,   Material::liver,  Material::fat,     Material::peritoneum,
-    Material::steel,       Material::insulation, Material::artery, Material::capsule, Material::bowel,
-    Material::hydrops,     Material::bile,       Material::blood,  Material::leaf,
-    Material::board,       Material::plastic};
+    Material::gallbladder, Material::membrane, Material::liver,      Material::fat,
+    Material::peritoneum,  Material::steel,    Material::insulation, Material::artery,
+    Material::capsule,     Material::bowel,    Material::hydrops,    Material::bile,
+    Material::blood,       Material::leaf,     Material::board,      Material::plastic};
 
 /// Omentum, bowel, boards and walls lie behind all else: their shadows are never seen. Light goes through a leaf.
 bool casts_shadow(Material material) {

@@ -387,8 +387,8 @@ std::string header(Material material) {
 std::string scene_vertex_shader(Material material) { return header(material) + vertex_shader; }
 
 std::string scene_fragment_shader(Material material) {
-  const std::string common =
-      header(material) + (shines_through(material) ? "#define SHINES_THROUGH\n" : "") + prelude + light_functions;
+  const std::string common = header(material) + (shines_through(material) ? "#define SHINES_THROUGH\n" : "") +
+                             prelude + light_functions;
   const char* const bile = "vec3(0.130, 0.172, 0.132)";
   switch (material) {
     case Material::gallbladder:
@@ -423,11 +423,13 @@ std::string scene_fragment_shader(Material material) {
       return common + artery_material + tissue_lighting;
     case Material::board:
       return common +
-             "#define COLOUR vec3(0.30, 0.31, 0.32)\n#define GRAIN 0.10\n#define GLOSS 60.0\n#define FILM 0.15\n" +
+             "#define COLOUR vec3(0.30, 0.31, 0.32)\n#define GRAIN 0.10\n#define GLOSS 60.0\n#define FILM "
+             "0.15\n" +
              dry_material + tissue_lighting;
     case Material::plastic:
       return common +
-             "#define COLOUR vec3(0.035, 0.13, 0.34)\n#define GRAIN 0.02\n#define GLOSS 120.0\n#define FILM 0.8\n" +
+             "#define COLOUR vec3(0.035, 0.13, 0.34)\n#define GRAIN 0.02\n#define GLOSS 120.0\n#define FILM "
+             "0.8\n" +
              dry_material + tissue_lighting;
     case Material::steel:
       return common +

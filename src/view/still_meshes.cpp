@@ -69,8 +69,8 @@ std::vector<SceneMesh> still_meshes(const SceneDefinition& scene) {
     const bool box = std::any_of(anatomy.ground.begin(), anatomy.ground.end(), [](const GroundDefinition& g) {
       return g.looks == GroundLooks::board || g.looks == GroundLooks::plastic;
     });
-    meshes.push_back(
-        cavity_wall(meshes.empty() ? about : foot_of(anatomy, about), box ? Material::board : Material::peritoneum));
+    meshes.push_back(cavity_wall(meshes.empty() ? about : foot_of(anatomy, about),
+                                 box ? Material::board : Material::peritoneum));
   }
   return meshes;
 }

@@ -56,7 +56,8 @@ double fastest(const Field& field) {
   double speed = 0;
   for (std::size_t k = 0; k < moving_bodies(field); ++k) {
     const BodyState& state = state_of(field, k);
-    speed = std::max(speed, body_of(field, k).largest_motion(present_motion(body_of(field, k), state).velocity));
+    speed =
+        std::max(speed, body_of(field, k).largest_motion(present_motion(body_of(field, k), state).velocity));
   }
   return speed;
 }
@@ -99,7 +100,8 @@ Result<bool> search_rest(const SceneDefinition& scene, const Roughness& rough, F
   return fallen && !fallen.value() ? rested : fallen;
 }
 
-Result<bool> find_rest(const SceneDefinition& scene, const Roughness& rough, Field& field, KeptResults* kept) {
+Result<bool> find_rest(const SceneDefinition& scene, const Roughness& rough, Field& field,
+                       KeptResults* kept) {
   const bool in_company = field.organs.size() + field.tissues.size() > 1;
   if (kept == nullptr || !in_company) return search_rest(scene, rough, field);
   const std::string key = rest_key(scene, field);

@@ -47,7 +47,7 @@ class IdleHands : public ::testing::TestWithParam<Idle> {};
 INSTANTIATE_TEST_SUITE_P(Shipped, IdleHands,
                          ::testing::Values(Idle{"grasp_and_traction"}, Idle{"liver_edge"},
                                            Idle{"camera_navigation", {}, true}, Idle{"bleeding_control"},
-                                           Idle{"clip_and_divide"}, Idle{"exposure"},
+                                           Idle{"peg_transfer"}, Idle{"clip_and_divide"}, Idle{"exposure"},
                                            Idle{"clip_and_divide", {{"structure", "cystic_artery"}}, true},
                                            Idle{"dissect_to_critical_view", {}, true},
                                            Idle{"critical_view", {}, true}));

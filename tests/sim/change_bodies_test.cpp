@@ -512,8 +512,7 @@ TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
   says(world.tie({"stone.centre", "stone.centre", 4e-3, 2e3}), "an organ is tied to itself");
   says(world.tie({"stone.centre", "artery.mitte", 4e-3, 2e3}), "unknown landmark \"artery.mitte\"");
   says(world.release("stone", "bed"), "nothing called \"bed\" holds 'stone' (nothing holds it)");
-  says(world.release("artery", "frist"),
-       "nothing called \"frist\" holds 'artery' (did you mean \"first\"?)");
+  says(world.release("artery", "frist"), "nothing called \"frist\" holds 'artery' (did you mean \"first\"?)");
   says(world.remove_tissue("plate"), "there is no tissue 'plate'");
   TissueDefinition tissue;
   tissue.name = "plate";

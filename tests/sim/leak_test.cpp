@@ -223,7 +223,8 @@ TEST(Leaks, AHoleInATubeThatIsDividedStaysOnItsPiece) {
   Bodies bodies(bag_and_duct());
   ASSERT_TRUE(open_tube(bodies.field.organs[1], 0.25, 1e-3));
   const Division pieces = bodies.cut(OrganIndex(1), 0.6);
-  EXPECT_EQ(bodies.field.organ(pieces.specimen).openings.size(), 2u) << "the bag's side, with the hole and the cut";
+  EXPECT_EQ(bodies.field.organ(pieces.specimen).openings.size(), 2u)
+      << "the bag's side, with the hole and the cut";
   EXPECT_EQ(bodies.field.organ(pieces.patient).openings.size(), 1u);
 }
 

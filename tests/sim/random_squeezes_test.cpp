@@ -58,8 +58,8 @@ SceneDefinition random_scene(Rng& rng) {
   scene.anatomy.ground = {floor, peg};
   scene.ports = {{"scope", Vec3::Zero()}, {"one", trocars[0]}, {"other", trocars[1]}};
   for (const char* name : {"one", "other"}) {
-    InstrumentDefinition tool = default_instrument(
-        rng.uniform() < 0.5 ? InstrumentType::maryland_dissector : InstrumentType::atraumatic_grasper);
+    InstrumentDefinition tool = default_instrument(rng.uniform() < 0.5 ? InstrumentType::maryland_dissector
+                                                                       : InstrumentType::atraumatic_grasper);
     tool.name = name;
     tool.port = name;
     tool.pinch_force = std::exp(rng.uniform(std::log(0.5), std::log(66.0)));
@@ -95,7 +95,8 @@ class Squeeze {
       go(1, here_[1].tip + test::random_vector(rng_, 6 * mm), here_[1].jaw, 5);
       if (rng_.uniform() < 0.5) go(0, here_[0].tip, 60 * deg, 4);
     }
-    if (rng_.uniform() < 0.4) go(0, Vec3(here_[0].tip.x(), here_[0].tip.y(), board - 2 * mm), here_[0].jaw, 10);
+    if (rng_.uniform() < 0.4)
+      go(0, Vec3(here_[0].tip.x(), here_[0].tip.y(), board - 2 * mm), here_[0].jaw, 10);
     for (std::size_t k : {0, 1}) go(k, here_[k].tip + Vec3(0, 0, 5 * mm), 60 * deg, 4);
     for (std::size_t k : {0, 1}) go(k, here_[k].tip + Vec3(0, -5 * mm, 40 * mm), 0, 8);
     const Vec3 left_at = world_.landmark("thing.centre");
@@ -115,7 +116,9 @@ class Squeeze {
     double jaw = 0, roll = 0;
   };
 
-  Vec3 lift() { return {rng_.uniform(-6 * mm, 6 * mm), rng_.uniform(-6 * mm, 6 * mm), rng_.uniform(0, 8 * mm)}; }
+  Vec3 lift() {
+    return {rng_.uniform(-6 * mm, 6 * mm), rng_.uniform(-6 * mm, 6 * mm), rng_.uniform(0, 8 * mm)};
+  }
 
   /// Open jaws come to about the thing along their shaft, and close.
   void take(std::size_t k) {
@@ -143,9 +146,8 @@ class Squeeze {
   void step() {
     StepInput input;
     for (std::size_t k = 0; k < 2; ++k)
-      input.instruments.push_back(
-          pose_reaching(trocars[k], here_[k].tip, here_[k].roll, here_[k].jaw,
-                        instrument_geometry(world_.scene().instruments[k].type)));
+      input.instruments.push_back(pose_reaching(trocars[k], here_[k].tip, here_[k].roll, here_[k].jaw,
+                                                instrument_geometry(world_.scene().instruments[k].type)));
     const Result<StepReport> report = world_.step(input);
     ++steps;
     failed_ = !report;
