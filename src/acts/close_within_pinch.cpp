@@ -6,6 +6,7 @@
 
 #include "acts/clips.h"
 #include "acts/follow.h"
+#include "acts/hard_hold.h"
 #include "acts/jaw_acts.h"
 #include "acts/pads.h"
 #include "field/field_state.h"
@@ -186,7 +187,8 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     const Tool& tool = field.tools[i];
     // Clips between the pads carry whatever presses: jaws rest on the metal.
     if (std::isfinite(hold_of_clips(field, ToolIndex(i)))) continue;
-    if (has_teeth(tool) && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
+    const bool gives_way = has_teeth(tool) || rests_on_hard(field, ToolIndex(i));
+    if (gives_way && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
   }
   if (pressing.empty()) return go(to);
   Trials trials(field, to, go, events, pressing, statistics);

@@ -18,6 +18,8 @@ using Poses = std::vector<InstrumentPose>;
 /// N/m, where a force above the strength came without a way of the tip's that shows how it grows: between an organ that is
 /// pushed about and one that is squeezed.
 constexpr double unknown_stiffness = 2e3;
+/// m, that a hand gives way in a step by such a force: what is hard leaves it after less.
+constexpr double farthest_unknown = 2e-3;
 /// N/m: less is felt where a force falls for another reason than the tip's way.
 constexpr double least_stiffness = 100;
 /// m: a shorter way tells nothing of how a force grows.
@@ -60,8 +62,9 @@ InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, In
   const Vec3 away = last.at_tip / force;
   const Vec3 way = tip_position(tool.trocar, reached, tool.geometry) - last.tip;
   const double into = -way.dot(away);
-  const double stiffness = tool.tissue_stiffness > 0 ? tool.tissue_stiffness : unknown_stiffness;
-  const double allowed = (strength - force) / stiffness;
+  const double allowed = tool.tissue_stiffness > 0
+                             ? (strength - force) / tool.tissue_stiffness
+                             : std::max((strength - force) / unknown_stiffness, -farthest_unknown);
   if (into <= allowed) return command;
   const Vec3 across = share_across(tool, last.at_tip, way) * (way + into * away);
   InstrumentPose out = pose_reaching(tool.trocar, last.tip + across - allowed * away, command.roll,

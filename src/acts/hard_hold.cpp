@@ -9,6 +9,7 @@
 #include "field/take_hold.h"
 #include "field/teeth.h"
 #include "motion/rubbing.h"
+#include "motion/settle_field.h"
 
 namespace calot {
 
@@ -16,6 +17,22 @@ bool holds_hard(const Field& field, ToolIndex instrument) {
   return std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
     return !is_bitten(organ) && grip_count(organ, instrument) > 0;
   });
+}
+
+bool rests_on_hard(const Field& field, ToolIndex instrument) {
+  if (!field.tool(instrument).geometry.has_jaws()) return false;
+  for (const Organ& organ : field.organs) {
+    if (is_bitten(organ)) continue;
+    std::array<bool, 2> touched{};
+    const ContactLoads now = contact_loads(field, organ, present_poses(field));
+    for (const Touch& touch : organ.search.touching(*organ.body, organ.state.x, now)) {
+      const FieldShape which = field.shape(touch.shape);
+      if (which.tool == instrument && !which.is_shaft() && !which.is_ground())
+        touched[static_cast<std::size_t>(which.jaw())] = true;
+    }
+    if (touched[0] && touched[1]) return true;
+  }
+  return false;
 }
 
 namespace {

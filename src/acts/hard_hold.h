@@ -13,6 +13,9 @@ namespace calot {
 /// Whether a tool holds something hard by such springs.
 bool holds_hard(const Field& field, ToolIndex instrument);
 
+/// Whether both jaws of a tool touch something hard: blades, which close on all else as they are asked to, cut nothing of it.
+bool rests_on_hard(const Field& field, ToolIndex instrument);
+
 /// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.
 void catch_hard(Field& field, ToolIndex instrument, const Clasped& held);
 

@@ -30,8 +30,8 @@ Result<bool> release_body(Field& field, OrganIndex organ, const std::string& hel
 /// Lays strands between two organs where they are now. Fails (scenario) as make_tissue() does, and where a tissue or an organ
 /// has that name or the field would have too many strands.
 Result<bool> add_tissue(Field& field, const TissueDefinition& definition);
-/// Takes a tissue away with all of its strands. Fails (scenario) where there is none of that name.
-Result<bool> remove_tissue(Field& field, const std::string& name);
+/// Takes a tissue away with all of its strands at a time, s. Fails (scenario) where there is none of that name.
+Result<bool> remove_tissue(Field& field, const std::string& name, double time);
 
 /// Ties "organ.landmark" to another where they are now: without a load. The names are the field's.
 Result<bool> tie_bodies(Field& field, const JointDefinition& joint);

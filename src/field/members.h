@@ -37,7 +37,7 @@ void visit_members(auto&& visit, MembersOf<Departure> auto& departure) {
   visit(time, how, pieces, landmarks);
 }
 
-/// A body that is or was in the field.
+/// A body that is or was in the field, or a tissue that was taken out of it.
 struct BodyRecord {
   std::string name;
   std::uint64_t life = 0;

@@ -162,6 +162,11 @@ bool ScriptSession::is_tissue(lua_State* L, const std::string& name) {
   std::vector<std::string> names;
   for (const auto* tissues : {&scene().anatomy.tissue, &later_tissues()})
     for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
+  if (!checking()) {
+    const Field& field = world(L).field();
+    for (const Tissue& tissue : field.tissues) names.push_back(tissue.definition.name);
+    if (gone_body(field, name) != nullptr) return true;
+  }
   if (std::find(names.begin(), names.end(), name) != names.end()) return true;
   complain(L, fmt::format("unknown tissue \"{}\"", name), suggestion(name, names));
   return false;

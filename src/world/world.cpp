@@ -726,7 +726,7 @@ Result<bool> World::add_tissue(const TissueDefinition& definition) {
 
 Result<bool> World::remove_tissue(const std::string& name) {
   return impl_->change(fmt::format("after '{}' was removed", name),
-                       [&] { return calot::remove_tissue(impl_->field, name); });
+                       [&] { return calot::remove_tissue(impl_->field, name, impl_->time()); });
 }
 
 Result<double> World::open_tube(const std::string& name, double share, double width) {

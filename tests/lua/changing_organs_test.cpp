@@ -68,7 +68,8 @@ TEST(ChangingOrgansInSteps, AreDividedRemovedTiedAndAdded) {
 TEST(ChangingOrgansInSteps, AreReleasedBoundByTissueAndOpened) {
   const Outcome played = outcome(
       ducts("t:step('cut', 'Cut')\n t:wait(0.04 * s)\n"
-            "t:add_tissue { name = 'bands', from = 'duct', to = 'stone', within = 20 * mm, strands = 8 }\n"
+            "t:add_tissue { name = 'bands', from = 'duct', to = 'stone', within = 20 * mm, strands = 8,\n"
+            "  break_energy = 2000 }\n"
             "assert(t:torn('bands') == 0)\n"
             "local share = t:bleed('duct', 0.5, 2 * mm)\n"
             "assert(math.abs(share - 0.5) < 0.1)\n"

@@ -475,22 +475,24 @@ TEST_F(ChangedBodies, APieceIsReleasedAloneOfTheOther) {
 }
 
 TEST_F(ChangedBodies, TissueThatIsAddedHoldsWhatItIsBetweenAndNotOnceItIsRemoved) {
-  ASSERT_TRUE(world.release("artery", "second"));
   TissueDefinition tissue;
   tissue.name = "bands";
-  tissue.from = "artery", tissue.to = "cystic_duct";
-  tissue.within = 30e-3;
+  tissue.from = "artery", tissue.to = "common_duct";
+  tissue.within = 20e-3;
   tissue.strands = 12;
   tissue.slack = 0;
   tissue.stiffness = 400e3, tissue.strength = 4e6, tissue.break_energy = 1e5;
-  ASSERT_TRUE(world.add_tissue(tissue)) << why(world.add_tissue(tissue).failure());
+  ASSERT_TRUE(world.add_tissue(tissue));
   ASSERT_EQ(world.report().tissues.size(), 1u);
   EXPECT_GT(world.report().tissues[0].strands, 6);
-  const Vec3 held = way_of(world, "artery.end");
+  ASSERT_TRUE(world.release("artery", "second"));
+  const FieldState begun = world.state();
+  const double held = way_of(world, "artery.end").dot(world.up());
+  ASSERT_TRUE(world.restore(begun));
   ASSERT_TRUE(world.remove_tissue("bands"));
   EXPECT_TRUE(world.report().tissues.empty());
-  const Vec3 loose = way_of(world, "artery.end");
-  EXPECT_LT(loose.dot(world.up()), 2 * held.dot(world.up()) - 2e-3);
+  const double loose = way_of(world, "artery.end").dot(world.up());
+  EXPECT_LT(loose, held - 2e-3) << "it falls further when nothing holds it";
 }
 
 TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
@@ -512,7 +514,7 @@ TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
   says(world.tie({"stone.centre", "stone.centre", 4e-3, 2e3}), "an organ is tied to itself");
   says(world.tie({"stone.centre", "artery.mitte", 4e-3, 2e3}), "unknown landmark \"artery.mitte\"");
   says(world.release("stone", "bed"), "nothing called \"bed\" holds 'stone' (nothing holds it)");
-  says(world.release("artery", "frist"), "nothing called \"frist\" holds 'artery' (did you mean \"first\"?)");
+  says(world.release("artery", "frist"), "nothing called \"frist\" holds 'artery' (known: first, second)");
   says(world.remove_tissue("plate"), "there is no tissue 'plate'");
   TissueDefinition tissue;
   tissue.name = "plate";
