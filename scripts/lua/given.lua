@@ -21,6 +21,10 @@ local function is_a(kind) return function(value) return type(value) == kind end 
 
 -- ---- kinds of value: what it is to be, and whether it is that
 
+given.number = { is = "a number", fits = finite }
+given.numbers = {
+  is = "a list of numbers { ... }", fits = function(value) return all_pass(value, nil, finite) and #value > 0 end,
+}
 given.above_zero = { is = "a number above 0", fits = function(value) return finite(value) and value > 0 end }
 given.part = {
   is = "a share between 0 and 1", fits = function(value) return finite(value) and value > 0 and value < 1 end,

@@ -37,8 +37,12 @@ end
 
 -- ---- the needle
 
+local whose = { name = given.name, port = given.three }
+local how_slack = { slack = given.above_zero }
+
 --- Draws the gallbladder out through the wall of its fundus, until its pressure is below `slack`, and leaves it.
 function technique.draw_slack(t, needle, slack)
+  given.check({ slack = slack }, how_slack, "technique.draw_slack", 2)
   local outside = needle:tip()
   needle:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 3 * mm, offset = { 8 * mm, -8 * mm, 2 * mm } })
   for _ = 1, 60 do
@@ -128,8 +132,14 @@ function technique.roll_across(port, at, along)
   return math.atan(-dot(x, along) / dot(y, along))
 end
 
+local how_about = {
+  tube = given.name, share = given.number, past = given.number, speed = given.optional(given.above_zero),
+}
+local how_clips = { tube = given.name, shares = given.numbers, open = given.above_zero, past = given.number }
+
 --- An instrument as a demo moves it about tubes: it knows how it is turned, and where its port is.
 function technique.hand(t, name, port)
+  given.check({ name = name, port = port }, whose, "technique.hand", 2)
   local self = { tool = t[name], rolled = 0 }
   --- It comes in where it waits for its port.
   function self.enter()
@@ -139,6 +149,7 @@ function technique.hand(t, name, port)
   end
   --- Open jaws come about a tube, their tips that far past its middle.
   function self.about(tube, share, past, speed)
+    given.check({ tube = tube, share = share, past = past, speed = speed }, how_about, "about", 2)
     local at, along = t:along(tube, share)
     local turn = technique.roll_across(port, at, along) - self.rolled
     turn = turn - math.pi * math.floor(turn / math.pi + 0.5) -- jaws are alike on both sides
@@ -153,6 +164,7 @@ function technique.hand(t, name, port)
   end
   --- Clips at these shares of a tube's way: jaws that come about it, then fire.
   function self.set_clips(tube, shares, open, past)
+    given.check({ tube = tube, shares = shares, open = open, past = past }, how_clips, "set_clips", 2)
     self.tool:open(open)
     self.about(tube, shares[1], -12 * mm, 150 * mm / s)
     for _, share in ipairs(shares) do

@@ -688,6 +688,22 @@ TEST(AuthorErrors, OfEndlessLoopsAreResourceFailuresWherever) {
   }
 }
 
+TEST(AuthorErrors, WhatAModulesHandIsGivenIsRefusedAtTheAuthorsLine) {
+  for (const auto& [use, said] : std::vector<std::pair<std::string, std::string>>{
+           {"technique.hand(t, 3, { 0, 0 / 0, 0 })", "name is a name in quotes, not 3"},
+           {"technique.hand(t, 'left', { 0, 0 / 0, 0 })", "port is three numbers { x, y, z }"},
+           {"technique.hand(t, 'left', { 0, 0, 0 }).about('duct', 'x', 0)", "share is a number, not \"x\""},
+           {"technique.hand(t, 'left', { 0, 0, 0 }).set_clips('duct', {}, 1, 0)",
+            "shares is a list of numbers"},
+           {"technique.draw_slack(t, t.left, -1)", "slack is a number above 0, not -1"}}) {
+    ScenarioText text = with_demo("t:wait(0.1 * s)\n" + use);
+    text.head = "local technique = require 'technique'\n";
+    const Failure failure = failure_of(text.text());
+    EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.")) << to_text(failure);
+    EXPECT_THAT(to_text(failure), ::testing::HasSubstr(said));
+  }
+}
+
 TEST(AuthorErrors, WithinAModuleNameTheExercisesLineToo) {
   ScenarioText text = with_demo("t:time_out('looked')\ntechnique.angle_of_ducts(t)");
   text.head = "local technique = require 'technique'\n";
