@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/commands.h"
+#include "organs/body_kinds.h"
 #include "play/play.h"
 #include "process/interrupt.h"
 #include "process/project.h"
@@ -81,6 +82,7 @@ std::vector<std::string> remarks(const ExerciseDefinition& exercise) {
   std::vector<std::string> lines;
   if (exercise.scene.instruments.empty())
     lines.emplace_back("the scene has no instruments: calot run plays it, calot operate does not");
+  for (std::string& line : mesh_remarks(exercise.scene)) lines.push_back(std::move(line));
   if (exercise.score.parts.empty()) return lines;
   if (exercise.step_names.empty() && exercise.api > 1)
     lines.emplace_back(

@@ -94,15 +94,10 @@ class Checker {
 
   void check_points() {
     std::vector<std::string> wrong, unused;
-    std::vector<bool> used(mesh_.points.size(), false);
-    for (const Triangle& t : mesh_.triangles) {
-      for (int node : t)
-        if (node >= 0 && node < static_cast<int>(used.size())) used[node] = true;
-    }
-    for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
+    for (std::size_t i = 0; i < mesh_.points.size(); ++i)
       if (!mesh_.points[i].allFinite()) wrong.push_back(point(i));
-      if (!used[i]) unused.push_back(point(i));
-    }
+    if (!requirements_.unused_points)
+      for (int i : unused_points(mesh_)) unused.push_back(point(static_cast<std::size_t>(i)));
     shapes_good_ = wrong.empty();
     report_if_any(wrong, "coordinates are not finite", "every coordinate must be a number");
     report_if_any(unused, "no triangle uses", "remove the points or add the missing triangles");
@@ -253,6 +248,31 @@ class Checker {
 
 std::vector<Problem> check(const TriMesh& mesh, const MeshRequirements& requirements) {
   return Checker(mesh, requirements).run();
+}
+
+std::vector<int> unused_points(const TriMesh& mesh) {
+  std::vector<bool> used(mesh.points.size(), false);
+  for (const Triangle& t : mesh.triangles)
+    for (int node : t)
+      if (node >= 0 && node < static_cast<int>(used.size())) used[node] = true;
+  std::vector<int> out;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (!used[i]) out.push_back(static_cast<int>(i));
+  return out;
+}
+
+TriMesh without_unused_points(const TriMesh& mesh) {
+  const std::vector<int> unused = unused_points(mesh);
+  if (unused.empty()) return mesh;
+  TriMesh out;
+  std::vector<int> now(mesh.points.size(), -1);
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    if (std::binary_search(unused.begin(), unused.end(), static_cast<int>(i))) continue;
+    now[i] = static_cast<int>(out.points.size());
+    out.points.push_back(mesh.points[i]);
+  }
+  for (const Triangle& t : mesh.triangles) out.triangles.push_back({now[t[0]], now[t[1]], now[t[2]]});
+  return out;
 }
 
 double enclosed_volume(const TriMesh& mesh) {

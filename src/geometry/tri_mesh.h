@@ -19,13 +19,18 @@ struct MeshRequirements {
   bool closed = true;  ///< each edge in two triangles, outward orientation; false allows a boundary
   /// Edges at one point: the cost of a subdivision surface grows with the third power of the most.
   int most_edges_at_a_point = 40;
-  int counted_from = 0;  ///< by messages, points and triangles: 1 for an OBJ file
+  int counted_from = 0;        ///< by messages, points and triangles: 1 for an OBJ file
+  bool unused_points = false;  ///< there may be points that no triangle uses
 };
 
 /// Every reason why the mesh cannot be a control mesh, each with the triangles or points concerned: not
 /// finite, index out of range, unused point, degenerate triangle, non-manifold edge or vertex, inconsistent
 /// winding, open boundary, inside out, self-touching; or too many edges at a point, alone. Empty when the mesh is good.
 std::vector<Problem> check(const TriMesh& mesh, const MeshRequirements& requirements = {});
+
+/// Points that no triangle uses, increasing, and the mesh without them. Indices must be in range.
+std::vector<int> unused_points(const TriMesh& mesh);
+TriMesh without_unused_points(const TriMesh& mesh);
 
 /// Signed volume of a closed mesh, m^3; positive when triangles face outward.
 double enclosed_volume(const TriMesh& mesh);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/suggest.h"
+#include "geometry/mesh_io.h"
 
 namespace calot {
 
@@ -28,6 +29,21 @@ Failure of_organ(Failure failure, const OrganDefinition& definition) {
     if (problem.place.line == 0) problem.place = {"", 0, ".shape"};
   }
   return failure;
+}
+
+std::vector<std::string> mesh_remarks(const SceneDefinition& scene) {
+  std::vector<std::string> lines;
+  for (const OrganDefinition& organ : scene.anatomy.organs) {
+    const std::string* path = mesh_path(organ.shape);
+    const Result<TriMesh> mesh = path != nullptr ? read_obj(*path, 1) : TriMesh{};
+    if (!mesh) continue;
+    const std::vector<int> unused = unused_points(mesh.value());
+    if (unused.empty()) continue;
+    lines.push_back(fmt::format("{}: {} of its points {} left out, as no face uses {}: the first is point {}",
+                                *path, unused.size(), unused.size() == 1 ? "is" : "are",
+                                unused.size() == 1 ? "it" : "them", unused.front() + 1));
+  }
+  return lines;
 }
 
 Result<RestedOrgan> make_organ(const BodyKind& kind, const OrganDefinition& definition,

@@ -79,6 +79,9 @@ Result<TriMesh> rigid_surface(const OrganDefinition& definition);
 /// What is wrong with the scene's mesh files, each with organ and field; nothing is solved for.
 std::vector<Problem> mesh_problems(const SceneDefinition& scene);
 
+/// What an author should know of them, a line each: points that are left out, as no triangle uses them.
+std::vector<std::string> mesh_remarks(const SceneDefinition& scene);
+
 Result<RestedOrgan> make_hollow_organ(const OrganDefinition& definition, const OrganSetting& setting);
 /// Takes away a region that an organ is held by, and leaves it where it is. Fails (scenario) where it has none of that name.
 Result<bool> release_held(Organ& organ, const std::string& held);

@@ -87,14 +87,15 @@ std::optional<Failure> check_size(const TriMesh& mesh, const std::string& organ)
 Result<TriMesh> sound_mesh(const OrganDefinition& definition) {
   Result<TriMesh> mesh = unstressed_mesh(definition);
   if (!mesh) return of_organ(mesh.failure(), definition);
-  if (std::optional<Failure> failure = check_size(mesh.value(), definition.name)) {
+  const bool file = std::holds_alternative<MeshFile>(definition.shape);
+  const TriMesh used = file ? without_unused_points(mesh.value()) : mesh.value();
+  if (std::optional<Failure> failure = check_size(used, definition.name)) {
     failure->problems.front().place.path = ".shape";
     return *failure;
   }
-  const bool file = std::holds_alternative<MeshFile>(definition.shape);
-  std::vector<Problem> problems = check(mesh.value(), {.counted_from = file ? 1 : 0});
+  std::vector<Problem> problems = check(mesh.value(), {.counted_from = file ? 1 : 0, .unused_points = file});
   if (!problems.empty()) return of_organ({FailureKind::scenario, std::move(problems)}, definition);
-  return mesh;
+  return used;
 }
 
 /// Control mesh in the world whose limit surface passes through the unstressed vertices; a mesh file is a

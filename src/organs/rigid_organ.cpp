@@ -25,8 +25,9 @@ Failure wrong_mesh(const std::string& what, const std::string& hint) {
 Result<TriMesh> file_surface(const RigidShape& rigid) {
   Result<TriMesh> mesh = read_obj(rigid.path, rigid.scale);
   if (!mesh) return mesh;
+  TriMesh used = without_unused_points(mesh.value());
   Eigen::AlignedBox3d box;
-  for (const Vec3& p : mesh->points) box.extend(p);
+  for (const Vec3& p : used.points) box.extend(p);
   const double size = box.diagonal().norm();
   if (!(size >= least_size && size <= largest_size))
     return wrong_mesh(
@@ -37,9 +38,10 @@ Result<TriMesh> file_surface(const RigidShape& rigid) {
     return wrong_mesh(fmt::format("has {} triangles", mesh->triangles.size()),
                       fmt::format("simplify it to at most {}", most_contact_triangles));
   const int any = static_cast<int>(mesh->points.size());
-  std::vector<Problem> problems = check(mesh.value(), {.most_edges_at_a_point = any, .counted_from = 1});
+  std::vector<Problem> problems =
+      check(mesh.value(), {.most_edges_at_a_point = any, .counted_from = 1, .unused_points = true});
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
-  TriMesh fine = with_short_edges(std::move(mesh).value(), longest_edge, most_contact_triangles);
+  TriMesh fine = with_short_edges(std::move(used), longest_edge, most_contact_triangles);
   if (fine.triangles.size() > most_contact_triangles)
     return wrong_mesh(fmt::format("has too large a surface to be touched every {:g} mm", longest_edge / mm),
                       "make the thing smaller, or simpler");
