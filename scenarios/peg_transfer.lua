@@ -3,7 +3,7 @@
 
 local calot = require "calot"
 local technique = require "technique"
-local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
+local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
 local plus, minus, unit, length = technique.plus, technique.minus, technique.unit, technique.length
 
 local board = -120 * mm
@@ -74,8 +74,9 @@ return calot.exercise {
       },
       ports = { scope = { -55 * mm, -10 * mm, 10 * mm }, port_left = ports.left, port_right = ports.right },
       instruments = {
-        left = { port = "port_left", type = "maryland_dissector" },
-        right = { port = "port_right", type = "maryland_dissector" },
+        -- A push on the board hurts nobody.
+        left = { port = "port_left", type = "maryland_dissector", force_limit = 30 * N },
+        right = { port = "port_right", type = "maryland_dissector", force_limit = 30 * N },
       },
       laparoscope = { port = "scope", angle = 30 * deg, look_at = "ring.centre", distance = 115 * mm },
       solver = { motion = "dynamic" },
@@ -136,17 +137,17 @@ return calot.exercise {
     --- The ring's middle is carried to a place.
     local function carry(hand, to, speed) hand:move_by(minus(to, t:place("ring.centre")), { speed = speed }) end
 
-    take(t.left, "left", "ring.rim_3", 1.5 * mm)
+    take(t.left, "left", "ring.rim_3", 1 * mm)
     carry(t.left, plus(first, { 0, 0, peg_height + 16 * mm }), 60 * mm / s)
     carry(t.left, plus(first, { 19 * mm, -5 * mm, peg_height + 20 * mm }), 60 * mm / s)
     if p.demo == "clumsy" then t.left:open() end
     take(t.right, "right", "ring.rim_1", 3 * mm)
-    t.left:open()
+    t.left:open(26 * deg)
     t.left:move_by({ -20 * mm, -10 * mm, 12 * mm }, { speed = 60 * mm / s })
     carry(t.right, plus(second, { 0, 0, peg_height + 16 * mm }), 60 * mm / s)
-    carry(t.right, plus(second, { 0, 0, rod + 3 * mm }), 40 * mm / s)
-    t.right:open()
-    t.right:move_by({ 8 * mm, -5 * mm, 30 * mm }, { speed = 80 * mm / s })
+    carry(t.right, plus(second, { 0, 0, rod + 9 * mm }), 40 * mm / s)
+    t.right:open(26 * deg)
+    t.right:move_by({ 8 * mm, -6 * mm, 26 * mm }, { speed = 80 * mm / s })
     t:wait(1 * s)
   end,
 

@@ -255,8 +255,9 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   return out;
 }
 
-double asked_share(const Field& field, ToolIndex instrument) {
-  return largest_demand(field, instrument, false).share();
+Asked asked_of_pads(const Field& field, ToolIndex instrument) {
+  const Demand demand = largest_demand(field, instrument, false);
+  return {demand.share(), demand.turns};
 }
 
 }  // namespace calot

@@ -40,8 +40,13 @@ double holding_limit(const Tool& tool);
 /// The same of what the tool holds now: clips between its pads may give way before these do.
 double holding_limit(const Field& field, ToolIndex instrument);
 
-/// The largest share of what a tool's pads hold, by pull or couple, that is asked of them; above 1 it is not held.
-double asked_share(const Field& field, ToolIndex instrument);
+/// What is asked of a tool's pads.
+struct Asked {
+  double share = 0;    ///< of what they hold; above 1 it is not held
+  bool turns = false;  ///< by a couple about the shaft; else by a pull
+};
+/// By the pull or the couple, whichever comes nearer to what is held of it.
+Asked asked_of_pads(const Field& field, ToolIndex instrument);
 
 /// What has been drawn off its pad by more than the teeth reach is let go, step by step. Fails (simulation) where it
 /// finds no rest; the grip holds as before then.

@@ -201,6 +201,9 @@ class MetTools {
     }
   }
 
+  /// A balance that takes more is not worth looking for: a shorter way may have one.
+  static constexpr int most_iterations = 60;
+
   NewtonResult balance() {
     std::vector<ContactSearch> searches(bodies_.size());
     std::vector<Member> members;
@@ -210,7 +213,9 @@ class MetTools {
     }
     NewtonWorkspace work{BlockMatrix(0, {})};
     GroupPatterns patterns;
-    return settle(members, joins_, patterns, {}, work);
+    NewtonSettings settings;
+    settings.stop = [left = most_iterations]() mutable { return left-- <= 0; };
+    return settle(members, joins_, patterns, settings, work);
   }
 
   /// Writes where the tools are, and what they press on others and on ground with.

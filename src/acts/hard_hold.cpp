@@ -71,14 +71,50 @@ void catch_hard(Field& field, ToolIndex instrument, const Clasped& held) {
           {instrument, jaw, point, to_jaw * organ.body->skin_point(point, organ.state.x), grip_stiffness});
   }
   constexpr double most = 0.95;  // of what friction holds: what was caught would slide again at once
-  if (asked_share(field, instrument) > most) return take_away(organ, instrument);
+  if (asked_of_pads(field, instrument).share > most) return take_away(organ, instrument);
   sort_grips(organ);
 }
 
-void let_slide_on_hard(Field& field, ToolIndex instrument) {
-  if (!holds_hard(field, instrument) || asked_share(field, instrument) <= 1) return;
-  for (Organ& organ : field.organs)
-    if (!is_bitten(organ)) take_away(organ, instrument);
+namespace {
+
+/// Moves what holds a point on, in the pad's plane, so that this share of its way from there is left.
+void turn_on(const Organ& organ, const Pose& to_jaw, double left, GripPoint& grip) {
+  Vec3 on = to_jaw * organ.body->skin_point(grip.skin_point, organ.state.x) - grip.local;
+  on.x() = 0;
+  grip.local += (1 - left) * on;
+}
+
+bool held_by_both(const Organ& organ, ToolIndex instrument) {
+  std::array<bool, 2> held{};
+  for (const GripPoint& grip : organ.grips)
+    if (grip.instrument == instrument) held[static_cast<std::size_t>(grip.jaw)] = true;
+  return held[0] && held[1];
+}
+
+}  // namespace
+
+bool let_slide_on_hard(Field& field, ToolIndex instrument) {
+  constexpr double left = 0.98;  // of what friction holds, after it
+  const Asked asked = holds_hard(field, instrument) ? asked_of_pads(field, instrument) : Asked{};
+  if (asked.share <= 1) return false;
+  const Tool& tool = field.tool(instrument);
+  const std::array<Pose, 2> to_jaw = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
+                                      jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  for (Organ& organ : field.organs) {
+    if (is_bitten(organ)) continue;
+    if (!asked.turns) {
+      take_away(organ, instrument);
+      continue;
+    }
+    for (GripPoint& grip : organ.grips)
+      if (grip.instrument == instrument)
+        turn_on(organ, to_jaw[static_cast<std::size_t>(grip.jaw)], left / asked.share, grip);
+    std::erase_if(organ.grips, [&](const GripPoint& grip) {
+      return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
+    });
+    if (!held_by_both(organ, instrument)) take_away(organ, instrument);
+  }
+  return true;
 }
 
 }  // namespace calot

@@ -1,9 +1,8 @@
 #pragma once
 // How teeth hold what is hard. They do not sink in: friction holds what both pads press on (rubbing.h). Where it neither
 // slides nor asks for more than friction holds, the places that the pads touch are held in the pads' frames, by the springs
-// of a grip (grip.h): so what is carried rests between the pads instead of being balanced on them anew in each step. As soon
-// as more is asked of it than friction holds (holding_limit(), couple_limit()) the springs are gone, and it slides by
-// friction.
+// of a grip (grip.h): so what is carried rests between the pads instead of being balanced on them anew in each step. Where
+// more is asked of it than friction holds (holding_limit(), couple_limit()) it turns between the pads, or slides.
 
 #include "acts/pads.h"
 #include "field/field.h"
@@ -19,7 +18,9 @@ bool rests_on_hard(const Field& field, ToolIndex instrument);
 /// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.
 void catch_hard(Field& field, ToolIndex instrument, const Clasped& held);
 
-/// Takes those springs away where more is asked of a tool than friction holds.
-void let_slide_on_hard(Field& field, ToolIndex instrument);
+/// Where more is asked of a tool than friction holds: what a couple turns is turned on between the pads until it is asked no
+/// more where it lies now (a return to the limit, as in plasticity), and what leaves the pads is let go; what is pulled loses
+/// its springs, and slides by friction. Whether anything of that was done.
+bool let_slide_on_hard(Field& field, ToolIndex instrument);
 
 }  // namespace calot

@@ -110,8 +110,13 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     const ToolIndex index(i);
-    let_slide_on_hard(field, index);
     const std::string organ = held_organ(field, index);
+    const double pull = holds_hard(field, index) ? pad_load(field, index).pull.norm() : 0;
+    if (let_slide_on_hard(field, index)) {
+      if (!tool.slipping && !slipped_before[i])
+        events.push_back({EventKind::slip, 0, tool.definition.name, organ, pull});
+      tool.slipping = true;
+    }
     if (organ.empty() || !tool.jaws_rest() || holds_hard(field, index)) continue;
     if (Result<bool> left = leave_pads(field, index, statistics); !left) return left.failure();
     const Result<Slipped> slipped =

@@ -38,6 +38,8 @@ class RigidBody : public Body {
   double strain_energy(const VecX& x) const override { return value(x); }
   double max_stretch(const VecX& x) const override { return 1 + affine_->distortion(x); }
   bool is_retarded() const override { return false; }
+  bool turns_as_a_whole() const override { return true; }
+  VecX curved(const VecX& x, const VecX& step) const override { return affine_->curved(x, step); }
 
   const Tessellation& skin() const override { return skin_; }
   const std::vector<double>& skin_areas() const override { return skin_areas_; }

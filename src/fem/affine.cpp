@@ -112,6 +112,21 @@ Eigen::Matrix4d AffineBody::mass(const SolidMoments& solid, double density) cons
          (solid.volume * middle * middle.transpose() + slopes_.transpose() * solid.second * slopes_);
 }
 
+AffineBody::Coordinates AffineBody::curved(const Coordinates& x, const Coordinates& step) const {
+  constexpr double least_turn = 1e-4;  // rad: what a straight way strains then is rounding
+  const Mat3 turned = pose(x).linear();
+  const Mat3 end = turned.transpose() * deformation(x + step);
+  const Mat3 skew = 0.5 * (end - end.transpose()), stretch = 0.5 * (end + end.transpose());
+  const Vec3 turn(skew(2, 1), skew(0, 2), skew(1, 0));
+  if (turn.norm() < least_turn) return step;
+  const Mat3 there = turned * turned_about(turn) * stretch;
+  const Vec3 middle = columns(x + step).rowwise().mean();
+  Coordinates out;
+  for (int k = 0; k < nodes; ++k)
+    out.segment<3>(3 * k) = middle + there * (rest_[k] - centroid_) - x.segment<3>(3 * k);
+  return out;
+}
+
 Pose AffineBody::pose(const Coordinates& x) const {
   Nodes before;
   for (int k = 0; k < nodes; ++k) before.col(k) = rest_[k];

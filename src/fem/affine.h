@@ -56,6 +56,10 @@ class AffineBody {
   /// body's own is a quarter of its mass on the diagonal.
   Eigen::Matrix4d mass(const SolidMoments& solid, double density) const;
 
+  /// A step from x to where it leads if what of it turns the body is followed along a circle, and its strain and shift as they
+  /// are: the same to first order, without the strain of a straight way.
+  Coordinates curved(const Coordinates& x, const Coordinates& step) const;
+
   /// The rotation and shift of the nodes as they were made that come nearest to x, by the body's mass.
   Pose pose(const Coordinates& x) const;
   /// The largest strain, to first order: half the largest eigenvalue of A'A - I in size.

@@ -358,6 +358,15 @@ std::vector<std::vector<int>> GroupProblem::cliques(bool close) const {
   return out;
 }
 
+VecX GroupProblem::curved(const VecX& x, VecX step) const {
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const Range& range = ranges_[k];
+    if (members_[k].body.turns_as_a_whole())
+      step.segment(range.first, range.size) = members_[k].body.curved(part_of(k, x), part_of(k, step));
+  }
+  return step;
+}
+
 double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
   std::vector<double> shares(problems_.size());
   for_each_member(

@@ -66,6 +66,7 @@ class GroupProblem : public ConstrainedEnergy {
   VecX constraint_scales() const override;
   VecX compliances() const override;
   void prepare(NewtonWorkspace& work) const override;
+  VecX curved(const VecX& x, VecX step) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
   Workers* workers() const override;
 

@@ -49,6 +49,9 @@ class ConstrainedEnergy {
   /// room in the matrix for what the solve may couple.
   virtual void prepare(NewtonWorkspace&) const {}
   /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
+  /// A step from x to where it leads along the ways that bodies really go, the same to first order: what turns as a whole is
+  /// strained by a straight step.
+  virtual VecX curved(const VecX& /*x*/, VecX step) const { return step; }
   virtual double safe_share(const VecX& x, const VecX& step) const = 0;
   /// Who share the work of a solve; none: the caller's thread does it.
   virtual Workers* workers() const { return nullptr; }

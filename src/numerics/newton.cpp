@@ -161,7 +161,7 @@ class Iteration {
     const Timed timed(result_.solve_s);
     VecX step = -work_.factor.solve(state_.residual);
     dmultipliers = work_.border.keep(state_.constraints, step);
-    return step;
+    return problem_.curved(x_, std::move(step));
   }
 
   /// Second-order correction (Nocedal and Wright, section 15.6): a whole step ends where the constraints hold, not where

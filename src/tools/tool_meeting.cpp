@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "group/body_problem.h"
 #include "tools/part_path.h"
@@ -112,7 +114,7 @@ constexpr double deeper = contact_guard, look_each = 1e-3;
 
 template <class Holds>
 bool on_all_of_way(double share, double travel, const Holds& holds) {
-  const int looks = 1 + static_cast<int>(share * travel / look_each);
+  const int looks = 1 + static_cast<int>(travel / look_each);
   for (int k = 1; k <= looks; ++k)
     if (!holds(share * k / looks)) return false;
   return true;
@@ -124,6 +126,47 @@ struct MeetingWay {
   std::array<InstrumentPose, 2> from, to;
   double travel = 0;  ///< m, of both together at most
   InstrumentPose pose(int side, double share) const { return interpolate(from[side], to[side], share); }
+  double travel_until(double share) const {
+    double sum = 0;
+    for (int side = 0; side < 2; ++side) sum += travel_bound(*tools[side], from[side], pose(side, share));
+    return sum;
+  }
+
+  /// Both tools after a share of it.
+  struct Look {
+    std::array<std::vector<PosedPart>, 2> parts;
+    std::array<std::vector<Shape>, 2> cores;
+  };
+  /// Many points are looked at after the same shares.
+  const Look& look(double share) const {
+    const auto [found, fresh] = seen_.try_emplace(share);
+    for (int side = 0; fresh && side < 2; ++side) {
+      const InstrumentPose there = pose(side, share);
+      for (int part = 0; part < shapes_per_tool; ++part)
+        found->second.parts[side].emplace_back(*tools[side], there, part);
+      for (const Shape& shape : PosedTool(*tools[side], tool_coordinates(there)).shapes)
+        found->second.cores[side].push_back(core_of(contact_shape(shape)));
+    }
+    return found->second;
+  }
+
+  /// That of a tool's part, until a share of it.
+  const PartPath& path(int side, int part, double share) const {
+    KnownPath& known = paths_[side][part];
+    if (!known.path || known.share != share) {
+      known.path.emplace(*tools[side], part, from[side], pose(side, share));
+      known.share = share;
+    }
+    return *known.path;
+  }
+
+ private:
+  struct KnownPath {
+    std::optional<PartPath> path;
+    double share = 0;
+  };
+  mutable std::map<double, Look> seen_;
+  mutable std::array<std::array<KnownPath, shapes_per_tool>, 2> paths_;
 };
 
 /// The share of the way, `share` at most, on which a point of tool `side` that is inside the core of the other's `part`
@@ -132,11 +175,9 @@ struct MeetingWay {
 double share_no_deeper(const MeetingWay& way, int side, const ToolPoint& point, int part, double gap,
                        double share) {
   const auto stays = [&](double at_share) {
-    const Vec3 there =
-        PosedPart(*way.tools[side], way.pose(side, at_share), point.part).frame() * point.local;
-    const PosedTool then(*way.tools[1 - side], tool_coordinates(way.pose(1 - side, at_share)));
-    const Shape core_then = offset(core_of(contact_shape(then.shapes[part])), point.radius);
-    return signed_distance(core_then, there) >= gap - deeper;
+    const MeetingWay::Look& then = way.look(at_share);
+    const Vec3 there = then.parts[side][point.part].frame() * point.local;
+    return signed_distance(offset(then.cores[1 - side][part], point.radius), there) >= gap - deeper;
   };
   while (share > 0 && !on_all_of_way(share, way.travel, stays)) share = share > 1e-6 ? 0.5 * share : 0;
   return share;
@@ -147,7 +188,7 @@ double share_no_deeper(const MeetingWay& way, int side, const ToolPoint& point, 
 /// with the square of the share.
 double share_kept_off(const MeetingWay& way, int side, const ToolPoint& point, const Vec3& at, int part,
                       const Shape& core, double gap, double share) {
-  const Tool &own = *way.tools[side], &other = *way.tools[1 - side];
+  const Tool& own = *way.tools[side];
   for (int halvings = 0; halvings < 60; ++halvings) {
     const InstrumentPose own_end = way.pose(side, share);
     const double bend = point_bend(own, way.from[side], own_end, at);
@@ -155,8 +196,8 @@ double share_kept_off(const MeetingWay& way, int side, const ToolPoint& point, c
       share *= 0.5;
       continue;
     }
-    const Vec3 motion = PosedPart(own, own_end, point.part).frame() * point.local - at;
-    const PartPath path(other, part, way.from[1 - side], way.pose(1 - side, share));
+    const Vec3 motion = way.look(share).parts[side][point.part].frame() * point.local - at;
+    const PartPath& path = way.path(1 - side, part, share);
     return share * path.share_apart(offset(core, bend), at, motion, contact_keep);
   }
   return 0;
@@ -170,8 +211,8 @@ double ToolMeeting::safe_share(const VecX& x, const VecX& step, double share) co
     way.tools[side] = sides_[side].tool;
     way.from[side] = pose_at(unknowns(side, x));
     way.to[side] = pose_at(unknowns(side, x) + unknowns(side, step));
-    way.travel += travel_bound(*way.tools[side], way.from[side], way.pose(side, share));
   }
+  way.travel = way.travel_until(share);
   if (way.travel == 0) return share;
   const double reach = way.travel / (1 - contact_keep);
   for_near(x, reach,
@@ -180,8 +221,11 @@ double ToolMeeting::safe_share(const VecX& x, const VecX& step, double share) co
              const Shape core = offset(core_of(shape), point.radius);
              const double gap = signed_distance(core, at);
              if ((1 - contact_keep) * gap > way.travel) return;
+             const double before = share;
              share = gap <= 0 ? share_no_deeper(way, side, point, part, gap, share)
                               : share_kept_off(way, side, point, at, part, core, gap, share);
+             // What is left of the way reaches fewer points.
+             if (share < before) way.travel = way.travel_until(share);
            });
   return share;
 }

@@ -157,5 +157,27 @@ TEST(AffineBody, WhatHasNoVolumeNoThicknessOrNoStiffnessIsRefused) {
   EXPECT_TRUE(AffineBody::create(box_moments({1, 1e-3, 1})));
 }
 
+TEST(AffineBody, ACurvedStepIsTheStraightOneToFirstOrderAndTurnsWithoutStrain) {
+  Rng rng(11);
+  const AffineBody body = AffineBody::create(box_moments(Vec3(4e-3, 3e-3, 2e-3)), 1e8).value();
+  Pose there = Pose::Identity();
+  there.rotate(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
+  const AffineBody::Coordinates x = body.placed(there);
+  AffineBody::Coordinates step;
+  const Vec3 turn(20, -30, 10), shift(1e-3, 2e-3, -1e-3);  // rad and m, in a unit of the step
+  for (int k = 0; k < AffineBody::nodes; ++k) {
+    const Vec3 at = x.segment<3>(3 * k);
+    step.segment<3>(3 * k) = turn.cross(at) + shift + test::random_vector(rng, 1e-7);
+  }
+  std::vector<double> off;
+  for (const double share : {1e-2, 5e-3}) {
+    const AffineBody::Coordinates straight = share * step, curved = body.curved(x, straight);
+    off.push_back((curved - straight).norm());
+    EXPECT_LT(body.distortion(x + curved), 1e-3 * body.distortion(x + straight)) << share;
+  }
+  EXPECT_GT(off[1], 1e-5) << "it turns far";
+  EXPECT_NEAR(off[0] / off[1], 4, 0.1) << "they part by the square of the way";
+}
+
 }  // namespace
 }  // namespace calot
