@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "acts/clips.h"
 #include "acts/injury.h"
 #include "body/rod_body.h"
 #include "field/between_jaws.h"
@@ -16,7 +17,7 @@ void slide_out(Organ& organ, ToolIndex instrument) {
   organ.unfelt.insert(std::lower_bound(organ.unfelt.begin(), organ.unfelt.end(), instrument), instrument);
 }
 
-/// What is too short to be divided slides out of the blades.
+/// What is too short to be divided, or has a clip there, slides out of the blades.
 Result<bool> divide_tube(Field& field, ToolIndex instrument, const TubeBetween& tube,
                          std::vector<WorldEvent>& events) {
   Organ& whole = field.organ(tube.organ);
@@ -25,7 +26,7 @@ Result<bool> divide_tube(Field& field, ToolIndex instrument, const TubeBetween& 
   const double share = whole.body->as_tube()->share_at(tube.at);
   const std::string cut = injury_at(field, whole, whole.definition.injury.cut, tube.at);
   const std::string leaking = injury_anywhere(field, whole, whole.definition.injury.unclipped);
-  if (!can_be_divided(whole, share)) {
+  if (!can_be_divided(whole, share) || !free_of_clips(whole, share, 0, "divided")) {
     slide_out(whole, instrument);
     return false;
   }

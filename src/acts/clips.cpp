@@ -95,6 +95,8 @@ void fire(Field& field, ToolIndex instrument, std::vector<WorldEvent>& events) {
   for (const TubeBetween& tube : tubes_between(field, instrument)) {
     const Organ& organ = field.organ(tube.organ);
     const RodBody& rod = *organ.body->as_tube();
+    // Where a clip lies its legs find metal.
+    if (!free_of_clips(organ, rod.share_at(tube.at), row.wire, "clipped")) continue;
     const double open = left_open(tool, tube, rod, row.leg);
     const Mat3 to_tube = rod.frame_at(tube.at, organ.state.x).transpose() * hinge;
     Clip clip{row.size, tube.at, open, to_tube.col(2), to_tube.col(0), tip - tube.place.z()};

@@ -101,6 +101,21 @@ TEST(Clips, FallBesideATubeAndAreCounted) {
   EXPECT_TRUE(acting.world.report().organs[0].clips.empty());
 }
 
+TEST(Clips, AreSetOnNoOtherClipAndNotCutThrough) {
+  test::Acting applier(test::across(InstrumentType::clip_applier));
+  ASSERT_TRUE(applier.reach(0.35) && applier.fire() &&
+              applier.go(applier.world.report().instruments[0].pose, 2));
+  ASSERT_EQ(applier.world.report().organs[0].clips.size(), 1u);
+  ASSERT_TRUE(applier.fire());
+  EXPECT_EQ(applier.world.report().organs[0].clips.size(), 1u);
+  EXPECT_EQ(applier.count(EventKind::clip_dropped), 1) << "its legs find the first one";
+  test::Acting scissors(test::across(InstrumentType::scissors));
+  ASSERT_TRUE(scissors.world.clip("duct", 0.5, ClipSize::ml));
+  ASSERT_TRUE(scissors.reach() && scissors.go(test::about(0), 12));
+  EXPECT_EQ(scissors.count(EventKind::cut), 0);
+  EXPECT_EQ(scissors.world.report().organs.size(), 1u);
+}
+
 TEST(Clips, AreSetOnceHoweverLongTheTriggerIsHeld) {
   Acting acting(across(InstrumentType::clip_applier));
   ASSERT_TRUE(acting.go(about(applier_jaw, tube_depth - 20e-3), 2) && acting.go(past(5e-3), 6));
