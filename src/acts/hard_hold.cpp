@@ -10,6 +10,7 @@
 #include "field/teeth.h"
 #include "motion/rubbing.h"
 #include "motion/settle_field.h"
+#include "motion/tool_loads.h"
 
 namespace calot {
 
@@ -19,18 +20,48 @@ bool holds_hard(const Field& field, ToolIndex instrument) {
   });
 }
 
+namespace {
+
+/// Calls use(tool, which shape) for what touches an organ of all that tools are.
+template <class Use>
+void for_tool_touches(const Field& field, const Organ& organ, const Use& use) {
+  const ContactLoads now = contact_loads(field, organ, present_poses(field));
+  for (const Touch& touch : organ.search.touching(*organ.body, organ.state.x, now)) {
+    const FieldShape which = field.shape(touch.shape);
+    if (!which.is_ground()) use(which);
+  }
+}
+
+}  // namespace
+
 bool rests_on_hard(const Field& field, ToolIndex instrument) {
   if (!field.tool(instrument).geometry.has_jaws()) return false;
   for (const Organ& organ : field.organs) {
     if (is_bitten(organ)) continue;
     std::array<bool, 2> touched{};
-    const ContactLoads now = contact_loads(field, organ, present_poses(field));
-    for (const Touch& touch : organ.search.touching(*organ.body, organ.state.x, now)) {
-      const FieldShape which = field.shape(touch.shape);
-      if (which.tool == instrument && !which.is_shaft() && !which.is_ground())
+    for_tool_touches(field, organ, [&](const FieldShape& which) {
+      if (which.tool == instrument && !which.is_shaft())
         touched[static_cast<std::size_t>(which.jaw())] = true;
-    }
+    });
     if (touched[0] && touched[1]) return true;
+  }
+  return false;
+}
+
+bool touches_hard(const Field& field) {
+  bool any = false;
+  for (const Organ& organ : field.organs)
+    if (!is_bitten(organ)) for_tool_touches(field, organ, [&](const FieldShape&) { any = true; });
+  return any;
+}
+
+bool wedges_hard(const Field& field) {
+  constexpr double beyond = 20;  // times a hand's strength
+  if (!touches_hard(field)) return false;
+  const std::vector<ToolLoad> loads = tool_loads(field);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const double jaws = std::max(loads[i].on_jaws[0].norm(), loads[i].on_jaws[1].norm());
+    if (std::max(loads[i].force.norm(), jaws) > beyond * field.tools[i].definition.hand_force) return true;
   }
   return false;
 }

@@ -15,6 +15,11 @@ bool holds_hard(const Field& field, ToolIndex instrument);
 /// Whether both jaws of a tool touch something hard: blades, which close on all else as they are asked to, cut nothing of it.
 bool rests_on_hard(const Field& field, ToolIndex instrument);
 
+/// Whether any tool touches something hard.
+bool touches_hard(const Field& field);
+/// Whether something hard presses a tool as no hand could: it is wedged, in a step that found no balance.
+bool wedges_hard(const Field& field);
+
 /// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.
 void catch_hard(Field& field, ToolIndex instrument, const Clasped& held);
 

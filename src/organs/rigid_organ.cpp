@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/units.h"
@@ -13,7 +14,8 @@ namespace calot {
 namespace {
 
 using units::mm;
-constexpr double spacing = 1.5 * mm;     // contact points lie between
+/// m: contact points lie between. What is sharp has them closer, or a tool's edge would come in between two.
+double spacing_of(const RigidShape& rigid) { return std::clamp(rigid.rounding, 0.5 * mm, 1.5 * mm); }
 constexpr double longest_edge = 2 * mm;  // of a file's surface: what touches it is thicker
 constexpr double least_size = 2 * mm, largest_size = 200 * mm;
 constexpr std::size_t most_contact_triangles = 12000;
@@ -51,9 +53,9 @@ Result<TriMesh> file_surface(const RigidShape& rigid) {
 /// Before it is turned.
 Result<TriMesh> upright_surface(const RigidShape& rigid) {
   if (rigid.path.empty() && rigid.ring == 0)
-    return rounded_box(rigid.size, rigid.rounding, rigid.centre, spacing);
+    return rounded_box(rigid.size, rigid.rounding, rigid.centre, spacing_of(rigid));
   Result<TriMesh> surface =
-      rigid.ring > 0 ? ring_surface(rigid.ring, rigid.rounding, spacing) : file_surface(rigid);
+      rigid.ring > 0 ? ring_surface(rigid.ring, rigid.rounding, spacing_of(rigid)) : file_surface(rigid);
   if (surface)
     for (Vec3& p : surface->points) p += rigid.centre;
   return surface;

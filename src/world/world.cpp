@@ -13,6 +13,7 @@
 #include "acts/exchange.h"
 #include "acts/ground_injury.h"
 #include "acts/hands.h"
+#include "acts/hard_hold.h"
 #include "base/hash.h"
 #include "base/suggest.h"
 #include "fem/assembly.h"
@@ -137,7 +138,18 @@ std::uint64_t World::Impl::hash(std::uint64_t but_steps) const {
 }
 
 Result<std::vector<WorldEvent>> World::Impl::move_tools(const std::vector<InstrumentPose>& commands) {
-  return advance(field, bring_tools(field, commands, report.instruments), report.statistics);
+  const std::vector<InstrumentPose> to = bring_tools(field, commands, report.instruments);
+  if (field.step_time == 0 || !touches_hard(field)) return advance(field, to, report.statistics);
+  const FieldState before = field_state(field);
+  Result<std::vector<WorldEvent>> events = advance(field, to, report.statistics);
+  if (!events || !report.statistics.cut_short || !wedges_hard(field)) return events;
+  // The way that tools were to go wedges what is hard: they stay, and the time passes.
+  calot::restore(field, before);
+  SolveStatistics again;
+  events = advance(field, present_poses(field), again);
+  report.statistics.newton_iterations += again.newton_iterations;
+  report.statistics.factorisations += again.factorisations;
+  return events;
 }
 
 void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, double duration,

@@ -128,6 +128,7 @@ class Squeeze {
     const std::string rims[] = {"thing.rim_1", "thing.rim_2", "thing.rim_3", "thing.rim_4"};
     const std::string place = ring ? rims[rng_.next() % 4] : "thing.centre";
     const Vec3 at = world_.landmark(place) + test::random_vector(rng_, 0.15 * largest_);
+    if ((at - trocars[k]).norm() > 220 * mm) return;  // it has rolled away
     const Vec3 back = (trocars[k] - at).normalized();
     here_[k].roll = rng_.uniform(-1.6, 1.6);
     go(k, at + 25 * mm * back, 45 * deg, 6);
