@@ -6,7 +6,9 @@
 #include "acts/blades.h"
 #include "acts/close_within_pinch.h"
 #include "acts/follow.h"
+#include "acts/hard_hold.h"
 #include "acts/jaw_acts.h"
+#include "field/field_state.h"
 #include "field/field_tissues.h"
 #include "field/grip.h"
 #include "field/take_hold.h"
@@ -95,6 +97,21 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   feel_again(field);
   grow_damage(field);
   tears.judge(field, events);
+  return events;
+}
+
+Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targets,
+                                                 SolveStatistics& statistics) {
+  if (field.step_time == 0 || !touches_hard(field)) return advance(field, targets, statistics);
+  const FieldState before = field_state(field);
+  Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
+  if (!events || !statistics.cut_short || !wedges_hard(field)) return events;
+  restore(field, before);
+  // With a budget of its own: what was tried has spent the step's.
+  SolveStatistics again;
+  events = advance(field, present_poses(field), again);
+  statistics.newton_iterations += again.newton_iterations;
+  statistics.factorisations += again.factorisations;
   return events;
 }
 

@@ -18,4 +18,9 @@ namespace calot {
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,
                                         SolveStatistics& statistics);
 
+/// The same within a step; but one that would wedge something hard (hard_hold.h) is taken back: its tools stay where they are,
+/// and the time passes.
+Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const std::vector<InstrumentPose>& targets,
+                                                 SolveStatistics& statistics);
+
 }  // namespace calot

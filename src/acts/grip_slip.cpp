@@ -122,8 +122,7 @@ Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statis
 Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const Tool& tool = field.tool(instrument);
-  const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
-                            jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  const std::array<Pose, 2> to_local = to_jaws(tool);
   std::vector<GripPoint> off;
   for (const Organ& organ : field.organs)
     for (const GripPoint& grip : organ.grips) {

@@ -69,17 +69,17 @@ bool wedges_hard(const Field& field) {
 namespace {
 
 /// Skin points of the triangles that each jaw of a tool rubs on with its teeth.
-std::array<std::set<int>, 2> touched_points(const Field& field, ToolIndex instrument, const Organ& organ) {
+std::array<std::set<int>, 2> touched_points(const Field& field, ToolIndex instrument, const Organ& organ,
+                                            const std::array<Pose, 2>& to_jaw) {
   const Tool& tool = field.tool(instrument);
   std::array<std::set<int>, 2> out;
   for (const RubbingPoint& rubbing : organ.friction.points) {
     const FieldShape which = field.shape(rubbing.shape);
     if (which.tool != instrument || which.is_shaft() || which.is_ground()) continue;
-    const int jaw = which.jaw();
-    const Pose to_jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, jaw).inverse();
+    const auto jaw = static_cast<std::size_t>(which.jaw());
     for (int corner : organ.body->skin().triangles[rubbing.point / contacts_each])
-      if (before_pad(to_jaw * organ.body->skin_point(corner, organ.state.x), tool.geometry))
-        out[static_cast<std::size_t>(jaw)].insert(corner);
+      if (before_pad(to_jaw[jaw] * organ.body->skin_point(corner, organ.state.x), tool.geometry))
+        out[jaw].insert(corner);
   }
   return out;
 }
@@ -92,15 +92,13 @@ void take_away(Organ& organ, ToolIndex instrument) {
 
 void catch_hard(Field& field, ToolIndex instrument, const Clasped& held) {
   Organ& organ = field.organ(held.organ);
-  const std::array<std::set<int>, 2> points = touched_points(field, instrument, organ);
+  const std::array<Pose, 2> to_jaw = to_jaws(field.tool(instrument));
+  const std::array<std::set<int>, 2> points = touched_points(field, instrument, organ, to_jaw);
   if (points[0].empty() || points[1].empty()) return;
-  const Tool& tool = field.tool(instrument);
-  for (int jaw : {0, 1}) {
-    const Pose to_jaw = jaw_frame(tool.trocar, tool.pose, tool.geometry, jaw).inverse();
-    for (int point : points[static_cast<std::size_t>(jaw)])
-      organ.grips.push_back(
-          {instrument, jaw, point, to_jaw * organ.body->skin_point(point, organ.state.x), grip_stiffness});
-  }
+  for (std::size_t jaw : {0u, 1u})
+    for (int point : points[jaw])
+      organ.grips.push_back({instrument, static_cast<int>(jaw), point,
+                             to_jaw[jaw] * organ.body->skin_point(point, organ.state.x), grip_stiffness});
   constexpr double most = 0.95;  // of what friction holds: what was caught would slide again at once
   if (asked_of_pads(field, instrument).share > most) return take_away(organ, instrument);
   sort_grips(organ);
@@ -115,13 +113,6 @@ void turn_on(const Organ& organ, const Pose& to_jaw, double left, GripPoint& gri
   grip.local += (1 - left) * on;
 }
 
-bool held_by_both(const Organ& organ, ToolIndex instrument) {
-  std::array<bool, 2> held{};
-  for (const GripPoint& grip : organ.grips)
-    if (grip.instrument == instrument) held[static_cast<std::size_t>(grip.jaw)] = true;
-  return held[0] && held[1];
-}
-
 }  // namespace
 
 bool let_slide_on_hard(Field& field, ToolIndex instrument) {
@@ -129,8 +120,7 @@ bool let_slide_on_hard(Field& field, ToolIndex instrument) {
   const Asked asked = holds_hard(field, instrument) ? asked_of_pads(field, instrument) : Asked{};
   if (asked.share <= 1) return false;
   const Tool& tool = field.tool(instrument);
-  const std::array<Pose, 2> to_jaw = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
-                                      jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  const std::array<Pose, 2> to_jaw = to_jaws(tool);
   for (Organ& organ : field.organs) {
     if (is_bitten(organ)) continue;
     if (!asked.turns) {
@@ -143,7 +133,7 @@ bool let_slide_on_hard(Field& field, ToolIndex instrument) {
     std::erase_if(organ.grips, [&](const GripPoint& grip) {
       return grip.instrument == instrument && !before_pad(grip.local, tool.geometry);
     });
-    if (!held_by_both(organ, instrument)) take_away(organ, instrument);
+    if (!both_pads_hold(organ, instrument)) take_away(organ, instrument);
   }
   return true;
 }

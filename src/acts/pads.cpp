@@ -22,8 +22,7 @@ double pressed_apart(const Field& field, ToolIndex instrument) {
 std::optional<Clasped> clasped(const Field& field, ToolIndex instrument) {
   const Tool& tool = field.tool(instrument);
   if (!has_teeth(tool)) return std::nullopt;
-  const std::array<Pose, 2> to_jaw = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
-                                      jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  const std::array<Pose, 2> to_jaw = to_jaws(tool);
   const std::vector<InstrumentPose> poses = present_poses(field);
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Organ& organ = field.organs[k];

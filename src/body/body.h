@@ -141,12 +141,10 @@ class Body {
   /// Energy of the deformed body alone, J, and the largest principal stretch in it: for reports.
   virtual double strain_energy(const VecX& x) const = 0;
   virtual double max_stretch(const VecX& x) const = 0;
-  /// Whether straight steps strain it where it turns; curved() then is such a step from x to where it turns to, the same to
+  /// Whether straight steps strain it where it turns: then nothing of it is asked ahead along them, as retardation is. curved() then is such a step from x to where it turns to, the same to
   /// first order.
   virtual bool turns_as_a_whole() const { return false; }
   virtual VecX curved(const VecX& /*x*/, const VecX& step) const { return step; }
-  /// Whether its wall's time of retardation counts: what is asked ahead along straight ways must not turn far in a step.
-  virtual bool is_retarded() const { return true; }
 
   /// What is touched, by triangles; see skin_radii().
   virtual const Tessellation& skin() const = 0;

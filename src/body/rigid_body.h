@@ -37,7 +37,6 @@ class RigidBody : public Body {
   const VecX& kept_load() const override { return weight_; }
   double strain_energy(const VecX& x) const override { return value(x); }
   double max_stretch(const VecX& x) const override { return 1 + affine_->distortion(x); }
-  bool is_retarded() const override { return false; }
   bool turns_as_a_whole() const override { return true; }
   VecX curved(const VecX& x, const VecX& step) const override { return affine_->curved(x, step); }
 

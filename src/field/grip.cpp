@@ -36,14 +36,16 @@ std::string held_organ(const Field& field, ToolIndex instrument) {
   return {};
 }
 
+bool both_pads_hold(const Organ& organ, ToolIndex instrument) {
+  bool holds[2] = {false, false};
+  for (const GripPoint& grip : organ.grips)
+    if (grip.instrument == instrument) holds[grip.jaw] = true;
+  return holds[0] && holds[1];
+}
+
 bool both_pads_hold(const Field& field, ToolIndex instrument) {
-  for (const Organ& organ : field.organs) {
-    bool holds[2] = {false, false};
-    for (const GripPoint& grip : organ.grips)
-      if (grip.instrument == instrument) holds[grip.jaw] = true;
-    if (holds[0] && holds[1]) return true;
-  }
-  return false;
+  return std::any_of(field.organs.begin(), field.organs.end(),
+                     [&](const Organ& organ) { return both_pads_hold(organ, instrument); });
 }
 
 namespace {

@@ -42,8 +42,7 @@ void hold(const Tool& tool, ToolIndex instrument, Organ& organ) {
   const std::vector<double>& radii = organ.body->skin_radii();
   std::array<std::vector<char>, 2> held{std::vector<char>(skin.size(), 0), std::vector<char>(skin.size(), 0)};
   for (const GripPoint& grip : organ.grips) held[grip.jaw][grip.skin_point] = 1;
-  const Pose to_local[2] = {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
-                            jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+  const std::array<Pose, 2> to_local = to_jaws(tool);
   for (std::size_t p = 0; p < skin.size(); ++p) {
     const Vec3 local[2] = {to_local[0] * skin[p], to_local[1] * skin[p]};
     // A wall is held by the nearer pad, a tube by both, each on its side.

@@ -36,7 +36,7 @@ ContactLoads contact_loads(const Field& field, const Organ& organ, const std::ve
 ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vector<InstrumentPose>& poses) {
   ContactLoads out = contact_loads(field, organ, poses);
   if (organ.state.motion.duration == 0) return out;
-  const double retardation = organ.body->is_retarded() ? organ.definition.wall.retardation : 0;
+  const double retardation = organ.body->turns_as_a_whole() ? 0 : organ.definition.wall.retardation;
   out.inertia = std::make_shared<const Inertia>(*organ.body, organ.state, retardation);
   return out;
 }

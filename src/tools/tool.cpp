@@ -10,6 +10,11 @@ std::vector<Shape> shapes_in_field(const Tool& tool, const InstrumentPose& pose)
   return instrument_shapes(tool.trocar, pose, tool.geometry);
 }
 
+std::array<Pose, 2> to_jaws(const Tool& tool) {
+  return {jaw_frame(tool.trocar, tool.pose, tool.geometry, 0).inverse(),
+          jaw_frame(tool.trocar, tool.pose, tool.geometry, 1).inverse()};
+}
+
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share) {
   if (share >= 1.0) return b;
   const auto mix = [share](double from, double to) { return from + share * (to - from); };

@@ -1,6 +1,7 @@
 #pragma once
 // An instrument of the world: its definition, where it is now, and how it moves between two poses.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -126,6 +127,9 @@ struct Tool : ToolState {
 };
 inline ToolState& state_of(Tool& tool) { return tool; }
 inline const ToolState& state_of(const Tool& tool) { return tool; }
+
+/// From the world to the frame of each jaw, where the tool stands (jaw_frame()).
+std::array<Pose, 2> to_jaws(const Tool& tool);
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share);
 /// Of each tool; as many of a as of b.

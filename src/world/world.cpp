@@ -13,7 +13,6 @@
 #include "acts/exchange.h"
 #include "acts/ground_injury.h"
 #include "acts/hands.h"
-#include "acts/hard_hold.h"
 #include "base/hash.h"
 #include "base/suggest.h"
 #include "fem/assembly.h"
@@ -138,18 +137,7 @@ std::uint64_t World::Impl::hash(std::uint64_t but_steps) const {
 }
 
 Result<std::vector<WorldEvent>> World::Impl::move_tools(const std::vector<InstrumentPose>& commands) {
-  const std::vector<InstrumentPose> to = bring_tools(field, commands, report.instruments);
-  if (field.step_time == 0 || !touches_hard(field)) return advance(field, to, report.statistics);
-  const FieldState before = field_state(field);
-  Result<std::vector<WorldEvent>> events = advance(field, to, report.statistics);
-  if (!events || !report.statistics.cut_short || !wedges_hard(field)) return events;
-  // The way that tools were to go wedges what is hard: they stay, and the time passes.
-  calot::restore(field, before);
-  SolveStatistics again;
-  events = advance(field, present_poses(field), again);
-  report.statistics.newton_iterations += again.newton_iterations;
-  report.statistics.factorisations += again.factorisations;
-  return events;
+  return advance_unwedged(field, bring_tools(field, commands, report.instruments), report.statistics);
 }
 
 void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, double duration,
@@ -579,7 +567,7 @@ Vec3 World::landmark(const std::string& name) const {
 Vec3 World::landmark_normal(const std::string& name) const {
   const std::optional<OrganPoint> there = find_landmark(impl_->field.organs, name);
   if (!there) return last_place(impl_->field, name).normal;
-  // A centre has no skin around it: what comes to it comes from above.
+  // Its places lie inside of it: what comes to them comes from above.
   if (std::holds_alternative<RigidShape>(impl_->field.organ(there->organ).definition.shape)) return up();
   return skin_normals(there->organ)[there->skin_point];
 }

@@ -122,7 +122,7 @@ class World {
   CriticalView critical_view(const CriticalViewQuestion& question) const;
   /// How organs had come to rest at the start, one an organ of the scene.
   const std::vector<RestShift>& rest_shifts() const;
-  /// Outward unit normal of the skin there; upwards at a rigid thing's centre.
+  /// Outward unit normal of the skin there; upwards at a rigid thing's places, which lie inside of it.
   Vec3 landmark_normal(const std::string& organ_and_landmark) const;
 
   /// Organs and tools as they are now (field/field.h), for who looks closer than the report does.
