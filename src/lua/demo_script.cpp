@@ -142,7 +142,7 @@ std::optional<Failure> DemoScript::run_until(double end) {
     if (first == tasks_.size()) return std::nullopt;
     if (waits > most_waits_per_step)
       return fail(FailureKind::scenario, waits_message(), waits_hint(),
-                  sandbox().place_of(tasks_[first].thread, 0));
+                  sandbox().blame(tasks_[first].thread).place);
     if (std::optional<Failure> failure = resume(first)) return failure;
     // A condition that begins at this step's very start is asked at once, like any met there.
     if (std::optional<Failure> failure = ask_conditions(step_start_)) return failure;
@@ -159,7 +159,7 @@ std::optional<Failure> DemoScript::resume(std::size_t index) {
     finish(index);
   } else if (tasks_[index].state == Task::ready && !checking()) {
     return fail(FailureKind::scenario, "the demo called coroutine.yield", "wait with t:wait or t:wait_until",
-                sandbox().place_of(tasks_[index].thread, 0));
+                sandbox().blame(tasks_[index].thread).place);
   }
   return std::nullopt;
 }
@@ -484,7 +484,7 @@ int DemoScript::exchange(lua_State* L, int instrument, const Exchange& how) {
   InstrumentPose pose = leaving->pose(out);
   pose.roll = pose.jaw = 0;
   paths_[i] = InstrumentPath(leaving->trocar(), pose, geometry(instrument));
-  comings_[i] = Coming{out, sandbox().place_of(L)};
+  comings_[i] = Coming{out, sandbox().blame(L).place};
   std::swap(waits_[i], waits_[there]);
   return sleep_until(L, out + how.duration);
 }

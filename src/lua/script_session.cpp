@@ -77,17 +77,17 @@ void ScriptSession::complain(lua_State* L, const std::string& message, const std
     std::abort();  // lua_error does not return
   }
   complained_ = true;
-  const Place place = sandbox_.place_of(L);
+  const Blame blame = sandbox_.blame(L);
   if (problems_->size() + 1 >= most_problems) {
     if (problems_->size() < most_problems)
-      problems_->push_back({place, "more mistakes are not looked for until these are mended", {}});
+      problems_->push_back({blame.place, "more mistakes are not looked for until these are mended", {}});
     luaL_error(L, "too many mistakes");
     std::abort();  // luaL_error does not return
   }
-  const std::string said = shortened(message, longest_message) + sandbox_.callers(L);
+  const std::string said = shortened(message, longest_message) + blame.inside + blame.callers;
   for (const Problem& problem : *problems_)
-    if (problem.place.line == place.line && problem.message == said) return;  // in a loop
-  problems_->push_back({place, said, hint});
+    if (problem.place.line == blame.place.line && problem.message == said) return;  // in a loop
+  problems_->push_back({blame.place, said, hint});
 }
 
 int ScriptSession::organ(lua_State* L, const std::string& name) {

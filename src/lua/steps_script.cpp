@@ -76,7 +76,7 @@ Result<bool> StepsScript::run() {
     const bool answer = over.value();
     if (!answer && !pass_limit()) return false;
     if (waits >= most_waits_per_step)
-      return fail(FailureKind::scenario, waits_message(), waits_hint(), sandbox().place_of(thread_, 0));
+      return fail(FailureKind::scenario, waits_message(), waits_hint(), sandbox().blame(thread_).place);
     if (std::optional<Failure> failure = wake(answer)) return *failure;
   }
   progress_->end_step(now_, "done");
@@ -108,7 +108,7 @@ Result<bool> StepsScript::is_over() {
   switch (wait_.kind) {
     case Wait::Kind::none:
       return fail(FailureKind::scenario, "steps called coroutine.yield",
-                  "wait with t:wait, t:wait_until or t:hold", sandbox().place_of(thread_, 0));
+                  "wait with t:wait, t:wait_until or t:hold", sandbox().blame(thread_).place);
     case Wait::Kind::time:
       return now_ >= wait_.until - slack;
     case Wait::Kind::condition:

@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/suggest.h"
 #include "script/lua_headers.h"
+#include "script/safe_path.h"
 #include "script/sandbox_library.h"
 
 namespace calot {
@@ -36,10 +37,10 @@ std::string text_at_top(lua_State* L) {
   return fmt::format("an error that is no text was raised (a {} value)", lua_typename(L, type));
 }
 
-/// The lines of a trace, a line of text each, which begins with a new line.
-std::string called_from(std::span<const Place> trace) {
+/// The lines of a trace, a line of text each, which begins with a new line and with what they are to the place.
+std::string lines_of(std::span<const Place> trace, std::string_view what) {
   std::string text;
-  for (const Place& place : trace) text += fmt::format("\n    called from {}:{}", place.file, place.line);
+  for (const Place& place : trace) text += fmt::format("\n    {} {}:{}", what, place.file, place.line);
   return text;
 }
 
@@ -320,19 +321,24 @@ std::vector<Place> Sandbox::trace_of(lua_State* L) const {
   return trace;
 }
 
-std::string Sandbox::callers(lua_State* L) const {
-  const std::vector<Place> trace = trace_of(L);
-  if (trace.empty() || trace.front().file == options_.script.string()) return {};
-  return called_from(std::span(trace).subspan(1));
+bool Sandbox::is_shared(const Place& place) const {
+  return !options_.modules.empty() && place.file != options_.script.string() &&
+         is_inside(place.file, options_.modules);
 }
 
-Place Sandbox::place_of(lua_State* L, int level) const {
-  lua_Debug info;
-  for (; lua_getstack(L, level, &info) != 0; ++level) {
-    lua_getinfo(L, "Sl", &info);
-    if (const std::string* file = file_of(info)) return {*file, info.currentline, {}};
-  }
-  return {options_.script.string(), 0, {}};
+Blame Sandbox::blame(std::span<const Place> trace) const {
+  if (trace.empty()) return {{options_.script.string(), 0, {}}, {}, {}};
+  auto author =
+      std::find_if(trace.begin(), trace.end(), [&](const Place& place) { return !is_shared(place); });
+  if (author == trace.end()) author = trace.begin();
+  return {*author, lines_of({trace.begin(), author}, "inside"),
+          lines_of({author + 1, trace.end()}, "called from")};
+}
+
+Blame Sandbox::blame(lua_State* L) const {
+  Blame found = blame(trace_of(L));
+  if (found.place.file == options_.script.string()) found.callers.clear();
+  return found;
 }
 
 void Sandbox::note_place(lua_State* L) {
@@ -386,12 +392,15 @@ Failure Sandbox::failure_of(lua_State* L, int status) const {
     hint = "let the recursion end, or use a loop";
   }
   // What lies within the place's own call has put the blame on its caller.
-  const auto own = std::find_if(trace_.begin(), trace_.end(), [&](const Place& called) {
+  auto own = std::find_if(trace_.begin(), trace_.end(), [&](const Place& called) {
     return called.file == place.file && called.line == place.line;
   });
-  if (kind == FailureKind::scenario)
-    message += called_from({own == trace_.end() ? trace_.begin() : own + 1, trace_.end()});
-  return fail(kind, std::move(message), std::move(hint), std::move(place));
+  if (own == trace_.end() && is_shared(place)) own = trace_.begin();
+  const Blame blamed = blame({own, trace_.end()});
+  if (own == trace_.end()) return fail(kind, std::move(message), std::move(hint), std::move(place));
+  message += blamed.inside;
+  if (kind == FailureKind::scenario) message += blamed.callers;
+  return fail(kind, std::move(message), std::move(hint), blamed.place);
 }
 
 }  // namespace calot

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,14 @@ struct SandboxOptions {
   std::filesystem::path modules;  ///< the second; may be empty
   std::uint64_t seed = 1;         ///< of math.random
   ScriptLimits limits;
+};
+
+/// Which line of the author's is to mend what went wrong, and how the script came there: lines of text, each begins
+/// with a new line.
+struct Blame {
+  Place place;  ///< nearest frame outside the project's modules; where there is none, the nearest frame
+  std::string inside;   ///< the modules' lines that it has called, innermost first
+  std::string callers;  ///< the lines that led to it, nearest first
 };
 
 class Sandbox {
@@ -100,11 +109,8 @@ class Sandbox {
 
   /// The file that a function was written in, by its debug information ("S"); null: none of the script's.
   const std::string* file_of(const lua_Debug& info) const;
-  /// Where Lua code runs: file and line of the nearest frame of the script, starting at `level`.
-  Place place_of(lua_State* L, int level = 1) const;
-  /// Where that line is a module's: the lines that led to it, each as a line of text that begins with a new line. Else
-  /// empty.
-  std::string callers(lua_State* L) const;
+  /// The author's line that runs in L. Callers are told only of a line in a module of the author's.
+  Blame blame(lua_State* L) const;
 
  private:
   enum class Trip { none, call, second, run, memory };
@@ -118,6 +124,9 @@ class Sandbox {
   [[noreturn]] void raise_trip(lua_State* L);
   std::string trip_text() const;
   std::vector<Place> trace_of(lua_State* L) const;
+  /// Whether it lies in a module of the project's, which its users are not to mend.
+  bool is_shared(const Place& place) const;
+  Blame blame(std::span<const Place> trace) const;
   /// From the error on top of L's stack and trace_.
   Failure failure_of(lua_State* L, int status) const;
   bool split_place(std::string& message, Place& place) const;

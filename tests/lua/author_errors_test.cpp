@@ -726,13 +726,32 @@ TEST(AuthorErrors, WhatAModulesHandIsGivenIsRefusedAtTheAuthorsLine) {
   }
 }
 
-TEST(AuthorErrors, WithinAModuleNameTheExercisesLineToo) {
-  ScenarioText text = with_demo("t:time_out('looked')\ntechnique.angle_of_ducts(t)");
+TEST(AuthorErrors, WithinAModuleAreAtTheExercisesLineAndSayWhereInTheModule) {
+  for (const auto& [use, said] : std::vector<std::pair<std::string, std::string>>{
+           {"technique.angle_of_ducts(t)", "unknown landmark \"cystic_duct.start\""},
+           {"technique.hand(t, 'lef', { 0, 0, 0 })", "lef"},
+           {"technique.roll_across(nil, { 0, 0, 0 }, { 1, 0, 0 })", "attempt to"}}) {
+    for (const char* wait : {"", "t:wait(0.1 * s)\n"}) {
+      ScenarioText text = with_demo(wait + use);
+      text.head = "local technique = require 'technique'\n";
+      const Failure failure = failure_of(text.text());
+      EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.")) << to_text(failure);
+      EXPECT_THAT(failure.problems[0].place.file, ::testing::Not(::testing::HasSubstr("technique.lua")));
+      EXPECT_THAT(to_text(failure), ::testing::HasSubstr(said));
+    }
+  }
+  ScenarioText text = with_demo("technique.angle_of_ducts(t)");
   text.head = "local technique = require 'technique'\n";
-  const std::string said = to_text(failure_of(text.text()));
-  EXPECT_THAT(said, ::testing::HasSubstr("unknown landmark \"cystic_duct.start\""));
-  EXPECT_THAT(said, ::testing::ContainsRegex(fmt::format("called from [^ ]*:{}",
-                                                         line_of(text.text(), "technique.angle_of_ducts"))));
+  EXPECT_THAT(to_text(failure_of(text.text())), ::testing::ContainsRegex("inside [^ ]*technique.lua:[0-9]+"));
+}
+
+TEST(AuthorErrors, ALimitReachedInsideAModuleNamesTheLoopThatCallsIt) {
+  ScenarioText text = with_demo(
+      "local x = { 0, 0, 1 }\nwhile true do technique.roll_across(x, { 0, 0, 0 }, { 1, 0, 0 }) end");
+  text.head = "local technique = require 'technique'\n";
+  const Failure failure = failure_of(text.text());
+  EXPECT_EQ(failure.kind, FailureKind::resource) << to_text(failure);
+  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "while true")) << to_text(failure);
 }
 
 TEST(AuthorErrors, OfWhatTechniquesAreGivenAreAtTheExercisesLine) {
