@@ -179,7 +179,6 @@ class Following {
     const std::vector<VecX> places = present_places(field_);
     begin_parts(parts, share * time_left(), field_);
     move_by(std::min(share, answer.share), answer, field_);
-    if (field_.step_time > 0) lay_strands(field_, poses);
     return settle_group(field_, poses, places, part_iterations, statistics_);
   }
 

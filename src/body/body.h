@@ -113,6 +113,8 @@ class Body {
   virtual int coarse_nodes() const { return nodes(); }
   /// The first nodes, onto which the others are condensed (numerics/condense.h).
   virtual int kept_nodes() const { return coarse_nodes(); }
+  /// Whether its nodes are weights that nothing of its own couples: joins then bring each into balance by itself.
+  virtual bool has_loose_nodes() const { return false; }
   virtual double size() const = 0;  ///< m, diagonal of the rest shape's box
   /// Shortest control edge at each node at rest (halved with each level for a detail), m: the scale of a safe step
   /// there.

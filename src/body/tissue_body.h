@@ -25,6 +25,7 @@ class TissueBody : public Body {
   const std::string& name() const override { return setup_.name; }
   const VecX& rest() const override { return rest_; }
   int kept_nodes() const override { return 0; }
+  bool has_loose_nodes() const override { return true; }
   double size() const override { return size_; }
   const std::vector<double>& edge_lengths() const override { return longest_steps_; }
   const BlockMatrix& pattern() const override { return pattern_; }

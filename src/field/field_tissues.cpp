@@ -64,16 +64,6 @@ VecX place_strands(const Field& field) {
   return Eigen::Map<const VecX>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-void lay_strands(Field& field, const std::vector<InstrumentPose>& poses) {
-  std::vector<JoinPointer> joins;
-  add_strands(field, poses, joins);
-  const VecX x = place_strands(field);
-  for (Tissue& tissue : field.tissues)
-    for (std::size_t i = 0; i < tissue.strands->strands().size(); ++i)
-      if (const std::optional<Vec3> node = tissue.strands->balanced_node(i, x))
-        tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(i)) = *node;
-}
-
 VecX place_strands_and_tools(const Field& field) {
   std::vector<JoinPointer> joins;
   add_strands(field, present_poses(field), joins);

@@ -22,10 +22,6 @@ class TissueMembers {
 void add_strands(const Field& field, const std::vector<InstrumentPose>& poses,
                  std::vector<JoinPointer>& joins);
 
-/// Lays the nodes of strands that tools at `poses` press hard to where they are in balance between their ends: a solve that
-/// begins with them in the tools spends most of its iterations on these alone.
-void lay_strands(Field& field, const std::vector<InstrumentPose>& poses);
-
 /// Tells the strands where their bodies are. Returns where all nodes of the group are, m.
 VecX place_strands(const Field& field);
 /// The same, and what they touch when the tools stand where they do: for who asks them outside of a solve.

@@ -367,6 +367,28 @@ VecX GroupProblem::curved(const VecX& x, VecX step) const {
   return step;
 }
 
+LooseNodes GroupProblem::loose_nodes(std::size_t k, const VecX& x) const {
+  const Body& body = members_[k].body;
+  LooseNodes out;
+  out.first = static_cast<int>(ranges_[k].first) / 3;
+  VecX largest_internal;
+  problems_[k].gradient(x, out.gradient, largest_internal);
+  BlockMatrix own = body.pattern();
+  problems_[k].hessian(x, VecX(), own);
+  out.stiffness.resize(body.nodes());
+  for (int node = 0; node < body.nodes(); ++node) out.stiffness[node] = own.diagonal(3 * node);
+  return out;
+}
+
+VecX GroupProblem::relaxed(VecX x) const {
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    if (!members_[k].body.has_loose_nodes()) continue;
+    const LooseNodes nodes = loose_nodes(k, part_of(k, x));
+    for (const JoinPointer& join : joins_) join->relax(nodes, x);
+  }
+  return x;
+}
+
 double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
   std::vector<double> shares(problems_.size());
   for_each_member(

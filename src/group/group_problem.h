@@ -68,6 +68,7 @@ class GroupProblem : public ConstrainedEnergy {
   void prepare(NewtonWorkspace& work) const override;
   VecX curved(const VecX& x, VecX step) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
+  VecX relaxed(VecX x) const override;
   Workers* workers() const override;
 
  private:
@@ -87,6 +88,8 @@ class GroupProblem : public ConstrainedEnergy {
                        const VecX* x = nullptr) const;
   /// Those that may act at x, or on a step from there (null: none).
   std::vector<const Join*> joins_at(const VecX& x, const VecX* step = nullptr) const;
+  /// Of a member that has such nodes.
+  LooseNodes loose_nodes(std::size_t member, const VecX& x) const;
   void prepare_alone(NewtonWorkspace& work) const;
   std::vector<std::vector<int>> cliques(bool close) const;
   /// One a node: what is not kept is condensed. Of a body whose nodes are all coupled with each other, such as a solid,

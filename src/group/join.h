@@ -20,6 +20,13 @@ struct GroupPlace {
   Workers* workers = nullptr;  ///< who share what is asked about it; none: who asks, alone
 };
 
+/// Nodes of a body that its own energies do not couple with each other, and what those do to each at some x.
+struct LooseNodes {
+  int first = 0;   ///< of them in the group
+  VecX gradient;   ///< N, 3 a node
+  VecX stiffness;  ///< N/m, one a node, the same in each direction and at each x
+};
+
 /// What joins bodies: an energy over nodes of several of them, in the group's numbering. What it remembers is no part of
 /// any result.
 class Join {
@@ -46,6 +53,8 @@ class Join {
   /// too. A matrix is made with room for the second kind, so that it serves many solves. Asked only of groups of two bodies
   /// or more: a body alone has all that it couples in its own pattern.
   virtual void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const = 0;
+  /// Moves those of these nodes that this join alone couples with others to where they are in balance between them.
+  virtual void relax(const LooseNodes& /*nodes*/, VecX& /*x*/) const {}
   /// The largest part of `share` of the step that is safe.
   virtual double safe_share(const VecX& /*x*/, const VecX& /*step*/, double share) const { return share; }
 };

@@ -1,7 +1,8 @@
 #include "joins/strand_join.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "joins/strand_balance.h"
 
 namespace calot {
 
@@ -162,50 +163,21 @@ void StrandJoin::add_cliques(const VecX&, bool close, std::vector<std::vector<in
   }
 }
 
-double StrandJoin::safe_share(const VecX& x, const VecX& step, double share) const {
-  for (std::size_t i = 0; active() && i < strands_.size(); ++i) {
-    const Strand& strand = strands_[i].strand;
-    if (strand.law.torn(pasts_[i].opened)) continue;
-    const StrandVector from = places(i, x), motion = places(i, step);
-    const double before = strand.law.strain(strand.way(from)),
-                 after = strand.law.strain(strand.way(from + share * motion));
-    const double most = std::max(before, strand.law.peak()) + 0.5 * strand.law.tail();
-    if (after > most) share *= (most - before) / (after - before);  // a way is convex along the step
-    if (const StrandThread* met = thread(i)) share = touch_.safe_share(*met, from, motion, share);
+void StrandJoin::relax(const LooseNodes& nodes, VecX& x) const {
+  if (!active() || nodes.first != first_[2]) return;
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    const auto node = static_cast<Eigen::Index>(i);
+    const NodeLoad load{nodes.gradient.segment<3>(3 * node), nodes.stiffness[node]};
+    x.segment<3>(3 * (first_[2] + node)) =
+        balanced_node({strands_[i].strand, pasts_[i], thread(i), touch_}, load, places(i, x));
   }
-  return share;
 }
 
-std::optional<Vec3> StrandJoin::balanced_node(std::size_t i, const VecX& x) const {
-  constexpr int most_steps = 20, halvings = 10;
-  constexpr double longest = 1e-3;  // m, of a step
-  const StrandThread* met = meets() ? thread(i) : nullptr;
-  if (!met) return std::nullopt;
-  const Strand& strand = strands_[i].strand;
-  StrandVector at = places(i, x);
-  const double strength = strand.law.setup().strength;
-  if (touch_.gradient(*met, at).segment<3>(3).norm() <= strength) return std::nullopt;
-  const auto energy = [&](const StrandVector& of) {
-    return strand.value(of, pasts_[i]) + touch_.value(*met, of);
-  };
-  for (int k = 0; k < most_steps; ++k) {
-    const Vec3 slope = (strand.gradient(at, pasts_[i]) + touch_.gradient(*met, at)).segment<3>(3);
-    if (slope.norm() <= 1e-3 * strength) break;
-    const StrandMatrix whole = strand.hessian(at, pasts_[i]) + touch_.hessian(*met, at);
-    const Eigen::SelfAdjointEigenSolver<Mat3> modes(Mat3(whole.block<3, 3>(3, 3)));
-    const Vec3 stiffness = modes.eigenvalues().cwiseAbs().cwiseMax(strand.centring());
-    Vec3 step = -modes.eigenvectors() * (modes.eigenvectors().transpose() * slope).cwiseQuotient(stiffness);
-    step *= std::min(1.0, longest / step.norm());
-    StrandVector motion = StrandVector::Zero();
-    motion.segment<3>(3) = step;
-    double share = touch_.safe_share(*met, at, motion, 1.0);
-    const double before = energy(at);
-    int halved = 0;
-    while (halved < halvings && !(energy(at + share * motion) < before)) share *= 0.5, ++halved;
-    if (halved == halvings) break;
-    at += share * motion;
-  }
-  return Vec3(at.segment<3>(3));
+double StrandJoin::safe_share(const VecX& x, const VecX& step, double share) const {
+  for (std::size_t i = 0; meets() && i < strands_.size(); ++i)
+    if (const StrandThread* met = thread(i))
+      share = touch_.safe_share(*met, places(i, x), places(i, step), share);
+  return share;
 }
 
 std::vector<double> StrandJoin::strains(const VecX& x) const {

@@ -5,8 +5,6 @@
 // Neighbours are coupled by the skins that they end on, not by their nodes: these then are condensed one by one, where a
 // sheet of linked nodes takes several times as long.
 
-#include <optional>
-
 #include "fem/strand.h"
 #include "group/join.h"
 #include "joins/carried_place.h"
@@ -49,8 +47,9 @@ class StrandJoin : public Join {
   bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
 
-  /// No step takes a strand beyond half of the way on which it tears: it would end behind what it resists. None takes it
-  /// through what it touches.
+  void relax(const LooseNodes& nodes, VecX& x) const override;
+
+  /// No step takes a strand through what it touches.
   double safe_share(const VecX& x, const VecX& step, double share) const override;
 
   const std::array<int, 2>& bodies() const { return bodies_; }
@@ -79,10 +78,6 @@ class StrandJoin : public Join {
     }
   }
   const StrandTouch& touch() const { return touch_; }
-
-  /// The place of a strand's node, m, in balance between its ends at x; null where tools press the strand no harder than it
-  /// holds. Sought downhill from where the node is, past nothing that the strand touches; its weight and mass are left out.
-  std::optional<Vec3> balanced_node(std::size_t strand, const VecX& x) const;
 
  private:
   /// Rows of a strand, of increasing nodes.

@@ -48,11 +48,14 @@ class ConstrainedEnergy {
   /// Called before a tangent is asked for, and before the first step of a solve that does not begin in balance: makes
   /// room in the matrix for what the solve may couple.
   virtual void prepare(NewtonWorkspace&) const {}
-  /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
   /// A step from x to where it leads along the ways that bodies really go, the same to first order: what turns as a whole is
   /// strained by a straight step.
   virtual VecX curved(const VecX& /*x*/, VecX step) const { return step; }
+  /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
   virtual double safe_share(const VecX& x, const VecX& step) const = 0;
+  /// x, but those nodes that can be brought into balance one by one, while all others stay, are: energy falls, and safely.
+  /// Each place that a solve goes on from, or tries, is such a one.
+  virtual VecX relaxed(VecX x) const { return x; }
   /// Who share the work of a solve; none: the caller's thread does it.
   virtual Workers* workers() const { return nullptr; }
 };

@@ -80,7 +80,7 @@ class Search {
 
   /// At a share of the step; infinite where that is not admissible.
   double at(double share) const {
-    const VecX next = start_.x + share * start_.step;
+    const VecX next = problem_.relaxed(start_.x + share * start_.step);
     const double energy = problem_.value(next);
     return std::isfinite(energy) ? merit_.at(point(next, energy, share))
                                  : std::numeric_limits<double>::infinity();

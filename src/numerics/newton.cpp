@@ -50,7 +50,8 @@ class Iteration {
     result_.furthest.resize(parts_.size());
     evaluate(x_, multipliers_, state_);
     while (!ended()) {
-      if (result_.iterations++ == 0) problem_.prepare(work_);
+      if (result_.iterations == 0 && begins_in_balance()) break;
+      ++result_.iterations;
       ++result_.furthest[static_cast<std::size_t>(state_.worst_residual.index)];
       if (!chord() && !newton()) break;
       ++result_.by_last_factor;
@@ -87,6 +88,14 @@ class Iteration {
     state.worst_constraint = {};
     for (Eigen::Index k = 0; k < multipliers.size(); ++k)
       state.worst_constraint.take(std::abs(state.constraints[k]) / scales_[k], static_cast<int>(k));
+  }
+
+  /// Makes ready for iterations; whether none is needed, because nodes that are relaxed were all that was out of balance.
+  bool begins_in_balance() {
+    problem_.prepare(work_);
+    x_ = problem_.relaxed(x_);
+    evaluate(x_, multipliers_, state_);
+    return balanced();
   }
 
   /// How far from balance, in units of what is tolerated.
@@ -184,7 +193,7 @@ class Iteration {
 
   /// A whole step, kept only if it brings the bodies nearer to balance, by this share: then no energy need be asked.
   bool leap(const VecX& step, const VecX& dmultipliers, double worth) {
-    const VecX next = x_ + step, multipliers = multipliers_ + dmultipliers;
+    const VecX next = problem_.relaxed(x_ + step), multipliers = multipliers_ + dmultipliers;
     State then;
     evaluate(next, multipliers, then);
     if (!then.residual.allFinite()) return false;
@@ -262,7 +271,7 @@ class Iteration {
       if (!balanced()) result_.status = NewtonStatus::stalled;
       return balanced();
     }
-    x_ += share * step;
+    x_ = problem_.relaxed(x_ + share * step);
     multipliers_ += share * dmultipliers;
     const double far = force_imbalance(state_);
     evaluate(x_, multipliers_, state_);

@@ -70,27 +70,57 @@ TEST(StrandTouch, ItsEnergyHasTheseDerivatives) {
   }
 }
 
-TEST(StrandTouch, AStrandThatARodStandsInIsLaidWhereItIsInBalanceBetweenItsEnds) {
+TEST(StrandTouch, ANodeThatARodStandsInIsRelaxedToItsBalanceBetweenTheEndsWhichStay) {
   StrandRig rig = plates_with({Vec3(0, 0, 0), Vec3(0, 8e-3, 0)});
   put(rig, Capsule{Vec3(0.9e-3, -1e-3, 0.5e-3), Vec3(0.9e-3, 1e-3, 0.5e-3), 1e-3});
-  VecX x = rig.x();
-  rig.matrix(x);  // which says where the bodies are
-  const auto force_on_node = [&] {
-    const Eigen::Index node = x.size() - 6;  // of the first strand
+  const VecX x = rig.x();
+  rig.matrix(x);                            // which says where the bodies are
+  const Eigen::Index first = x.size() - 6;  // coordinate of the strands' nodes
+  LooseNodes loads{static_cast<int>(first / 3), VecX::Zero(6), VecX::Constant(2, 3.0)};
+  loads.gradient.segment<3>(0) = Vec3(2e-3, -3e-3, 1e-3);
+  const auto force_on_node = [&](const VecX& at) {
     VecX gradient = VecX::Zero(x.size());
-    rig.strands->add_gradient(x, gradient);
-    return gradient.segment<3>(node).norm();
+    rig.strands->add_gradient(at, gradient);
+    return (gradient.segment<3>(first) + loads.gradient.head<3>() +
+            loads.stiffness[0] * (at - x).segment<3>(first))
+        .norm();
   };
-  const double strength = rig.strands->strands()[0].strand.law.setup().strength,
-               energy = rig.strands->value(x);
-  ASSERT_GT(force_on_node(), 10 * strength);
-  EXPECT_FALSE(rig.strands->balanced_node(1, x)) << "nothing touches it";
-  const std::optional<Vec3> node = rig.strands->balanced_node(0, x);
-  ASSERT_TRUE(node);
-  EXPECT_LT(node->x(), -0.1e-3) << "pushed aside, away from the rod";
-  x.segment<3>(x.size() - 6) = *node;
-  EXPECT_LT(force_on_node(), 1e-3 * strength);
-  EXPECT_LT(rig.strands->value(x), energy);
+  const double strength = rig.strands->strands()[0].strand.law.setup().strength;
+  ASSERT_GT(force_on_node(x), 10 * strength);
+  VecX relaxed = x;
+  rig.strands->relax(loads, relaxed);
+  EXPECT_LT(force_on_node(relaxed), 1e-8 * strength);
+  EXPECT_LT(relaxed[first] - x[first], -0.1e-3) << "pushed aside, away from the rod";
+  EXPECT_EQ(relaxed.head(first), x.head(first));
+  EXPECT_LT(rig.strands->value(relaxed), rig.strands->value(x));
+  const VecX once = relaxed;
+  rig.strands->relax({loads.first, VecX::Zero(6), VecX::Zero(2)}, relaxed);
+  EXPECT_NE(relaxed, once) << "the loads have a part in it";
+  rig.strands->relax({loads.first + 1, VecX::Zero(6), VecX::Zero(2)}, relaxed = x);
+  EXPECT_EQ(relaxed, x) << "nodes of another body";
+}
+
+TEST(StrandTouch, AGroupRelaxesNodesWithTheirInertiaAndWeightToo) {
+  StrandRig rig = plates_with({Vec3(0, 0, 0), Vec3(0, 8e-3, 0)});
+  constexpr double h = 0.01;  // s
+  for (StrandRig::One& one : rig.bodies) {
+    one.state.motion = motion_part(*one.body, present_motion(*one.body, one.state), h).value();
+    one.state.motion.duration = h;
+    one.loads.inertia = std::make_shared<const Inertia>(*one.body, one.state, 0);
+  }
+  put(rig, Capsule{Vec3(0.9e-3, -1e-3, 0.5e-3), Vec3(0.9e-3, 1e-3, 0.5e-3), 1e-3});
+  const std::vector<Member> members = rig.members();
+  const GroupProblem group(members, rig.joins, rig.patterns);
+  VecX gradient, largest;
+  const auto force_on_nodes = [&](const VecX& x) {
+    group.gradient(x, gradient, largest);
+    return gradient.tail(6).norm();
+  };
+  const VecX x = rig.x(), relaxed = group.relaxed(x);
+  const double strength = rig.strands->strands()[0].strand.law.setup().strength;
+  ASSERT_GT(force_on_nodes(x), strength);
+  EXPECT_LT(force_on_nodes(relaxed), 1e-7 * strength);
+  EXPECT_EQ(relaxed.head(x.size() - 6), x.head(x.size() - 6));
 }
 
 TEST(StrandTouch, AsPartOfTheStrandsItsEnergyHasTheseDerivatives) {
