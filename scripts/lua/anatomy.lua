@@ -36,7 +36,7 @@ local calot = require "calot"
 local given = require "given"
 local mm, kPa, mmHg = calot.units.mm, calot.units.kPa, calot.units.mmHg
 
-local anatomy = {}
+local anatomy = given.module "anatomy"
 
 -- ---- points
 
@@ -55,7 +55,6 @@ end
 
 --- A place at a share of the way along a line of points: anatomy.along(duct.shape.points, 0.3).
 function anatomy.along(points, share)
-  if share < 0 or share > 1 then error("a share of a way is 0 to 1, not " .. share, 2) end
   local whole = 0
   for k = 2, #points do whole = whole + length(minus(points[k], points[k - 1])) end
   local left = share * whole
@@ -143,7 +142,12 @@ local defaults = {
 }
 
 --- What each may be: of the kind of its default, but for some.
+local function up_to(most) return given.between(0, most * mm, "a length above 0, up to " .. most .. " mm", "mm") end
 local kinds = {
+  gallbladder_length = up_to(200), gallbladder_width = up_to(100), cystic_duct_length = up_to(120),
+  cystic_duct_diameter = up_to(20), common_duct_diameter = up_to(30), cystic_artery_length = up_to(120),
+  cystic_artery_diameter = up_to(10), node_diameter = up_to(30),
+  fill_pressure = given.between(40, 30 * kPa, "a pressure of 40 Pa to 30 kPa", "mmHg"),
   common_duct_widest = given.or_false(given.above_zero),
   union = given.part,
   aberrant_union = given.part,
@@ -257,8 +261,10 @@ local function take_out(field, name, level)
     return one.name ~= name and one.from ~= name and one.to ~= name
   end)
   if not was_organ and not was_tissue then
-    local there = "there are " .. table.concat(names, ", ")
-    error('the field has no "' .. tostring(name) .. '" to leave out: ' .. there, level + 1)
+    local known = {}
+    for _, one in ipairs(names) do known[one] = true end
+    error('the field has no "' .. tostring(name) .. '" to leave out' .. given.suggestion(name, known) .. ": there are "
+      .. table.concat(names, ", "), level + 1)
   end
   for _, organ in ipairs(organs) do
     local injury = organ.injury
@@ -299,11 +305,55 @@ local function prepare(field, gone_of, level)
   end
 end
 
---- The standard field with what differs in its variant, and then what its author gives, if anything. `level`: of
---- error(), as seen from the caller.
-local function field_with(variant, overrides, level)
+--- What lies around the field, stays, and is touched: drawn by eye. But for the duodenum it is clear of all that moves.
+local function surroundings(neck)
+  local function capsule(name, looks, from, to, radius)
+    return { name = name, type = "capsule", looks = looks, point = from, to = to, radius = radius * mm }
+  end
+  local function near(x, y, z) return add(neck, { x, y, z }, mm) end
+  return {
+    capsule("duodenum", "bowel", near(-34, -60, -12), near(60, -62, -6), 13),
+    -- Beside the liver's lobe: the round ligament in its fissure, and the left lobe beyond; behind it the right lobe
+    -- and, behind the hilum, the caudate lobe.
+    capsule("round_ligament", "fat", place(22, -91, -20), place(17, -92, 90), 4),
+    capsule("round_ligament_root", "fat", place(22, -91, -20), place(56, -92, -50), 4),
+    capsule("left_lobe", "liver", place(49, -123, -30), place(49, -120, 70), 40),
+    capsule("right_lobe", "liver", place(62, 8, -48), place(58, 140, -44), 34),
+    capsule("caudate_lobe", "liver", place(84, -45, -54), place(84, -130, -48), 40),
+    -- The colon's hepatic flexure, and the fat of omentum and retroperitoneum.
+    capsule("ascending_colon", "bowel", near(-131, -39, -73), near(-53, -29, -77), 20),
+    capsule("transverse_colon", "bowel", near(-53, -29, -77), near(-21, -60, -70), 20),
+    capsule("omentum", "fat", near(72, -40, -70), near(173, -22, -52), 22),
+    capsule("retroperitoneum", "fat", near(-202, 12, -135), near(206, -14, -120), 45),
+  }
+end
+
+--- The cystic plate and what fills the triangle. Nothing of it is calibrated.
+local function tissues(p)
+  local divide = 2.5e6 * p.strength -- J/m^2
+  local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
+  local function fat(name, from, to, within, strands, more)
+    local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
+      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide,
+      covered = true }
+    for key, value in pairs(more or {}) do out[key] = value end
+    return out
+  end
+  return {
+    { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2, strands = count(60),
+      slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength,
+      divide_energy = divide },
+    fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
+    fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
+    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),
+  }
+end
+
+--- The standard field with what differs in its variant, and then what its author gives, if anything, to the function
+--- called `owner`. `level`: of error(), as seen from the caller.
+local function field_with(owner, variant, overrides, level)
   overrides = overrides or {}
-  given.check(overrides, kinds, "anatomy.standard", level + 1)
+  given.check(overrides, kinds, owner, level + 1)
   local p = {}
   for _, source in ipairs { defaults, variant, overrides } do
     for key, value in pairs(source) do p[key] = value end
@@ -439,9 +489,12 @@ local function field_with(variant, overrides, level)
   local field = {
     organs = organs,
     joints = joints,
-    tissue = anatomy.tissue(p),
-    ground = anatomy.surroundings(neck),
+    tissue = tissues(p),
+    ground = surroundings(neck),
   }
+  for _, name in ipairs(p.without) do
+    if p.prepared[name] ~= nil then error('"' .. name .. '" is in prepared and in without', level + 1) end
+  end
   prepare(field, p.prepared, level + 1)
   for _, name in ipairs(p.without) do take_out(field, name, level + 1) end
   return field
@@ -449,7 +502,7 @@ end
 
 --- The anatomy of a standard field, or with other lengths: see the top of this file.
 function anatomy.standard(overrides)
-  local field = field_with({}, overrides, 2)
+  local field = field_with("anatomy.standard", {}, overrides, 2)
   return field -- not at once: who is called last has no line of its caller
 end
 
@@ -467,14 +520,16 @@ anatomy.variants = {
 
 --- The standard field with what a variant changes, and then with what differs besides.
 function anatomy.variant(name, overrides)
+  if type(name) ~= "string" then error('anatomy.variant takes a name first, such as "low_union"', 2) end
   local changes = anatomy.variants[name]
   if changes == nil then
     local names = {}
     for known in pairs(anatomy.variants) do names[#names + 1] = known end
     table.sort(names)
-    error('no variant "' .. tostring(name) .. '": there are ' .. table.concat(names, ", "), 2)
+    error('no variant "' .. name .. '"' .. given.suggestion(name, anatomy.variants) .. ": there are "
+      .. table.concat(names, ", "), 2)
   end
-  local field = field_with(changes, overrides, 2)
+  local field = field_with("anatomy.variant", changes, overrides, 2)
   return field
 end
 
@@ -493,52 +548,20 @@ function anatomy.varied(overrides)
     second_cystic_artery = math.random() < 0.13,
     phrygian_cap = math.random() < 0.04,
   }
-  local field = field_with(drawn, overrides, 2)
+  local field = field_with("anatomy.varied", drawn, overrides, 2)
   return field
 end
 
---- What lies around the field, stays, and is touched: drawn by eye. But for the duodenum it is clear of all that moves.
-function anatomy.surroundings(neck)
-  local function capsule(name, looks, from, to, radius)
-    return { name = name, type = "capsule", looks = looks, point = from, to = to, radius = radius * mm }
-  end
-  local function near(x, y, z) return add(neck, { x, y, z }, mm) end
-  return {
-    capsule("duodenum", "bowel", near(-34, -60, -12), near(60, -62, -6), 13),
-    -- Beside the liver's lobe: the round ligament in its fissure, and the left lobe beyond; behind it the right lobe
-    -- and, behind the hilum, the caudate lobe.
-    capsule("round_ligament", "fat", place(22, -91, -20), place(17, -92, 90), 4),
-    capsule("round_ligament_root", "fat", place(22, -91, -20), place(56, -92, -50), 4),
-    capsule("left_lobe", "liver", place(49, -123, -30), place(49, -120, 70), 40),
-    capsule("right_lobe", "liver", place(62, 8, -48), place(58, 140, -44), 34),
-    capsule("caudate_lobe", "liver", place(84, -45, -54), place(84, -130, -48), 40),
-    -- The colon's hepatic flexure, and the fat of omentum and retroperitoneum.
-    capsule("ascending_colon", "bowel", near(-131, -39, -73), near(-53, -29, -77), 20),
-    capsule("transverse_colon", "bowel", near(-53, -29, -77), near(-21, -60, -70), 20),
-    capsule("omentum", "fat", near(72, -40, -70), near(173, -22, -52), 22),
-    capsule("retroperitoneum", "fat", near(-202, 12, -135), near(206, -14, -120), 45),
-  }
-end
+-- ---- what they take
 
---- The cystic plate and what fills the triangle. Nothing of it is calibrated.
-function anatomy.tissue(p)
-  local divide = 2.5e6 * p.strength -- J/m^2
-  local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
-  local function fat(name, from, to, within, strands, more)
-    local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
-      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide,
-      covered = true }
-    for key, value in pairs(more or {}) do out[key] = value end
-    return out
-  end
-  return {
-    { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2, strands = count(60),
-      slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength, break_energy = 300 * p.strength,
-      divide_energy = divide },
-    fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
-    fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
-    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),
-  }
-end
+local function of(name) return { name, given.number } end
+for name, takes in pairs {
+  along = { { "points", given.points }, { "share", given.share } },
+  radius_along = { { "shape", given.by_name }, { "share", given.share } },
+  place = { of "x", of "y", of "z" },
+  tube = { { "name", given.name }, { "points", given.points }, { "diameter", given.optional(up_to(100)) },
+    { "wall", up_to(20) }, { "held", given.optional(given.list) }, { "more", given.optional(given.by_name) } },
+  joint = { { "from", given.name }, { "to", given.name }, { "radius", up_to(100) } },
+} do anatomy[name] = given.checked("anatomy." .. name, takes, anatomy[name]) end
 
 return anatomy

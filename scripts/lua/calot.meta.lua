@@ -966,4 +966,9 @@ function calot.exercise(definition) end
 ---@return calot.anatomy
 function calot.anatomy(name, overrides) end
 
+---For modules: says as error() does that what was given to a function is wrong; calot check then says it too, where an error may only come of nothing having happened yet.
+---@param message string what is wrong, and what is wanted
+---@param level? number who is to blame: 1 who calls this, 2 who called that function, and so on; default 1; 1 to 20
+function calot.refuse(message, level) end
+
 return calot

@@ -5,7 +5,7 @@ local calot = require "calot"
 local given = require "given"
 local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
 
-local technique = {}
+local technique = given.module "technique"
 
 -- ---- points
 
@@ -37,12 +37,8 @@ end
 
 -- ---- the needle
 
-local whose = { name = given.name, port = given.three }
-local how_slack = { slack = given.above_zero }
-
 --- Draws the gallbladder out through the wall of its fundus, until its pressure is below `slack`, and leaves it.
 function technique.draw_slack(t, needle, slack)
-  given.check({ slack = slack }, how_slack, "technique.draw_slack", 2)
   local outside = needle:tip()
   needle:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 3 * mm, offset = { 8 * mm, -8 * mm, 2 * mm } })
   for _ = 1, 60 do
@@ -125,6 +121,7 @@ end
 --- How far, rad, a shaft from a port (its place) is to be turned for its jaws to open across a tube, which runs `along`
 --- at the place `at`: t:along says both.
 function technique.roll_across(port, at, along)
+  if length(minus(at, port)) == 0 then error("technique.roll_across: port and at are one place", 2) end
   local shaft = unit(minus(at, port))
   local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
   local x = { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) }
@@ -132,14 +129,18 @@ function technique.roll_across(port, at, along)
   return math.atan(-dot(x, along) / dot(y, along))
 end
 
-local how_about = {
-  tube = given.name, share = given.number, past = given.number, speed = given.optional(given.above_zero),
+local past = { "past", given.between(-0.2, 0.2, "a way of at most 200 mm", "mm") }
+local speed = { "speed", given.optional(given.between(0, 0.5, "a speed of up to 500 mm / s", "mm / s")) }
+local open = { "open", given.between(0, math.pi, "an angle of up to 180 degrees", "deg") }
+local hands = {
+  enter = {},
+  about = { { "tube", given.name }, { "share", given.share }, past, speed },
+  back = { { "way", given.between(0, 0.3, "a way of up to 300 mm", "mm") }, speed },
+  set_clips = { { "tube", given.name }, { "shares", given.shares }, open, past },
 }
-local how_clips = { tube = given.name, shares = given.numbers, open = given.above_zero, past = given.number }
 
 --- An instrument as a demo moves it about tubes: it knows how it is turned, and where its port is.
 function technique.hand(t, name, port)
-  given.check({ name = name, port = port }, whose, "technique.hand", 2)
   local self = { tool = t[name], rolled = 0 }
   --- It comes in where it waits for its port.
   function self.enter()
@@ -148,8 +149,7 @@ function technique.hand(t, name, port)
     self.rolled = 0
   end
   --- Open jaws come about a tube, their tips that far past its middle.
-  function self.about(tube, share, past, speed)
-    given.check({ tube = tube, share = share, past = past, speed = speed }, how_about, "about", 2)
+  local function about(tube, share, beyond, fast)
     local at, along = t:along(tube, share)
     local turn = technique.roll_across(port, at, along) - self.rolled
     turn = turn - math.pi * math.floor(turn / math.pi + 0.5) -- jaws are alike on both sides
@@ -157,22 +157,24 @@ function technique.hand(t, name, port)
       self.tool:rotate(turn, { speed = 300 * deg / s })
       self.rolled = self.rolled + turn
     end
-    self.tool:move_to(plus(at, unit(minus(at, port)), past), { speed = speed })
+    self.tool:move_to(plus(at, unit(minus(at, port)), beyond), { speed = fast })
   end
-  function self.back(way, speed)
-    self.tool:move_by(plus({ 0, 0, 0 }, unit(minus(port, self.tool:tip())), way), { speed = speed or 150 * mm / s })
+  self.about = about
+  local function back(way, fast)
+    self.tool:move_by(plus({ 0, 0, 0 }, unit(minus(port, self.tool:tip())), way), { speed = fast or 150 * mm / s })
   end
+  self.back = back
   --- Clips at these shares of a tube's way: jaws that come about it, then fire.
-  function self.set_clips(tube, shares, open, past)
-    given.check({ tube = tube, shares = shares, open = open, past = past }, how_clips, "set_clips", 2)
-    self.tool:open(open)
-    self.about(tube, shares[1], -12 * mm, 150 * mm / s)
+  function self.set_clips(tube, shares, wide, beyond)
+    self.tool:open(wide)
+    about(tube, shares[1], -12 * mm, 150 * mm / s)
     for _, share in ipairs(shares) do
-      self.about(tube, share, past, 40 * mm / s)
+      about(tube, share, beyond, 40 * mm / s)
       self.tool:fire()
     end
-    self.back(25 * mm)
+    back(25 * mm)
   end
+  for act, takes in pairs(hands) do self[act] = given.checked(name .. "'s hand." .. act, takes, self[act]) end
   return self
 end
 
@@ -195,5 +197,18 @@ function technique.judge_stump(run, tube)
   return share, string.format("it was cut %.1f mm from the nearest clip; 2 mm leave a stump", nearest / mm),
     { behind, cuts[1] }
 end
+
+-- ---- what they take
+
+local t, tool, tube, a, b = { "t", given.exercise }, { "tool", given.tool }, { "tube", given.name },
+  { "a", given.three }, { "b", given.three }
+for name, takes in pairs {
+  plus = { a, b, { "share", given.optional(given.number) } }, minus = { a, b }, dot = { a, b }, length = { a },
+  unit = { { "a", given.way } }, triangle = { t }, angle_of_ducts = { t },
+  draw_slack = { t, tool, { "slack", given.above_zero } },
+  take = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
+  roll_across = { { "port", given.three }, { "at", given.three }, { "along", given.way } },
+  hand = { t, { "name", given.name }, { "port", given.three } }, judge_stump = { { "run", given.run }, tube },
+} do technique[name] = given.checked("technique." .. name, takes, technique[name]) end
 
 return technique

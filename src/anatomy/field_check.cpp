@@ -75,6 +75,16 @@ bool FieldCheck::place_within(const std::string& path, const Vec3& position, dou
   return false;
 }
 
+bool FieldCheck::turn_within(const std::string& path, const Vec3& turn, double most,
+                             const std::string& what) {
+  const double largest = turn.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  if (largest <= most) return true;
+  std::string hint = fmt::format("give three angles of up to {:g} degrees", most / units::deg);
+  if (largest * units::deg <= most) hint = fmt::format("did you mean {} * deg? {}", text_of(turn), hint);
+  problem(path, fmt::format("{} rad is not {}", text_of(turn), what), hint);
+  return false;
+}
+
 bool FieldCheck::unit_direction(const std::string& path, const Vec3& direction, const std::string& what) {
   const double length = direction.norm();
   if (std::abs(length - 1.0) <= 1e-6) return true;

@@ -37,6 +37,8 @@ class FieldCheck {
                 const std::string& what);
   /// Finite and each coordinate within `reach` of the origin (m). True when it is.
   bool place_within(const std::string& path, const Vec3& position, double reach, const std::string& what);
+  /// The same of three angles, each of up to `most` (rad).
+  bool turn_within(const std::string& path, const Vec3& turn, double most, const std::string& what);
   bool unit_direction(const std::string& path, const Vec3& direction, const std::string& what);
   /// Non-empty, starting with a letter or underscore, then letters, digits and underscores: fit for a.b
   /// paths.

@@ -60,9 +60,13 @@ void check_limits(FieldCheck& check, const std::string& path, const KeyTable& ta
     if (int* const* number = std::get_if<int*>(&field)) value = **number;
     if (value) check.in_range(at, *value, *key.quantity, key.low, key.high, key.expected());
     Vec3* const* place = std::get_if<Vec3*>(&field);
-    if (place != nullptr && std::isfinite(key.high))
-      check.place_within(at, **place, key.high, key.expected());
+    if (place != nullptr && std::isfinite(key.high)) check_vector(check, at, **place, key);
   }
+}
+
+bool check_vector(FieldCheck& check, const std::string& path, const Vec3& value, const Key& key) {
+  return key.quantity == &quantity::angle ? check.turn_within(path, value, key.high, key.expected())
+                                          : check.place_within(path, value, key.high, key.expected());
 }
 
 Key number(std::string name, const Quantity& quantity, double low, double high, std::string fallback,

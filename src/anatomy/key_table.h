@@ -65,6 +65,9 @@ struct Key {
   std::string expected() const { return what.empty() ? "a sensible " + name : what; }
 };
 
+/// Complains where a vector, of places or of angles, is beyond its key's limit; whether it is not.
+bool check_vector(FieldCheck& check, const std::string& path, const Vec3& value, const Key& key);
+
 struct KeyTable {
   std::string name, doc;
   std::vector<Key> keys;

@@ -52,13 +52,13 @@ ExitCode show_refused(const PlayRequest& request, bool json) {
   }
   std::vector<Vec3> overlaps;
   const Result<World> drawn = World::as_drawn(exercise.scene, overlaps);
-  if (!drawn) return print_failure(drawn.failure(), "calot check --build " + file, json);
+  if (!drawn) return print_failure(script.value()->located(drawn.failure()), "calot check --build " + file, json);
   const fs::path folder = request.output.empty() ? fs::path("out") / exercise.id : request.output;
   std::error_code error;
   fs::create_directories(folder, error);
   if (std::optional<Failure> failed = draw_refused(drawn.value(), overlaps, request, folder / "refused.png"))
     return print_failure(*failed, "calot run --help", json);
-  if (json) return print_failure(made.failure(), "calot check --build " + file, json);
+  if (json) return print_failure(script.value()->located(made.failure()), "calot check --build " + file, json);
   print(fmt::format("{}: {}.", (folder / "refused.png").string(),
                     overlaps.empty() ? "no organ is in another or in ground"
                                      : fmt::format("{} {}, where organs are in each other or in ground",
@@ -66,7 +66,7 @@ ExitCode show_refused(const PlayRequest& request, bool json) {
   if (const std::string around = around_lens(drawn.value()); !around.empty())
     print(fmt::format("The laparoscope is in '{}' and sees nothing else: have it look_at another organ.",
                       around));
-  return print_failure(made.failure(), "calot check --build " + file, json);
+  return print_failure(script.value()->located(made.failure()), "calot check --build " + file, json);
 }
 
 }  // namespace

@@ -74,8 +74,10 @@ namespace {
 
 std::optional<SkinOverlap> overlap_of(const SkinJoin& join, const Organ& one, const Organ& other,
                                       const VecX& x) {
-  const auto hollow = [](const Organ& organ) { return is_hollow(organ.definition.shape); };
-  return join.overlap(x, {hollow(one), hollow(other)});
+  const auto may_hold = [](const Organ& outer, const Organ& inner) {
+    return is_hollow(outer.definition.shape) && std::holds_alternative<RigidShape>(inner.definition.shape);
+  };
+  return join.overlap(x, {may_hold(one, other), may_hold(other, one)});
 }
 
 /// Calls use(join, one organ's index, the other's, where all are) for the contact of each two organs.

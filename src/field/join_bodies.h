@@ -15,7 +15,7 @@ Result<bool> join_bodies(const AnatomyDefinition& anatomy, Field& field);
 Result<bool> add_joint(const JointDefinition& joint, bool at_rest, Field& field);
 
 /// That two organs are in each other at x, in the join's numbering: who, how deep, where, and what to do. None: they are
-/// not, or one is inside the other, which is hollow.
+/// not, or one is a rigid thing inside the other, which is hollow.
 std::optional<Problem> overlap_problem(const SkinJoin& join, const Organ& one, const Organ& other,
                                        const VecX& x);
 

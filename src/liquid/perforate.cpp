@@ -62,6 +62,13 @@ Result<double> open_tube(Organ& tube, double share, double width) {
       nearest = point;
   if (nearest < 0)
     return fail(FailureKind::scenario, fmt::format("'{}' is too short to be opened", tube.definition.name));
+  const bool is_open = std::any_of(tube.openings.begin(), tube.openings.end(),
+                                   [&](const Opening& opening) { return opening.point == nearest; });
+  if (is_open)
+    return fail(FailureKind::scenario,
+                fmt::format("'{}' is open already at {:.2f} of its length", tube.definition.name,
+                            rod->share_of_length(nearest)),
+                "open it once there, wider (the third argument), or elsewhere");
   Opening hole;
   hole.point = nearest;
   hole.area = 0.25 * std::numbers::pi * width * width;

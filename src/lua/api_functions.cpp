@@ -65,6 +65,15 @@ std::vector<ApiFunction> module_functions() {
        {required(text("name", "", "the anatomy's name: standard, hydrops")),
         table("overrides", "anatomy", "what differs")},
        "calot.anatomy"},
+      {"calot",
+       "refuse",
+       "For modules: says as error() does that what was given to a function is wrong; calot check then says "
+       "it too, where "
+       "an error may only come of nothing having happened yet.",
+       {required(text("message", "", "what is wrong, and what is wanted")),
+        number("level", quantity::number, 1, 20, "1",
+               "who is to blame: 1 who calls this, 2 who called that function, and so on")},
+       ""},
       {"score",
        "weighted",
        "The parts of the score.",

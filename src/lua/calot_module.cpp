@@ -4,6 +4,7 @@
 
 #include "base/suggest.h"
 #include "lua/api_table.h"
+#include "lua/score_rules.h"
 #include "script/binding.h"
 #include "script/module_loader.h"
 
@@ -69,6 +70,16 @@ int anatomy(lua_State* L) {
   return 1;
 }
 
+int refuse(lua_State* L) {
+  const int level = static_cast<int>(luaL_optinteger(L, 2, 1));
+  const std::string message = luaL_checkstring(L, 1);
+  note_mistake(L);
+  luaL_where(L, level);
+  lua_pushstring(L, message.c_str());
+  lua_concat(L, 2);
+  return lua_error(L);
+}
+
 /// Reading a member that is not there. Upvalues: the module's name, its table.
 int unknown_member(lua_State* L) {
   std::vector<std::string> names;
@@ -108,12 +119,16 @@ struct Function {
   lua_CFunction function;
 };
 
-const Function functions[] = {
-    {"calot", "exercise", exercise}, {"calot", "anatomy", anatomy},
-    {"score", "weighted", weighted}, {"score", "benchmark", benchmark},
-    {"score", "penalty", penalty},   {"score", "procedure", procedure},
-    {"score", "time", score_time},   {"score", "critical_view", score_critical_view},
-    {"score", "rule", rule}};
+const Function functions[] = {{"calot", "exercise", exercise},
+                              {"calot", "anatomy", anatomy},
+                              {"calot", "refuse", guarded<refuse>},
+                              {"score", "weighted", weighted},
+                              {"score", "benchmark", benchmark},
+                              {"score", "penalty", penalty},
+                              {"score", "procedure", procedure},
+                              {"score", "time", score_time},
+                              {"score", "critical_view", score_critical_view},
+                              {"score", "rule", rule}};
 
 void push_functions(lua_State* L, const std::string& owner) {
   lua_newtable(L);

@@ -102,12 +102,9 @@ std::optional<Failure> DemoScript::ask_conditions(double now) {
   for (Task& task : tasks_) {
     if (task.state != Task::condition || task.clock > now + slack) continue;
     bool answer = false;
-    std::optional<Failure> failure = sandbox().protect([&](lua_State* L) {
-      lua_rawgeti(L, LUA_REGISTRYINDEX, task.predicate);
-      lua_call(L, 0, 1);
-      answer = lua_toboolean(L, -1) != 0;
-    });
-    if (failure) return failure;
+    std::optional<Failure> failure =
+        sandbox().protect([&](lua_State* L) { answer = ask_condition(L, task.predicate); });
+    if (failure) return sandbox().laid_at(*failure, task.predicate);
     if (!end_condition(task, answer, now)) continue;
     luaL_unref(sandbox().state(), LUA_REGISTRYINDEX, task.predicate);
     task.clock = now;
@@ -141,7 +138,7 @@ std::optional<Failure> DemoScript::run_until(double end) {
     }
     if (first == tasks_.size()) return std::nullopt;
     if (waits > most_waits_per_step)
-      return fail(FailureKind::scenario, waits_message(), waits_hint(),
+      return fail(FailureKind::resource, waits_message(), waits_hint(),
                   sandbox().blame(tasks_[first].thread).place);
     if (std::optional<Failure> failure = resume(first)) return failure;
     // A condition that begins at this step's very start is asked at once, like any met there.

@@ -129,7 +129,9 @@ void push_session_handle(lua_State* L, ScriptSession& session) {
 
 HandleTarget handle_target(lua_State* L, const char* method) {
   const HandleTarget* target = target_at(L, 1);
-  if (target == nullptr) luaL_error(L, "%s must be called with a colon, as in t:%s(...)", method, method);
+  if (target == nullptr)
+    luaL_error(L, "%s must be called with a colon, of what it is asked: t:%s(...), or t.left:%s(...)", method,
+               method, method);
   if (!target->session->ended().empty())
     luaL_error(L, "%s can no longer be used: %s", name_of(*target).c_str(), target->session->ended().c_str());
   return *target;

@@ -46,6 +46,7 @@ OrganState organ_state(lua_State* L, const char* method) {
   const Arguments arguments(L, session, "Session", method);
   const int organ = arguments.good() ? session.organ(L, arguments.text("organ")) : -1;
   if (organ < 0) return {};
+  session.expect_kind(L, organ, method);
   if (session.checking()) return session.stand_in_organ(organ);
   return session.world(L).report().organs[static_cast<std::size_t>(organ)];
 }

@@ -38,6 +38,11 @@ class ScoreReader {
     }
     const TableReader reader(check_, &value_, "score", api_table("weighted"));
     reader.read(score);
+    for (const auto& [key, points] : {std::pair{"pass", score.pass}, std::pair{"cap", score.cap}})
+      if (points > 0 && points < 1)
+        check_.problem(reader.path_of(key),
+                       fmt::format("{} = {:g} is less than one point of 100", key, points),
+                       fmt::format("did you mean {:g}?", 100 * points));
     score.critical = read_events(reader, "critical");
     if (const Value* judge = reader.take("bail_out")) score.bail_out = judge->function;
     expect_api("score.bail_out_completes", reader.has("bail_out_completes"), 1,
@@ -255,17 +260,6 @@ std::vector<std::string> likely(const std::string& name, const std::vector<std::
   return same.empty() ? names : same;
 }
 
-/// Of all organs and tissues that there are or may be, and of ground.
-std::vector<std::string> organ_names(const ExerciseDefinition& exercise) {
-  std::vector<std::string> names;
-  for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
-    for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
-  for (const auto* tissues : {&exercise.scene.anatomy.tissue, &exercise.later_tissues})
-    for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
-  for (const GroundDefinition& ground : exercise.scene.anatomy.ground) names.push_back(ground.name);
-  return names;
-}
-
 }  // namespace
 
 ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
@@ -300,7 +294,7 @@ ScoreDefinition read_score(FieldCheck& check, const Value& score, int api) {
 }
 
 void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
-  const std::vector<std::string> names = metric_names(exercise), organs = organ_names(exercise);
+  const std::vector<std::string> names = metric_names(exercise), organs = place_names(exercise);
   const auto check_metric = [&](const std::string& path, const std::string& metric) {
     if (metric.empty() || std::find(names.begin(), names.end(), metric) != names.end()) return;
     std::string hint = suggestion(metric, names);

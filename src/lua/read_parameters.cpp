@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "base/suggest.h"
+#include "lua/score_rules.h"
 #include "lua/table_reader.h"
+#include "script/binding.h"
 #include "script/lua_headers.h"
 
 namespace calot {
@@ -124,6 +127,20 @@ ReadParameters read_parameters(FieldCheck& check, const Value* params,
   return result;
 }
 
+namespace {
+
+int unknown_parameter(lua_State* L) {
+  std::vector<std::string> names;
+  for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) names.emplace_back(lua_tostring(L, -2));
+  std::sort(names.begin(), names.end());
+  const std::string wanted = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+  note_mistake(L);
+  return luaL_error(L, "there is no parameter \"%s\" (%s)", wanted.c_str(),
+                    names.empty() ? "declare it in params" : suggestion(wanted, names).c_str());
+}
+
+}  // namespace
+
 void push_parameters(lua_State* L, const Parameters& parameters) {
   lua_newtable(L);
   for (const auto& [name, value] : parameters) {
@@ -132,6 +149,10 @@ void push_parameters(lua_State* L, const Parameters& parameters) {
     if (const auto* text = std::get_if<std::string>(&value)) lua_pushlstring(L, text->data(), text->size());
     lua_setfield(L, -2, name.c_str());
   }
+  lua_newtable(L);
+  lua_pushcfunction(L, guarded<unknown_parameter>);
+  lua_setfield(L, -2, "__index");
+  lua_setmetatable(L, -2);
 }
 
 }  // namespace calot

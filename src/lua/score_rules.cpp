@@ -20,8 +20,7 @@ constexpr std::size_t most_times = 10000;
 
 /// An error that no session would excuse: a name that does not exist.
 [[noreturn]] void raise_mistake(lua_State* L, const std::string& message, const std::string& hint) {
-  lua_pushboolean(L, 1);
-  lua_setfield(L, LUA_REGISTRYINDEX, mistake_key);
+  note_mistake(L);
   luaL_error(L, "%s (%s)", message.c_str(), hint.c_str());
   std::abort();  // luaL_error does not return
 }
@@ -80,15 +79,31 @@ void push_list(lua_State* L, const std::vector<T>& list, void (*push)(lua_State*
   }
 }
 
+/// Of a run's metatable: the names that events' organs have.
+constexpr const char* places_key = "calot.places";
+
+/// A table with these keys.
+void push_names(lua_State* L, const std::vector<std::string>& names) {
+  lua_createtable(L, 0, static_cast<int>(names.size()));
+  for (const std::string& name : names) {
+    lua_pushboolean(L, 1);
+    lua_setfield(L, -2, name.c_str());
+  }
+}
+
+std::vector<std::string> names_in(lua_State* L, int table) {
+  std::vector<std::string> names;
+  for (lua_pushnil(L); lua_next(L, table) != 0; lua_pop(L, 1)) names.emplace_back(lua_tostring(L, -2));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 /// Of a metric that was not measured. Upvalue 1: those there may be, as keys.
 int missing_metric(lua_State* L) {
   const std::string name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
   lua_pushvalue(L, 2);
   if (lua_isnil(L, 2) || lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
-    std::vector<std::string> names;
-    for (lua_pushnil(L); lua_next(L, lua_upvalueindex(1)) != 0; lua_pop(L, 1))
-      names.emplace_back(lua_tostring(L, -2));
-    std::sort(names.begin(), names.end());
+    const std::vector<std::string> names = names_in(L, lua_upvalueindex(1));
     raise_mistake(L, fmt::format("unknown metric \"{}\"", name), suggestion(name, names));
   }
   lua_pushnil(L);
@@ -100,11 +115,7 @@ void set_metrics(lua_State* L, const RuleRun& run) {
   for (const auto& [name, value] : run.metrics) set_number(L, name.c_str(), value);
   if (run.metric_names != nullptr) {
     lua_newtable(L);
-    lua_newtable(L);
-    for (const std::string& name : *run.metric_names) {
-      lua_pushboolean(L, 1);
-      lua_setfield(L, -2, name.c_str());
-    }
+    push_names(L, *run.metric_names);
     lua_pushcclosure(L, guarded<missing_metric>, 1);
     lua_setfield(L, -2, "__index");
     lua_setmetatable(L, -2);
@@ -150,7 +161,19 @@ void push_run(lua_State* L, const RuleRun& run) {
   lua_newtable(L);
   lua_pushcfunction(L, guarded<missing_member>);
   lua_setfield(L, -2, "__index");
+  push_names(L, place_names(run.exercise));
+  lua_setfield(L, -2, places_key);
   lua_setmetatable(L, -2);
+}
+
+/// Complains of a name that no event's organ has: an organ's, or a piece's of one.
+void expect_place(lua_State* L, const std::string& name) {
+  if (luaL_getmetafield(L, 1, places_key) == LUA_TNIL) return;
+  std::vector<std::string> names = names_in(L, lua_gettop(L));
+  lua_pop(L, 1);
+  const std::string whole = name.substr(0, name.find('.'));
+  if (std::find(names.begin(), names.end(), whole) == names.end())
+    raise_mistake(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
 }
 
 /// Calls `found` with the time of each event that run:method(event, organ) asks for.
@@ -164,6 +187,7 @@ void for_events(lua_State* L, const char* method, const Found& found) {
     raise_mistake(L, fmt::format("unknown event \"{}\"", wanted), suggestion(wanted, event_names()));
   }
   const std::string organ = lua_isnoneornil(L, 3) ? "" : luaL_checkstring(L, 3);
+  if (!organ.empty()) expect_place(L, organ);
   const int events = lua_gettop(L);
   const auto text_of = [&](const char* key) {
     const std::string text = lua_getfield(L, -1, key) == LUA_TSTRING ? lua_tostring(L, -1) : "";
@@ -240,7 +264,7 @@ std::vector<Problem> problems_of(const RawAnswer& raw, const Place& place, bool 
 }
 
 std::optional<Failure> call_rule(Sandbox& sandbox, int rule, const RuleRun& run, RawAnswer& raw) {
-  return sandbox.protect([&](lua_State* L) {
+  std::optional<Failure> failure = sandbox.protect([&](lua_State* L) {
     lua_rawgeti(L, LUA_REGISTRYINDEX, rule);
     push_run(L, run);
     lua_call(L, 1, 3);
@@ -251,11 +275,18 @@ std::optional<Failure> call_rule(Sandbox& sandbox, int rule, const RuleRun& run,
     if (raw.is_share) raw.answer.share = raw.yes_no ? lua_toboolean(L, -3) : lua_tonumber(L, -3);
     if (raw.is_text) raw.answer.reason = lua_tostring(L, -2);
   });
+  if (failure) failure = sandbox.laid_at(*failure, rule);
+  return failure;
 }
 
 }  // namespace
 
 void push_events(lua_State* L, const std::vector<SessionEvent>& events) { push_list(L, events, push_event); }
+
+void note_mistake(lua_State* L) {
+  lua_pushboolean(L, 1);
+  lua_setfield(L, LUA_REGISTRYINDEX, mistake_key);
+}
 
 int count_events_of_run(lua_State* L) {
   lua_Integer count = 0;

@@ -68,6 +68,12 @@ const World& ScriptSession::world(lua_State* L) const {
   return *world_;
 }
 
+bool ScriptSession::said_before(const Problem& problem) const {
+  return std::any_of(problems_->begin(), problems_->end(), [&](const Problem& said) {
+    return said.place.line == problem.place.line && said.message == problem.message;
+  });
+}
+
 void ScriptSession::complain(lua_State* L, const std::string& message, const std::string& hint) {
   if (problems_ == nullptr) {
     luaL_where(L, 1);
@@ -84,10 +90,10 @@ void ScriptSession::complain(lua_State* L, const std::string& message, const std
     luaL_error(L, "too many mistakes");
     std::abort();  // luaL_error does not return
   }
-  const std::string said = shortened(message, longest_message) + blame.inside + blame.callers;
-  for (const Problem& problem : *problems_)
-    if (problem.place.line == blame.place.line && problem.message == said) return;  // in a loop
-  problems_->push_back({blame.place, said, hint});
+  const std::string way = blame.inside + blame.callers, short_message = shortened(message, longest_message);
+  const std::string said = way.empty() ? short_message : with_hint(short_message, hint) + way;
+  const Problem problem{blame.place, said, way.empty() ? hint : std::string()};
+  if (!said_before(problem)) problems_->push_back(problem);
 }
 
 int ScriptSession::organ(lua_State* L, const std::string& name) {
@@ -297,8 +303,23 @@ std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name
   return {Vec3::Zero(), Vec3::UnitX()};
 }
 
+void ScriptSession::expect_kind(lua_State* L, int index, const std::string& method) {
+  const OrganDefinition organ =
+      checking() ? known_organ(index) : world(L).field().organs[static_cast<std::size_t>(index)].definition;
+  const bool of_tubes = method == "clips" || method == "divided";
+  if (of_tubes ? std::holds_alternative<TubeShape>(organ.shape) : is_hollow(organ.shape)) return;
+  complain(
+      L,
+      fmt::format("'{}' {}", organ.name, of_tubes ? "is no tube" : "is no hollow organ: it keeps no liquid"),
+      of_tubes ? "name a duct or a vessel" : "name a gallbladder, or another organ with bile");
+}
+
 bool ScriptSession::divided(lua_State* L, const std::string& name) {
-  if (checking()) return organ(L, name) >= 0;
+  if (checking()) {
+    const int index = organ(L, name);
+    if (index >= 0) expect_kind(L, index, "divided");
+    return index >= 0;
+  }
   if (const BodyRecord* record = gone_body(world(L).field(), name)) return !record->gone->pieces.empty();
   return organ(L, name) < 0;
 }
@@ -407,6 +428,26 @@ OrganState ScriptSession::stand_in_organ(int organ) {
   return state;
 }
 
+bool ScriptSession::ask_condition(lua_State* L, int predicate) {
+  const int top = lua_gettop(L);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, predicate);
+  lua_call(L, 0, LUA_MULTRET);
+  const bool returned = lua_gettop(L) > top;
+  const int type = returned ? lua_type(L, top + 1) : LUA_TNONE;
+  const bool answer = returned && lua_toboolean(L, top + 1) != 0;
+  lua_settop(L, top);
+  if (returned && type != LUA_TNUMBER && type != LUA_TSTRING) return answer;
+  lua_Debug info;
+  lua_rawgeti(L, LUA_REGISTRYINDEX, predicate);
+  lua_getinfo(L, ">S", &info);
+  const char* what = returned ? lua_typename(L, type) : "nothing";
+  lua_pushfstring(L,
+                  "%s:%d: the condition returns %s%s, not true or false (write return before what is asked)",
+                  info.short_src, info.linedefined, returned ? "a " : "", what);
+  lua_error(L);
+  std::abort();  // lua_error does not return
+}
+
 void ScriptSession::ask_dry(lua_State* L, int predicate) {
   if (++asked_ > most_dry_asks) return;
   const bool guess = guess_, stood_in = stood_in_;
@@ -415,13 +456,12 @@ void ScriptSession::ask_dry(lua_State* L, int predicate) {
   for (int i = 0; i < 2 * levels; ++i) {
     guess_ = i % 2 == 0;
     level_ = (i / 2 + 1) % levels;  // the usual first
-    const std::optional<Failure> failure = sandbox_.protect([&](lua_State* main) {
-      lua_rawgeti(main, LUA_REGISTRYINDEX, predicate);
-      lua_call(main, 0, 1);
-    });
+    const std::optional<Failure> failure =
+        sandbox_.protect([&](lua_State* main) { ask_condition(main, predicate); });
     if (!failure || is_no_mistake(*failure)) continue;
     sandbox_.charge(L, 0);  // raises what no script survives
-    for (const Problem& problem : failure->problems) problems_->push_back(problem);
+    for (const Problem& problem : sandbox_.laid_at(*failure, predicate).problems)
+      if (!said_before(problem)) problems_->push_back(problem);
     break;
   }
   asking_ = false;
@@ -517,7 +557,15 @@ std::string Arguments::text(const std::string& name) const {
 
 int Arguments::function(const std::string& name) const {
   const Value* value = reader_.take(name);
-  return value != nullptr ? value->function : 0;
+  if (value == nullptr) return 0;
+  lua_rawgeti(L_, LUA_REGISTRYINDEX, value->function);
+  const bool is_method = lua_iscfunction(L_, -1) != 0;
+  lua_pop(L_, 1);
+  if (is_method)
+    session_.complain(
+        L_, fmt::format("{}: {} is a method, which is called of something", function_.full_name(), name),
+        "write function() return t.left:holds() end");
+  return value->function;
 }
 
 std::optional<Vec3> Arguments::point(const Value& value, const std::string& name) {

@@ -94,6 +94,9 @@ class ScriptSession {
   bool can_act(lua_State* L, int instrument, InstrumentAction action, const std::string& command);
   /// A place on a tube, m, and its direction there, unit; of a stand-in where there is none, or after a complaint.
   std::pair<Vec3, Vec3> along(lua_State* L, const std::string& tube, double share);
+  /// Complains about an organ that is not of the kind that a method asks about: clips and divided of tubes, pressure and
+  /// volume of hollow organs.
+  void expect_kind(lua_State* L, int index, const std::string& method);
   /// Whether a tube has been divided; complains about what is none.
   bool divided(lua_State* L, const std::string& tube);
   /// Where a landmark of this scene is now, m; in a dry run without a world about where it will be.
@@ -119,6 +122,9 @@ class ScriptSession {
   OrganState stand_in_organ(int organ);
   /// Calls the function once with each set of stand-ins; what fails is reported.
   void ask_dry(lua_State* L, int predicate);
+  /// What a condition, a registry reference, answers: nil and false are no. Raises an error at its lines where it returns
+  /// nothing, or what is neither true nor false nor something that may be missing: a number, a text.
+  static bool ask_condition(lua_State* L, int predicate);
   /// In a dry run: whether the last failure need not be the author's mistake. It follows from one that is reported,
   /// or is the script's own check (error, assert) of a stand-in.
   bool is_no_mistake(const Failure& failure) {
@@ -154,6 +160,8 @@ class ScriptSession {
   Result<lua_State*> start_main(int function);
 
  private:
+  /// In a loop.
+  bool said_before(const Problem& problem) const;
   int next_level();
   /// Of the scene's ports or the usual ones, m.
   Vec3 port_position(const std::string& name) const;

@@ -76,7 +76,7 @@ Result<bool> StepsScript::run() {
     const bool answer = over.value();
     if (!answer && !pass_limit()) return false;
     if (waits >= most_waits_per_step)
-      return fail(FailureKind::scenario, waits_message(), waits_hint(), sandbox().blame(thread_).place);
+      return fail(FailureKind::resource, waits_message(), waits_hint(), sandbox().blame(thread_).place);
     if (std::optional<Failure> failure = wake(answer)) return *failure;
   }
   progress_->end_step(now_, "done");
@@ -95,12 +95,9 @@ bool StepsScript::pass_limit() {
 
 Result<bool> StepsScript::ask(int predicate) {
   bool answer = false;
-  std::optional<Failure> failure = sandbox().protect([&](lua_State* L) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, predicate);
-    lua_call(L, 0, 1);
-    answer = lua_toboolean(L, -1) != 0;
-  });
-  if (failure) return *failure;
+  std::optional<Failure> failure =
+      sandbox().protect([&](lua_State* L) { answer = ask_condition(L, predicate); });
+  if (failure) return sandbox().laid_at(*failure, predicate);
   return answer;
 }
 
@@ -213,6 +210,7 @@ void StepsScript::step(lua_State* L, const std::string& name, const std::string&
   declared_.steps.push_back(name);
   declared_.waited.push_back(name);
   current_ = name;
+  limit_ = options.limit;
   if (checking()) return;
   timed_out_ = false;
   progress_->begin_step(now_, name, title, options);
@@ -250,11 +248,21 @@ void StepsScript::note(lua_State* L, const std::string& name, const Value& value
 }
 
 int StepsScript::count(lua_State* L, const std::string& event, const std::string& organ) {
+  if (checking() && !organ.empty()) is_place(L, organ);
   if (checking()) return next_guess() ? 100 : 0;  // more than any loop waits for, or none
   world(L);                                       // raises what is wrong outside of steps
   const std::vector<SessionEvent>& events = progress_->events();
   return static_cast<int>(std::count_if(
       events.begin(), events.end(), [&](const SessionEvent& one) { return is_event(one, event, organ); }));
+}
+
+void StepsScript::is_place(lua_State* L, const std::string& name) {
+  ExerciseDefinition known = exercise();
+  known.later_organs = later_organs();
+  known.later_tissues = later_tissues();
+  const std::vector<std::string> names = place_names(known);
+  if (!contains(names, name.substr(0, name.find('.'))))
+    complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
 }
 
 void StepsScript::missed(lua_State* L, const std::string& why) {
@@ -402,6 +410,9 @@ int StepsScript::hold(lua_State* L, const std::string& name, int predicate, doub
     complain(L, "t:hold before the first t:step", "start a step: its name is part of the metric's");
     return 0;
   }
+  if (limit_ > 0 && duration > limit_)
+    complain(L, fmt::format("{:g} s are to be held in a step whose limit is {:g} s", duration, limit_),
+             "give the step a longer limit, or hold it for less time");
   const std::string full = current_ + "." + name;
   if (!current_.empty() && !contains(declared_.holds, full)) declared_.holds.push_back(full);
   if (const std::optional<int> results = answered_at_once(L, predicate)) return *results;

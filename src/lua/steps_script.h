@@ -72,6 +72,8 @@ class StepsScript final : public ScriptSession {
 
   bool may_wait(lua_State* L, const char* method);
   bool is_name(lua_State* L, const std::string& what, const std::string& name);
+  /// Complains of what no event's organ is called.
+  void is_place(lua_State* L, const std::string& name);
   int suspend(lua_State* L, Wait wait);
   int dry_wait(lua_State* L, std::optional<double> duration);
   std::optional<int> answered_at_once(lua_State* L, int predicate);
@@ -100,6 +102,7 @@ class StepsScript final : public ScriptSession {
   World* changing_ = nullptr;  ///< the world of the call that is running
   Declared declared_;
   std::string current_;      ///< the step declared last
+  double limit_ = 0;         ///< of that step, s; 0: none
   bool step_tried_ = false;  ///< one was, well or not
 };
 

@@ -138,7 +138,7 @@ bool TableReader::check_value(const Key& key, const Value& value) {
   if (key.kind != KeyKind::point) return true;
   const std::optional<Vec3> point = read_point(check_, value, path);
   if (!point) return false;
-  return api_.checked_by_validate || check_.place_within(path, *point, key.high, key.expected());
+  return api_.checked_by_validate || check_vector(check_, path, *point, key);
 }
 
 bool TableReader::check_number(const Key& key, const Value& value) {

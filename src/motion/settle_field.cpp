@@ -1,5 +1,7 @@
 #include "motion/settle_field.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -186,6 +188,24 @@ Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics
   return solve_failure(result, member_name(field, result.part), when);
 }
 
+namespace {
+
+/// Of a scene that has no rest.
+Failure no_rest(const Field& field, const NewtonResult& result, const std::string& when) {
+  Failure out = no_rest_failure(result, member_name(field, result.part), when);
+  if (result.part < static_cast<int>(field.organs.size()))
+    out.problems.front().place.path = fmt::format("scene.anatomy.organs[{}]", result.part + 1);
+  return out;
+}
+
+}  // namespace
+
+Result<bool> settle_at_rest(Field& field, SolveStatistics& statistics) {
+  const NewtonResult result = settle_where_it_is(field, statistics);
+  if (result.converged()) return true;
+  return no_rest(field, result, "at rest");
+}
+
 Result<bool> settle_in_step(Field& field, const std::string& when, SolveStatistics& statistics) {
   const NewtonResult result = settle_where_it_is(field, statistics);
   if (result.converged()) return true;
@@ -215,8 +235,7 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics) {
       sink(members, all_joins(field, present_poses(field)), group.patterns, settings, group.work);
   ++statistics.solves;
   count(field, result, statistics);
-  if (!result.converged())
-    return solve_failure(result, member_name(field, result.part), "as it sank to rest");
+  if (!result.converged()) return no_rest(field, result, "as it sank to rest");
   return true;
 }
 

@@ -46,7 +46,8 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
 /// stays as it is, and the step is one that was cut short.
 void end_in_balance(Field& field, SolveStatistics& statistics);
 
-/// Lets organs that nothing holds sink to rest with no tool near (equilibrium.h); they rest without friction.
+/// Lets organs that nothing holds sink to rest with no tool near (equilibrium.h); they rest without friction. As a scene
+/// begins: that it has no rest is the scene's fault (scenario), at the organ.
 Result<bool> sink_field(Field& field, SolveStatistics& statistics);
 
 /// Whether a solve of the group ended because the step's budget was spent (step_budget.h): its members are left at the
@@ -60,7 +61,9 @@ void note_cut_short(const NewtonResult& last, SolveStatistics& statistics);
 /// Brings every organ to rest with the tools as they stand, or as far as the step's budget goes. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.
 Result<bool> settle_field(Field& field, const std::string& when, SolveStatistics& statistics);
-/// The same within a step. Where masses count, one that finds no balance is a step that was cut short: all stays where the
+/// The same as a scene begins: a rest that is not found is the scene's fault (scenario), at the organ.
+Result<bool> settle_at_rest(Field& field, SolveStatistics& statistics);
+/// settle_field() within a step. Where masses count, one that finds no balance is a step that was cut short: all stays where the
 /// last iterate left it, and inertia carries it on.
 Result<bool> settle_in_step(Field& field, const std::string& when, SolveStatistics& statistics);
 

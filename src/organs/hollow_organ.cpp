@@ -176,7 +176,7 @@ Failure fill_failure(const NewtonResult& result, const std::string& organ, const
         fmt::format("organ '{}' takes too long to fill: more Newton iterations than fit half a minute",
                     organ),
         "give it fewer nodes, or a volume or pressure nearer to what it holds unstressed", {"", 0, ".bile"});
-  Failure failure = solve_failure(result, organ, "while it was filled");
+  Failure failure = no_rest_failure(result, organ, "while it was filled");
   Problem& problem = failure.problems.front();
   if (limits != nullptr && limits->sinks)
     problem.hint =

@@ -52,4 +52,11 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
               hint);
 }
 
+Failure no_rest_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {
+  Failure out = solve_failure(result, organ, when);
+  const bool is_ours = result.status == NewtonStatus::not_finite || result.status == NewtonStatus::out_of_memory;
+  if (out.kind == FailureKind::simulation && !is_ours) out.kind = FailureKind::scenario;
+  return out;
+}
+
 }  // namespace calot

@@ -176,5 +176,7 @@ std::optional<OrganPoint> find_landmark(const std::vector<Organ>& organs, const 
 
 /// A failed solve in words: what happened, and what to change (simulation); one that was stopped was interrupted.
 Failure solve_failure(const NewtonResult& result, const std::string& organ, const std::string& when);
+/// The same of a scene that has no rest, which is for its author to mend (scenario), unless a value is not finite.
+Failure no_rest_failure(const NewtonResult& result, const std::string& organ, const std::string& when);
 
 }  // namespace calot

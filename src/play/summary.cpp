@@ -34,8 +34,9 @@ std::string events_text(const Progress& progress) {
   std::vector<std::pair<std::string, std::vector<double>>> kinds;
   for (const SessionEvent& event : progress.events()) {
     if (ends_a_step(event.kind)) continue;  // the steps' table says it
-    const std::string who = event.instrument.empty() ? event.organ : event.instrument;
-    std::string name = fmt::format("{}{}{}", to_text(event.kind), who.empty() ? "" : " ", who);
+    const std::string &who = event.instrument, &what = event.organ;
+    std::string name = fmt::format("{}{}{}{}{}", to_text(event.kind), who.empty() ? "" : " ", who,
+                                   what.empty() ? "" : (who.empty() ? " " : " on "), what);
     if (event.cause != EventCause::none) name += fmt::format(" ({})", to_text(event.cause));
     if (!event.text.empty()) name += fmt::format(": {}", event.text);
     auto found =

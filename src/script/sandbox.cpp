@@ -335,6 +335,19 @@ Blame Sandbox::blame(std::span<const Place> trace) const {
           lines_of({author + 1, trace.end()}, "called from")};
 }
 
+Failure Sandbox::laid_at(Failure failure, int function) const {
+  lua_Debug info;
+  lua_rawgeti(L_, LUA_REGISTRYINDEX, function);
+  lua_getinfo(L_, ">S", &info);
+  const std::string* file = file_of(info);
+  for (Problem& problem : failure.problems) {
+    if (file == nullptr || !is_shared(problem.place)) continue;
+    problem.message += lines_of({&problem.place, 1}, "inside");
+    problem.place = {*file, std::max(0, info.linedefined), {}};
+  }
+  return failure;
+}
+
 Blame Sandbox::blame(lua_State* L) const {
   Blame found = blame(trace_of(L));
   if (found.place.file == options_.script.string()) found.callers.clear();

@@ -109,6 +109,9 @@ class Sandbox {
 
   /// The file that a function was written in, by its debug information ("S"); null: none of the script's.
   const std::string* file_of(const lua_Debug& info) const;
+  /// A failure of a function, a registry reference, that was called: where only modules' lines are known, because it
+  /// went on to them by a last call, it is where the function was written.
+  Failure laid_at(Failure failure, int function) const;
   /// The author's line that runs in L. Callers are told only of a line in a module of the author's.
   Blame blame(lua_State* L) const;
 

@@ -120,11 +120,12 @@ void measure_forces(const std::vector<InstrumentSample>& samples, const std::str
   double peak = 0, peak_handle = 0, peak_jaws = 0, peak_shaft = 0, peak_lag = 0, peak_pads = 0, sum = 0;
   int loaded = 0;
   for (const InstrumentSample& sample : samples) {
+    peak_lag = std::max(peak_lag, sample.lag);
+    if (!sample.balanced) continue;
     peak = std::max(peak, sample.force);
     peak_handle = std::max(peak_handle, sample.handle_force);
     peak_jaws = std::max(peak_jaws, sample.jaws_force);
     peak_shaft = std::max(peak_shaft, sample.shaft_force);
-    peak_lag = std::max(peak_lag, sample.lag);
     peak_pads = std::max(peak_pads, sample.pad_pressure);
     if (sample.force > smallest_force) {
       sum += sample.force;
@@ -359,6 +360,16 @@ std::string pattern(const MetricRow& row) {
   return of("total");
 }
 
+std::vector<std::string> place_names(const ExerciseDefinition& exercise) {
+  std::vector<std::string> names;
+  for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+    for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
+  for (const auto* tissues : {&exercise.scene.anatomy.tissue, &exercise.later_tissues})
+    for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
+  for (const GroundDefinition& ground : exercise.scene.anatomy.ground) names.push_back(ground.name);
+  return names;
+}
+
 std::vector<std::string> metric_names(const ExerciseDefinition& exercise) {
   std::vector<std::string> names;
   for (const MetricRow& row : metric_rows())
@@ -391,6 +402,7 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
     if (traces.organs[i].empty()) continue;
     double pressure = traces.organs[i].front().pressure, stretch = traces.organs[i].front().max_stretch;
     for (const OrganSample& sample : traces.organs[i]) {
+      if (!sample.balanced) continue;
       pressure = std::max(pressure, sample.pressure);
       stretch = std::max(stretch, sample.max_stretch);
     }

@@ -18,7 +18,8 @@ namespace calot {
 /// Raised with every change of what a metric or an event means, so that figures of two meanings never stand under one name.
 /// 1: overforce judged the sum of all forces on an instrument. 2: it judges those on its jaws.
 /// 3: ground is among what an instrument touches, is pressed by and hurts; a perforation is counted for each wall.
-inline constexpr int measures_version = 3;
+/// 4: forces, pressures and stretches of steps that did not end in balance are left out, as overforce always left them.
+inline constexpr int measures_version = 4;
 
 enum class MetricOwner {
   instrument,
@@ -50,6 +51,8 @@ std::string pattern(const MetricRow& row);
 
 /// Every metric a session of this exercise can measure.
 std::vector<std::string> metric_names(const ExerciseDefinition& exercise);
+/// What an event may have happened to: organs and tissues that there are or may be, and ground.
+std::vector<std::string> place_names(const ExerciseDefinition& exercise);
 
 /// A metric in words, its unit last: "left: path length, mm" of left.path_length_mm.
 std::string metric_title(const std::string& metric);

@@ -68,6 +68,7 @@ void append_sample(const World& world, Traces& traces) {
     sample.waits = state.waits;
     sample.lag = state.lag;
     sample.pad_pressure = state.pad_pressure;
+    sample.balanced = report.balanced;
     traces.instruments[i].push_back(sample);
   }
   append_laparoscope(world, traces);
@@ -78,7 +79,7 @@ void append_sample(const World& world, Traces& traces) {
       traces.organ_names.resize(row + 1);
     }
     traces.organ_names[row] = organ.name;
-    traces.organs[row].push_back({organ.pressure, organ.max_stretch});
+    traces.organs[row].push_back({organ.pressure, organ.max_stretch, report.balanced});
   }
   traces.lost = report.lost;
   for (const TissueState& tissue : report.tissues) {

@@ -1,6 +1,9 @@
 #include "world/come_to_rest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "acts/advance.h"
@@ -62,13 +65,42 @@ double fastest(const Field& field) {
   return speed;
 }
 
+/// The organ that is furthest from where it was.
+struct Drift {
+  std::size_t organ = 0;
+  double way = 0;  ///< m, of its node that went least
+};
+Drift furthest(const Field& field, const std::vector<VecX>& from) {
+  Drift out;
+  for (std::size_t k = 0; k < field.organs.size(); ++k) {
+    const VecX way = field.organs[k].state.x - from[k];
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index node = 0; node < field.organs[k].body->coarse_nodes(); ++node)
+      least = std::min(least, way.segment<3>(3 * node).norm());
+    if (least > out.way) out = {k, least};
+  }
+  return out;
+}
+
+Failure never_rests(const Field& field, const Drift& drift) {
+  return fail(FailureKind::scenario,
+              fmt::format("organ '{}' never comes to rest: it has fallen or slid {:.0f} mm",
+                          field.organs[drift.organ].definition.name, 1e3 * drift.way),
+              "let something hold it; on a table that is tilted (table_head_up, table_left_down) it slides "
+              "off ground "
+              "without friction",
+              {{}, 0, fmt::format("scene.anatomy.organs[{}]", drift.organ + 1)});
+}
+
 /// Lets all bodies fall as they would in a session, but in longer steps, which damp what swings, until they lie still:
-/// where no solve finds a rest at once, as of what folds, rolls or hangs by a thread. Whether they do within half a minute
-/// of their time.
+/// where no solve finds a rest at once, as of what folds, rolls or hangs by a thread. Fails (scenario) where they do not
+/// within half a minute of their time, or one has left the field.
 Result<bool> fall_to_rest(const Roughness& rough, Field& field) {
   constexpr double step = 0.04, longest = 30;  // s
+  constexpr double furthest_in_field = 0.3;    // m, from where it is drawn: as wide as an abdomen
   const double usual = std::exchange(field.step_time, step);
   rough.give(field);
+  const std::vector<VecX> from = present_places(field);
   int still = 0;
   Result<bool> fell = true;
   for (int k = 0; k < longest / step && still < still_steps && fell; ++k) {
@@ -76,28 +108,30 @@ Result<bool> fall_to_rest(const Roughness& rough, Field& field) {
     const Result<std::vector<WorldEvent>> events = advance(field, {}, statistics);
     if (!events) fell = events.failure();
     still = events && fastest(field) < still_speed ? still + 1 : 0;
+    const Drift drift = furthest(field, from);
+    if (fell && drift.way > furthest_in_field) fell = never_rests(field, drift);
   }
+  if (fell && still < still_steps) fell = never_rests(field, furthest(field, from));
   Roughness::take(field);
   field.step_time = usual;
   for (std::size_t k = 0; k < moving_bodies(field); ++k) state_of(field, k).motion = {};
   for (Organ& organ : field.organs) organ.friction = {};
   field.group.rubbing.clear();
-  return fell ? still == still_steps : fell;
+  return fell;
 }
 
 Result<bool> search_rest(const SceneDefinition& scene, const Roughness& rough, Field& field) {
   const bool dynamic = scene.solver.motion == SolverMotion::dynamics;
   SolveStatistics statistics;
   const GroupSnapshot before = snapshot(field);
-  Result<bool> rested = settle_field(field, "at rest", statistics);
+  Result<bool> rested = settle_at_rest(field, statistics);
   if (!rested && dynamic) {
     restore(field, before);
     rested = sink_field(field, statistics);
   }
   if (rested || !dynamic) return rested;
   restore(field, before);
-  const Result<bool> fallen = fall_to_rest(rough, field);
-  return fallen && !fallen.value() ? rested : fallen;
+  return fall_to_rest(rough, field);
 }
 
 Result<bool> find_rest(const SceneDefinition& scene, const Roughness& rough, Field& field,

@@ -513,7 +513,7 @@ TEST_F(Run, AnOrganThatCannotBeFilledIsNotToldToMoveMoreSlowly) {
                "nodes = 30, bile = { fill_pressure = 90 * 133 }, wall = { shear_modulus = 1000 }");
   spill(folder_ / "full.lua", text);
   const Outcome outcome = calot({"run", "full.lua", "--no-render"});
-  EXPECT_EQ(outcome.code, 8) << outcome.err << outcome.out;
+  EXPECT_EQ(outcome.code, 6) << outcome.err << outcome.out;
   EXPECT_NE(outcome.err.find("while it was filled"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("fill it less"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find("move more slowly"), std::string::npos) << outcome.err;

@@ -209,8 +209,8 @@ TEST(Anatomy, WhatIsNoValueOfAParameterIsRefusedAtTheAuthorsLine) {
     std::string given, what;
   };
   const std::vector<Wrong> wrong{
-      {"cystic_duct_diameter = 0", "cystic_duct_diameter is a number above 0, not 0"},
-      {"gallbladder_width = -33 * mm", "gallbladder_width is a number above 0, not -0.033"},
+      {"cystic_duct_diameter = 0", "cystic_duct_diameter is a length above 0, up to 20 mm, not 0"},
+      {"gallbladder_width = -33 * mm", "gallbladder_width is a length above 0, up to 100 mm, not -0.033"},
       {"strands = 0/0", "strands is a number above 0, not nan"},
       {"strength = 1/0", "strength is a number above 0, not inf"},
       {"strands = 'x'", "strands is a number above 0, not \"x\""},
@@ -223,7 +223,7 @@ TEST(Anatomy, WhatIsNoValueOfAParameterIsRefusedAtTheAuthorsLine) {
       {"cystic_artery_enters = { 1, 2, 0/0 }", "cystic_artery_enters is three numbers"},
       {"looks = 3", "looks is a name in quotes, not 3"},
       {"without = 'bile'", "without is a list of names { \"...\" }, not \"bile\""},
-      {"prepared = { 0.5 }", "prepared is a table by names"}};
+      {"prepared = { 0.5 }", "prepared is a table of what has names"}};
   for (const std::string makes :
        {"anatomy.standard {", "anatomy.variant('low_union',\n {", "anatomy.varied {"}) {
     const std::string end = makes.find('(') == std::string::npos ? " }" : " })";

@@ -248,6 +248,36 @@ std::vector<Mistake> mistakes() {
        ""},
       {"UnknownOrgan", with_steps("\nlocal x = t:pressure('galbladder')"), "t:pressure", "unknown organ",
        "gallbladder"},
+      {"UnknownOrganOfACount",
+       with_steps("t:step('a', 'A')\nt:wait_until(function() return t:count('clip', 'galbladder') > 0 end)"),
+       "t:wait_until", "unknown organ \"galbladder\"", "gallbladder"},
+      {"UnknownOrganInARule",
+       with_score(
+           "{ calot.score.rule(function(run)\n return run:count('clip', 'galbladder'), 'x' end), name = 'r', "
+           "weight = 1 }"),
+       "return run:count", "unknown organ \"galbladder\"", "gallbladder"},
+      {"UnknownParameter", with_demo("\nif p.hurry then t:wait(1) end"), "p.hurry",
+       "there is no parameter \"hurry\"", "declare it in params"},
+      {"ConditionWithoutReturn", with_steps("t:step('a', 'A')\nt:wait_until(function() t.left:holds() end)"),
+       "t:wait_until", "the condition returns nothing", "write return"},
+      {"ConditionThatIsANumber", with_steps("t:step('a', 'A')\nt:wait_until(function() return 0 end)"),
+       "t:wait_until", "the condition returns a number", "write return"},
+      {"ConditionThatIsAMethod", with_steps("t:step('a', 'A')\nt:wait_until(t.left.holds)"), "t:wait_until",
+       "predicate is a method", "function() return t.left:holds() end"},
+      {"HoldLongerThanItsStep",
+       with_steps("t:step('a', 'A', { limit = 1 * s })\nt:hold('b', function() return true end, 5 * s)"),
+       "t:hold", "5 s are to be held in a step whose limit is 1 s", "longer limit"},
+      {"ClipsOfWhatIsNoTube", with_steps("\nlocal x = t:clips('gallbladder')"), "t:clips",
+       "'gallbladder' is no tube", "a duct or a vessel"},
+      {"PassMarkAsAShare",
+       with_more("score = calot.score.weighted { { calot.score.penalty { event = 'slip' }, weight = 1 },\n "
+                 "pass = 0.8 }"),
+       "pass = 0.8", "pass = 0.8 is less than one point", "did you mean 80?"},
+      {"TurnInDegrees",
+       with_scene("return { anatomy = { organs = { { name = 'ball', shape = { type = 'rigid', size = { 0.01, "
+                  "0.01, 0.01 "
+                  "},\n turn = { 0, 90, 0 } } } } }, laparoscope = { look_at = 'ball.centre' } }"),
+       "turn =", "(0, 90, 0) rad is not a sensible turn", "(0, 90, 0) * deg"},
       {"UnknownLandmarkToApproach", with_demo("\nt.left:approach('gallbladder.fundis')"), "approach",
        "unknown landmark", "gallbladder.fundus"},
       {"UnknownOption", with_demo("\nt.left:approach('gallbladder.fundus', { sped = 1 })"), "approach",
@@ -649,8 +679,23 @@ TEST(AuthorErrors, ThatShowWhileTheWorldIsBuiltNameOrganFileAndLine) {
                  "* mm, centre = { 18 * mm, 0, 20 * mm } } } } }, " +
                  rest,
              "name = 'stone'", "organ 'ball' and organ 'stone' are "},
+        Case{"return { " + ball +
+                 " neck = { 0, 0, 0 }, fundus = { 0, 0, 40 * mm }, held = { { landmark = 'bed' } } },\n { "
+                 "name = 'duct', "
+                 "wall = { thickness = 0.4 * mm }, held = { { landmark = 'start' } }, shape = { type = "
+                 "'tube', radius = 1 "
+                 "* mm, points = { { 0, 0, 15 * mm }, { 0, 0, 28 * mm } } } } } }, " +
+                 rest,
+             "name = 'duct'", "organ 'ball' and organ 'duct' are "},
         Case{"return { " + ball + "\n held = { { landmark = 'bed', radius = 0.5 * mm } } } } }, " + rest,
-             "held =", "of organ 'ball'"}}) {
+             "held =", "of organ 'ball'"},
+        Case{"return { " + ball + "} } }, " + rest, "name = 'ball'", "nothing holds the body"},
+        Case{"return { anatomy = { ground = { { name = 'board', point = { 0, 0, -0.12 } } },\n organs = { { "
+             "name = "
+             "'bead', shape = { type = 'rigid', rounding = 6 * mm, centre = { 0, 0.1, -0.1 } } } } },\n "
+             "solver = { "
+             "motion = 'dynamic' }, laparoscope = { look_at = 'bead.centre' } }",
+             "'bead', shape", "organ 'bead' never comes to rest: it has fallen or slid 3"}}) {
     const Folder folder;
     const std::string text = with_scene(wrong.scene).text();
     const Result<std::unique_ptr<ExerciseScript>> loaded = load_text(folder, text);
@@ -658,6 +703,7 @@ TEST(AuthorErrors, ThatShowWhileTheWorldIsBuiltNameOrganFileAndLine) {
     const Result<World> world = World::create(loaded.value()->definition().scene);
     ASSERT_FALSE(world) << wrong.message;
     const Failure failure = loaded.value()->located(world.failure());
+    EXPECT_EQ(failure.kind, FailureKind::scenario) << to_text(failure);
     EXPECT_EQ(std::filesystem::path(failure.problems[0].place.file).filename(), "test.lua");
     EXPECT_EQ(failure.problems[0].place.line, line_of(text, wrong.at)) << to_text(failure);
     EXPECT_THAT(to_text(failure), ::testing::HasSubstr(wrong.message));
@@ -677,8 +723,8 @@ TEST(AuthorErrors, AreReportedAllAtOnceInTheOrderOfLines) {
       "},\n weight = 0.5 } }";
   text.more = "goldn = {}";
   const Failure failure = failure_of(text.text());
-  // params.a.default, thickness, port, colour, lift, right, landmark, point, metric, weights, goldn
-  EXPECT_EQ(failure.problems.size(), 11u) << to_text(failure);
+  // params.a.default, thickness, port, colour, condition, lift, right, landmark, point, metric, weights, goldn
+  EXPECT_EQ(failure.problems.size(), 12u) << to_text(failure);
   for (std::size_t i = 1; i < failure.problems.size(); ++i)
     EXPECT_LE(failure.problems[i - 1].place.line, failure.problems[i].place.line);
 }
@@ -708,71 +754,6 @@ TEST(AuthorErrors, OfEndlessLoopsAreResourceFailuresWherever) {
     EXPECT_EQ(failure.kind, FailureKind::resource);
     EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "while true")) << to_text(failure);
   }
-}
-
-TEST(AuthorErrors, WhatAModulesHandIsGivenIsRefusedAtTheAuthorsLine) {
-  for (const auto& [use, said] : std::vector<std::pair<std::string, std::string>>{
-           {"technique.hand(t, 3, { 0, 0 / 0, 0 })", "name is a name in quotes, not 3"},
-           {"technique.hand(t, 'left', { 0, 0 / 0, 0 })", "port is three numbers { x, y, z }"},
-           {"technique.hand(t, 'left', { 0, 0, 0 }).about('duct', 'x', 0)", "share is a number, not \"x\""},
-           {"technique.hand(t, 'left', { 0, 0, 0 }).set_clips('duct', {}, 1, 0)",
-            "shares is a list of numbers"},
-           {"technique.draw_slack(t, t.left, -1)", "slack is a number above 0, not -1"}}) {
-    ScenarioText text = with_demo("t:wait(0.1 * s)\n" + use);
-    text.head = "local technique = require 'technique'\n";
-    const Failure failure = failure_of(text.text());
-    EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.")) << to_text(failure);
-    EXPECT_THAT(to_text(failure), ::testing::HasSubstr(said));
-  }
-}
-
-TEST(AuthorErrors, WithinAModuleAreAtTheExercisesLineAndSayWhereInTheModule) {
-  for (const auto& [use, said] : std::vector<std::pair<std::string, std::string>>{
-           {"technique.angle_of_ducts(t)", "unknown landmark \"cystic_duct.start\""},
-           {"technique.hand(t, 'lef', { 0, 0, 0 })", "lef"},
-           {"technique.roll_across(nil, { 0, 0, 0 }, { 1, 0, 0 })", "attempt to"}}) {
-    for (const char* wait : {"", "t:wait(0.1 * s)\n"}) {
-      ScenarioText text = with_demo(wait + use);
-      text.head = "local technique = require 'technique'\n";
-      const Failure failure = failure_of(text.text());
-      EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.")) << to_text(failure);
-      EXPECT_THAT(failure.problems[0].place.file, ::testing::Not(::testing::HasSubstr("technique.lua")));
-      EXPECT_THAT(to_text(failure), ::testing::HasSubstr(said));
-    }
-  }
-  ScenarioText text = with_demo("technique.angle_of_ducts(t)");
-  text.head = "local technique = require 'technique'\n";
-  EXPECT_THAT(to_text(failure_of(text.text())), ::testing::ContainsRegex("inside [^ ]*technique.lua:[0-9]+"));
-}
-
-TEST(AuthorErrors, ALimitReachedInsideAModuleNamesTheLoopThatCallsIt) {
-  ScenarioText text = with_demo(
-      "local x = { 0, 0, 1 }\nwhile true do technique.roll_across(x, { 0, 0, 0 }, { 1, 0, 0 }) end");
-  text.head = "local technique = require 'technique'\n";
-  const Failure failure = failure_of(text.text());
-  EXPECT_EQ(failure.kind, FailureKind::resource) << to_text(failure);
-  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "while true")) << to_text(failure);
-}
-
-TEST(AuthorErrors, OfWhatTechniquesAreGivenAreAtTheExercisesLine) {
-  ScenarioText text = with_demo(
-      "technique.take(t, t.left, 'fat', { port = { 0, 0, 0 / 0 }, tires = 3, hardest = -1,\n"
-      "  wanted = true, keep_off = { organ = 'duct' } })");
-  text.head = "local technique = require 'technique'\n";
-  Failure failure = failure_of(text.text());
-  const std::string said = to_text(failure);
-  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.take")) << said;
-  for (const char* what : {"port is three numbers { x, y, z }, not this table", "no parameter \"tires\"",
-                           "technique.take needs tries, a whole number above 0",
-                           "hardest is a number above 0, not -1", "wanted is a function, not true"})
-    EXPECT_THAT(said, ::testing::HasSubstr(what));
-  text = with_demo(
-      "technique.take(t, t.left, 'fat', { port = { 0, 0, 0 }, tries = 3, hardest = 1,\n"
-      "  keep_off = { organ = 'duct' } })");
-  text.head = "local technique = require 'technique'\n";
-  failure = failure_of(text.text());
-  EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.take")) << to_text(failure);
-  EXPECT_THAT(to_text(failure), ::testing::HasSubstr("keep_off needs clear"));
 }
 
 TEST(AuthorErrors, AMissingFileIsAUsageFailureWithASuggestion) {

@@ -138,7 +138,7 @@ TEST(ChangingOrgansInSteps, WhatIsGoneSaysWhenAndWhyAtTheAuthorsLine) {
   const std::string gone = "duct was divided at 0.06 s (its pieces are duct.patient and duct.specimen)";
   const std::string divided =
       "t:step('cut', 'Cut')\n t:wait(0.06 * s)\n t:divide('duct', 0.5) t:wait(0.04 * s)\n";
-  for (const char* use : {"t:pressure('duct')", "t:place('duct.start')", "t:divide('duct', 0.5)",
+  for (const char* use : {"t:clips('duct')", "t:place('duct.start')", "t:divide('duct', 0.5)",
                           "t:remove('duct')", "t.left:holds('duct')", "t.left:distance('duct.end')"}) {
     const std::string why = outcome(ducts(divided + use)).why;
     EXPECT_NE(why.find(gone), std::string::npos) << use << ": " << why;

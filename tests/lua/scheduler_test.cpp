@@ -493,7 +493,7 @@ TEST(Steps, AHoldThatIsNeverReachedHasNoTimeInIt) {
 TEST(Steps, AHoldEndsWithItsStepsLimit) {
   const Played played =
       play(with_steps("t:step('a', 'A', { limit = 0.4 * s })\n"
-                      "print(t:hold('b', function() return t:time() < 0.31 * s end, 1 * s))"),
+                      "print(t:hold('b', function() return t:time() < 0.31 * s end, 0.4 * s))"),
            50, 1);
   EXPECT_THAT(played.printed, ::testing::ElementsAre("false"));
   EXPECT_NEAR(played.progress.metrics().at("a.b.time_in_s"), 0.3, rounding);
@@ -561,7 +561,7 @@ TEST(Steps, ErrorsWhileTheyRunNameTheScriptsLines) {
 
 TEST(Steps, BudgetsEndThemWhileTheyRunToo) {
   const ScenarioText text =
-      with_steps("t:step('a', 'A') t:wait_until(function()\n while t:time() > 0.1 do end end)");
+      with_steps("t:step('a', 'A') t:wait_until(function()\n while t:time() > 0.1 do end return false end)");
   const Played played = play(text, 50, 1);
   ASSERT_TRUE(played.failure);
   EXPECT_EQ(played.failure->kind, FailureKind::resource);

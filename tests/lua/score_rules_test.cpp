@@ -31,8 +31,9 @@ ScenarioText ruled(const std::string& body, const std::string& head = "") {
 Progress cut_then_clip() {
   Progress progress;
   progress.begin_step(0, "look", "", {0});
-  progress.add_event({EventKind::cut, 2, "blades", "duct.patient", 0.5, Vec3(1, 2, 3), EventCause::blades});
-  progress.add_event({EventKind::clip, 3, "applier", "duct", 0});
+  progress.add_event(
+      {EventKind::cut, 2, "blades", "gallbladder.patient", 0.5, Vec3(1, 2, 3), EventCause::blades});
+  progress.add_event({EventKind::clip, 3, "applier", "gallbladder", 0});
   progress.add_note({4, "", "views", 3.0, ""});
   progress.end_step(5, "done");
   return progress;
@@ -73,7 +74,7 @@ TEST(ScoreRules, GiveTheShareTheReasonAndTheTimesBehindIt) {
   EXPECT_EQ(wrong->parts[0].explanation, "it was cut before it was clipped");
   EXPECT_EQ(wrong->parts[0].times, (std::vector<double>{2, 3}));
   Progress right;
-  right.add_event({EventKind::clip, 3, "applier", "duct", 0});
+  right.add_event({EventKind::clip, 3, "applier", "gallbladder", 0});
   EXPECT_EQ(exercise.judged(right)->total, 100);
 }
 
@@ -82,7 +83,7 @@ TEST(ScoreRules, SeeEventsStepsMetricsNotesAndParameters) {
       answered("local e = run.events[1]\n"
                "assert(e.event == 'cut' and e.time == 2 and e.instrument == 'blades' and e.value == 0.5)\n"
                "assert(e.place[2] == 2 and e.cause == 'scissors' and e.step == 'look' and e.text == nil)\n"
-               "assert(run:count('cut', 'duct') == 1 and run:count('clip', 'artery') == 0)\n"
+               "assert(run:count('cut', 'gallbladder') == 1 and run:count('clip', 'gallbladder.specimen') == 0)\n"
                "assert(run.steps[1].name == 'look' and run.steps[1].outcome == 'done')\n"
                "assert(run.metrics['total.time_s'] == 5 and run.metrics['left.grasps'] == nil)\n"
                "assert(run.notes.views == 3 and run.params.hard == true)\n"

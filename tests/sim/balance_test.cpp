@@ -68,7 +68,7 @@ TEST(Balance, BallThatNothingHoldsIsAMechanism) {
     if (on_plane) scene.anatomy.support = SupportDefinition{};  // frictionless: free to roll
     const Result<World> world = World::create(scene);
     ASSERT_FALSE(world);
-    EXPECT_EQ(world.failure().kind, FailureKind::simulation);
+    EXPECT_EQ(world.failure().kind, FailureKind::scenario);
     const std::string text = to_text(world.failure());
     EXPECT_NE(text.find("nothing holds"), std::string::npos) << text;
     EXPECT_NE(text.find("held region"), std::string::npos) << text;
