@@ -145,5 +145,5 @@ return calot.exercise {
     pass = 80,
   },
 
-  golden = { at = { 4.8 * s, 13.2 * s, 33.2 * s, 36.32 * s } },
+  golden = { at = { 4.8 * s, 13.2 * s, 38.56 * s, 41.68 * s } },
 }

@@ -25,6 +25,8 @@ constexpr int step_iterations = 1000;
 /// part is cut in two.
 constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
+/// Of a solve on the way, where masses count: what it leaves out of balance the rest of the way takes along.
+constexpr int iterations_on_the_way = 1;
 
 Failure cannot_follow(const Field& field, const std::string& why, double done) {
   std::string tools;
@@ -66,7 +68,9 @@ struct Passing {
   std::vector<WorldEvent>& events;
 };
 
-/// A motion that is under way.
+/// A motion that is under way. Where masses count it is one step of implicit Euler, however many parts its tools' way is cut
+/// into so that nothing is passed through: only where they end everything is balanced. Without masses, and where that finds
+/// no balance, each part is balanced, and a step of its own.
 class Following {
  public:
   /// `passing`: null where neither time passes nor anything slips, as the part of the bodies' motion stays the one that
@@ -76,6 +80,8 @@ class Following {
         to_(to),
         passing_(passing),
         statistics_(statistics),
+        first_(snapshot(field)),
+        first_poses_(present_poses(field)),
         iterations_before_(statistics.newton_iterations) {}
 
   Result<bool> run() {
@@ -93,10 +99,7 @@ class Following {
   /// Whether the motion goes on.
   Result<bool> one_part() {
     const Poses from = present_poses(field_);
-    if (passing_) grow_damage(field_);
-    const Result<std::vector<MotionPart>> parts = passing_ ? next_parts(field_) : std::vector<MotionPart>();
-    if (!parts) return parts.failure();
-    begin_parts(parts.value(), time_left(), field_);
+    if (std::optional<Failure> failure = begin()) return *failure;
     const Result<Prediction> answer = answer_to(from);
     if (!answer) return answer.failure();
     // Organs that move by themselves have all the time there is: no tool stands where they begin to be looked for.
@@ -104,19 +107,20 @@ class Following {
     NewtonResult last;  // of the solve that failed last, if any did in this part
     for (bool accepted = false; !accepted;) {
       if (field_.step_time > 0 && passing_ && share < smallest_share && !field_.stopped())
-        return stay(parts.value(), answer.value());
+        return stay(answer.value());
       if (std::optional<Failure> failure = given_up(share, last)) return *failure;
       const GroupSnapshot before = snapshot(field_);
       const double next = share >= 1.0 ? 1.0 : done_ + share * (1.0 - done_);
       const Poses poses = next >= 1.0 ? to_ : interpolate(from, to_, share);
-      last = settle_at(poses, share, parts.value(), answer.value());
-      accepted = last.converged() || was_cut_short(field_, last);
+      last = settle_at(poses, share, answer.value());
+      accepted = last.converged() || was_cut_short(field_, last) || is_on_its_way(share, last);
       if (accepted) {
         learn(answer.value(), share, before, last);
         if (Result<bool> kept = keep(poses, next); !kept) return kept;
       } else {
         stuck_ = out_of_balance(field_, last);
         restore(field_, before);
+        if (share >= 1.0 && goes_back()) return true;
         share *= 0.5;
       }
     }
@@ -126,10 +130,10 @@ class Following {
 
   /// What the tools press leaves them no room yet: the rest of the time passes with them where they are, in which it gives
   /// way. The motion ends there, and its next step goes on.
-  Result<bool> stay(const std::vector<MotionPart>& parts, const Prediction& answer) {
+  Result<bool> stay(const Prediction& answer) {
     const Poses here = present_poses(field_);
     const GroupSnapshot before = snapshot(field_);
-    const NewtonResult last = settle_at(here, 1.0, parts, answer);
+    const NewtonResult last = settle_at(here, 1.0, answer);
     if (!last.converged() && !may_end_so(field_, last)) {
       restore(field_, before);
       return cannot_follow(field_, out_of_balance(field_, last), done_);
@@ -140,6 +144,34 @@ class Following {
   }
 
   double time_left() const { return passing_ ? (1.0 - done_) * passing_->duration : 0; }  ///< s
+  bool is_one_step() const { return passing_ && field_.step_time > 0 && !by_parts_; }
+
+  /// The part of the bodies' motion that this part of the tools' lies in.
+  std::optional<Failure> begin() {
+    if (!passing_ || (is_one_step() && done_ > 0)) return std::nullopt;
+    grow_damage(field_);
+    Result<std::vector<MotionPart>> parts = next_parts(field_);
+    if (!parts) return parts.failure();
+    parts_ = std::move(parts).value();
+    begin_parts(parts_, time_left(), field_);
+    return std::nullopt;
+  }
+
+  /// Whether a solve at a share of what is left need only bring the bodies along.
+  bool is_on_its_way(double share, const NewtonResult& solved) const {
+    return is_one_step() && share < 1.0 && solved.status == NewtonStatus::iteration_limit;
+  }
+
+  /// One step that found no balance at its end goes on by parts, from its beginning. Whether that is elsewhere.
+  bool goes_back() {
+    if (!is_one_step()) return false;
+    by_parts_ = true;
+    if (done_ == 0) return false;
+    restore(field_, first_);
+    for (std::size_t i = 0; i < field_.tools.size(); ++i) field_.tools[i].pose = first_poses_[i];
+    done_ = 0;
+    return true;
+  }
 
   /// For the next prediction. What it missed of another motion than the step's says nothing of that.
   void learn(const Prediction& answer, double share, const GroupSnapshot& before, const NewtonResult& last) {
@@ -174,12 +206,13 @@ class Following {
     return std::nullopt;
   }
 
-  NewtonResult settle_at(const Poses& poses, double share, const std::vector<MotionPart>& parts,
-                         const Prediction& answer) {
+  NewtonResult settle_at(const Poses& poses, double share, const Prediction& answer) {
     const std::vector<VecX> places = present_places(field_);
-    begin_parts(parts, share * time_left(), field_);
+    if (!is_one_step()) begin_parts(parts_, share * time_left(), field_);
     move_by(std::min(share, answer.share), answer, field_);
-    return settle_group(field_, poses, places, part_iterations, statistics_);
+    if (!is_one_step() || share >= 1.0)
+      return settle_group(field_, poses, places, part_iterations, statistics_);
+    return settle_group(field_, poses, places, iterations_on_the_way, statistics_, Rubbing::as_it_is);
   }
 
   /// The tools have come to `poses`, and `next` of the motion is done.
@@ -190,7 +223,7 @@ class Following {
     // What is not in balance tells neither what slips nor where it is touched.
     if (is_spent(field_, statistics_)) return true;
     for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
-    if (!passing_) return true;
+    if (!passing_ || (is_one_step() && done_ < 1.0)) return true;
     const int iterations = statistics_.newton_iterations;
     Result<bool> held = let_slip(field_, passing_->slipped_before, passing_->events, statistics_);
     iterations_before_ += statistics_.newton_iterations - iterations;
@@ -201,7 +234,11 @@ class Following {
   const Poses& to_;
   const Passing* passing_;
   SolveStatistics& statistics_;
-  int iterations_before_;  ///< of Newton's method, that are not this motion's
+  GroupSnapshot first_;  ///< where it began
+  Poses first_poses_;
+  std::vector<MotionPart> parts_;  ///< of the bodies' motion, in which it is
+  bool by_parts_ = false;          ///< each part is a step of its own, though masses count
+  int iterations_before_;          ///< of Newton's method, that are not this motion's
   int part_ = 0;
   double done_ = 0;    ///< share of the motion
   std::string stuck_;  ///< what failed last, in any part

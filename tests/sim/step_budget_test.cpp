@@ -93,6 +93,29 @@ TEST(StepBudget, AStepThatWasSolvedRoughlyOnTheWayEndsInBalance) {
   EXPECT_GT(grip_count(closing.field.organs[0], ToolIndex{0}), 5);
 }
 
+TEST(StepBudget, AStepWhoseToolsComeInPartsIsOneStepOfTheBodiesAndInBalanceAtItsEnd) {
+  CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
+  test::FundusPath path(moving_scene());
+  ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
+  Budgeted pushing(path.world, {500, 500, 0});
+  InstrumentPose to = path.world.report().instruments[0].pose;
+  int in_parts = 0;
+  for (int k = 0; k < 5; ++k) {
+    to.insertion += 2e-3;
+    const VecX before = pushing.field.organs[0].state.x;
+    pushing.step(to);
+    in_parts += pushing.last.substeps > 1 ? 1 : 0;
+    const MotionPart& part = pushing.field.organs[0].state.motion;
+    EXPECT_EQ(part.duration, pushing.field.step_time);
+    EXPECT_EQ(part.begin.x, before) << "it is one step from where the last one ended";
+    SolveStatistics again;
+    ASSERT_TRUE(settle_field(pushing.field, "once more", again));
+    EXPECT_EQ(again.newton_iterations, 0);
+    EXPECT_EQ(pushing.field.tools[0].pose, to);
+  }
+  EXPECT_GT(in_parts, 1) << "without parts this says little";
+}
+
 TEST(StepBudget, WithoutMassesThereIsNone) {
   const World world = World::create(test::grasper_scene(80)).value();
   Field field = world.field();
