@@ -202,7 +202,7 @@ class MetTools {
   }
 
   /// A balance that takes more is not worth looking for: a shorter way may have one.
-  static constexpr int most_iterations = 60;
+  static constexpr int most_iterations = 200;
 
   NewtonResult balance() {
     std::vector<ContactSearch> searches(bodies_.size());

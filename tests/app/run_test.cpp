@@ -97,6 +97,50 @@ TEST_F(Run, SeedAndParametersReachTheReport) {
   EXPECT_EQ(std::stod(json["params"]["height"].get<std::string>()), 12) << json["params"];
 }
 
+TEST_F(Run, JawsOfTwoHandsThatCloseOnOneBeadComeFreeAgainAndFeelNoMoreThanHandsDo) {
+  spill(folder_ / "lock.lua", R"(local calot = require "calot"
+local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
+local start, ports = { -76 * mm, 95 * mm, -114.5 * mm }, { { -115 * mm, 60 * mm, -5 * mm }, { 5 * mm, 60 * mm, -5 * mm } }
+return calot.exercise { api = 2, id = "lock", title = "Two hands at one bead", time_limit = 7.4 * s,
+  scene = function() return {
+    anatomy = { table_head_up = 0, table_left_down = 0, friction = 0.3,
+      ground = { { name = "board", point = { 0, 0, -120 * mm }, friction = 0.4 } },
+      organs = { { name = "bead", shape = { type = "rigid", rounding = 5 * mm, centre = start, density = 1100 } } } },
+    ports = { a = ports[1], b = ports[2] }, instruments = { left = { port = "a" }, right = { port = "b" } },
+    laparoscope = { look_at = "bead.centre" }, solver = { motion = "dynamic" } } end,
+  steps = function(t) t:step("x", "X") t:wait(7.3 * s) end,
+  demo = function(t)
+    local function minus(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
+    local function take(hand, port, off, past)
+      local c = t:place("bead.centre")
+      local at = { c[1] + off[1], c[2] + off[2], c[3] + off[3] }
+      local way = minus(port, at)
+      local long = math.sqrt(way[1] ^ 2 + way[2] ^ 2 + way[3] ^ 2)
+      local function before(by) return { at[1] + by / long * way[1], at[2] + by / long * way[2], at[3] + by / long * way[3] } end
+      hand:open(40 * deg)
+      hand:move_to(before(20 * mm), { speed = 100 * mm / s })
+      hand:move_to(before(-past), { speed = 40 * mm / s })
+      hand:close()
+    end
+    local function carry(hand, to) hand:move_by(minus(to, t:place("bead.centre")), { speed = 60 * mm / s }) end
+    take(t.left, ports[1], { 0, 0, 0 }, 3 * mm)
+    carry(t.left, { -76 * mm, 95 * mm, -84.5 * mm })
+    carry(t.left, { -57 * mm, 95 * mm, -80 * mm })
+    take(t.right, ports[2], { 2 * mm, 0, 0 }, 2 * mm)
+    t.left:open(40 * deg)
+    t.left:move_by({ -20 * mm, -10 * mm, 12 * mm }, { speed = 60 * mm / s })
+  end,
+}
+)");
+  const Json json = report({"run", "lock.lua", "--no-render"});
+  EXPECT_EQ(json["metrics"]["left.clashes"], 1);
+  for (const char* hand : {"left", "right"}) {
+    // A hand does 20 N at the tip.
+    EXPECT_LT(json["metrics"][std::string(hand) + ".peak_handle_force_N"].get<double>(), 25) << hand;
+    EXPECT_LT(json["metrics"][std::string(hand) + ".peak_lag_mm"].get<double>(), 5) << hand;
+  }
+}
+
 TEST_F(Run, ASyntaxErrorNamesFileAndLine) {
   spill(folder_ / "broken.lua", "local calot = require 'calot'\nreturn calot.exercise {\n  api = = 1,\n}\n");
   const Outcome outcome = calot({"run", "broken.lua"});
