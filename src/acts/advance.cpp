@@ -107,9 +107,12 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
   if (!events || !statistics.cut_short || !wedges_hard(field)) return events;
   restore(field, before);
-  // With a budget of its own: what was tried has spent the step's.
+  // With a budget of its own, as what was tried has spent the step's; as little as of tools that move.
   SolveStatistics again;
+  const StepBudget usual = field.budget;
+  field.budget.still = usual.begin;
   events = advance(field, present_poses(field), again);
+  field.budget = usual;
   statistics.newton_iterations += again.newton_iterations;
   statistics.factorisations += again.factorisations;
   return events;

@@ -221,9 +221,9 @@ class Following {
     done_ = next;
     ++statistics_.substeps;
     // What is not in balance tells neither what slips nor where it is touched.
-    if (is_spent(field_, statistics_)) return true;
+    if (is_spent(field_, statistics_) || (is_one_step() && done_ < 1.0)) return true;
     for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
-    if (!passing_ || (is_one_step() && done_ < 1.0)) return true;
+    if (!passing_) return true;
     const int iterations = statistics_.newton_iterations;
     Result<bool> held = let_slip(field_, passing_->slipped_before, passing_->events, statistics_);
     iterations_before_ += statistics_.newton_iterations - iterations;

@@ -141,8 +141,10 @@ Result<bool> remove_tissue(Field& field, const std::string& name, double time) {
   const auto is_it = [&](const Tissue& tissue) { return tissue.definition.name == name; };
   std::vector<std::string> names;
   for (const Tissue& tissue : field.tissues) names.push_back(tissue.definition.name);
-  if (std::erase_if(field.tissues, is_it) == 0)
+  if (std::erase_if(field.tissues, is_it) == 0) {
+    if (const BodyRecord* record = gone_body(field, name)) return gone(*record);
     return fail(FailureKind::scenario, fmt::format("there is no tissue '{}'", name), suggestion(name, names));
+  }
   field.membership.roll.push_back({name, ++field.lives, Departure{time, "was removed"}});
   finish_change(field);
   return true;

@@ -59,7 +59,7 @@ int more_nodes(const Body& whole, const BodyCut& cut) {
 
 Failure no_tube(const OrganDefinition& organ, const std::string& act, const std::string& done) {
   return fail(FailureKind::scenario,
-              fmt::format("'{}' cannot be {}: it is a {}", organ.name, done, shape_name(organ.shape)),
+              fmt::format("'{}' cannot be {}: its shape is \"{}\"", organ.name, done, shape_name(organ.shape)),
               fmt::format("{} a tube: a duct or a vessel", act));
 }
 

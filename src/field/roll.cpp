@@ -21,16 +21,12 @@ const BodyRecord* gone_body(const Field& field, const std::string& name) {
   return found;
 }
 
-namespace {
-
 Failure gone(const BodyRecord& record) {
   const Departure& how = *record.gone;
   return fail(FailureKind::scenario, fmt::format("{} {} at {:.2f} s", record.name, how.how, how.time),
               how.pieces.empty() ? "ask for it before it goes"
                                  : fmt::format("its pieces are {} and {}", how.pieces[0], how.pieces[1]));
 }
-
-}  // namespace
 
 Result<OrganIndex> find_body(const Field& field, const std::string& name) {
   std::vector<std::string> names;

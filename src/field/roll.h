@@ -12,6 +12,8 @@ Result<OrganIndex> find_body(const Field& field, const BodyHandle& handle);
 BodyHandle handle_of(const Field& field, OrganIndex organ);
 /// The last one of that name that went; null: none did.
 const BodyRecord* gone_body(const Field& field, const std::string& name);
+/// That it is gone, when and why (scenario).
+Failure gone(const BodyRecord& record);
 
 /// Notes that an organ goes and how, with the places and normals that its landmarks have now.
 void note_departure(Field& field, const Organ& organ, Departure departure);

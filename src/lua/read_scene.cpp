@@ -216,6 +216,11 @@ class SceneReader {
       if (folder.empty() || name.is_absolute() || !fs::is_regular_file(folder / name)) continue;
       if (is_inside(folder / name, folder)) return (folder / name).string();
     }
+    if (folders_.scenario.empty() && folders_.assets.empty()) {
+      check_.problem(path, "what steps add is read from no mesh file",
+                     "put the organ into the scene, or add a ball, a box, a ring or a tube");
+      return file;
+    }
     check_.problem(
         path, fmt::format("there is no mesh file \"{}\"", file),
         fmt::format("give a path below {} or {}", folders_.scenario.string(), folders_.assets.string()));

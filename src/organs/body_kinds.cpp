@@ -64,6 +64,11 @@ Result<bool> release_held(Organ& organ, const std::string& held) {
   std::vector<std::string> names;
   for (const HeldRegion& region : left) names.push_back(region.name);
   const auto found = std::find(names.begin(), names.end(), held);
+  const std::vector<std::string>& before = organ.origin.released;
+  if (found == names.end() && std::find(before.begin(), before.end(), held) != before.end())
+    return fail(FailureKind::scenario,
+                fmt::format("\"{}\" has let go of '{}' already", held, organ.definition.name),
+                "release each once");
   if (found == names.end())
     return fail(FailureKind::scenario,
                 fmt::format("nothing called \"{}\" holds '{}'", held, organ.definition.name),

@@ -96,6 +96,28 @@ TEST(ChangingOrgansInSteps, WhatCannotBeReleasedOrBoundIsSaidByCheck) {
   }
 }
 
+TEST(ChangingOrgansInSteps, WhatIsDoneTwiceIsRefusedWithWhatCameOfTheFirst) {
+  for (const auto& [act, text] : std::vector<std::pair<std::string, std::string>>{
+           {"t:release('duct', 'bed')", "\"bed\" has let go of 'duct' already"},
+           {"t:remove_tissue('bands')", "bands was removed at"},
+           {"t:bleed('duct', 0.5)", "'duct' is open already at 0.5"}}) {
+    const std::string why =
+        outcome(
+            ducts(
+                "t:step('cut', 'Cut')\n t:wait(0.04 * s)\n"
+                "t:add_tissue { name = 'bands', from = 'duct', to = 'stone', within = 20 * mm, strands = 8,\n"
+                "  break_energy = 2000 }\n" +
+                act + "\n t:wait(0.04 * s)\n" + act))
+            .why;
+    EXPECT_NE(why.find(text), std::string::npos) << act << ": " << why;
+  }
+  const std::string why =
+      outcome(ducts("t:step('cut', 'Cut')\n"
+                    "t:add { name = 'b', shape = { type = 'rigid', path = 'b.obj', scale = 1e-3 } }"))
+          .why;
+  EXPECT_NE(why.find("what steps add is read from no mesh file"), std::string::npos) << why;
+}
+
 TEST(ChangingOrgansInSteps, AreClippedAndCutInAFieldThatIsPrepared) {
   const Outcome played = outcome(ducts(
       "t:step('prepared', 'Prepared')\n"
@@ -166,9 +188,9 @@ TEST(ChangingOrgansInSteps, MistakesAreFoundWithoutPlaying) {
   };
   for (const Case& mistake :
        {Case{"t:divide('dukt', 0.5)", "unknown organ \"dukt\" (did you mean \"duct\"?)"},
-        Case{"t:divide('stone', 0.5)", "'stone' cannot be divided: it is a rigid"},
+        Case{"t:divide('stone', 0.5)", "'stone' cannot be divided: its shape is \"rigid\""},
         Case{"t:divide('duct', 5)", "t:divide: share"}, Case{"t:clip('dukt', 0.5)", "unknown organ \"dukt\""},
-        Case{"t:clip('stone', 0.5)", "'stone' cannot be clipped: it is a rigid"},
+        Case{"t:clip('stone', 0.5)", "'stone' cannot be clipped: its shape is \"rigid\""},
         Case{"t:clip('duct', 0.5, 'XL')", "XL"},
         Case{"t:divide('duct', 0.5) t:place('duct.patiant.end')", "\"duct.patient.end\""},
         Case{"t:wait_until(function() t:remove('stone') return true end)", "inside a predicate"},

@@ -502,7 +502,7 @@ TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
     EXPECT_NE(why(result.failure()).find(text), std::string::npos) << why(result.failure());
     EXPECT_EQ(world.state_hash(), hash);
   };
-  says(world.divide("stone", 0.5), "'stone' cannot be divided: it is a rigid (divide a tube");
+  says(world.divide("stone", 0.5), "'stone' cannot be divided: its shape is \"rigid\" (divide a tube");
   says(world.divide("artery", 0.02), "shorter than it is thick (4 mm)");
   says(world.divide("arterie", 0.5), "unknown organ \"arterie\" (did you mean \"artery\"?)");
   says(world.add(stone("stone", Vec3(-60e-3, 60e-3, -60e-3))), "there is 'stone' already");
@@ -522,7 +522,7 @@ TEST_F(ChangedBodies, WhatCannotBeDoneIsSaidAndLeavesTheFieldAsItWas) {
   tissue.to = "stone";
   tissue.within = 0.5e-3;
   says(world.add_tissue(tissue), "tissue.within");
-  says(world.open_tube("stone", 0.5, 1e-3), "'stone' cannot be opened: it is a rigid (open a tube");
+  says(world.open_tube("stone", 0.5, 1e-3), "'stone' cannot be opened: its shape is \"rigid\" (open a tube");
   OrganDefinition thin = stone("second", Vec3(-60e-3, 60e-3, -60e-3));
   std::get<RigidShape>(thin.shape).density = -1;
   says(world.add(thin), "organ.shape.density");
