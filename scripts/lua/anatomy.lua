@@ -141,8 +141,8 @@ local defaults = {
   prepared = {},
 }
 
---- What each may be: of the kind of its default, but for some.
 local function up_to(most) return given.between(0, most * mm, "a length above 0, up to " .. most .. " mm", "mm") end
+--- What each may be: of the kind of its default, but for some.
 local kinds = {
   gallbladder_length = up_to(200), gallbladder_width = up_to(100), cystic_duct_length = up_to(120),
   cystic_duct_diameter = up_to(20), common_duct_diameter = up_to(30), cystic_artery_length = up_to(120),

@@ -102,7 +102,7 @@ end
 function given.suggestion(name, known)
   local best, fewest = nil, 4
   for key in pairs(known) do
-    local far = type(key) == "string" and edits(tostring(name), key) or fewest
+    local far = type(key) == "string" and edits(tostring(name), key) or fewest + 1
     if far < fewest or far == fewest and best and key < best then best, fewest = key, far end
   end
   return best and fewest <= #best / 2 and ' (did you mean "' .. best .. '"?)' or ""
@@ -153,7 +153,7 @@ function given.check(values, kinds, owner, level)
     end
   end
   for key, kind in pairs(kinds) do
-    if values[key] == nil and not kind.may_be_missing then
+    if not kind.may_be_missing and rawget(values, key) == nil then
       wrong[#wrong + 1] = owner .. " needs " .. key .. ", " .. kind.is
     end
   end

@@ -107,7 +107,8 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
   if (!events || !statistics.cut_short || !wedges_hard(field)) return events;
   restore(field, before);
-  // With a budget of its own, as what was tried has spent the step's; as little as of tools that move.
+  // With a budget of its own, as what was tried has spent the step's: that of a step whose tools move, not what falling
+  // bodies get.
   SolveStatistics again;
   const StepBudget usual = field.budget;
   field.budget.still = usual.begin;

@@ -25,7 +25,8 @@ constexpr int step_iterations = 1000;
 /// part is cut in two.
 constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
-/// Of a solve on the way, where masses count: what it leaves out of balance the rest of the way takes along.
+/// Of a round of a solve on the way, where masses count. Rounds go on until one moves no body by more than settle() takes
+/// for nothing, 2.5 um: what is then out of balance the rest of the way takes along.
 constexpr int iterations_on_the_way = 1;
 
 Failure cannot_follow(const Field& field, const std::string& why, double done) {
@@ -166,6 +167,8 @@ class Following {
   bool goes_back() {
     if (!is_one_step()) return false;
     by_parts_ = true;
+    part_ = 0;
+    iterations_before_ = statistics_.newton_iterations;
     if (done_ == 0) return false;
     restore(field_, first_);
     for (std::size_t i = 0; i < field_.tools.size(); ++i) field_.tools[i].pose = first_poses_[i];

@@ -22,7 +22,7 @@ struct GroupPlace {
 
 /// Nodes of a body that its own energies do not couple with each other, and what those do to each at some x.
 struct LooseNodes {
-  int first = 0;   ///< of them in the group
+  int first = 0;   ///< number of the first of them in the group
   VecX gradient;   ///< N, 3 a node
   VecX stiffness;  ///< N/m, one a node, the same in each direction and at each x
 };

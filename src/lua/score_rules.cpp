@@ -161,8 +161,11 @@ void push_run(lua_State* L, const RuleRun& run) {
   lua_newtable(L);
   lua_pushcfunction(L, guarded<missing_member>);
   lua_setfield(L, -2, "__index");
-  push_names(L, place_names(run.exercise));
-  lua_setfield(L, -2, places_key);
+  if (run.metric_names !=
+      nullptr) {  // else an organ that this patient does not have is none that something befell
+    push_names(L, place_names(run.exercise));
+    lua_setfield(L, -2, places_key);
+  }
   lua_setmetatable(L, -2);
 }
 
@@ -320,6 +323,7 @@ Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run, bool
 std::optional<Failure> try_rule(Sandbox& sandbox, int rule, const RuleRun& nothing, bool yes_no) {
   RawAnswer raw;
   raw.yes_no = yes_no;
+  take_mistake(sandbox.state());  // one that a script caught itself
   std::optional<Failure> failure = call_rule(sandbox, rule, nothing, raw);
   const bool mistake = take_mistake(sandbox.state());
   if (failure && (mistake || failure->kind != FailureKind::scenario)) return failure;

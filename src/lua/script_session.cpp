@@ -559,7 +559,8 @@ int Arguments::function(const std::string& name) const {
   const Value* value = reader_.take(name);
   if (value == nullptr) return 0;
   lua_rawgeti(L_, LUA_REGISTRYINDEX, value->function);
-  const bool is_method = lua_iscfunction(L_, -1) != 0;
+  // A coroutine that was wrapped is a function of C as well, which knows its thread.
+  const bool is_method = lua_iscfunction(L_, -1) != 0 && lua_getupvalue(L_, -1, 1) == nullptr;
   lua_pop(L_, 1);
   if (is_method)
     session_.complain(

@@ -160,7 +160,7 @@ class ScriptSession {
   Result<lua_State*> start_main(int function);
 
  private:
-  /// In a loop.
+  /// Whether this was said of that line: a loop comes by it more than once.
   bool said_before(const Problem& problem) const;
   int next_level();
   /// Of the scene's ports or the usual ones, m.

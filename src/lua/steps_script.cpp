@@ -248,7 +248,7 @@ void StepsScript::note(lua_State* L, const std::string& name, const Value& value
 }
 
 int StepsScript::count(lua_State* L, const std::string& event, const std::string& organ) {
-  if (checking() && !organ.empty()) is_place(L, organ);
+  if (checking() && !organ.empty()) expect_place(L, organ);
   if (checking()) return next_guess() ? 100 : 0;  // more than any loop waits for, or none
   world(L);                                       // raises what is wrong outside of steps
   const std::vector<SessionEvent>& events = progress_->events();
@@ -256,7 +256,7 @@ int StepsScript::count(lua_State* L, const std::string& event, const std::string
       events.begin(), events.end(), [&](const SessionEvent& one) { return is_event(one, event, organ); }));
 }
 
-void StepsScript::is_place(lua_State* L, const std::string& name) {
+void StepsScript::expect_place(lua_State* L, const std::string& name) {
   ExerciseDefinition known = exercise();
   known.later_organs = later_organs();
   known.later_tissues = later_tissues();

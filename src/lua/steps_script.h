@@ -73,7 +73,7 @@ class StepsScript final : public ScriptSession {
   bool may_wait(lua_State* L, const char* method);
   bool is_name(lua_State* L, const std::string& what, const std::string& name);
   /// Complains of what no event's organ is called.
-  void is_place(lua_State* L, const std::string& name);
+  void expect_place(lua_State* L, const std::string& name);
   int suspend(lua_State* L, Wait wait);
   int dry_wait(lua_State* L, std::optional<double> duration);
   std::optional<int> answered_at_once(lua_State* L, int predicate);

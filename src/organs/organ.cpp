@@ -54,8 +54,12 @@ Failure solve_failure(const NewtonResult& result, const std::string& organ, cons
 
 Failure no_rest_failure(const NewtonResult& result, const std::string& organ, const std::string& when) {
   Failure out = solve_failure(result, organ, when);
-  const bool is_ours = result.status == NewtonStatus::not_finite || result.status == NewtonStatus::out_of_memory;
-  if (out.kind == FailureKind::simulation && !is_ours) out.kind = FailureKind::scenario;
+  const bool is_ours =
+      result.status == NewtonStatus::not_finite || result.status == NewtonStatus::out_of_memory;
+  if (out.kind != FailureKind::simulation || is_ours) return out;
+  out.kind = FailureKind::scenario;
+  if (result.status != NewtonStatus::mechanism)
+    out.problems.front().hint = "let something hold or support it, or give it more nodes or a stiffer wall";
   return out;
 }
 

@@ -340,8 +340,9 @@ Failure Sandbox::laid_at(Failure failure, int function) const {
   lua_rawgeti(L_, LUA_REGISTRYINDEX, function);
   lua_getinfo(L_, ">S", &info);
   const std::string* file = file_of(info);
+  if (file == nullptr || is_shared({*file, 0, {}})) return failure;
   for (Problem& problem : failure.problems) {
-    if (file == nullptr || !is_shared(problem.place)) continue;
+    if (!is_shared(problem.place)) continue;
     problem.message += lines_of({&problem.place, 1}, "inside");
     problem.place = {*file, std::max(0, info.linedefined), {}};
   }

@@ -55,14 +55,18 @@ struct Roughness {
 constexpr double still_speed = 1e-3;
 constexpr int still_steps = 5;
 
-double fastest(const Field& field) {
-  double speed = 0;
+struct Fastest {
+  std::size_t body = 0;
+  double speed = 0;  ///< m/s
+};
+Fastest fastest(const Field& field) {
+  Fastest out;
   for (std::size_t k = 0; k < moving_bodies(field); ++k) {
     const BodyState& state = state_of(field, k);
-    speed =
-        std::max(speed, body_of(field, k).largest_motion(present_motion(body_of(field, k), state).velocity));
+    const double speed = body_of(field, k).largest_motion(present_motion(body_of(field, k), state).velocity);
+    if (speed > out.speed) out = {k, speed};
   }
-  return speed;
+  return out;
 }
 
 /// The organ that is furthest from where it was.
@@ -82,22 +86,24 @@ Drift furthest(const Field& field, const std::vector<VecX>& from) {
   return out;
 }
 
-Failure never_rests(const Field& field, const Drift& drift) {
-  return fail(FailureKind::scenario,
-              fmt::format("organ '{}' never comes to rest: it has fallen or slid {:.0f} mm",
-                          field.organs[drift.organ].definition.name, 1e3 * drift.way),
-              "let something hold it; on a table that is tilted (table_head_up, table_left_down) it slides "
-              "off ground "
-              "without friction",
-              {{}, 0, fmt::format("scene.anatomy.organs[{}]", drift.organ + 1)});
+/// Of the body that this is said of, which may be an organ.
+Failure never_rests(const Field& field, std::size_t body, const std::string& what) {
+  Failure out = fail(
+      FailureKind::scenario,
+      fmt::format("organ '{}' never comes to rest: {}", member_name(field, static_cast<int>(body)), what),
+      "let something hold it; on a table that is tilted (table_head_up, table_left_down) it slides off "
+      "ground without friction");
+  if (body < field.organs.size())
+    out.problems.front().place.path = fmt::format("scene.anatomy.organs[{}]", body + 1);
+  return out;
 }
 
 /// Lets all bodies fall as they would in a session, but in longer steps, which damp what swings, until they lie still:
 /// where no solve finds a rest at once, as of what folds, rolls or hangs by a thread. Fails (scenario) where they do not
-/// within half a minute of their time, or one has left the field.
+/// within half a minute of their time, or one goes further than an abdomen is wide.
 Result<bool> fall_to_rest(const Roughness& rough, Field& field) {
   constexpr double step = 0.04, longest = 30;  // s
-  constexpr double furthest_in_field = 0.3;    // m, from where it is drawn: as wide as an abdomen
+  constexpr double width = 0.3;                // m, of an abdomen
   const double usual = std::exchange(field.step_time, step);
   rough.give(field);
   const std::vector<VecX> from = present_places(field);
@@ -107,11 +113,15 @@ Result<bool> fall_to_rest(const Roughness& rough, Field& field) {
     SolveStatistics statistics;
     const Result<std::vector<WorldEvent>> events = advance(field, {}, statistics);
     if (!events) fell = events.failure();
-    still = events && fastest(field) < still_speed ? still + 1 : 0;
+    still = events && fastest(field).speed < still_speed ? still + 1 : 0;
     const Drift drift = furthest(field, from);
-    if (fell && drift.way > furthest_in_field) fell = never_rests(field, drift);
+    if (fell && drift.way > width)
+      fell = never_rests(field, drift.organ, fmt::format("it has fallen or slid {:.0f} mm", 1e3 * drift.way));
   }
-  if (fell && still < still_steps) fell = never_rests(field, furthest(field, from));
+  if (const Fastest moving = fastest(field); fell && still < still_steps)
+    fell =
+        never_rests(field, moving.body,
+                    fmt::format("it still moves by {:.1f} mm/s after {:g} s", 1e3 * moving.speed, longest));
   Roughness::take(field);
   field.step_time = usual;
   for (std::size_t k = 0; k < moving_bodies(field); ++k) state_of(field, k).motion = {};
