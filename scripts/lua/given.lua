@@ -134,12 +134,16 @@ local function fault(name, value, kind)
   return said
 end
 
+--- Whether a function that is called `owner` was called by a colon: its first argument then is what it is a member of.
+local function called_by_colon(owner, first)
+  return type(first) == "table" and rawget(first, owner:match "[^.]*$") ~= nil
+end
+local by_colon = "call it with a dot, not with a colon"
+
 --- Refuses all at once what `owner`, the name of a function or of one of its parameters, does not have, what is no
 --- value of its kind, and what is missing. `kinds`: by key. `level`: of calot.refuse(), as seen from the caller.
 function given.check(values, kinds, owner, level)
-  if type(values) == "table" and rawget(values, owner:match "[^.]*$") ~= nil then
-    calot.refuse(owner .. ": call it with a dot, not with a colon", level + 1)
-  end
+  if called_by_colon(owner, values) then calot.refuse(owner .. ": " .. by_colon, level + 1) end
   if type(values) ~= "table" then
     calot.refuse(owner .. " takes a table of parameters, not " .. shown(values), level + 1)
   end
@@ -175,9 +179,7 @@ function given.checked(owner, takes, does)
     end
     if count > #takes then wrong[#wrong + 1] = #takes .. " arguments are enough, not " .. count end
     if #wrong > 0 then
-      local first = (...)
-      local by_colon = type(first) == "table" and (rawget(first, owner:match "[^.]*$") ~= nil)
-      local said = by_colon and "call it with a dot, not with a colon" or table.concat(wrong, "; ")
+      local said = called_by_colon(owner, (...)) and by_colon or table.concat(wrong, "; ")
       calot.refuse(owner .. ": " .. said, 2)
     end
     return pass(does(...)) -- not at once: who is called last has no line of its caller

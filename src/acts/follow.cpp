@@ -81,8 +81,6 @@ class Following {
         to_(to),
         passing_(passing),
         statistics_(statistics),
-        first_(snapshot(field)),
-        first_poses_(present_poses(field)),
         iterations_before_(statistics.newton_iterations) {}
 
   Result<bool> run() {
@@ -150,6 +148,10 @@ class Following {
   /// The part of the bodies' motion that this part of the tools' lies in.
   std::optional<Failure> begin() {
     if (!passing_ || (is_one_step() && done_ > 0)) return std::nullopt;
+    if (is_one_step()) {
+      first_ = snapshot(field_);
+      first_poses_ = present_poses(field_);
+    }
     grow_damage(field_);
     Result<std::vector<MotionPart>> parts = next_parts(field_);
     if (!parts) return parts.failure();
@@ -237,7 +239,7 @@ class Following {
   const Poses& to_;
   const Passing* passing_;
   SolveStatistics& statistics_;
-  GroupSnapshot first_;  ///< where it began
+  GroupSnapshot first_;  ///< where a motion that is one step began
   Poses first_poses_;
   std::vector<MotionPart> parts_;  ///< of the bodies' motion, in which it is
   bool by_parts_ = false;          ///< each part is a step of its own, though masses count

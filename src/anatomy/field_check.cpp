@@ -67,21 +67,25 @@ bool FieldCheck::in_range(const std::string& path, double value, const Quantity&
 
 bool FieldCheck::place_within(const std::string& path, const Vec3& position, double reach,
                               const std::string& what) {
-  const double furthest = position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-  if (furthest <= reach) return true;
-  std::string hint = fmt::format("give three coordinates within {:g} mm of the umbilicus", reach / units::mm);
-  if (furthest * units::mm <= reach) hint = fmt::format("did you mean {} * mm? {}", text_of(position), hint);
-  problem(path, fmt::format("{} m is not {}", text_of(position), what), hint);
-  return false;
+  return vector_within(
+      path, position, reach, quantity::length, what,
+      fmt::format("give three coordinates within {:g} mm of the umbilicus", reach / units::mm));
 }
 
 bool FieldCheck::turn_within(const std::string& path, const Vec3& turn, double most,
                              const std::string& what) {
-  const double largest = turn.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  return vector_within(path, turn, most, quantity::angle, what,
+                       fmt::format("give three angles of up to {:g} degrees", most / units::deg));
+}
+
+bool FieldCheck::vector_within(const std::string& path, const Vec3& vector, double most,
+                               const Quantity& quantity, const std::string& what, std::string hint) {
+  const double largest = vector.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   if (largest <= most) return true;
-  std::string hint = fmt::format("give three angles of up to {:g} degrees", most / units::deg);
-  if (largest * units::deg <= most) hint = fmt::format("did you mean {} * deg? {}", text_of(turn), hint);
-  problem(path, fmt::format("{} rad is not {}", text_of(turn), what), hint);
+  const UnitName& usual = quantity.multipliers.front();
+  if (largest * usual.factor <= most)
+    hint = fmt::format("did you mean {} * {}? {}", text_of(vector), usual.name, hint);
+  problem(path, fmt::format("{} {} is not {}", text_of(vector), quantity.unit, what), std::move(hint));
   return false;
 }
 

@@ -52,6 +52,10 @@ class FieldCheck {
   std::vector<Problem> take() { return std::move(problems_); }
 
  private:
+  /// Each of three figures within `most` of 0. `hint`: what to give else.
+  bool vector_within(const std::string& path, const Vec3& vector, double most, const Quantity& quantity,
+                     const std::string& what, std::string hint);
+
   std::vector<Problem> problems_;
 };
 

@@ -4,7 +4,7 @@
 
 #include "base/suggest.h"
 #include "lua/api_table.h"
-#include "lua/score_rules.h"
+#include "lua/mistakes.h"
 #include "script/binding.h"
 #include "script/module_loader.h"
 
@@ -82,11 +82,8 @@ int refuse(lua_State* L) {
 
 /// Reading a member that is not there. Upvalues: the module's name, its table.
 int unknown_member(lua_State* L) {
-  std::vector<std::string> names;
-  for (lua_pushnil(L); lua_next(L, lua_upvalueindex(2)) != 0; lua_pop(L, 1))
-    names.emplace_back(lua_tostring(L, -2));
-  std::sort(names.begin(), names.end());
-  const std::string wanted = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+  const std::vector<std::string> names = keys_of(L, lua_upvalueindex(2));
+  const std::string wanted = text_or_type(L, 2);
   return luaL_error(L, "%s has no \"%s\" (%s)", lua_tostring(L, lua_upvalueindex(1)), wanted.c_str(),
                     suggestion(wanted, names).c_str());
 }

@@ -4,6 +4,7 @@
 
 #include "base/suggest.h"
 #include "lua/methods.h"
+#include "lua/mistakes.h"
 #include "script/binding.h"
 
 namespace calot {
@@ -70,7 +71,7 @@ int index_handle(lua_State* L) {
     for (const InstrumentDefinition& instrument : session.scene().instruments)
       names.insert(names.begin(), instrument.name);
   }
-  const std::string wanted = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+  const std::string wanted = text_or_type(L, 2);
   session.complain(L, fmt::format("{} has no \"{}\"", name_of(*target), wanted), suggestion(wanted, names));
   if (is_session && !session.scene().instruments.empty()) {
     push_handle(L, {&session, 0}, stand_in(session.instrument_class()), 0);

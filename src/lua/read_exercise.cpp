@@ -294,7 +294,9 @@ ScoreDefinition read_score(FieldCheck& check, const Value& score, int api) {
 }
 
 void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
-  const std::vector<std::string> names = metric_names(exercise), organs = place_names(exercise);
+  const std::vector<std::string> names = metric_names(exercise),
+                                 organs = place_names(exercise.scene.anatomy, exercise.later_organs,
+                                                      exercise.later_tissues);
   const auto check_metric = [&](const std::string& path, const std::string& metric) {
     if (metric.empty() || std::find(names.begin(), names.end(), metric) != names.end()) return;
     std::string hint = suggestion(metric, names);

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 
 #include "base/suggest.h"
-#include "lua/score_rules.h"
+#include "lua/mistakes.h"
 #include "lua/table_reader.h"
 #include "script/binding.h"
 #include "script/lua_headers.h"
@@ -130,13 +129,10 @@ ReadParameters read_parameters(FieldCheck& check, const Value* params,
 namespace {
 
 int unknown_parameter(lua_State* L) {
-  std::vector<std::string> names;
-  for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) names.emplace_back(lua_tostring(L, -2));
-  std::sort(names.begin(), names.end());
-  const std::string wanted = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
-  note_mistake(L);
-  return luaL_error(L, "there is no parameter \"%s\" (%s)", wanted.c_str(),
-                    names.empty() ? "declare it in params" : suggestion(wanted, names).c_str());
+  const std::vector<std::string> names = keys_of(L, 1);
+  const std::string wanted = text_or_type(L, 2);
+  raise_mistake(L, fmt::format("there is no parameter \"{}\"", wanted),
+                names.empty() ? "declare it in params" : suggestion(wanted, names));
 }
 
 }  // namespace

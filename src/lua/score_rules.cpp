@@ -8,6 +8,7 @@
 #include "base/suggest.h"
 #include "lua/method_targets.h"
 #include "lua/methods.h"
+#include "lua/mistakes.h"
 #include "script/binding.h"
 #include "script/lua_headers.h"
 #include "tools/events.h"
@@ -15,23 +16,7 @@
 namespace calot {
 namespace {
 
-constexpr const char* mistake_key = "calot.rule_mistake";
 constexpr std::size_t most_times = 10000;
-
-/// An error that no session would excuse: a name that does not exist.
-[[noreturn]] void raise_mistake(lua_State* L, const std::string& message, const std::string& hint) {
-  note_mistake(L);
-  luaL_error(L, "%s (%s)", message.c_str(), hint.c_str());
-  std::abort();  // luaL_error does not return
-}
-
-bool take_mistake(lua_State* L) {
-  const bool found = lua_getfield(L, LUA_REGISTRYINDEX, mistake_key) == LUA_TBOOLEAN;
-  lua_pop(L, 1);
-  lua_pushnil(L);
-  lua_setfield(L, LUA_REGISTRYINDEX, mistake_key);
-  return found;
-}
 
 void set_text(lua_State* L, const char* key, const std::string& text) {
   lua_pushlstring(L, text.data(), text.size());
@@ -91,19 +76,12 @@ void push_names(lua_State* L, const std::vector<std::string>& names) {
   }
 }
 
-std::vector<std::string> names_in(lua_State* L, int table) {
-  std::vector<std::string> names;
-  for (lua_pushnil(L); lua_next(L, table) != 0; lua_pop(L, 1)) names.emplace_back(lua_tostring(L, -2));
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 /// Of a metric that was not measured. Upvalue 1: those there may be, as keys.
 int missing_metric(lua_State* L) {
-  const std::string name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+  const std::string name = text_or_type(L, 2);
   lua_pushvalue(L, 2);
   if (lua_isnil(L, 2) || lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
-    const std::vector<std::string> names = names_in(L, lua_upvalueindex(1));
+    const std::vector<std::string> names = keys_of(L, lua_upvalueindex(1));
     raise_mistake(L, fmt::format("unknown metric \"{}\"", name), suggestion(name, names));
   }
   lua_pushnil(L);
@@ -140,7 +118,7 @@ void set_notes(lua_State* L, const Progress& progress) {
 
 int missing_member(lua_State* L) {
   const std::vector<std::string> names = {"count", "events", "metrics", "notes", "params", "steps", "times"};
-  const std::string wanted = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+  const std::string wanted = text_or_type(L, 2);
   raise_mistake(L, fmt::format("run has no \"{}\"", wanted), suggestion(wanted, names));
 }
 
@@ -161,9 +139,10 @@ void push_run(lua_State* L, const RuleRun& run) {
   lua_newtable(L);
   lua_pushcfunction(L, guarded<missing_member>);
   lua_setfield(L, -2, "__index");
-  if (run.metric_names !=
-      nullptr) {  // else an organ that this patient does not have is none that something befell
-    push_names(L, place_names(run.exercise));
+  // When a session is judged, an organ that this patient does not have is one that nothing befell.
+  if (run.metric_names != nullptr) {
+    push_names(
+        L, place_names(run.exercise.scene.anatomy, run.exercise.later_organs, run.exercise.later_tissues));
     lua_setfield(L, -2, places_key);
   }
   lua_setmetatable(L, -2);
@@ -172,10 +151,9 @@ void push_run(lua_State* L, const RuleRun& run) {
 /// Complains of a name that no event's organ has: an organ's, or a piece's of one.
 void expect_place(lua_State* L, const std::string& name) {
   if (luaL_getmetafield(L, 1, places_key) == LUA_TNIL) return;
-  std::vector<std::string> names = names_in(L, lua_gettop(L));
+  const std::vector<std::string> names = keys_of(L, lua_gettop(L));
   lua_pop(L, 1);
-  const std::string whole = name.substr(0, name.find('.'));
-  if (std::find(names.begin(), names.end(), whole) == names.end())
+  if (!is_place(name, names))
     raise_mistake(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
 }
 
@@ -186,7 +164,7 @@ void for_events(lua_State* L, const char* method, const Found& found) {
   if (!lua_istable(L, 1) || lua_getfield(L, 1, "events") != LUA_TTABLE)
     luaL_error(L, "run:%s must be called with a colon, as in run:%s(\"cut\")", method, method);
   if (lua_type(L, 2) != LUA_TSTRING || !event_called(lua_tostring(L, 2))) {
-    const std::string wanted = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+    const std::string wanted = text_or_type(L, 2);
     raise_mistake(L, fmt::format("unknown event \"{}\"", wanted), suggestion(wanted, event_names()));
   }
   const std::string organ = lua_isnoneornil(L, 3) ? "" : luaL_checkstring(L, 3);
@@ -285,11 +263,6 @@ std::optional<Failure> call_rule(Sandbox& sandbox, int rule, const RuleRun& run,
 }  // namespace
 
 void push_events(lua_State* L, const std::vector<SessionEvent>& events) { push_list(L, events, push_event); }
-
-void note_mistake(lua_State* L) {
-  lua_pushboolean(L, 1);
-  lua_setfield(L, LUA_REGISTRYINDEX, mistake_key);
-}
 
 int count_events_of_run(lua_State* L) {
   lua_Integer count = 0;

@@ -33,9 +33,6 @@ Result<RuleAnswer> ask_rule(Sandbox& sandbox, int rule, const RuleRun& run, bool
 /// exist, an answer of the wrong kind. What it raises itself may be because nothing happened.
 std::optional<Failure> try_rule(Sandbox& sandbox, int rule, const RuleRun& nothing, bool yes_no = false);
 
-/// What is raised next is a mistake of the author's for certain: try_rule() tells it.
-void note_mistake(lua_State* L);
-
 /// Pushes a list of them, as run.events has it.
 void push_events(lua_State* L, const std::vector<SessionEvent>& events);
 

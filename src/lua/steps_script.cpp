@@ -257,12 +257,8 @@ int StepsScript::count(lua_State* L, const std::string& event, const std::string
 }
 
 void StepsScript::expect_place(lua_State* L, const std::string& name) {
-  ExerciseDefinition known = exercise();
-  known.later_organs = later_organs();
-  known.later_tissues = later_tissues();
-  const std::vector<std::string> names = place_names(known);
-  if (!contains(names, name.substr(0, name.find('.'))))
-    complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
+  const std::vector<std::string> names = place_names(scene().anatomy, later_organs(), later_tissues());
+  if (!is_place(name, names)) complain(L, fmt::format("unknown organ \"{}\"", name), suggestion(name, names));
 }
 
 void StepsScript::missed(lua_State* L, const std::string& why) {

@@ -1,7 +1,5 @@
 #include "motion/settle_field.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 
@@ -192,10 +190,9 @@ namespace {
 
 /// Of a scene that has no rest.
 Failure no_rest(const Field& field, const NewtonResult& result, const std::string& when) {
-  Failure out = no_rest_failure(result, member_name(field, result.part), when);
-  if (result.part < static_cast<int>(field.organs.size()))
-    out.problems.front().place.path = fmt::format("scene.anatomy.organs[{}]", result.part + 1);
-  return out;
+  const Failure out = no_rest_failure(result, member_name(field, result.part), when);
+  const auto part = static_cast<std::size_t>(result.part);
+  return part < field.organs.size() ? at_organ(out, part) : out;
 }
 
 }  // namespace

@@ -93,7 +93,9 @@ class Iteration {
   /// Makes ready for iterations; whether none is needed, because nodes that are relaxed were all that was out of balance.
   bool begins_in_balance() {
     problem_.prepare(work_);
-    x_ = problem_.relaxed(x_);
+    VecX relaxed = problem_.relaxed(x_);
+    if (relaxed == x_) return false;
+    x_ = std::move(relaxed);
     evaluate(x_, multipliers_, state_);
     return balanced();
   }

@@ -360,14 +360,20 @@ std::string pattern(const MetricRow& row) {
   return of("total");
 }
 
-std::vector<std::string> place_names(const ExerciseDefinition& exercise) {
+std::vector<std::string> place_names(const AnatomyDefinition& anatomy,
+                                     std::span<const OrganDefinition> later_organs,
+                                     std::span<const TissueDefinition> later_tissues) {
   std::vector<std::string> names;
-  for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
-    for (const OrganDefinition& organ : *organs) names.push_back(organ.name);
-  for (const auto* tissues : {&exercise.scene.anatomy.tissue, &exercise.later_tissues})
-    for (const TissueDefinition& tissue : *tissues) names.push_back(tissue.name);
-  for (const GroundDefinition& ground : exercise.scene.anatomy.ground) names.push_back(ground.name);
+  for (std::span<const OrganDefinition> organs : {std::span(anatomy.organs), later_organs})
+    for (const OrganDefinition& organ : organs) names.push_back(organ.name);
+  for (std::span<const TissueDefinition> tissues : {std::span(anatomy.tissue), later_tissues})
+    for (const TissueDefinition& tissue : tissues) names.push_back(tissue.name);
+  for (const GroundDefinition& ground : anatomy.ground) names.push_back(ground.name);
   return names;
+}
+
+bool is_place(const std::string& name, const std::vector<std::string>& places) {
+  return std::find(places.begin(), places.end(), name.substr(0, name.find('.'))) != places.end();
 }
 
 std::vector<std::string> metric_names(const ExerciseDefinition& exercise) {

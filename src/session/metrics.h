@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,8 +52,12 @@ std::string pattern(const MetricRow& row);
 
 /// Every metric a session of this exercise can measure.
 std::vector<std::string> metric_names(const ExerciseDefinition& exercise);
-/// What an event may have happened to: organs and tissues that there are or may be, and ground.
-std::vector<std::string> place_names(const ExerciseDefinition& exercise);
+/// What an event may have happened to: organs and tissues that there are or come later, and ground.
+std::vector<std::string> place_names(const AnatomyDefinition& anatomy,
+                                     std::span<const OrganDefinition> later_organs,
+                                     std::span<const TissueDefinition> later_tissues);
+/// Whether that is one of these, or a piece of one.
+bool is_place(const std::string& name, const std::vector<std::string>& places);
 
 /// A metric in words, its unit last: "left: path length, mm" of left.path_length_mm.
 std::string metric_title(const std::string& metric);

@@ -88,14 +88,12 @@ Drift furthest(const Field& field, const std::vector<VecX>& from) {
 
 /// Of the body that this is said of, which may be an organ.
 Failure never_rests(const Field& field, std::size_t body, const std::string& what) {
-  Failure out = fail(
+  const Failure out = fail(
       FailureKind::scenario,
       fmt::format("organ '{}' never comes to rest: {}", member_name(field, static_cast<int>(body)), what),
       "let something hold it; on a table that is tilted (table_head_up, table_left_down) it slides off "
       "ground without friction");
-  if (body < field.organs.size())
-    out.problems.front().place.path = fmt::format("scene.anatomy.organs[{}]", body + 1);
-  return out;
+  return body < field.organs.size() ? at_organ(out, body) : out;
 }
 
 /// Lets all bodies fall as they would in a session, but in longer steps, which damp what swings, until they lie still:
