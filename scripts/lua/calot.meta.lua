@@ -233,7 +233,7 @@
 ---@field pinch_force? number force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips; jaws only; default 6.8 * N; 0.05 to 100 N
 ---@field pad_friction? number coefficient of friction of a pad; 0.3 for semm_forceps; jaws only; default 0.8; 0.01 to 5
 ---@field friction? number coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 for a smooth shaft on wet skin; default 0; 0 to 1
----@field power? number W of its current, where it can be activated: what strands of tissue it touches then share it, and are divided by it; default 30; 1 to 120
+---@field power? number W of its current: what strands of tissue it touches then share it, and are divided by it; only what can be activated; default 30; 1 to 120
 ---@field clip? "M"|"ML" the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML); clip_applier only; default "ML"
 ---@field clips? number how many it carries; clip_applier only; default 8; 0 to 50
 ---@field bore? number its bore, across; 1.6 mm is 14 gauge; aspiration_needle only; default 1.6 * mm; 0.3 to 1.9 mm

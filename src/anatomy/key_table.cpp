@@ -132,18 +132,8 @@ Key required(Key key) {
   return key;
 }
 
-Key jaws_only(Key key) {
-  key.jaws_only = true;
-  return key;
-}
-
-Key clips_only(Key key) {
-  key.clips_only = true;
-  return key;
-}
-
-Key needle_only(Key key) {
-  key.needle_only = true;
+Key only_of(KeyOwner owner, Key key) {
+  key.owner = owner;
   return key;
 }
 

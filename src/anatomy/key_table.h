@@ -41,6 +41,10 @@ struct EnumField {
 using KeyTarget = std::variant<std::monostate, double*, std::optional<double>*, int*, bool*, std::string*,
                                Vec3*, EnumField>;
 
+/// The instruments that a key of an instrument is for: all, or those with jaws, that set clips, that draw something out,
+/// that carry current.
+enum class KeyOwner { all, jaws, clips, needle, current };
+
 struct Key {
   std::string name;
   KeyKind kind = KeyKind::number;
@@ -54,9 +58,7 @@ struct Key {
   std::vector<std::string> choices{};  ///< for choices
   std::string signature{};             ///< for functions, as the editor's type
   std::string what{};  ///< completes "70 m is not ...": "a gallbladder's length"; empty: "a sensible <name>"
-  bool jaws_only = false;    ///< means nothing to an instrument without jaws
-  bool clips_only = false;   ///< means nothing to one that sets no clips
-  bool needle_only = false;  ///< means nothing to one that draws nothing out
+  KeyOwner owner = KeyOwner::all;  ///< it means nothing to other instruments
 
   std::function<KeyTarget(void* definition)> field{};
   /// Of tables that are members: the member; null for one that is absent, unless it is to be made.
@@ -111,9 +113,7 @@ Key map(std::string name, std::string of, std::string doc);
 Key function(std::string name, std::string signature, std::string doc);
 /// Has to be given, so that its default is none.
 Key required(Key key);
-Key jaws_only(Key key);
-Key clips_only(Key key);
-Key needle_only(Key key);
+Key only_of(KeyOwner owner, Key key);
 
 /// Binds a key to a member of T.
 template <class T, class M>

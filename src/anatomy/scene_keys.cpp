@@ -170,34 +170,43 @@ std::vector<KeyTable> field_tables() {
                   "a friction of a port's seal",
                   "friction of the seal of its port on the shaft that slides through, which its hand feels; "
                   "0.25 to 3 N"),
-           jaws_only(number(
-               "pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
-               "a force that a hand gives a jaw",
-               "force that each jaw closes with: it stops where tissue carries that; jaws at an angle of 2 a "
-               "hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips")),
-           jaws_only(number("pad_friction", &Instrument::pad_friction, quantity::number, 0.01, 5,
-                            "a coefficient of friction",
-                            "coefficient of friction of a pad; " + semm + " for semm_forceps")),
+           only_of(
+               KeyOwner::jaws,
+               number(
+                   "pinch_force", &Instrument::pinch_force, quantity::force, 0.05, 100,
+                   "a force that a hand gives a jaw",
+                   "force that each jaw closes with: it stops where tissue carries that; jaws at an angle of "
+                   "2 a "
+                   "hold a pull of 2 * pinch_force * (pad_friction * cos a - sin a), beyond which it slips")),
+           only_of(KeyOwner::jaws, number("pad_friction", &Instrument::pad_friction, quantity::number, 0.01,
+                                          5, "a coefficient of friction",
+                                          "coefficient of friction of a pad; " + semm + " for semm_forceps")),
            number("friction", &Instrument::friction, quantity::number, 0, 1,
                   "a coefficient of friction of a smooth tool",
                   "coefficient of friction of the skin that the shaft and what it ends in press on; 0 to 0.3 "
                   "for a smooth shaft on wet skin"),
-           number("power", &Instrument::power, quantity::number, 1, 120, "a power of a generator, W",
-                  "W of its current, where it can be activated: what strands of tissue it touches then share "
-                  "it, and are divided by it"),
-           clips_only(choice("clip", &Instrument::clip, clip_names(),
-                             "the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML)")),
-           clips_only(
-               count("clips", &Instrument::clips, 0, most_clips, "a number of clips", "how many it carries")),
-           needle_only(number("bore", &Instrument::bore, quantity::length, 0.3 * mm, 1.9 * mm,
-                              "a bore of a needle 2.1 mm thick", "its bore, across; 1.6 mm is 14 gauge")),
-           needle_only(number("bore_length", &Instrument::bore_length, quantity::length, 20 * mm, 1000 * mm,
-                              "a length of a needle's bore",
-                              "from its mouth to where the suction's pressure is; uncalibrated")),
-           needle_only(number("suction", &Instrument::suction, quantity::pressure, 0, 80 * kPa,
-                              "a pressure of a suction pump",
-                              "how far its pressure is below that outside of the organs; uncalibrated")),
-           needle_only(
+           only_of(KeyOwner::current,
+                   number("power", &Instrument::power, quantity::number, 1, 120, "a power of a generator, W",
+                          "W of its current: what strands of tissue it touches then share it, and are "
+                          "divided by it")),
+           only_of(KeyOwner::clips,
+                   choice("clip", &Instrument::clip, clip_names(),
+                          "the size of its clips, for vessels of 2 to 4 mm (M) or 3.5 to 7 mm (ML)")),
+           only_of(KeyOwner::clips, count("clips", &Instrument::clips, 0, most_clips, "a number of clips",
+                                          "how many it carries")),
+           only_of(KeyOwner::needle,
+                   number("bore", &Instrument::bore, quantity::length, 0.3 * mm, 1.9 * mm,
+                          "a bore of a needle 2.1 mm thick", "its bore, across; 1.6 mm is 14 gauge")),
+           only_of(KeyOwner::needle,
+                   number("bore_length", &Instrument::bore_length, quantity::length, 20 * mm, 1000 * mm,
+                          "a length of a needle's bore",
+                          "from its mouth to where the suction's pressure is; uncalibrated")),
+           only_of(KeyOwner::needle,
+                   number("suction", &Instrument::suction, quantity::pressure, 0, 80 * kPa,
+                          "a pressure of a suction pump",
+                          "how far its pressure is below that outside of the organs; uncalibrated")),
+           only_of(
+               KeyOwner::needle,
                number("pinhole", &Instrument::pinhole, quantity::length, 0, 2 * mm,
                       "a width of what a needle leaves open",
                       "across what stays open of a wall that it was through, 0: nothing; uncalibrated"))}),

@@ -64,9 +64,10 @@ std::string type_text(const Key& key) {
 
 std::string doc_text(const Key& key) {
   std::string text = key.doc;
-  if (key.jaws_only) text += "; jaws only";
-  if (key.clips_only) text += "; clip_applier only";
-  if (key.needle_only) text += "; aspiration_needle only";
+  if (key.owner == KeyOwner::jaws) text += "; jaws only";
+  if (key.owner == KeyOwner::clips) text += "; clip_applier only";
+  if (key.owner == KeyOwner::needle) text += "; aspiration_needle only";
+  if (key.owner == KeyOwner::current) text += "; only what can be activated";
   if (!key.fallback.empty()) text += fmt::format("; default {}", key.fallback);
   const std::string range = limits(key);
   if (!range.empty()) text += fmt::format("; {}", range);

@@ -254,39 +254,28 @@ class SceneReader {
       InstrumentDefinition instrument = default_instrument(*instrument_type_called(type));
       instrument.name = name;
       reader.read(instrument);
-      check_jaws(reader, instrument);
-      check_clips(reader, instrument);
-      check_needle(reader, instrument);
+      check_owners(reader, instrument.type);
       check_free(path, name);
       instruments.push_back(instrument);
     }
     return instruments;
   }
 
-  void check_jaws(const TableReader& reader, const InstrumentDefinition& instrument) {
-    if (has_jaws(instrument.type)) return;
-    for (const Key& key : api_table("instrument").keys)
-      if (key.jaws_only && reader.has(key.name))
-        check_.problem(reader.path_of(key.name),
-                       fmt::format("a {} has no jaws to pinch with", to_text(instrument.type)),
-                       fmt::format("leave {} out", key.name));
-  }
-
-  void check_clips(const TableReader& reader, const InstrumentDefinition& instrument) {
-    if (has_action(instrument.type, InstrumentAction::fire)) return;
-    for (const Key& key : api_table("instrument").keys)
-      if (key.clips_only && reader.has(key.name))
-        check_.problem(reader.path_of(key.name), fmt::format("a {} sets no clips", to_text(instrument.type)),
-                       fmt::format("leave {} out, or make it a clip_applier", key.name));
-  }
-
-  void check_needle(const TableReader& reader, const InstrumentDefinition& instrument) {
-    if (has_action(instrument.type, InstrumentAction::aspirate)) return;
-    for (const Key& key : api_table("instrument").keys)
-      if (key.needle_only && reader.has(key.name))
-        check_.problem(reader.path_of(key.name),
-                       fmt::format("a {} draws nothing out", to_text(instrument.type)),
-                       fmt::format("leave {} out, or make it an aspiration_needle", key.name));
+  /// Complains of keys that mean nothing to an instrument of this type.
+  void check_owners(const TableReader& reader, InstrumentType type) {
+    using enum InstrumentAction;
+    const auto check = [&](KeyOwner owner, bool is_owner, const char* lacks, const char* instead) {
+      for (const Key& key : api_table("instrument").keys)
+        if (key.owner == owner && !is_owner && reader.has(key.name))
+          check_.problem(reader.path_of(key.name), fmt::format("its type {} {}", to_text(type), lacks),
+                         fmt::format("leave {} out{}", key.name, instead));
+    };
+    check(KeyOwner::jaws, has_jaws(type), "has no jaws to pinch with", "");
+    check(KeyOwner::clips, has_action(type, fire), "sets no clips", ", or make it a clip_applier");
+    check(KeyOwner::needle, has_action(type, aspirate), "draws nothing out",
+          ", or make it an aspiration_needle");
+    check(KeyOwner::current, has_action(type, activate), "carries no current",
+          ", or make it an l_hook, semm_forceps or a bipolar_electrode");
   }
 
   void check_free(const std::string& path, const std::string& name) {

@@ -162,8 +162,10 @@ std::optional<Value> scene_with(const std::string& table, const std::string& key
   }
   if (table == "instrument") {
     holder.fields.push_back({"port", text("right_flank")});
-    if (key == "clips") holder.fields.push_back({"type", text("clip_applier")});
-    if (api_table(table).find(key)->needle_only) holder.fields.push_back({"type", text("aspiration_needle")});
+    const KeyOwner owner = api_table(table).find(key)->owner;
+    if (owner == KeyOwner::clips) holder.fields.push_back({"type", text("clip_applier")});
+    if (owner == KeyOwner::needle) holder.fields.push_back({"type", text("aspiration_needle")});
+    if (owner == KeyOwner::current) holder.fields.push_back({"type", text("l_hook")});
     return in_scene("instruments", entry("left", holder));
   }
   if (table == "shape_pear" || table == "shape_sphere") {
@@ -212,7 +214,8 @@ TEST(Api, DefaultsAreThoseOfTheDefinitions) {
   const auto written = [](const std::string& table) {
     std::string text;
     for (const Key& key : api_table(table).keys)
-      if (!key.fallback.empty() && key.name != "type" && !key.clips_only && !key.needle_only)
+      if (!key.fallback.empty() && key.name != "type" &&
+          (key.owner == KeyOwner::all || key.owner == KeyOwner::jaws))
         text += key.name + " = " + key.fallback + ", ";
     return text;
   };

@@ -158,7 +158,7 @@ TEST(Clipping, WhatAnInstrumentCannotDoIsSaidAtItsLine) {
   const Folder folder;
   const auto script = test::load_text(folder, text.text());
   ASSERT_FALSE(script);
-  EXPECT_NE(to_text(script.failure()).find("a scissors sets no clips"), std::string::npos)
+  EXPECT_NE(to_text(script.failure()).find("its type scissors sets no clips"), std::string::npos)
       << to_text(script.failure());
 }
 

@@ -299,6 +299,15 @@ TEST(Runner, AnOrganThatIsComparedGetsItsDifferencesWhenItHasBeenMoved) {
   EXPECT_LT(found->mean_pct, found->largest_pct);
 }
 
+TEST(Runner, AStepThatWasDoneAsItBeganIsNoted) {
+  const double dt = 1 / test::small_scene().solver.rate;
+  test::TimedScript at_once(dt), later(2 * dt);
+  const std::vector<std::string> notes = played(at_once, at_once.demo()).notes;
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "step only was done as it began: what it waits for held already");
+  EXPECT_TRUE(played(later, later.demo()).notes.empty());
+}
+
 TEST(Report, ASessionThatWasCutHasNoTotal) {
   test::TimedScript script(0.2);
   SessionResult result;
