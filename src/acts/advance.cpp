@@ -105,7 +105,7 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   if (field.step_time == 0 || !touches_hard(field)) return advance(field, targets, statistics);
   const FieldState before = field_state(field);
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
-  if (!events || !statistics.cut_short || !wedges_hard(field)) return events;
+  if (!events || !wedges_hard(field, !statistics.cut_short)) return events;
   restore(field, before);
   // With a budget of its own, as what was tried has spent the step's: that of a step whose tools move, not what falling
   // bodies get.
@@ -116,6 +116,7 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   field.budget = usual;
   statistics.newton_iterations += again.newton_iterations;
   statistics.factorisations += again.factorisations;
+  statistics.cut_short = true;  // the tools did not come where they were to
   return events;
 }
 

@@ -55,9 +55,24 @@ bool touches_hard(const Field& field) {
   return any;
 }
 
-bool wedges_hard(const Field& field) {
-  constexpr double beyond = 20;  // times a hand's strength
+namespace {
+
+/// Whether anything hard that a tool touches is strained as nothing rigid is.
+bool strains_hard(const Field& field) {
+  constexpr double most = 1.03;
+  return std::any_of(field.organs.begin(), field.organs.end(), [](const Organ& organ) {
+    return !is_bitten(organ) && organ.body->max_stretch(organ.state.x) > most;
+  });
+}
+
+}  // namespace
+
+bool wedges_hard(const Field& field, bool balanced) {
   if (!touches_hard(field)) return false;
+  const bool strained = strains_hard(field);
+  if (balanced && !strained) return false;
+  // Times a hand's strength: what is out of balance, or closes fast, may press by a few times that for a step.
+  const double beyond = strained ? 1 : 20;
   const std::vector<ToolLoad> loads = tool_loads(field);
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const double jaws = std::max(loads[i].on_jaws[0].norm(), loads[i].on_jaws[1].norm());

@@ -17,8 +17,9 @@ bool rests_on_hard(const Field& field, ToolIndex instrument);
 
 /// Whether any tool touches something hard.
 bool touches_hard(const Field& field);
-/// Whether something hard presses a tool as no hand could: it is wedged, in a step that found no balance.
-bool wedges_hard(const Field& field);
+/// Whether something hard presses a tool as no hand could, in a step that found no balance, or is strained by more than a
+/// hand's strength: it is wedged.
+bool wedges_hard(const Field& field, bool balanced);
 
 /// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.
 void catch_hard(Field& field, ToolIndex instrument, const Clasped& held);
