@@ -145,5 +145,5 @@ return calot.exercise {
     pass = 80,
   },
 
-  golden = { at = { 4.8 * s, 13.2 * s, 38.56 * s, 41.68 * s } },
+  golden = { at = { 4.8 * s, 13.2 * s, 40.24 * s, 43.24 * s } },
 }

@@ -3,7 +3,7 @@
 
 local calot = require "calot"
 local given = require "given"
-local mm, s, deg = calot.units.mm, calot.units.s, calot.units.deg
+local mm, s, deg, N = calot.units.mm, calot.units.s, calot.units.deg, calot.units.N
 
 local technique = given.module "technique"
 
@@ -61,18 +61,30 @@ local function nearest_strand(t, hook, tissue, wanted)
   return best
 end
 
+--- Draws the hook out along its shaft, before it goes elsewhere. What hangs on it then comes off over its tip: down
+--- again, towards its heel, and out.
+local function draw_out(hook, back)
+  local way, hangs = 15 * mm, 0.1 * N
+  hook:move_by(plus({ 0, 0, 0 }, back, way), { speed = 80 * mm / s })
+  if hook:force() < hangs then return end
+  hook:move_by(plus({ 0, 0, 0 }, back, -way - 3 * mm), { speed = 80 * mm / s })
+  hook:move_by({ 8 * mm, 0, 0 }, { speed = 40 * mm / s })
+  hook:move_by(plus({ 0, 0, 0 }, back, way + 3 * mm), { speed = 80 * mm / s })
+end
+
 local how_to_take = {
   port = given.three, tries = given.whole, hardest = given.above_zero, wanted = given.optional(given.called),
   is_done = given.optional(given.called), keep_off = given.optional(given.by_name),
 }
 local where_to_keep_off = { organ = given.name, place = given.three, clear = given.above_zero }
 
---- Strand by strand: the hook's foot comes down on the nearest one, and current flows until one has parted; else it
---- comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and then on
---- all three nearer to its heel. `how`: port, where its shaft comes from; tries, of a tenth of a second; hardest, the
---- force that ends its way down; wanted(strand), if given, those that are taken; is_done(), if given, asked before each
---- strand; keep_off, an organ and a place of it: current flows no nearer to the organ than `clear`, and beside the
---- place the heel comes down first, on the middle, and the foot points away.
+--- Strand by strand: the hook's foot, which points to the patient's right, comes down on the nearest one, and current
+--- flows until one has parted; else it comes down nearer to either end of it, as what a slack strand hangs on may keep
+--- the hook off its middle, and then on all three nearer to its heel. Before a longer way it is drawn out. `how`: port,
+--- where its shaft comes from; tries, of a tenth of a second; hardest, the force that ends its way down;
+--- wanted(strand), if given, those that are taken; is_done(), if given, asked before each strand; keep_off, an organ
+--- and a place of it: current flows no nearer to the organ than `clear`, and beside the place the heel comes down
+--- first, on the middle, and the foot points away.
 function technique.take(t, hook, tissue, how)
   given.check(how, how_to_take, "technique.take", 2)
   if how.keep_off then given.check(how.keep_off, where_to_keep_off, "keep_off", 2) end
@@ -88,6 +100,7 @@ function technique.take(t, hook, tissue, how)
     local at = beside and strand.middle or plus(strand.middle, minus(ends[missed % 3 + 1], strand.middle), 0.5)
     local aim = plus(at, { beside and by_heel[missed % 3 + 1] or reach[missed // 3 + 1], 0, 0 })
     local back = unit(minus(how.port, at))
+    if length(minus(aim, hook:tip())) > 12 * mm then draw_out(hook, back) end
     hook:move_to(plus(aim, back, 5 * mm), { speed = 80 * mm / s })
     local function lies_on_it()
       local contact = hook:contact()

@@ -64,9 +64,14 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   for (std::size_t i = 0; i < to.size(); ++i)
     holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
   const RoughWay way(field);
+  // What is hard slides before jaws, and is turned by them, unless its balance and friction are asked at each stop: there
+  // each is a step of its own.
+  const bool hard = field.step_time > 0 && may_touch_hard(field, largest_travel(field, to));
+  bool first = true;
   double reached = 0;
   for (double stop : all_stops(holding_stops)) {
-    const double duration = (stop - std::exchange(reached, stop)) * field.step_time;
+    const Piece piece = hard ? Piece{} : Piece{std::exchange(first, false), stop == 1};
+    const double duration = (hard ? stop - std::exchange(reached, stop) : 1) * field.step_time;
     field.rough = field.step_time > 0 && stop < 1;
     Poses here = interpolate(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)
@@ -75,7 +80,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
     const auto go = [&](const Poses& poses) {
       for (std::size_t i = 0; i < poses.size(); ++i)
         if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, ToolIndex(i), poses[i].jaw);
-      return follow(field, poses, duration, slipped_before, events, statistics);
+      return follow(field, poses, duration, piece, slipped_before, events, statistics);
     };
     if (Result<bool> moved = close_within_pinch(field, here, targets, go, slipped_before, events, statistics);
         !moved)
@@ -93,7 +98,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   }
   if (field.rough && !statistics.cut_short) end_in_balance(field, statistics);
   // What is not in balance tells not what slips.
-  if (!statistics.cut_short) judge_clasps(field, slipped_before, events);
+  if (statistics.balanced) judge_clasps(field, slipped_before, events);
   feel_again(field);
   grow_damage(field);
   tears.judge(field, events);
@@ -105,7 +110,7 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   if (field.step_time == 0 || !touches_hard(field)) return advance(field, targets, statistics);
   const FieldState before = field_state(field);
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
-  if (!events || !wedges_hard(field, !statistics.cut_short)) return events;
+  if (!events || !wedges_hard(field, statistics.balanced)) return events;
   restore(field, before);
   // With a budget of its own, as what was tried has spent the step's: that of a step whose tools move, not what falling
   // bodies get.
@@ -117,6 +122,8 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   statistics.newton_iterations += again.newton_iterations;
   statistics.factorisations += again.factorisations;
   statistics.cut_short = true;  // the tools did not come where they were to
+  statistics.balanced = again.balanced;
+  statistics.residual = again.residual;
   return events;
 }
 

@@ -13,6 +13,7 @@
 #include "field/grip.h"
 #include "field/take_hold.h"
 #include "field/teeth.h"
+#include "motion/settle_field.h"
 #include "motion/step_budget.h"
 
 namespace calot {
@@ -38,6 +39,7 @@ class Trials {
         statistics_(statistics),
         start_(field_state(field)),
         told_(events.size()),
+        pressing_(pressing),
         on_the_way_(field.rough),
         at_start_(field.tools.size(), 0.0) {
     for (std::size_t i : pressing)
@@ -71,6 +73,8 @@ class Trials {
   }
   /// Before it, of jaws that tissue had not stopped.
   double excess_at_start(std::size_t tool) const { return at_start_[tool]; }
+  /// Whether the step goes on after this motion.
+  bool on_the_way() const { return on_the_way_; }
   /// No further angle is worth what the step may still take: what was tried last is kept.
   bool spent() const { return is_spent(field_, statistics_); }
   double jaw_at_start(std::size_t tool) const { return start_.tools[tool].pose.jaw; }
@@ -95,9 +99,18 @@ class Trials {
     }
     moved_ = true;
     last_ = go_(to_);
+    if (on_the_way_ && last_ && last_.value()) balance_what_presses();
     reached_ = bool(last_);
     grips_.clear();
     for (const Organ& organ : field_.organs) grips_.push_back(organ.grips);
+  }
+  /// On the way bodies are only brought along, and lag behind: jaws that do not press with their pinch then do not do so in
+  /// balance. Where any seem to, the balance says.
+  void balance_what_presses() {
+    const auto seems_to = [&](std::size_t tool) { return !pressed_at_start(tool) && excess(tool) > 0; };
+    if (!std::any_of(pressing_.begin(), pressing_.end(), seems_to)) return;
+    if (Result<bool> settled = settle_in_step(field_, "with jaws that press", statistics_); !settled)
+      last_ = settled;
   }
   /// Turns a tool's jaws where the motion has brought them; they stay as they are where it fails.
   void turn(std::size_t tool, double jaw) {
@@ -118,6 +131,7 @@ class Trials {
   SolveStatistics& statistics_;
   FieldState start_;
   std::size_t told_;
+  const std::vector<std::size_t>& pressing_;
   bool on_the_way_;  ///< rough from the first trial on; else from the second
   std::vector<double> at_start_;
   std::vector<std::vector<GripPoint>> grips_;  ///< of the organs, at the motion's end
@@ -199,7 +213,8 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     const At first{to[i].jaw, i == pressing.front() ? trials.excess(i, to[i].jaw) : trials.excess(i)};
     const bool tight = first.excess > pinch_tolerance;
     if (tight) stopped.push_back(i);
-    if (trials.spent()) continue;
+    // Jaws that have pressed before find their pinch at the end of the step.
+    if (trials.spent() || (trials.pressed_at_start(i) && trials.on_the_way())) continue;
     double& slope = field.tools[i].pinch_slope;
     if (trials.pressed_at_start(i)) {
       const double most = std::min(from + grip_grid, opening);

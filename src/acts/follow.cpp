@@ -7,6 +7,7 @@
 
 #include "acts/jaw_acts.h"
 #include "field/field_tissues.h"
+#include "field/grip.h"
 #include "field/moving_bodies.h"
 #include "motion/predict.h"
 #include "motion/settle_field.h"
@@ -25,9 +26,6 @@ constexpr int step_iterations = 1000;
 /// part is cut in two.
 constexpr int part_iterations = 30;
 constexpr double smallest_share = 1e-3;
-/// Of a round of a solve on the way, where masses count. Rounds go on until one moves no body by more than settle() takes
-/// for nothing, 2.5 um: what is then out of balance the rest of the way takes along.
-constexpr int iterations_on_the_way = 1;
 
 Failure cannot_follow(const Field& field, const std::string& why, double done) {
   std::string tools;
@@ -65,6 +63,7 @@ void move_by(double share, const Prediction& prediction, Field& field) {
 /// What a motion takes and brings beside the tools' way.
 struct Passing {
   double duration;  ///< s
+  Piece piece;
   const std::vector<char>& slipped_before;
   std::vector<WorldEvent>& events;
 };
@@ -85,10 +84,7 @@ class Following {
 
   Result<bool> run() {
     while (done_ < 1.0) {
-      if (is_spent(field_, statistics_)) {
-        statistics_.cut_short = true;
-        return false;
-      }
+      if (is_spent(field_, statistics_)) return end_here();
       if (Result<bool> part = one_part(); !part || !part.value()) return part;
     }
     return true;
@@ -111,8 +107,10 @@ class Following {
       const GroupSnapshot before = snapshot(field_);
       const double next = share >= 1.0 ? 1.0 : done_ + share * (1.0 - done_);
       const Poses poses = next >= 1.0 ? to_ : interpolate(from, to_, share);
-      last = settle_at(poses, share, answer.value());
-      accepted = last.converged() || was_cut_short(field_, last) || is_on_its_way(share, last);
+      const bool passes = is_on_the_way(share);
+      last = passes ? bring_along_to(poses, share, answer.value()) : settle_at(poses, share, answer.value());
+      accepted = last.converged() || was_cut_short(field_, last) ||
+                 (passes && last.status == NewtonStatus::iteration_limit);
       if (accepted) {
         learn(answer.value(), share, before, last);
         if (Result<bool> kept = keep(poses, next); !kept) return kept;
@@ -127,6 +125,22 @@ class Following {
     return true;
   }
 
+  /// The budget is spent: bodies that were only brought along find their balance with the tools as far as they came.
+  Result<bool> end_here() {
+    statistics_.cut_short = true;
+    if (!is_one_step()) return false;
+    field_.rough = false;
+    if (done_ == 0)
+      if (std::optional<Failure> failure = begin()) return *failure;
+    if (Result<bool> settled = settle_in_step(field_, "with the tools as far as they came", statistics_);
+        !settled)
+      return settled;
+    // What slips is asked in the next step.
+    for (std::size_t i = 0; i < field_.tools.size(); ++i)
+      if (!held_organ(field_, ToolIndex(i)).empty()) statistics_.balanced = false;
+    return false;
+  }
+
   /// What the tools press leaves them no room yet: the rest of the time passes with them where they are, in which it gives
   /// way. The motion ends there, and its next step goes on.
   Result<bool> stay(const Prediction& answer) {
@@ -137,13 +151,15 @@ class Following {
       restore(field_, before);
       return cannot_follow(field_, out_of_balance(field_, last), done_);
     }
-    note_cut_short(last, statistics_);
+    statistics_.cut_short = true;
     ++statistics_.substeps;
     return false;
   }
 
   double time_left() const { return passing_ ? (1.0 - done_) * passing_->duration : 0; }  ///< s
   bool is_one_step() const { return passing_ && field_.step_time > 0 && !by_parts_; }
+  /// Whether bodies need only be brought along to this share of what is left of the way.
+  bool is_on_the_way(double share) const { return is_one_step() && (share < 1.0 || !passing_->piece.last); }
 
   /// The part of the bodies' motion that this part of the tools' lies in.
   std::optional<Failure> begin() {
@@ -151,6 +167,7 @@ class Following {
     if (is_one_step()) {
       first_ = snapshot(field_);
       first_poses_ = present_poses(field_);
+      if (!passing_->piece.first) return std::nullopt;
     }
     grow_damage(field_);
     Result<std::vector<MotionPart>> parts = next_parts(field_);
@@ -160,18 +177,13 @@ class Following {
     return std::nullopt;
   }
 
-  /// Whether a solve at a share of what is left need only bring the bodies along.
-  bool is_on_its_way(double share, const NewtonResult& solved) const {
-    return is_one_step() && share < 1.0 && solved.status == NewtonStatus::iteration_limit;
-  }
-
   /// One step that found no balance at its end goes on by parts, from its beginning. Whether that is elsewhere.
   bool goes_back() {
-    if (!is_one_step()) return false;
+    if (!is_one_step() || !passing_->piece.last) return false;
     by_parts_ = true;
     part_ = 0;
     iterations_before_ = statistics_.newton_iterations;
-    if (done_ == 0) return false;
+    if (done_ == 0 && passing_->piece.first) return false;
     restore(field_, first_);
     for (std::size_t i = 0; i < field_.tools.size(); ++i) field_.tools[i].pose = first_poses_[i];
     done_ = 0;
@@ -215,9 +227,12 @@ class Following {
     const std::vector<VecX> places = present_places(field_);
     if (!is_one_step()) begin_parts(parts_, share * time_left(), field_);
     move_by(std::min(share, answer.share), answer, field_);
-    if (!is_one_step() || share >= 1.0)
-      return settle_group(field_, poses, places, part_iterations, statistics_);
-    return settle_group(field_, poses, places, iterations_on_the_way, statistics_, Rubbing::as_it_is);
+    return settle_group(field_, poses, places, part_iterations, statistics_);
+  }
+
+  NewtonResult bring_along_to(const Poses& poses, double share, const Prediction& answer) {
+    move_by(std::min(share, answer.share), answer, field_);
+    return bring_along(field_, poses, statistics_);
   }
 
   /// The tools have come to `poses`, and `next` of the motion is done.
@@ -226,7 +241,7 @@ class Following {
     done_ = next;
     ++statistics_.substeps;
     // What is not in balance tells neither what slips nor where it is touched.
-    if (is_spent(field_, statistics_) || (is_one_step() && done_ < 1.0)) return true;
+    if (is_spent(field_, statistics_) || is_on_the_way(done_)) return true;
     for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
     if (!passing_) return true;
     const int iterations = statistics_.newton_iterations;
@@ -251,9 +266,10 @@ class Following {
 
 }  // namespace
 
-Result<bool> follow(Field& field, const Poses& to, double duration, const std::vector<char>& slipped_before,
-                    std::vector<WorldEvent>& events, SolveStatistics& statistics) {
-  const Passing passing{duration, slipped_before, events};
+Result<bool> follow(Field& field, const Poses& to, double duration, Piece piece,
+                    const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
+                    SolveStatistics& statistics) {
+  const Passing passing{duration, piece, slipped_before, events};
   return Following(field, to, &passing, statistics).run();
 }
 

@@ -32,12 +32,17 @@ Failure without_end(const Field& field, ToolIndex instrument, const std::string&
       "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
 }
 
-/// Weakens the springs of the points that `leaves` picks, step by step, so that what they held moves along
-/// equilibria; then they are let go. Where there are none nothing is solved.
+/// Lets the points that `leaves` picks go. Where masses count that takes effect in the next solve, which inertia bounds; else
+/// their springs are weakened step by step, so that what they held moves along equilibria. Where there are none nothing is
+/// solved.
 Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(const GripPoint&)>& leaves,
                   double weaken, const Budget& budget, SolveStatistics& statistics) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
+  if (field.step_time > 0) {
+    for (Organ& organ : field.organs) std::erase_if(organ.grips, leaves);
+    return true;
+  }
   // What is hard does not unfold: it is let go at once.
   bool hard = false;
   for (Organ& organ : field.organs)
@@ -45,9 +50,8 @@ Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(c
   const bool any = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
     return std::any_of(organ.grips.begin(), organ.grips.end(), leaves);
   });
-  if (!any) return hard && field.step_time == 0 ? settle_in_step(field, when, statistics) : true;
-  double stiffness = grip_stiffness;
-  for (; stiffness > last_stiffness && !is_spent(field, statistics); stiffness *= weaken) {
+  if (!any) return hard ? settle_in_step(field, when, statistics) : true;
+  for (double stiffness = grip_stiffness; stiffness > last_stiffness; stiffness *= weaken) {
     if (budget.spent()) return without_end(field, instrument, "what leaves");
     for (Organ& organ : field.organs)
       for (GripPoint& grip : organ.grips)
@@ -225,6 +229,7 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   while (!budget.spent()) {
     if (is_spent(field, statistics)) {
       statistics.cut_short = true;
+      statistics.balanced = false;  // more is asked of what is held than holds
       return out;
     }
     if (demand.turns && !std::exchange(turning, true)) demand = largest_demand(field, instrument, true);
@@ -251,6 +256,7 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   restore(field, start);
   if (field.step_time == 0) return without_end(field, instrument, "the fold that slips through");
   statistics.cut_short = true;
+  statistics.balanced = false;
   return out;
 }
 

@@ -55,6 +55,17 @@ bool touches_hard(const Field& field) {
   return any;
 }
 
+bool may_touch_hard(const Field& field, double travel) {
+  return std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+    if (is_bitten(organ)) return false;
+    const ContactLoads now = contact_loads(field, organ, present_poses(field));
+    const std::vector<ContactPair> near =
+        gather_pairs(*organ.body, organ.state.x, now, travel - contact_margin);
+    return std::any_of(near.begin(), near.end(),
+                       [&](const ContactPair& pair) { return !field.shape(pair.shape).is_ground(); });
+  });
+}
+
 namespace {
 
 /// Whether anything hard that a tool touches is strained as nothing rigid is.

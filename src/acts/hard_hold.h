@@ -17,6 +17,8 @@ bool rests_on_hard(const Field& field, ToolIndex instrument);
 
 /// Whether any tool touches something hard.
 bool touches_hard(const Field& field);
+/// Whether any may where tools travel that far, m.
+bool may_touch_hard(const Field& field, double travel);
 /// Whether something hard presses a tool as no hand could, in a step that found no balance, or is strained by more than a
 /// hand's strength: it is wedged.
 bool wedges_hard(const Field& field, bool balanced);

@@ -65,10 +65,10 @@ void visit_members(auto&& visit, MembersOf<Wound> auto& wound) {
 
 /// Newton iterations of a step where masses count.
 struct StepBudget {
-  int begin = 40;  ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
+  int begin = 14;  ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
   int still =
       500;  ///< the same where no tool moves: what falls is followed in many parts, and no hand waits for it
-  int balance = 20;  ///< that the solve under way may take beyond
+  int balance = 20;  ///< that the balance where it ends may take beyond
 };
 
 /// Of solves on the way through a step where masses count: what takes hold, what presses and what slips is decided by

@@ -23,11 +23,16 @@ void TissueMembers::add_to(std::vector<Member>& members) {
 
 namespace {
 
+/// What strands feel of the tools. Blades that close divide what is between them, and push none of it before them.
 StrandTouch touch_of(const Field& field, const std::vector<InstrumentPose>& poses) {
   std::vector<Shape> shapes;
-  for (std::size_t i = 0; i < field.tools.size(); ++i)
-    for (const Shape& shape : shapes_in_field(field.tools[i], poses[i]))
-      shapes.push_back(contact_shape(shape));
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    const Tool& tool = field.tools[i];
+    const bool cuts = tool.closes && instrument_row(tool.definition.type).jaws == JawUse::cut;
+    const std::vector<Shape> parts = shapes_in_field(tool, poses[i]);
+    for (std::size_t part = 0; part < parts.size(); ++part)
+      shapes.push_back(cuts && part > 0 ? nowhere : contact_shape(parts[part]));
+  }
   return {std::move(shapes), field.barrier};
 }
 

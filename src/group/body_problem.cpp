@@ -232,22 +232,43 @@ VecX BodyProblem::compliances() const {
   return out;
 }
 
-double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
+double BodyProblem::unfolding_share(const VecX& step) const {
+  const auto move = [&](int node) { return step.segment<3>(3 * Eigen::Index{node}); };
+  const std::vector<double>& edges = body_.edge_lengths();
   double share = 1.0;
-  // A surface point moves with the coarse nodes and with the details of each level: each has its part.
-  const double margin = contact_margin / (1 + body_.levels_used());
-  for (int i = 0; i < body_.nodes(); ++i) {
-    const Vec3 move = step.segment<3>(3 * i);
-    const double length = move.norm();
-    if (length * share > body_.edge_lengths()[i]) share = body_.edge_lengths()[i] / length;
-    // Pairs were gathered for nodes that stay within the margin of where the solve began.
-    const Vec3 gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
-    if (!loads_.shapes.empty() && (gone + share * move).norm() > margin) {
-      const double left = margin - gone.norm();
-      if (left < 0.5 * margin) return 0;  // better gather anew than go on in ever shorter steps
-      share = std::min(share, left / length);
+  const auto limit = [&](double way, double edge) {
+    if (way * share > edge) share = edge / way;
+  };
+  std::vector<char> beside(static_cast<std::size_t>(body_.nodes()), 0);
+  for (const std::vector<int>& face : body_.face_nodes())
+    for (int node : face) {
+      if (node >= body_.coarse_nodes()) continue;
+      beside[static_cast<std::size_t>(node)] = 1;
+      limit((move(node) - move(face.front())).norm(), std::min(edges[node], edges[face.front()]));
     }
+  for (int node = 0; node < body_.nodes(); ++node)
+    if (beside[static_cast<std::size_t>(node)] == 0) limit(move(node).norm(), edges[node]);
+  return share;
+}
+
+double BodyProblem::margin_share(const VecX& x, const VecX& step, double share) const {
+  if (loads_.shapes.empty()) return share;
+  // A surface point moves with the coarse nodes and with the details of each level: each has its part.
+  const double margin = (search_ ? search_->margin : contact_margin) / (1 + body_.levels_used());
+  for (int i = 0; i < body_.nodes(); ++i) {
+    const Vec3 move = step.segment<3>(3 * i), gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
+    if ((gone + share * move).norm() <= margin) continue;
+    if (search_) search_->held_up = true;
+    const double left = margin - gone.norm();
+    if (left < 0.5 * margin) return 0;  // better gather anew than go on in ever shorter steps
+    share = std::min(share, left / move.norm());
   }
+  return share;
+}
+
+double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
+  double share = margin_share(x, step, unfolding_share(step));
+  if (share == 0) return 0;
   const double depth = body_.core_depth(), gone = moved(x), longest = body_.largest_motion(step);
   ContactPlaces places(body_.skin(), x, body_.core_radii()), moves(body_.skin(), step);
   for (const ContactPair& pair : pairs()) {

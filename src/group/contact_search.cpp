@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace calot {
 namespace {
@@ -32,8 +33,8 @@ void pairs_within(int index, const Shape& shape, const Body& body,
   }
 }
 
-double reach_of(const ContactLoads& loads, double extra) {
-  return loads.barrier.range + contact_margin + extra;
+double reach_of(const ContactLoads& loads, double margin, double extra) {
+  return loads.barrier.range + margin + extra;
 }
 
 }  // namespace
@@ -44,7 +45,8 @@ std::vector<ContactPair> gather_pairs(const Body& body, const VecX& x, const Con
   ContactPlaces places(body.skin(), x, body.skin_radii());
   std::vector<ContactPair> pairs;
   for (int shape = 0; shape < static_cast<int>(loads.shapes.size()); ++shape)
-    pairs_within(shape, loads.shapes[shape], body, faces, reach_of(loads, extra), places, pairs);
+    pairs_within(shape, loads.shapes[shape], body, faces, reach_of(loads, contact_margin, extra), places,
+                 pairs);
   return pairs;
 }
 
@@ -95,11 +97,16 @@ std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, c
   if (memory_.size() < shapes) memory_.resize(shapes);
   std::vector<std::vector<ContactPair>> found(shapes);
   for_each_chunk(own.workers, static_cast<int>(shapes), [&](int shape) {
-    pairs_with(shape, body, x, loads, reach_of(loads, extra), found[static_cast<std::size_t>(shape)]);
+    pairs_with(shape, body, x, loads, reach_of(loads, margin, extra), found[static_cast<std::size_t>(shape)]);
   });
   std::vector<ContactPair> out;
   for (const std::vector<ContactPair>& some : found) out.insert(out.end(), some.begin(), some.end());
   return out;
+}
+
+bool ContactSearch::widen() {
+  margin = held_up ? std::min(4 * margin, widest_margin) : margin;
+  return std::exchange(held_up, false);
 }
 
 const std::vector<Touch>* TouchMemory::known(const Body& body, const VecX& x,
@@ -147,7 +154,7 @@ const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const
 const std::vector<Touch>& ContactSearch::touching(const Body& body, const VecX& x,
                                                   const ContactLoads& loads) {
   if (const std::vector<Touch>* known = touches.known(body, x, loads)) return *known;
-  return touches.at(body, x, loads, pairs(body, x, loads, -contact_margin), 0.0);
+  return touches.at(body, x, loads, pairs(body, x, loads, -margin), 0.0);
 }
 
 }  // namespace calot

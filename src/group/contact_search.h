@@ -61,8 +61,9 @@ struct ContactPair {
   double distance = 0;  ///< m, when it was gathered: none of its points was nearer
 };
 
-/// How far outside the contact range pairs are gathered, m; no solve may move a node further than this.
+/// How far outside the contact range pairs are gathered at first, m; no solve may move a node further than it was done.
 inline constexpr double contact_margin = 2.5e-3;
+inline constexpr double widest_margin = 20e-3;  ///< m, of bodies that move far
 
 /// Calls use(contact point, index of the shape, its place, distance and gradient there) for the points of the pairs that are in range of
 /// the shapes when the nodes are at x, m. No pair has come nearer than by `approach` since it was gathered.
@@ -130,6 +131,7 @@ std::vector<ContactPair> gather_pairs(const Body& body, const VecX& x, const Con
 class ContactSearch {
  public:
   static constexpr double exact = 0.5e-3;  ///< m
+  /// Those within range + margin + extra.
   std::vector<ContactPair> pairs(const Body& body, const VecX& x, const ContactLoads& loads, double extra);
   /// Only those with one of the shapes, within `reach` of it, m, ordered by triangle; added to `out`.
   void pairs_with(int shape, const Body& body, const VecX& x, const ContactLoads& loads, double reach,
@@ -138,8 +140,13 @@ class ContactSearch {
   /// What touches at x, looked for only where that is not known yet. Valid until the next call or solve.
   const std::vector<Touch>& touching(const Body& body, const VecX& x, const ContactLoads& loads);
 
+  /// A solve that was held up by the margin is followed by one with a wider one. Whether that was so.
+  bool widen();
+
   SelfContact own;  ///< the skin's with itself
   TouchMemory touches;
+  double margin = contact_margin;  ///< m
+  bool held_up = false;            ///< a step of a solve was cut down for the margin
 
  private:
   /// What was near one shape when it was looked at last.

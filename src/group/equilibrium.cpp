@@ -27,6 +27,13 @@ NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer
                     const SettleOptions& options) {
   constexpr int max_rounds = 30;
   NewtonResult total;
+  const auto forget_margins = [&] {
+    for (const Member& member : members) {
+      member.search.margin = contact_margin;
+      member.search.held_up = false;
+    }
+  };
+  forget_margins();
   for (int round = 0; round < max_rounds && total.iterations < settle_iterations; ++round) {
     std::vector<VecX> before;
     for (const Member& member : members) before.push_back(member.state.x);
@@ -38,7 +45,8 @@ NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer
     bool moved = false;
     for (std::size_t k = 0; k < members.size(); ++k) {
       const Member& member = members[k];
-      moved |= (member.state.x - before[k]).lpNorm<Eigen::Infinity>() > 1e-3 * contact_margin;
+      moved |= (member.state.x - before[k]).lpNorm<Eigen::Infinity>() > options.gets_nowhere;
+      moved |= member.search.widen();
       // Walls that met without couplings in the matrix have them in the next round.
       moved |= member.search.own.lacking();
     }
@@ -47,6 +55,7 @@ NewtonResult settle(std::span<const Member> members, std::span<const JoinPointer
         result.status == NewtonStatus::stalled || result.status == NewtonStatus::iteration_limit;
     if (!cut_short || !moved) break;
   }
+  forget_margins();
   return total;
 }
 

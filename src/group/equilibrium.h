@@ -21,6 +21,8 @@ NewtonResult solve(const GroupProblem& problem, const NewtonSettings& settings, 
 struct SettleOptions {
   bool fixed_pressures = false;  ///< liquids keep their pressures, not their volumes
   ExtensionScheme scheme = ExtensionScheme::condensed;
+  /// m: a solve that is broken off and moves no coordinate by more than this gets nowhere.
+  double gets_nowhere = 1e-3 * contact_margin;
 };
 
 /// Equilibrium under loads that stand still, however far from the members' states it is: where a solve ends at the

@@ -114,30 +114,55 @@ NewtonSettings solver_settings(const Field& field, int iterations) {
   return out;
 }
 
-NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
-                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics,
-                          Rubbing rubs) {
+namespace {
+
+/// Organs and tissues as one group, with the tools at `poses`.
+struct Solved {
+  Solved(Field& field, const std::vector<InstrumentPose>& poses)
+      : loads(loads_at(field, poses)), tissues(field), members(members_of(field, loads)) {
+    tissues.add_to(members);
+  }
+  Solved(const Solved&) = delete;
+  Solved& operator=(const Solved&) = delete;
+
+  static std::vector<ContactLoads> loads_at(Field& field, const std::vector<InstrumentPose>& poses) {
+    const double travel = largest_travel(field, poses);
+    for (Organ& organ : field.organs) fade_details(travel, organ.state);
+    return solve_loads(field, poses);
+  }
+
+  std::vector<ContactLoads> loads;  ///< one an organ
+  TissueMembers tissues;
+  std::vector<Member> members;
+};
+
+void note_balance(const NewtonResult& last, SolveStatistics& statistics) {
+  statistics.balanced = last.converged();
+  statistics.residual = last.converged() ? 0 : last.residual;
+}
+
+/// What rubs: renewed until the normal forces ask for no other limit, or held as it was found last.
+enum class Rubbing { renewed, as_it_is };
+
+NewtonResult settle_rubbing(Field& field, const std::vector<InstrumentPose>& poses,
+                            const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics,
+                            Rubbing rubs) {
   NewtonSettings settings = solver_settings(field, left_to_balance(field, statistics));
   settings.max_iterations = max_iterations;
-  const double travel = largest_travel(field, poses);
-  for (Organ& organ : field.organs) fade_details(travel, organ.state);
-  std::vector<ContactLoads> loads = solve_loads(field, poses);
-  std::vector<Member> members = members_of(field, loads);
-  TissueMembers tissues(field);
-  tissues.add_to(members);
+  Solved solved(field, poses);
   Group& group = field.group;
   std::vector<SkinHold> rubbing = group.rubbing;
   NewtonResult total;
   for (int round = 0; round <= friction_rounds; ++round) {
     const std::vector<JoinPointer> joins = joins_with(all_joins(field, poses), rubbing);
-    total.add(settle(members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
+    total.add(settle(solved.members, joins, group.patterns, settings, group.work, {.scheme = field.scheme}));
     ++statistics.solves;
     if (round > 0) ++statistics.friction_rounds;
     if (!total.converged() || rubs == Rubbing::as_it_is || !has_friction(field)) break;
     std::vector<FrictionLoad> used;
-    for (const ContactLoads& of_organ : loads) used.push_back(of_organ.friction);
+    for (const ContactLoads& of_organ : solved.loads) used.push_back(of_organ.friction);
     std::vector<SkinHold> used_between = rubbing;
-    if (friction_agrees(field, poses, before, round, loads, rubbing)) {
+    if (friction_agrees(field, poses, before, round, solved.loads, rubbing)) {
       // Where nothing moved, not even rounding may.
       const bool stayed = poses == present_poses(field);
       bool all_stayed = true;
@@ -152,8 +177,32 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
     if (round == friction_rounds) total.status = NewtonStatus::iteration_limit;
   }
   count(field, total, statistics);
-  if (was_cut_short(field, total)) note_cut_short(total, statistics);
+  note_balance(total, statistics);
+  if (was_cut_short(field, total)) statistics.cut_short = true;
   return total;
+}
+
+}  // namespace
+
+NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics) {
+  return settle_rubbing(field, poses, before, max_iterations, statistics, Rubbing::renewed);
+}
+
+NewtonResult bring_along(Field& field, const std::vector<InstrumentPose>& poses,
+                         SolveStatistics& statistics) {
+  constexpr double taken_along = 50e-6;  // m
+  NewtonSettings settings = solver_settings(field, left_to_begin(field, statistics));
+  settings.max_iterations = 1;
+  Solved solved(field, poses);
+  Group& group = field.group;
+  const NewtonResult result =
+      settle(solved.members, joins_with(all_joins(field, poses), group.rubbing), group.patterns, settings,
+             group.work, {.scheme = field.scheme, .gets_nowhere = taken_along});
+  ++statistics.solves;
+  count(field, result, statistics);
+  note_balance(result, statistics);
+  return result;
 }
 
 bool was_cut_short(const Field& field, const NewtonResult& result) {
@@ -166,16 +215,11 @@ bool may_end_so(const Field& field, const NewtonResult& result) {
   return was_cut_short(field, result) || (field.step_time > 0 && no_balance);
 }
 
-void note_cut_short(const NewtonResult& last, SolveStatistics& statistics) {
-  statistics.cut_short = true;
-  statistics.residual = last.residual;
-}
-
 namespace {
 
 NewtonResult settle_where_it_is(Field& field, SolveStatistics& statistics, Rubbing rubs = Rubbing::renewed) {
-  return settle_group(field, present_poses(field), present_places(field), NewtonSettings{}.max_iterations,
-                      statistics, rubs);
+  return settle_rubbing(field, present_poses(field), present_places(field), NewtonSettings{}.max_iterations,
+                        statistics, rubs);
 }
 
 }  // namespace
@@ -207,7 +251,7 @@ Result<bool> settle_in_step(Field& field, const std::string& when, SolveStatisti
   const NewtonResult result = settle_where_it_is(field, statistics);
   if (result.converged()) return true;
   if (!may_end_so(field, result)) return solve_failure(result, member_name(field, result.part), when);
-  note_cut_short(result, statistics);
+  statistics.cut_short = true;
   return true;
 }
 
@@ -217,7 +261,7 @@ void end_in_balance(Field& field, SolveStatistics& statistics) {
   const NewtonResult result = settle_where_it_is(field, statistics, Rubbing::as_it_is);
   if (result.converged() || was_cut_short(field, result)) return;
   restore(field, before);
-  note_cut_short(result, statistics);
+  statistics.cut_short = true;
 }
 
 Result<bool> sink_field(Field& field, SolveStatistics& statistics) {

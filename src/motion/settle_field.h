@@ -33,15 +33,15 @@ std::vector<Member> members_of(Field& field, const std::vector<ContactLoads>& lo
 /// The way of the tool that travels most from where it stands, m.
 double largest_travel(const Field& field, const std::vector<InstrumentPose>& to);
 
-/// What rubs: renewed until the normal forces ask for no other limit, or held as it was found last.
-enum class Rubbing { renewed, as_it_is };
-
 /// Brings the organs to rest, or to the end of the part of a motion that they are in, with the tools at `poses`; on failure they are left at the last iterate. `before`, one an
 /// organ, is where they were at their last equilibrium, tools as field.tools stand: friction resists what moved since,
 /// and details fade as far as the tools travel from there.
 NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses,
-                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics,
-                          Rubbing rubs = Rubbing::renewed);
+                          const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics);
+/// Brings the bodies along to `poses` on the way through a step where masses count: by Newton steps until one moves none by
+/// more than the rest of the way takes along, or no more may be begun (step_budget.h). What rubs is held as it was found
+/// last. The states hold the last iterate, which may stay unless the result is none of numbers.
+NewtonResult bring_along(Field& field, const std::vector<InstrumentPose>& poses, SolveStatistics& statistics);
 /// Balances to the field's tolerance what was solved roughly until now, nothing rubbing otherwise. Where that fails all
 /// stays as it is, and the step is one that was cut short.
 void end_in_balance(Field& field, SolveStatistics& statistics);
@@ -55,8 +55,6 @@ Result<bool> sink_field(Field& field, SolveStatistics& statistics);
 bool was_cut_short(const Field& field, const NewtonResult& result);
 /// The same, or, where masses count, that it found no balance but left its members at a state that may be kept.
 bool may_end_so(const Field& field, const NewtonResult& result);
-/// Notes that a step ends where a solve that found no balance has left it.
-void note_cut_short(const NewtonResult& last, SolveStatistics& statistics);
 
 /// Brings every organ to rest with the tools as they stand, or as far as the step's budget goes. `when` is for the failure's text (simulation);
 /// organs are then left as the solves left them.

@@ -1,5 +1,6 @@
 #include "motion/step_budget.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace calot {
@@ -10,13 +11,25 @@ int begins(const Field& field) { return field.tools_move ? field.budget.begin : 
 
 }  // namespace
 
-bool is_spent(const Field& field, const SolveStatistics& statistics) {
-  return field.step_time > 0 && statistics.newton_iterations >= begins(field);
+StepBudget budget_of(int nodes) {
+  constexpr int usual_nodes = 340, most = 40;
+  StepBudget out;
+  out.begin = std::clamp(out.begin * usual_nodes / std::max(nodes, 1), out.begin, most);
+  return out;
+}
+
+int left_to_begin(const Field& field, const SolveStatistics& statistics) {
+  if (field.step_time == 0) return std::numeric_limits<int>::max();
+  return begins(field) - statistics.newton_iterations;
 }
 
 int left_to_balance(const Field& field, const SolveStatistics& statistics) {
   if (field.step_time == 0) return std::numeric_limits<int>::max();
-  return begins(field) + field.budget.balance - statistics.newton_iterations;
+  return left_to_begin(field, statistics) + field.budget.balance;
+}
+
+bool is_spent(const Field& field, const SolveStatistics& statistics) {
+  return left_to_begin(field, statistics) <= 0;
 }
 
 }  // namespace calot

@@ -12,9 +12,15 @@
 
 namespace calot {
 
+/// What a step of bodies with so many nodes may take: of the standard field's 340 as StepBudget says, of fewer, whose
+/// iterations cost less, more in proportion, at most 40.
+StepBudget budget_of(int nodes);
+
 /// Whether the step begins nothing more. Never without masses.
 bool is_spent(const Field& field, const SolveStatistics& statistics);
-/// Newton iterations that a solve may take; without masses as good as endless.
+/// Newton iterations until then.
+int left_to_begin(const Field& field, const SolveStatistics& statistics);
+/// Newton iterations that a solve for a balance may take; without masses as good as endless.
 int left_to_balance(const Field& field, const SolveStatistics& statistics);
 
 }  // namespace calot

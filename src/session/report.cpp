@@ -89,6 +89,7 @@ OrderedJson timing_json(const SessionResult& session, double step, double start_
                      {"longest", 1e3 * times.longest}};
   json["steps_over_time"] = times.over_time;
   json["steps_cut_short"] = timing.steps_cut_short;
+  json["steps_unbalanced"] = timing.steps_unbalanced;
   json["start_to_first_frame_s"] =
       start_to_first_frame >= 0 ? OrderedJson(start_to_first_frame) : OrderedJson();
   return json;

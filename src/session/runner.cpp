@@ -161,6 +161,7 @@ class Session {
     SessionTiming& timing = result_.timing;
     timing.substeps += report.statistics.substeps;
     timing.steps_cut_short += report.statistics.cut_short ? 1 : 0;
+    timing.steps_unbalanced += report.balanced ? 0 : 1;
     timing.newton_iterations += report.statistics.newton_iterations;
     refused_ += report.statistics.extensions_refused;
     timing.assembly_s += report.statistics.assembly_s;

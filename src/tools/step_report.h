@@ -132,11 +132,13 @@ struct SolveStatistics {
   std::map<std::string, int> jaw_trials;
   /// By organ or tissue: Newton steps in which its forces were the furthest from balance.
   std::map<std::string, int> furthest;
-  /// Its budget was spent before its motion was followed to the end: tools came as far as they did, bodies stand where the
-  /// last solve left them, and the next step goes on from there (motion/step_budget.h).
+  /// Its budget was spent before its motion was followed to the end: tools came as far as they did, and the next step goes on
+  /// from there (motion/step_budget.h).
   bool cut_short = false;
-  double residual =
-      0;  ///< of the last solve of a step that was cut short: how far from balance, as of NewtonResult
+  /// Whether its last solve found a balance in which no more is asked of what is held than holds; else bodies stand where
+  /// that left them.
+  bool balanced = true;
+  double residual = 0;   ///< of that solve where it found none: how far from balance, as of NewtonResult
   /// Changes of the active details, and those given up because the organ found no rest with them.
   int extensions_changed = 0, extensions_refused = 0;
   /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,
@@ -152,7 +154,7 @@ struct StepReport {
   std::vector<TissueState> tissues;
   std::vector<LostState> lost;  ///< of those that have lost some, in the order in which they began to
   std::vector<WorldEvent> events;
-  /// False: the step was cut short, and nothing is judged by its forces, which are those of no balance.
+  /// False: the step ended in no balance, and nothing is judged by its forces.
   bool balanced = true;
   SolveStatistics statistics;
   std::uint64_t state_hash = 0;

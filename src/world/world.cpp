@@ -30,6 +30,7 @@
 #include "liquid/perforate.h"
 #include "liquid/spill.h"
 #include "motion/settle_field.h"
+#include "motion/step_budget.h"
 #include "motion/structural_extension.h"
 #include "motion/tool_loads.h"
 #include "organs/body_kinds.h"
@@ -147,7 +148,7 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
     field.tools[i].action = actions.empty() ? InstrumentAction::none : actions[i];
   feel_ports(field.tools, before.instruments, duration);
   report_states(field, report);
-  report.balanced = !report.statistics.cut_short;
+  report.balanced = report.statistics.balanced;
   const std::vector<WorldEvent> begun = observe(field, before, report);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
@@ -349,6 +350,9 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   self.bring_in_laparoscope(world);
   if (Result<bool> clear = check_clear(self.field); !clear) return clear.failure();
   if (Result<bool> apart = check_apart(self.field); !apart) return apart.failure();
+  int nodes = 0;
+  for (const Organ& organ : self.field.organs) nodes += organ.body->nodes();
+  self.field.budget = budget_of(nodes);
   keep_members(self.field);
   self.scene_digest = calot::scene_digest(self.scene, self.field);
   self.observe_step({}, 1 / scene.solver.rate, {});

@@ -22,7 +22,7 @@ class Watch {
         swelling = std::max(swelling, std::abs(report.organs[k].volume / volumes_[k] - 1));
     for (const InstrumentState& tool : report.instruments) strongest = std::max(strongest, tool.force.norm());
     ++steps;
-    cut_short += report.balanced ? 0 : 1;
+    cut_short += report.statistics.cut_short ? 1 : 0;
     in_a_row_ = report.balanced ? 0 : in_a_row_ + 1;
     longest_unbalanced = std::max(longest_unbalanced, in_a_row_);
     furthest_off = std::max(furthest_off, report.statistics.residual);
@@ -31,7 +31,7 @@ class Watch {
   double swelling = 0;   ///< of an organ's volume, a share
   double strongest = 0;  ///< N
   int steps = 0, cut_short = 0;
-  int longest_unbalanced = 0;  ///< steps in a row that were cut short
+  int longest_unbalanced = 0;  ///< steps in a row that ended in no balance
   double furthest_off = 0;     ///< from balance, of these: as of NewtonResult
 
  private:

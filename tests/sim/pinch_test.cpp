@@ -123,10 +123,11 @@ TEST(Pinch, AWedgeIsLiftedByWhatFrictionHoldsOfItAndNoMore) {
       ASSERT_EQ(wedge.go(0, 0, 10), "");
       EXPECT_NEAR(wedge.field.tools[0].pose.jaw / 2, angle, 0.2 * deg);
       EXPECT_NEAR(pressed_apart(wedge.field, ToolIndex(0)) / (share * least), 1, pinch_tolerance);
-      ASSERT_EQ(wedge.go(0, 1e-3, 20), "");
+      // No further: on what has slid by a millimetre both pads lie flat no more, and hold it by another law.
+      ASSERT_EQ(wedge.go(0, 0.8e-3, 16), "");
       // What sticks gives by up to a third of a millimetre where so little of the teeth's friction is left.
       if (share > 1) {
-        EXPECT_GT(wedge.height(), 0.6e-3);
+        EXPECT_GT(wedge.height(), 0.5e-3);
       } else {
         EXPECT_LT(wedge.height(), 0.3e-3);
       }
