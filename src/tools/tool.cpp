@@ -16,7 +16,6 @@ std::array<Pose, 2> to_jaws(const Tool& tool) {
 }
 
 InstrumentPose interpolate(const InstrumentPose& a, const InstrumentPose& b, double share) {
-  if (share == 1) return b;  // to the bit
   if (share >= 1.0) return b;
   const auto mix = [share](double from, double to) { return from + share * (to - from); };
   return {mix(a.pitch, b.pitch), mix(a.yaw, b.yaw), mix(a.insertion, b.insertion), mix(a.roll, b.roll),

@@ -228,6 +228,21 @@ TEST(Equilibrium, ATrianglesNearnessBoundsTheDistanceOfItsPoints) {
   EXPECT_LT(widest, 0.25e-3);
 }
 
+TEST(Equilibrium, ABodyThatIsFarFromItsRestIsNotHeldUpByTheMarginOfItsPairs) {
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
+  Organ& organ = field.organs[0];
+  const VecX rest = organ.state.x;
+  constexpr double far = 40e-3;  // m, of which the first solve may go contact_margin
+  for (Eigen::Index z = 2; z < rest.size(); z += 3) organ.state.x[z] += far;
+  ContactLoads around;
+  around.shapes = {Plane{Vec3(0, 0, -1), Vec3::UnitZ()}};
+  const NewtonResult back = settle({*organ.body, around, organ.search, organ.state}, {}, field.group.work);
+  ASSERT_TRUE(back.converged());
+  EXPECT_LT(back.iterations, far / contact_margin / 1.5);
+  EXPECT_LT((organ.state.x - rest).lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_EQ(organ.search.margin, contact_margin) << "the next solve depends on no other";
+}
+
 TEST(Equilibrium, TheSearchThatRemembersFindsTheSamePairsAsOneThatDoesNot) {
   CALOT_SLOW_WHEN_SANITIZED("hundreds of searches");
   Touched touched(6);

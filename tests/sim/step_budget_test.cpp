@@ -82,7 +82,11 @@ TEST(StepBudget, AStepThatWasSolvedRoughlyOnTheWayEndsInBalance) {
   int several = 0;
   while (to.jaw > 0) {
     to.jaw = std::max(0.0, to.jaw - 0.1);
+    const VecX before = closing.field.organs[0].state.x;
     closing.step(to);
+    const MotionPart& part = closing.field.organs[0].state.motion;
+    EXPECT_EQ(part.duration, closing.field.step_time);
+    EXPECT_EQ(part.begin.x, before) << "all its stops are in one step from where the last one ended";
     several += closing.last.solves > 3 ? 1 : 0;
     EXPECT_FALSE(closing.field.rough);
     SolveStatistics again;
@@ -114,6 +118,39 @@ TEST(StepBudget, AStepWhoseToolsComeInPartsIsOneStepOfTheBodiesAndInBalanceAtIts
     EXPECT_EQ(pushing.field.tools[0].pose, to);
   }
   EXPECT_GT(in_parts, 1) << "without parts this says little";
+}
+
+TEST(StepBudget, GraspingLiftingAndLettingGoKeepIt) {
+  CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
+  test::FundusPath path(moving_scene());
+  ASSERT_TRUE(path.driver.go(path.fundus - 3e-3 * path.out, test::open_jaw, 8)) << path.driver.why();
+  Budgeted hands(path.world, StepBudget{});
+  InstrumentPose to = path.world.report().instruments[0].pose;
+  const double open = to.jaw;
+  const auto in_steps = [&](int count, double jaw, double way) {
+    const InstrumentPose from = to;
+    to.jaw = jaw;
+    to.insertion -= way;
+    for (int k = 1; k <= count; ++k) hands.step(interpolate(from, to, static_cast<double>(k) / count));
+  };
+  in_steps(10, 0, 0);
+  in_steps(10, 0, 10e-3);
+  EXPECT_GT(grip_count(hands.field.organs[0], ToolIndex{0}), 5);
+  in_steps(3, open, 0);
+  EXPECT_EQ(grip_count(hands.field.organs[0], ToolIndex{0}), 0);
+  in_steps(30, open, 0);
+  EXPECT_EQ(hands.field.tools[0].pose, to) << "it came there in the end";
+  EXPECT_TRUE(hands.last.balanced);
+}
+
+TEST(StepBudget, IsTheSameWorkForFewerNodesWithinReason) {
+  const int usual = StepBudget{}.begin;
+  EXPECT_EQ(budget_of(340).begin, usual);
+  EXPECT_EQ(budget_of(10'000).begin, usual) << "no step of a large field is worth nothing";
+  EXPECT_EQ(budget_of(170).begin, 2 * usual);
+  EXPECT_EQ(budget_of(4).begin, budget_of(1).begin);
+  EXPECT_GT(budget_of(4).begin, 2 * usual);
+  EXPECT_EQ(budget_of(4).balance, StepBudget{}.balance);
 }
 
 TEST(StepBudget, WithoutMassesThereIsNone) {
