@@ -13,7 +13,6 @@
 #include "field/grip.h"
 #include "field/take_hold.h"
 #include "motion/settle_field.h"
-#include "motion/step_budget.h"
 
 namespace calot {
 namespace {
@@ -82,7 +81,8 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
         if (poses[i].jaw < field.tools[i].pose.jaw) make_room(field, ToolIndex(i), poses[i].jaw);
       return follow(field, poses, duration, piece, slipped_before, events, statistics);
     };
-    if (Result<bool> moved = close_within_pinch(field, here, targets, go, slipped_before, events, statistics);
+    if (Result<bool> moved =
+            close_within_pinch(field, here, targets, go, !piece.last, slipped_before, events, statistics);
         !moved)
       return moved.failure();
     else if (!moved.value())
@@ -96,7 +96,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
       if (!closed) return closed.failure();
     }
   }
-  if (field.rough && !statistics.cut_short) end_in_balance(field, statistics);
+  if (field.rough) end_in_balance(field, statistics);
   // What is not in balance tells not what slips.
   if (statistics.balanced) judge_clasps(field, slipped_before, events);
   feel_again(field);
@@ -110,7 +110,12 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   if (field.step_time == 0 || !touches_hard(field)) return advance(field, targets, statistics);
   const FieldState before = field_state(field);
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
-  if (!events || !wedges_hard(field, statistics.balanced)) return events;
+  if (!events) return events;
+  if (!wedges_hard(field, statistics.balanced)) {
+    // Hands give way to what is hard in the next step only: where tools came short of their way their forces say nothing.
+    statistics.balanced &= !statistics.cut_short;
+    return events;
+  }
   restore(field, before);
   // With a budget of its own, as what was tried has spent the step's: that of a step whose tools move, not what falling
   // bodies get.

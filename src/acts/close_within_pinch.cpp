@@ -6,6 +6,7 @@
 
 #include "acts/clips.h"
 #include "acts/follow.h"
+#include "acts/grip_slip.h"
 #include "acts/hard_hold.h"
 #include "acts/jaw_acts.h"
 #include "acts/pads.h"
@@ -30,7 +31,7 @@ constexpr int most_trials = 24;
 class Trials {
  public:
   Trials(Field& field, Poses to, const std::function<Result<bool>(const Poses&)>& go,
-         std::vector<WorldEvent>& events, const std::vector<std::size_t>& pressing,
+         std::vector<WorldEvent>& events, const std::vector<std::size_t>& pressing, bool brought_along,
          SolveStatistics& statistics)
       : field_(field),
         to_(std::move(to)),
@@ -40,6 +41,7 @@ class Trials {
         start_(field_state(field)),
         told_(events.size()),
         pressing_(pressing),
+        brought_along_(brought_along),
         on_the_way_(field.rough),
         at_start_(field.tools.size(), 0.0) {
     for (std::size_t i : pressing)
@@ -73,8 +75,6 @@ class Trials {
   }
   /// Before it, of jaws that tissue had not stopped.
   double excess_at_start(std::size_t tool) const { return at_start_[tool]; }
-  /// Whether the step goes on after this motion.
-  bool on_the_way() const { return on_the_way_; }
   /// No further angle is worth what the step may still take: what was tried last is kept.
   bool spent() const { return is_spent(field_, statistics_); }
   double jaw_at_start(std::size_t tool) const { return start_.tools[tool].pose.jaw; }
@@ -99,12 +99,12 @@ class Trials {
     }
     moved_ = true;
     last_ = go_(to_);
-    if (on_the_way_ && last_ && last_.value()) balance_what_presses();
+    if (brought_along_ && last_ && last_.value()) balance_what_presses();
     reached_ = bool(last_);
     grips_.clear();
     for (const Organ& organ : field_.organs) grips_.push_back(organ.grips);
   }
-  /// On the way bodies are only brought along, and lag behind: jaws that do not press with their pinch then do not do so in
+  /// Bodies that are only brought along lag behind: jaws that do not press with their pinch then do not do so in
   /// balance. Where any seem to, the balance says.
   void balance_what_presses() {
     const auto seems_to = [&](std::size_t tool) { return !pressed_at_start(tool) && excess(tool) > 0; };
@@ -120,7 +120,10 @@ class Trials {
     for (std::size_t i = 0; i < field_.tools.size(); ++i)
       make_room(field_, ToolIndex(i), i == tool ? jaw : field_.tools[i].pose.jaw);
     last_ = turn_jaw(field_, ToolIndex(tool), jaw, statistics_);
-    if (!last_) restore(field_, before);
+    if (!last_) {
+      restore(field_, before);
+      statistics_.balanced = false;  // with jaws that do not press with their pinch
+    }
     turned_ = true;
   }
 
@@ -132,6 +135,7 @@ class Trials {
   FieldState start_;
   std::size_t told_;
   const std::vector<std::size_t>& pressing_;
+  bool brought_along_;
   bool on_the_way_;  ///< rough from the first trial on; else from the second
   std::vector<double> at_start_;
   std::vector<std::vector<GripPoint>> grips_;  ///< of the organs, at the motion's end
@@ -193,7 +197,7 @@ void find_pinch(Trials& trials, std::size_t tool, At here, std::optional<At> oth
 }  // namespace
 
 Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targets,
-                                const std::function<Result<bool>(const Poses&)>& go,
+                                const std::function<Result<bool>(const Poses&)>& go, bool brought_along,
                                 const std::vector<char>& slipped_before, std::vector<WorldEvent>& events,
                                 SolveStatistics& statistics) {
   std::vector<std::size_t> pressing;
@@ -205,7 +209,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     if (gives_way && !tool.waits && (tool.pressing || to[i].jaw < tool.pose.jaw)) pressing.push_back(i);
   }
   if (pressing.empty()) return go(to);
-  Trials trials(field, to, go, events, pressing, statistics);
+  Trials trials(field, to, go, events, pressing, brought_along, statistics);
   std::vector<std::size_t> stopped;
   for (std::size_t i : pressing) {
     if (!trials.last()) break;
@@ -214,7 +218,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     const bool tight = first.excess > pinch_tolerance;
     if (tight) stopped.push_back(i);
     // Jaws that have pressed before find their pinch at the end of the step.
-    if (trials.spent() || (trials.pressed_at_start(i) && trials.on_the_way())) continue;
+    if (trials.spent() || (trials.pressed_at_start(i) && brought_along)) continue;
     double& slope = field.tools[i].pinch_slope;
     if (trials.pressed_at_start(i)) {
       const double most = std::min(from + grip_grid, opening);
@@ -230,6 +234,7 @@ Result<bool> close_within_pinch(Field& field, const Poses& to, const Poses& targ
     }
   }
   for (std::size_t i : stopped) field.tools[i].pressing = true;
+  if (trials.turned() && trials.spent()) note_unasked(field, statistics);
   if (!trials.last() || !trials.turned() || trials.spent()) return trials.end();
   if (Result<bool> held = let_slip(field, slipped_before, events, statistics); !held) return held;
   return trials.last();

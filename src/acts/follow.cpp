@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "acts/grip_slip.h"
 #include "acts/jaw_acts.h"
 #include "field/field_tissues.h"
-#include "field/grip.h"
 #include "field/moving_bodies.h"
 #include "motion/predict.h"
 #include "motion/settle_field.h"
@@ -110,7 +110,7 @@ class Following {
       const bool passes = is_on_the_way(share);
       last = passes ? bring_along_to(poses, share, answer.value()) : settle_at(poses, share, answer.value());
       accepted = last.converged() || was_cut_short(field_, last) ||
-                 (passes && last.status == NewtonStatus::iteration_limit);
+                 (passes && last.status == NewtonStatus::iteration_limit) || ends_so(share, last);
       if (accepted) {
         learn(answer.value(), share, before, last);
         if (Result<bool> kept = keep(poses, next); !kept) return kept;
@@ -125,6 +125,14 @@ class Following {
     return true;
   }
 
+  /// Whether a step that found no balance at its end stays there, as nothing more may be tried: inertia carries it on.
+  bool ends_so(double share, const NewtonResult& last) {
+    if (share < 1.0 || !passing_ || !passing_->piece.last) return false;
+    if (!is_spent(field_, statistics_) || !may_end_so(field_, last)) return false;
+    statistics_.cut_short = true;
+    return true;
+  }
+
   /// The budget is spent: bodies that were only brought along find their balance with the tools as far as they came.
   Result<bool> end_here() {
     statistics_.cut_short = true;
@@ -132,12 +140,9 @@ class Following {
     field_.rough = false;
     if (done_ == 0)
       if (std::optional<Failure> failure = begin()) return *failure;
-    if (Result<bool> settled = settle_in_step(field_, "with the tools as far as they came", statistics_);
-        !settled)
-      return settled;
-    // What slips is asked in the next step.
-    for (std::size_t i = 0; i < field_.tools.size(); ++i)
-      if (!held_organ(field_, ToolIndex(i)).empty()) statistics_.balanced = false;
+    const GroupSnapshot before = snapshot(field_);
+    if (!settle_in_step(field_, "with the tools as far as they came", statistics_)) restore(field_, before);
+    note_unasked(field_, statistics_);
     return false;
   }
 
@@ -146,6 +151,7 @@ class Following {
   Result<bool> stay(const Prediction& answer) {
     const Poses here = present_poses(field_);
     const GroupSnapshot before = snapshot(field_);
+    field_.rough = false;
     const NewtonResult last = settle_at(here, 1.0, answer);
     if (!last.converged() && !may_end_so(field_, last)) {
       restore(field_, before);
@@ -153,6 +159,7 @@ class Following {
     }
     statistics_.cut_short = true;
     ++statistics_.substeps;
+    note_unasked(field_, statistics_);
     return false;
   }
 
@@ -165,9 +172,9 @@ class Following {
   std::optional<Failure> begin() {
     if (!passing_ || (is_one_step() && done_ > 0)) return std::nullopt;
     if (is_one_step()) {
+      if (!passing_->piece.first) return std::nullopt;
       first_ = snapshot(field_);
       first_poses_ = present_poses(field_);
-      if (!passing_->piece.first) return std::nullopt;
     }
     grow_damage(field_);
     Result<std::vector<MotionPart>> parts = next_parts(field_);
@@ -177,13 +184,14 @@ class Following {
     return std::nullopt;
   }
 
-  /// One step that found no balance at its end goes on by parts, from its beginning. Whether that is elsewhere.
+  /// One step that found no balance at its end goes on by parts, from its beginning, where that is this piece's. Whether it
+  /// is elsewhere.
   bool goes_back() {
-    if (!is_one_step() || !passing_->piece.last) return false;
+    if (!is_one_step() || !passing_->piece.first || !passing_->piece.last) return false;
     by_parts_ = true;
     part_ = 0;
     iterations_before_ = statistics_.newton_iterations;
-    if (done_ == 0 && passing_->piece.first) return false;
+    if (done_ == 0) return false;
     restore(field_, first_);
     for (std::size_t i = 0; i < field_.tools.size(); ++i) field_.tools[i].pose = first_poses_[i];
     done_ = 0;
@@ -241,7 +249,11 @@ class Following {
     done_ = next;
     ++statistics_.substeps;
     // What is not in balance tells neither what slips nor where it is touched.
-    if (is_spent(field_, statistics_) || is_on_the_way(done_)) return true;
+    if (is_on_the_way(done_)) return true;
+    if (is_spent(field_, statistics_)) {
+      note_unasked(field_, statistics_);
+      return true;
+    }
     for (Organ& organ : field_.organs) follow_contacts(field_, organ, statistics_);
     if (!passing_) return true;
     const int iterations = statistics_.newton_iterations;

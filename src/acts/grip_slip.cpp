@@ -18,6 +18,8 @@
 namespace calot {
 namespace {
 
+constexpr double above_limit = 1.001;  ///< of what is held, from which on it slips
+
 /// Newton iterations that a change of a grip may take.
 struct Budget {
   const SolveStatistics& statistics;
@@ -32,16 +34,18 @@ Failure without_end(const Field& field, ToolIndex instrument, const std::string&
       "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
 }
 
-/// Lets the points that `leaves` picks go. Where masses count that takes effect in the next solve, which inertia bounds; else
-/// their springs are weakened step by step, so that what they held moves along equilibria. Where there are none nothing is
-/// solved.
+/// Lets the points that `leaves` picks go. Where masses count they are let go at once, and what they held is balanced now,
+/// or by the motion that comes next; else their springs are weakened step by step, so that what they held moves along
+/// equilibria. Where there are none nothing is solved.
 Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(const GripPoint&)>& leaves,
-                  double weaken, const Budget& budget, SolveStatistics& statistics) {
+                  double weaken, const Budget& budget, SolveStatistics& statistics,
+                  Then then = Then::balance) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
   if (field.step_time > 0) {
-    for (Organ& organ : field.organs) std::erase_if(organ.grips, leaves);
-    return true;
+    std::size_t left = 0;
+    for (Organ& organ : field.organs) left += std::erase_if(organ.grips, leaves);
+    return left == 0 || then == Then::motion ? Result<bool>(true) : settle_in_step(field, when, statistics);
   }
   // What is hard does not unfold: it is let go at once.
   bool hard = false;
@@ -108,17 +112,17 @@ Result<bool> slide(Field& field, ToolIndex instrument, const Demand& demand, dou
     return settle_in_step(field, "as a clip was drawn along", statistics);
   // A clip that has come off was what the pads held.
   if (draws) return fade(field, instrument, held_by(instrument), 0.04, budget, statistics);
-  // The rest of the fold holds on: longer steps than a release's do.
+  // The rest of the fold, which has moved, holds on: longer steps than a release's do.
   if (leave) return fade(field, instrument, off_the_pads, 0.04, budget, statistics);
   return settle_in_step(field, "as it slipped from the jaws", statistics);
 }
 
 }  // namespace
 
-Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
+Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics, Then then) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const FieldState before = field_state(field);
-  const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics);
+  const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics, then);
   if (!faded) restore(field, before);
   return faded;
 }
@@ -215,7 +219,7 @@ double holding_limit(const Field& field, ToolIndex instrument) {
 }
 
 Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
-  constexpr double above = 1.001, below = 0.95;  // of the limit
+  constexpr double above = above_limit, below = 0.95;  // of the limit
   // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
@@ -258,6 +262,14 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   statistics.cut_short = true;
   statistics.balanced = false;
   return out;
+}
+
+void note_unasked(const Field& field, SolveStatistics& statistics) {
+  for (std::size_t i = 0; i < field.tools.size(); ++i) {
+    const ToolIndex index(i);
+    if (!held_organ(field, index).empty() && asked_of_pads(field, index).share > above_limit)
+      statistics.balanced = false;
+  }
 }
 
 Asked asked_of_pads(const Field& field, ToolIndex instrument) {

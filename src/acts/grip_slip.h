@@ -9,9 +9,13 @@ namespace calot {
 /// seconds.
 inline constexpr int hold_iterations = 1500;
 
-/// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish. On
-/// failure (simulation) the grip holds as before.
-Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics);
+/// What follows the letting go of skin where masses count: the balance of what it held, or a motion that brings it.
+enum class Then { balance, motion };
+
+/// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish; where masses count
+/// they vanish at once. On failure (simulation) the grip holds as before.
+Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics,
+                     Then then = Then::balance);
 
 /// What the held tissue does to a tool along its pads: the held points, and what presses on the jaws, as a squeezed fold
 /// that pushes on the jaws' edges and is held back by their pads pulls on nothing. What presses across the pads is carried
@@ -48,7 +52,11 @@ struct Asked {
 /// By the pull or the couple, whichever comes nearer to what is held of it.
 Asked asked_of_pads(const Field& field, ToolIndex instrument);
 
-/// What has been drawn off its pad by more than the teeth reach is let go, step by step. Fails (simulation) where it
+/// Notes where more is asked of what any tool holds than holds, as nothing slips any more in this step: its forces are not to
+/// be judged.
+void note_unasked(const Field& field, SolveStatistics& statistics);
+
+/// What has been drawn off its pad by more than the teeth reach is let go, as in a release. Fails (simulation) where it
 /// finds no rest; the grip holds as before then.
 Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
@@ -60,11 +68,10 @@ struct Slipped {
 };
 
 /// Lets the held fold slide along the pads, in the direction of the pull, or turn about the shaft, until they can hold
-/// it; skin that slides off the pads is let go step by step, as in a release; clips that give way first are drawn along
+/// it; skin that slides off the pads is let go, as in a release; clips that give way first are drawn along
 /// (clips.h). Does nothing where no more is asked for than holding_limit and couple_limit. Afterwards friction is asked for
 /// at most 100.1% of its limit, and near it unless part of the fold has left the pads. On failure (simulation) the grip
-/// holds as before; where masses count it does so, too, where no end is found within hold_iterations, and the step is one
-/// that was cut short.
+/// holds as before. Where masses count and the step's budget is spent before, the rest is left to the next step.
 Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 }  // namespace calot

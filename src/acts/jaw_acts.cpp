@@ -96,7 +96,8 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
     const std::string organ = between_pads(field, index);
     const bool held = tool.jaw_stopped && instrument_row(tool.definition.type).jaws != JawUse::cut;
     if (!held_organ(field, index).empty())
-      if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
+      if (Result<bool> released = release(field, index, statistics, Then::motion); !released)
+        return released.failure();
     if (held)
       events.push_back(
           {EventKind::release, 0, tool.definition.name, organ, 0, std::nullopt, EventCause::opening});

@@ -71,8 +71,8 @@ struct StepBudget {
   int balance = 20;  ///< that the balance where it ends may take beyond
 };
 
-/// Of solves on the way through a step where masses count: what takes hold, what presses and what slips is decided by
-/// forces to a hundredth. The last solve of each step is balanced to the field's tolerance.
+/// Of solves on the way through a step where masses count: what presses and what slips is decided by forces to a
+/// hundredth. The last solve of each step is balanced to the field's tolerance.
 inline constexpr double rough_tolerance = 1e-3;
 
 struct Field {

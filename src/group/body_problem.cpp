@@ -253,17 +253,12 @@ double BodyProblem::unfolding_share(const VecX& step) const {
 
 double BodyProblem::margin_share(const VecX& x, const VecX& step, double share) const {
   if (loads_.shapes.empty()) return share;
-  // A surface point moves with the coarse nodes and with the details of each level: each has its part.
-  const double margin = (search_ ? search_->margin : contact_margin) / (1 + body_.levels_used());
-  for (int i = 0; i < body_.nodes(); ++i) {
-    const Vec3 move = step.segment<3>(3 * i), gone = x.segment<3>(3 * i) - start_.segment<3>(3 * i);
-    if ((gone + share * move).norm() <= margin) continue;
-    if (search_) search_->held_up = true;
-    const double left = margin - gone.norm();
-    if (left < 0.5 * margin) return 0;  // better gather anew than go on in ever shorter steps
-    share = std::min(share, left / move.norm());
-  }
-  return share;
+  const double margin = search_ ? search_->margin : contact_margin, gone = moved(x);
+  const double way = body_.largest_motion(step);
+  if (gone + share * way <= margin) return share;
+  if (search_) search_->held_up = true;
+  // Better gather anew than go on in ever shorter steps.
+  return margin - gone < 0.5 * margin ? 0.0 : std::min(share, (margin - gone) / way);
 }
 
 double BodyProblem::safe_share(const VecX& x, const VecX& step) const {

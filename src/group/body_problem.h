@@ -59,10 +59,11 @@ class BodyProblem : public ConstrainedEnergy {
   const LiquidMass* liquid_mass() const { return loads_.inertia ? loads_.inertia->liquid() : nullptr; }
   /// How far any node, and so any skin point, is from where the solve began, m.
   double moved(const VecX& x) const;
-  /// The share of a step on which neighbours come no further out of each other's way than their shortest edge is long; so no
-  /// element is turned over. Nodes that lie on no face of the skin have no neighbours: these themselves.
+  /// The share of a step on which the nodes of a face come no further from its first one's way than their shortest edges are
+  /// long. Nodes that lie on no face of the skin, and details, come no further than theirs.
   double unfolding_share(const VecX& step) const;
-  /// Of a share of a step that for which pairs were gathered: for nodes that stay within the margin of where the solve began.
+  /// Of a share of a step that for which pairs were gathered: no place of the skin further than the margin from where the
+  /// solve began.
   double margin_share(const VecX& x, const VecX& step, double share) const;
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;

@@ -105,8 +105,9 @@ std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, c
 }
 
 bool ContactSearch::widen() {
-  margin = held_up ? std::min(4 * margin, widest_margin) : margin;
-  return std::exchange(held_up, false);
+  const double before = margin;
+  if (std::exchange(held_up, false)) margin = std::min(4 * margin, widest_margin);
+  return margin > before;
 }
 
 const std::vector<Touch>* TouchMemory::known(const Body& body, const VecX& x,

@@ -61,7 +61,7 @@ struct ContactPair {
   double distance = 0;  ///< m, when it was gathered: none of its points was nearer
 };
 
-/// How far outside the contact range pairs are gathered at first, m; no solve may move a node further than it was done.
+/// How far outside the contact range pairs are gathered at first, m; no solve may move a place of the skin further.
 inline constexpr double contact_margin = 2.5e-3;
 inline constexpr double widest_margin = 20e-3;  ///< m, of bodies that move far
 
@@ -140,7 +140,7 @@ class ContactSearch {
   /// What touches at x, looked for only where that is not known yet. Valid until the next call or solve.
   const std::vector<Touch>& touching(const Body& body, const VecX& x, const ContactLoads& loads);
 
-  /// A solve that was held up by the margin is followed by one with a wider one. Whether that was so.
+  /// A solve that was held up by the margin is followed by one with a wider one. Whether it is wider now.
   bool widen();
 
   SelfContact own;  ///< the skin's with itself

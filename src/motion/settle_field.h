@@ -40,7 +40,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
                           const std::vector<VecX>& before, int max_iterations, SolveStatistics& statistics);
 /// Brings the bodies along to `poses` on the way through a step where masses count: by Newton steps until one moves none by
 /// more than the rest of the way takes along, or no more may be begun (step_budget.h). What rubs is held as it was found
-/// last. The states hold the last iterate, which may stay unless the result is none of numbers.
+/// last. The states hold the last iterate, which may stay where the result converged or reached its limit of iterations.
 NewtonResult bring_along(Field& field, const std::vector<InstrumentPose>& poses, SolveStatistics& statistics);
 /// Balances to the field's tolerance what was solved roughly until now, nothing rubbing otherwise. Where that fails all
 /// stays as it is, and the step is one that was cut short.

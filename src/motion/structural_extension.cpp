@@ -182,6 +182,8 @@ void change_details(Field& field, Organ& organ, std::vector<int> details, const 
     return;
   }
   const GroupSnapshot before = snapshot(field);
+  const bool was_balanced = statistics.balanced;
+  const double residual = statistics.residual;
   const BodyState was = organ.state;
   if (!motion_in(next.value(), shell, organ.state.motion)) {
     ++statistics.extensions_refused;
@@ -202,6 +204,8 @@ void change_details(Field& field, Organ& organ, std::vector<int> details, const 
     }
   }
   restore(field, before);
+  statistics.balanced = was_balanced;
+  statistics.residual = residual;
   --statistics.extensions_changed;
   ++statistics.extensions_refused;
 }

@@ -24,7 +24,7 @@ struct SessionTiming {
   double frames_s = 0;   ///< inside the frame callback
   std::vector<double> step_s;  ///< inside World::step, one a step
   int substeps = 0, newton_iterations = 0;
-  int steps_cut_short = 0;   ///< that spent their budget before tools were where they were to be
+  int steps_cut_short = 0;   ///< whose motion was not followed to the end (SolveStatistics::cut_short)
   int steps_unbalanced = 0;  ///< that ended in no balance
   double assembly_s = 0, factorisation_s = 0, solve_s = 0, contact_s = 0;
 };

@@ -39,7 +39,7 @@ std::vector<std::string> row_of(const ProfiledStep& step) {
        {s.substeps, s.solves, s.newton_iterations, s.factorisations, s.shifts, s.friction_rounds})
     row.push_back(std::to_string(count));
   row.push_back(csv_field(counts_text(s.jaw_trials)));
-  row.push_back(s.cut_short ? fmt::format("{:.2g}", s.residual) : "");
+  row.push_back(s.cut_short || !s.balanced ? fmt::format("{:.2g}", s.residual) : "");
   for (const double part : {s.assembly_s, s.factorisation_s, s.solve_s, s.contact_s, s.extension_s,
                             std::max(0.0, step.wall_s - known)})
     row.push_back(ms(part));

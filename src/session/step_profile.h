@@ -24,7 +24,7 @@ struct StepTimes {
 StepTimes step_times(std::vector<double> wall_s, double step);
 
 /// RFC 4180, a row a step: time_s, wall_ms, parts, solves, newton_steps, factorisations, shifts, friction_rounds, trials (by
-/// tool: its jaws' angles), cut_short_at (how far from balance a step was that had spent its budget, 0: not at all; else empty), assembly_ms, factorisation_ms, solve_ms, contact_ms, extension_ms (in it is time that
+/// tool: its jaws' angles), cut_short_at (how far from balance a step was that had spent its budget or found none, 0: not at all; else empty), assembly_ms, factorisation_ms, solve_ms, contact_ms, extension_ms (in it is time that
 /// the four before count, too), other_ms (wall_ms less those four), furthest (Newton steps by what was furthest from balance), events. Lists are as "left 12; right 3".
 std::string profile_csv(const std::vector<ProfiledStep>& steps);
 

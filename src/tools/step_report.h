@@ -132,8 +132,8 @@ struct SolveStatistics {
   std::map<std::string, int> jaw_trials;
   /// By organ or tissue: Newton steps in which its forces were the furthest from balance.
   std::map<std::string, int> furthest;
-  /// Its budget was spent before its motion was followed to the end: tools came as far as they did, and the next step goes on
-  /// from there (motion/step_budget.h).
+  /// Its motion was not followed to the end, as its budget was spent (motion/step_budget.h), no balance found or no room left:
+  /// tools came as far as they did, and the next step goes on from there.
   bool cut_short = false;
   /// Whether its last solve found a balance in which no more is asked of what is held than holds; else bodies stand where
   /// that left them.

@@ -123,7 +123,7 @@ return calot.exercise { api = 2, id = "lock", title = "Two hands at one bead", t
       hand:close()
     end
     local function carry(hand, to) hand:move_by(minus(to, t:place("bead.centre")), { speed = 60 * mm / s }) end
-    take(t.left, ports[1], { 0, 0, 0 }, 3 * mm)
+    take(t.left, ports[1], { 0, 0, 0 }, 2.5 * mm)
     carry(t.left, { -76 * mm, 95 * mm, -84.5 * mm })
     carry(t.left, { -57 * mm, 95 * mm, -80 * mm })
     take(t.right, ports[2], { 2 * mm, 0, 0 }, 2 * mm)
