@@ -63,14 +63,14 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   for (std::size_t i = 0; i < to.size(); ++i)
     holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
   const RoughWay way(field);
-  // What is hard slides before jaws, and is turned by them, unless its balance and friction are asked at each stop: there
-  // each is a step of its own.
-  const bool hard = field.step_time > 0 && may_touch_hard(field, largest_travel(field, to));
+  // Without masses each stop is an equilibrium of its own. What is hard slides before jaws, and is turned by them, unless
+  // its balance and friction are asked at each stop: there each is a step of its own, too.
+  const bool each_alone = field.step_time == 0 || may_touch_hard(field, largest_travel(field, to));
   bool first = true;
   double reached = 0;
   for (double stop : all_stops(holding_stops)) {
-    const Piece piece = hard ? Piece{} : Piece{std::exchange(first, false), stop == 1};
-    const double duration = (hard ? stop - std::exchange(reached, stop) : 1) * field.step_time;
+    const Piece piece = each_alone ? Piece{} : Piece{std::exchange(first, false), stop == 1};
+    const double duration = (each_alone ? stop - std::exchange(reached, stop) : 1) * field.step_time;
     field.rough = field.step_time > 0 && stop < 1;
     Poses here = interpolate(start, to, stop);
     for (std::size_t i = 0; i < here.size(); ++i)

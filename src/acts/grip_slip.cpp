@@ -18,7 +18,7 @@
 namespace calot {
 namespace {
 
-constexpr double above_limit = 1.001;  ///< of what is held, from which on it slips
+constexpr double slips_above = 1.001;  // of what is held
 
 /// Newton iterations that a change of a grip may take.
 struct Budget {
@@ -219,13 +219,13 @@ double holding_limit(const Field& field, ToolIndex instrument) {
 }
 
 Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
-  constexpr double above = above_limit, below = 0.95;  // of the limit
+  constexpr double below = 0.95;  // of the limit
   // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   Demand demand = largest_demand(field, instrument, false);
-  if (demand.share() <= above) return Slipped{};
+  if (demand.share() <= slips_above) return Slipped{};
   const Slipped out{true, demand.turns, pad_load(field, instrument).pull.norm()};
   const FieldState start = field_state(field);
   double way = demand.turns ? 0.5 * longest_way : shortest_way;
@@ -250,7 +250,7 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
       way = std::max(0.3 * way, shortest_way);
       continue;
     }
-    if (lost || now.share() <= above) return out;
+    if (lost || now.share() <= slips_above) return out;
     // By the secant; a fold that gives no more resistance is followed at a growing pace.
     const double stiffness = (demand.share() - now.share()) / way, longest = std::min(2 * way, longest_way);
     const double next = stiffness > 0 ? (now.share() - 1) / stiffness : longest;
@@ -267,7 +267,7 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
 void note_unasked(const Field& field, SolveStatistics& statistics) {
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     const ToolIndex index(i);
-    if (!held_organ(field, index).empty() && asked_of_pads(field, index).share > above_limit)
+    if (!held_organ(field, index).empty() && asked_of_pads(field, index).share > slips_above)
       statistics.balanced = false;
   }
 }

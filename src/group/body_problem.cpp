@@ -251,10 +251,9 @@ double BodyProblem::unfolding_share(const VecX& step) const {
   return share;
 }
 
-double BodyProblem::margin_share(const VecX& x, const VecX& step, double share) const {
+double BodyProblem::margin_share(double gone, double way, double share) const {
   if (loads_.shapes.empty()) return share;
-  const double margin = search_ ? search_->margin : contact_margin, gone = moved(x);
-  const double way = body_.largest_motion(step);
+  const double margin = search_ ? search_->margin : contact_margin;
   if (gone + share * way <= margin) return share;
   if (search_) search_->held_up = true;
   // Better gather anew than go on in ever shorter steps.
@@ -262,9 +261,9 @@ double BodyProblem::margin_share(const VecX& x, const VecX& step, double share) 
 }
 
 double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
-  double share = margin_share(x, step, unfolding_share(step));
-  if (share == 0) return 0;
   const double depth = body_.core_depth(), gone = moved(x), longest = body_.largest_motion(step);
+  double share = margin_share(gone, longest, unfolding_share(step));
+  if (share == 0) return 0;
   ContactPlaces places(body_.skin(), x, body_.core_radii()), moves(body_.skin(), step);
   for (const ContactPair& pair : pairs()) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance + depth - gone)) continue;

@@ -62,9 +62,9 @@ class BodyProblem : public ConstrainedEnergy {
   /// The share of a step on which the nodes of a face come no further from its first one's way than their shortest edges are
   /// long. Nodes that lie on no face of the skin, and details, come no further than theirs.
   double unfolding_share(const VecX& step) const;
-  /// Of a share of a step that for which pairs were gathered: no place of the skin further than the margin from where the
-  /// solve began.
-  double margin_share(const VecX& x, const VecX& step, double share) const;
+  /// Of a share of a step of `way`, m, that for which pairs were gathered: no place of the skin, which is up to `gone`, m, from
+  /// where the solve began, comes further than the margin from there.
+  double margin_share(double gone, double way, double share) const;
   const std::vector<ContactPair>& pairs() const;
   const std::vector<Touch>& touching(const VecX& x) const;
   Workers* workers() const override;

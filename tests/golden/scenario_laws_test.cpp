@@ -115,7 +115,7 @@ TEST_P(Scenario, LooksAsStoredAndKeepsInstrumentsOutOfTheSkinAndTheBileIn) {
   EXPECT_LT(watch.deepest, 0.1e-3);
   EXPECT_LT(watch.swelling, 1e-9);
   EXPECT_LE(watch.cut_short, 0.03 * watch.steps) << "steps that spent their budget";
-  EXPECT_LE(watch.longest_unbalanced, 10) << "five are aimed at; after critical_view's cuts there are nine";
+  EXPECT_LE(watch.longest_unbalanced, 5);
   EXPECT_LE(watch.furthest_off, GetParam().furthest_off) << "of the forces in a body";
   RecordProperty("deepest_um", static_cast<int>(1e6 * watch.deepest));
   if (GetParam().judges_pictures)
