@@ -320,7 +320,9 @@ void GroupProblem::prepare(NewtonWorkspace& work) const {
   constexpr std::size_t most_idle = 3;  // times as many groups as are close
   if (!changed) {
     const std::vector<std::vector<int>> close = cliques(true);
-    if (patterns_.joined.size() <= most_idle * close.size() && holds(work.matrix, close)) return;
+    std::size_t needed = close.size();
+    for (const JoinPointer& join : joins_) needed += join->lasting_cliques();
+    if (patterns_.joined.size() <= most_idle * needed && holds(work.matrix, close)) return;
   }
   patterns_.joined = cliques(false);
   work = workspace();

@@ -53,6 +53,9 @@ class Join {
   /// too. A matrix is made with room for the second kind, so that it serves many solves. Asked only of groups of two bodies
   /// or more: a body alone has all that it couples in its own pattern.
   virtual void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const = 0;
+  /// How many of the groups that add_cliques() adds are of couplings that last, so that with `close` it leaves them out:
+  /// a matrix always has room for them.
+  virtual std::size_t lasting_cliques() const { return 0; }
   /// Moves those of these nodes that this join alone couples with others to where they are in balance between them.
   virtual void relax(const LooseNodes& /*nodes*/, VecX& /*x*/) const {}
   /// The largest part of `share` of the step that is safe.

@@ -47,6 +47,7 @@ class StrandJoin : public Join {
   bool add_convexity(const VecX& x, BlockMatrix& matrix) const override;
   void add_cliques(const VecX& x, bool close, std::vector<std::vector<int>>& cliques) const override;
 
+  std::size_t lasting_cliques() const override { return active() ? strands_.size() : 0; }
   void relax(const LooseNodes& nodes, VecX& x) const override;
 
   /// No step takes a strand through what it touches.

@@ -57,6 +57,18 @@ TEST(StrandJoin, ThatSoftensIsMadeConvexAndOneThatDoesNotIsLeftAlone) {
   test::expect_convexity(rig, *rig.strands, rig.x());
 }
 
+// Strands couple as long as they are there: that nothing else does is no reason to make a matrix anew.
+TEST(StrandJoin, AMatrixServesForManySteps) {
+  StrandRig rig = plates(16);
+  ASSERT_TRUE(rig.step(0).converged());
+  const BlockMatrix made = rig.work.matrix.pattern_only();
+  for (int step = 1; step < 5; ++step) {
+    test::carry(rig, 0, Vec3(0, 0, step * 0.1e-3), 1e6);
+    ASSERT_TRUE(rig.step(0).converged()) << step;
+    EXPECT_TRUE(rig.work.matrix.same_pattern(made)) << step;
+  }
+}
+
 struct PlatesApart {
   double largest = 0, work = 0;  ///< N, J
 };
