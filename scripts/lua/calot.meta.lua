@@ -486,6 +486,7 @@
 ---@field middle calot.point its own middle
 ---@field to calot.point its end on the other organ
 ---@field share number of the first organ's way, where it begins: a tube's length, else from neck to fundus; 0 to 1
+---@field tension number N; 0 while it is slack; 0 to 1e+06 N
 
 ---What steps and demo have in common. Instruments are its fields: t.left, t.right, ...; and t.laparoscope.
 ---@class calot.Session

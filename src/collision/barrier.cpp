@@ -16,6 +16,10 @@ BarrierSample Barrier::sample(double distance) const {
     const double infinity = std::numeric_limits<double>::infinity();
     return {infinity, -infinity, infinity};
   }
+  if (steep) {
+    const double left = range - distance, by = 0.6 * stiffness / range, per = left / distance;
+    return {by * left * left * per, -by * left * per * (3 + per), by * per * (6 + 6 * per + 2 * per * per)};
+  }
   const double scale = -stiffness / range;
   const double gap = distance - range, log_ratio = std::log(distance / range), share = gap / distance;
   return {scale * gap * gap * log_ratio, scale * gap * (2 * log_ratio + share),

@@ -19,8 +19,11 @@ struct Barrier {
   /// Share of the range below which the barrier goes on as a parabola, C2: then it is finite everywhere, inside the
   /// shape too, and a solver may pass through places that no state may keep. 0: infinite at 0.
   double soft_share = 0;
+  /// Pressure grows as 1 / distance^2 near 0, not as 1 / distance.
+  bool steep = false;
   bool operator==(const Barrier&) const = default;
   /// b(d) = -stiffness / range * (d - range)^2 ln(d / range): the pressure at d = range/2 is 1.2 stiffness.
+  /// Steep: b(d) = 0.6 stiffness / range * (range - d)^3 / d, of the same pressure there.
   /// Without a soft share, at d <= 0 energy and second derivative are +infinity and the derivative is
   /// -infinity: not an error but a state no accepted step may reach; a line search sees it as a rejected trial.
   BarrierSample sample(double distance) const;

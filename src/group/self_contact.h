@@ -32,8 +32,10 @@ inline constexpr double close_reach = 0.8e-3;
 inline constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above = 1.5 * self_barrier.range;
 
 /// Of edges that cross. Ten times as stiff: a few of them carry what lies in a sharp fold, and as soft as points they met at
-/// 1 nm, from where each solve began far from balance (a held fold turned by 240 degrees took 43 s, now 20).
-inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, 10 * self_barrier.stiffness};
+/// 1 nm, from where each solve began far from balance (a held fold turned by 240 degrees took 43 s, now 20). And steep:
+/// near an edge's end, where the pair fades, a pressure by 1 / distance let a drawn fold come to 1e-13 m. No solve
+/// found out from there, as rounding decided its steps, and the field stood still for good.
+inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, 10 * self_barrier.stiffness, 0, true};
 /// Of these: couple_below and uncouple_above in proportion.
 constexpr double edges_couple(double of_points) {
   return of_points * (self_edge_barrier.range / self_barrier.range);

@@ -196,7 +196,8 @@ KeyTable strand_table() {
            place("to", "its end on the other organ"),
            required(number("share", quantity::number, 0, 1, "",
                            "of the first organ's way, where it begins: a tube's length, else from neck to "
-                           "fundus"))}};
+                           "fundus")),
+           required(number("tension", quantity::force, 0, 1e6, "", "N; 0 while it is slack"))}};
 }
 
 std::string in_mm(const Vec3& place) {

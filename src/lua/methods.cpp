@@ -189,7 +189,7 @@ int strands(lua_State* L) {
   if (arguments.good()) found = session.strands(L, arguments.text("tissue"));
   lua_createtable(L, static_cast<int>(found.size()), 0);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    lua_createtable(L, 0, 4);
+    lua_createtable(L, 0, 5);
     push_vector(L, found[i].line.from);
     lua_setfield(L, -2, "from");
     push_vector(L, found[i].line.by);
@@ -197,6 +197,7 @@ int strands(lua_State* L) {
     push_vector(L, found[i].line.to);
     lua_setfield(L, -2, "to");
     set_number(L, "share", found[i].share);
+    set_number(L, "tension", found[i].tension);
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
   return 1;

@@ -201,7 +201,7 @@ std::vector<ScriptSession::PresentStrand> ScriptSession::strands(lua_State* L, c
   if (checking()) {
     stand_in();
     const Vec3 at = landmark(L, scene().laparoscope.look_at);
-    if (next_guess()) out.push_back({{at, at, at}, 0});
+    if (next_guess()) out.push_back({{at, at, at}});
     return out;
   }
   const Field& field = world(L).field();
@@ -210,7 +210,9 @@ std::vector<ScriptSession::PresentStrand> ScriptSession::strands(lua_State* L, c
     const Organ& organ = field.organs[static_cast<std::size_t>(tissue.strands->bodies()[0])];
     const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
     for (std::size_t i = 0; i < lines.size(); ++i)
-      if (!tissue.torn(i)) out.push_back({lines[i], share_along(organ, tissue.strands->strands()[i].one)});
+      if (!tissue.torn(i))
+        out.push_back({lines[i], share_along(organ, tissue.strands->strands()[i].one),
+                       tension_of(tissue, i, lines[i])});
   }
   return out;
 }

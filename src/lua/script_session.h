@@ -82,7 +82,8 @@ class ScriptSession {
   /// A strand of a tissue that stands.
   struct PresentStrand {
     StrandLine line;
-    double share = 0;  ///< of the first organ's way
+    double share = 0;    ///< of the first organ's way
+    double tension = 0;  ///< N
   };
   /// All of a tissue; in a dry run none or one, a stand-in. Complains as torn() does.
   std::vector<PresentStrand> strands(lua_State* L, const std::string& tissue);

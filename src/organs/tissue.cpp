@@ -118,6 +118,12 @@ std::vector<StrandLine> strand_lines(const Tissue& tissue, const std::vector<Org
   return out;
 }
 
+double tension_of(const Tissue& tissue, std::size_t strand, const StrandLine& line) {
+  StrandVector places;
+  places << line.from, line.by, line.to;
+  return tissue.strands->strands()[strand].strand.tension(places, {tissue.now.opened[strand], 0});
+}
+
 Result<Tissue> make_tissue(const TissueDefinition& definition, const std::vector<Organ>& organs,
                            const Vec3& up) {
   const auto named = [&](const std::string& name) {  // both are known to be there

@@ -52,6 +52,8 @@ struct StrandLine {
 };
 /// Of all strands of a tissue, torn ones too.
 std::vector<StrandLine> strand_lines(const Tissue& tissue, const std::vector<Organ>& organs);
+/// N, of a strand that lies on such a line now.
+double tension_of(const Tissue& tissue, std::size_t strand, const StrandLine& line);
 
 /// Strands between two organs where they are now, slack as the definition has them, spread evenly over the place; each
 /// stands for the area around it. Problems' paths begin at the tissue (".within"). Fails (scenario) where the two are

@@ -9,12 +9,18 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(Barrier, DerivativesMatchFiniteDifferences) {
-  const Barrier barrier;
+class EachBarrier : public testing::TestWithParam<bool> {
+ protected:
+  const Barrier barrier{.steep = GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(Barrier, EachBarrier, testing::Bool(),
+                         [](const auto& param) { return param.param ? "Steep" : "Logarithmic"; });
+
+TEST_P(EachBarrier, DerivativesMatchFiniteDifferences) {
   for (double share = 0.02; share < 0.99; share += 0.01) {
     const double d = share * barrier.range, h = 1e-4 * d;
     const BarrierSample at = barrier.sample(d), ahead = barrier.sample(d + h), behind = barrier.sample(d - h);
-    // The central difference errs by h^2/6 times the third derivative, about 1e-8 of the value where the
+    // The central difference errs by h^2/6 times the third derivative, up to 1e-7 of the value where the
     // barrier is steep; near the range all vanish together, so the scale is taken from its middle.
     const BarrierSample scale = barrier.sample(barrier.range / 2);
     EXPECT_NEAR(at.derivative, (ahead.energy - behind.energy) / (2 * h),
@@ -30,26 +36,33 @@ TEST(Barrier, PressureAtHalfTheRangeIsTheClosedForm) {
   EXPECT_NEAR(-barrier.sample(barrier.range / 2).derivative, barrier.stiffness * (std::log(2.0) + 0.5), 1e-9);
 }
 
-TEST(Barrier, JoinsZeroSmoothlyToTheSecondDerivative) {
-  const Barrier barrier;
+TEST(Barrier, ASteepOneHasAsMuchPressureThere) {
+  const Barrier steep{.steep = true};
+  // -b'(range/2) = 0.6 stiffness (3/2 + 1/2); the plain one has ln 2 + 1/2 = 1.19 of it.
+  EXPECT_NEAR(-steep.sample(steep.range / 2).derivative, 1.2 * steep.stiffness, 1e-9);
+  const double near = 1e-4 * steep.range;
+  EXPECT_NEAR(-steep.sample(near).derivative / (0.6e8 * steep.stiffness), 1, 1e-3);
+}
+
+TEST_P(EachBarrier, JoinsZeroSmoothlyToTheSecondDerivative) {
   for (const double beyond : {barrier.range, 1.5 * barrier.range, 1.0, infinity}) {
     EXPECT_EQ(barrier.sample(beyond).energy, 0.0);
     EXPECT_EQ(barrier.sample(beyond).derivative, 0.0);
     EXPECT_EQ(barrier.sample(beyond).second, 0.0);
   }
-  // With gap g = range - d the leading term is stiffness / range^2 g^3: value, slope and curvature vanish as
-  // g^3, 3 g^2 and 6 g; the next term is smaller by g / range.
+  // With gap g = range - d the leading term is stiffness / range^2 g^3, 0.6 of it where it is steep: value, slope and
+  // curvature vanish as g^3, 3 g^2 and 6 g; the next term is smaller by g / range.
   for (const double share : {1e-2, 1e-3, 1e-4}) {
-    const double gap = share * barrier.range, lead = barrier.stiffness / barrier.range / barrier.range;
+    const double gap = share * barrier.range,
+                 lead = (barrier.steep ? 0.6 : 1.0) * barrier.stiffness / barrier.range / barrier.range;
     const BarrierSample near = barrier.sample(barrier.range - gap);
     EXPECT_NEAR(near.energy / (lead * gap * gap * gap), 1.0, 2 * share);
     EXPECT_NEAR(near.derivative / (-3 * lead * gap * gap), 1.0, 2 * share);
-    EXPECT_NEAR(near.second / (6 * lead * gap), 1.0, 2 * share);
+    EXPECT_NEAR(near.second / (6 * lead * gap), 1.0, barrier.steep ? 4 * share : 2 * share);
   }
 }
 
-TEST(Barrier, PushesHarderTheCloserWithoutBound) {
-  const Barrier barrier;
+TEST_P(EachBarrier, PushesHarderTheCloserWithoutBound) {
   BarrierSample before = barrier.sample(0.999 * barrier.range);
   for (double d = 0.99 * barrier.range; d > 1e-15; d *= 0.9) {
     const BarrierSample now = barrier.sample(d);

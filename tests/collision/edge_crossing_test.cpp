@@ -208,6 +208,20 @@ TEST(EdgeCrossing, WhereEdgesFadeAnEndIsNear) {
   EXPECT_GT(faded, 100);
 }
 
+/// Beyond that they would come so near that a solver's steps are rounding: 1e-16 of the places, times what presses.
+TEST(EdgeCrossing, SteepOnesThatHaveNearlyFadedCarryANewtonAtTenNanometres) {
+  Rng rng(9);
+  constexpr double area = 0.2e-6, near_end = 6e-4, distance = 10e-9;  // as a drawn fold's have been found
+  const EdgePair e = crossed(rng, 1.2, distance, near_end, 0.13);
+  const auto force = [&](bool steep) {
+    const EdgeCrossing law{{0.1e-3, 200e3, 0, steep}, crossing.parallel_below};
+    const EdgeCrossing::Slope gradient = law.sample(e).gradient;
+    return area * (gradient.segment<3>(0) + gradient.segment<3>(3)).norm();
+  };
+  EXPECT_LT(force(false), 0.01);
+  EXPECT_GT(force(true), 1);
+}
+
 TEST(EdgeCrossing, EdgesThatTouchAreNoStateToAccept) {
   const double half = 0.5 * length;
   const EdgePair touching{Vec3(-half, 0, 0), Vec3(half, 0, 0), Vec3(0, -half, 0), Vec3(0, half, 0)};
