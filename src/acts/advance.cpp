@@ -56,7 +56,6 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   for (Tool& tool : field.tools) slipped_before.push_back(std::exchange(tool.slipping, false));
   if (Result<bool> done = let_go(field, targets, events, statistics); !done) return done.failure();
   const Poses to = reachable(field, targets), start = present_poses(field);
-  field.tools_move = to != start;
   std::vector<char> rested;
   for (const Tool& tool : field.tools) rested.push_back(tool.jaws_rest());
   std::vector<std::vector<double>> holding_stops;
@@ -117,13 +116,8 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
     return events;
   }
   restore(field, before);
-  // With a budget of its own, as what was tried has spent the step's: that of a step whose tools move, not what falling
-  // bodies get.
-  SolveStatistics again;
-  const StepBudget usual = field.budget;
-  field.budget.still = usual.begin;
+  SolveStatistics again;  // with a budget of its own, as what was tried has spent the step's
   events = advance(field, present_poses(field), again);
-  field.budget = usual;
   statistics.newton_iterations += again.newton_iterations;
   statistics.factorisations += again.factorisations;
   statistics.cut_short = true;  // the tools did not come where they were to

@@ -65,9 +65,7 @@ void visit_members(auto&& visit, MembersOf<Wound> auto& wound) {
 
 /// Newton iterations of a step where masses count.
 struct StepBudget {
-  int begin = 14;  ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
-  int still =
-      500;  ///< the same where no tool moves: what falls is followed in many parts, and no hand waits for it
+  int begin = 14;    ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
   int balance = 20;  ///< that the balance where it ends may take beyond
 };
 
@@ -86,7 +84,6 @@ struct Field {
   /// What is solved for now is on the way to where the step ends: balanced to rough_tolerance it serves. At the end of
   /// each step it is false.
   bool rough = false;
-  bool tools_move = false;    ///< in the present step, by their commands
   double step_time = 0;       ///< s that a step takes where masses count; 0: statics
   double time = 0;            ///< s, at the end of the present step
   StepBudget budget;          ///< what a step may take where masses count (motion/step_budget.h)

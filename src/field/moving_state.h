@@ -21,9 +21,8 @@ std::vector<std::vector<int>> details_of(const Field& field);
 /// What moves of the bodies and tools that there are, with these details (members_note.h says who they are).
 void visit_moving(auto&& visit, MembersOf<Field> auto& field) {
   // What else there is follows from scene and steps, is of a world's process, or is remembered.
-  auto& [organs, tissues, group, tools, ground, barrier, tolerance, rough, tools_move, step_time, time,
-         budget, spill, wounds, heart_rate, up, middle, viewed, scheme, assembly, stop, membership, members,
-         lives] = field;
+  auto& [organs, tissues, group, tools, ground, barrier, tolerance, rough, step_time, time, budget, spill,
+         wounds, heart_rate, up, middle, viewed, scheme, assembly, stop, membership, members, lives] = field;
   for (auto& organ : organs) visit_members(visit, motion_of(organ));
   for (auto& tissue : tissues) visit(tissue.now);
   visit(group);

@@ -5,12 +5,6 @@
 
 namespace calot {
 
-namespace {
-
-int begins(const Field& field) { return field.tools_move ? field.budget.begin : field.budget.still; }
-
-}  // namespace
-
 StepBudget budget_of(int nodes) {
   constexpr int usual_nodes = 340, most = 40;
   StepBudget out;
@@ -20,7 +14,7 @@ StepBudget budget_of(int nodes) {
 
 int left_to_begin(const Field& field, const SolveStatistics& statistics) {
   if (field.step_time == 0) return std::numeric_limits<int>::max();
-  return begins(field) - statistics.newton_iterations;
+  return field.budget.begin - statistics.newton_iterations;
 }
 
 int left_to_balance(const Field& field, const SolveStatistics& statistics) {

@@ -81,7 +81,7 @@ struct Wedge {
     field.group.forget_bodies();
     field.ground.push_back({"floor", Plane{{0, 0, -depth - bottom}, Vec3::UnitZ()}, 0.2, false});
     field.step_time = 0.02;
-    field.budget = {10'000, 10'000, 0};  // the law is of the balance, whatever it takes to find it
+    field.budget = {10'000, 0};  // the law is of the balance, whatever it takes to find it
     test::add_grasper(field, Vec3::Zero());
     field.tools[0].definition.pinch_force = pinch;
     field.tools[0].definition.pad_friction = friction;

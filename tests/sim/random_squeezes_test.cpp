@@ -155,8 +155,9 @@ class Squeeze {
     ++steps;
     failed_ = !report;
     ASSERT_TRUE(report) << to_text(report.failure());
-    const StepBudget budget;
-    EXPECT_LE(report->statistics.newton_iterations, budget.still + budget.balance);
+    const StepBudget& budget = world_.field().budget;
+    EXPECT_LE(report->statistics.newton_iterations, 2 * (budget.begin + budget.balance))
+        << "twice where a step is taken back";
     cut_short += report->statistics.cut_short;
     const Organ& thing = world_.field().organs[0];
     ASSERT_TRUE(thing.state.x.allFinite());

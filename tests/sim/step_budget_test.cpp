@@ -39,7 +39,7 @@ TEST(StepBudget, WhatAStepLeavesUndoneTheNextOnesMakeGood) {
   CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
   test::FundusPath path(moving_scene());
   ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
-  Budgeted whole(path.world, {500, 500, 0}), thrifty(path.world, {4, 4, 0});
+  Budgeted whole(path.world, {500, 0}), thrifty(path.world, {4, 0});
   const InstrumentPose start = path.world.report().instruments[0].pose;
   InstrumentPose in = start;
   in.insertion += 6e-3;
@@ -65,7 +65,7 @@ TEST(StepBudget, WhatLeavesAToolNoRoomEndsTheStepAndNotTheSession) {
   CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
   test::FundusPath path(moving_scene());
   ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
-  Budgeted thrifty(path.world, {1, 1, 0});
+  Budgeted thrifty(path.world, {1, 0});
   InstrumentPose in = path.world.report().instruments[0].pose;
   in.insertion += 15e-3;
   for (int k = 0; k < 60; ++k) thrifty.step(in);
@@ -77,7 +77,7 @@ TEST(StepBudget, AStepThatWasSolvedRoughlyOnTheWayEndsInBalance) {
   CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
   test::FundusPath path(moving_scene());
   ASSERT_TRUE(path.driver.go(path.fundus - 3e-3 * path.out, test::open_jaw, 8)) << path.driver.why();
-  Budgeted closing(path.world, {500, 500, 0});
+  Budgeted closing(path.world, {500, 0});
   InstrumentPose to = path.world.report().instruments[0].pose;
   int several = 0;
   while (to.jaw > 0) {
@@ -101,7 +101,7 @@ TEST(StepBudget, AStepWhoseToolsComeInPartsIsOneStepOfTheBodiesAndInBalanceAtIts
   CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
   test::FundusPath path(moving_scene());
   ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
-  Budgeted pushing(path.world, {500, 500, 0});
+  Budgeted pushing(path.world, {500, 0});
   InstrumentPose to = path.world.report().instruments[0].pose;
   int in_parts = 0;
   for (int k = 0; k < 5; ++k) {
@@ -153,10 +153,25 @@ TEST(StepBudget, IsTheSameWorkForFewerNodesWithinReason) {
   EXPECT_EQ(budget_of(4).balance, StepBudget{}.balance);
 }
 
+// A person waits for such a step as for any other.
+TEST(StepBudget, IsTheSameWhereNoToolMoves) {
+  CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
+  test::FundusPath path(moving_scene());
+  ASSERT_TRUE(path.driver.go(path.fundus - 3e-3 * path.out, test::open_jaw, 8)) << path.driver.why();
+  Budgeted still(path.world, {500, 0});
+  InstrumentPose in = path.world.report().instruments[0].pose;
+  in.insertion += 3e-3;
+  still.step(in);
+  EXPECT_EQ(still.cut_short, 0);
+  still.field.budget = {1, 1};
+  for (int k = 0; k < 3; ++k) still.step(in);  // what it pushed goes on moving
+  EXPECT_GT(still.cut_short, 0);
+}
+
 TEST(StepBudget, WithoutMassesThereIsNone) {
   const World world = World::create(test::grasper_scene(80)).value();
   Field field = world.field();
-  field.budget = {0, 0, 0};
+  field.budget = {0, 0};
   SolveStatistics spent;
   spent.newton_iterations = 1000;
   EXPECT_FALSE(is_spent(field, spent));
