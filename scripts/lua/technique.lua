@@ -120,6 +120,106 @@ function technique.take(t, hook, tissue, how)
   end
 end
 
+-- ---- the plane between two organs
+
+local function cross(a, b)
+  return { a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1] }
+end
+local function across(a, normal) return plus(a, normal, -dot(a, normal)) end
+
+--- Where x and y of an instrument's own frame point for a shaft from a port to a place, not turned.
+local function frame_of(port, at)
+  local shaft = unit(minus(at, port))
+  local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
+  return { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) },
+    { 0, -math.cos(pitch), -math.sin(pitch) }
+end
+
+--- The strands that stand, and those of them that are under tension, the tautest first.
+local function taut_strands(t, tissue, slack)
+  local all, taut = t:strands(tissue), {}
+  for _, strand in ipairs(all) do
+    if strand.tension > slack then taut[#taut + 1] = strand end
+  end
+  table.sort(taut, function(a, b) return a.tension > b.tension end)
+  return all, taut
+end
+
+--- Which way leads from a strand into those that stand around it, in the plane: from the open side inward.
+local function inward(strand, all, axis)
+  local near, centre, count = 9 * mm, { 0, 0, 0 }, 0
+  for _, other in ipairs(all) do
+    if length(minus(other.middle, strand.middle)) < near then centre, count = plus(centre, other.middle), count + 1 end
+  end
+  local way = across(minus(plus({ 0, 0, 0 }, centre, 1 / count), strand.middle), axis)
+  return length(way) > 0.5 * mm and unit(way) or nil
+end
+
+--- A stroke along `way` in the plane's middle: current flows wherever the foot lies on the tissue. It ends after 12 mm,
+--- or where the foot meets more than `hardest`, or the whole hook 2 N. `axis`: from the one organ to the other.
+local function stroke(hook, tissue, how, way, axis)
+  local others, long = how.between, 12 * mm
+  for _ = 1, 20 do
+    if how.is_done and how.is_done() then return end
+    local contact = hook:contact("tip")
+    local on_it = contact ~= nil and contact.organ == tissue
+    if on_it then hook:activate(0.12 * s) end
+    local aside = 0.5 * (hook:clearance(others[1]) - hook:clearance(others[2]))
+    aside = math.max(-0.5 * mm, math.min(0.5 * mm, aside))
+    local step = plus(plus({ 0, 0, 0 }, way, on_it and 0.5 * mm or 1.5 * mm), axis, -aside)
+    local _, gone = hook:move_until(function()
+      local met = hook:contact("tip")
+      return hook:force("tip") > how.hardest or hook:force() > 2 * N
+        or not on_it and met ~= nil and met.organ == tissue
+    end, { along = step, speed = 25 * mm / s, limit = length(step) })
+    long = long - gone
+    if long < 0 or not on_it and gone < 0.05 * mm then return end
+  end
+end
+
+local how_to_free = {
+  port = given.three, hardest = given.above_zero, between = given.names, stretch = given.optional(given.called),
+  is_done = given.optional(given.called),
+}
+
+--- Takes a tissue off by strokes of the hook, where it is under tension: the foot, turned across strands and way,
+--- sweeps from the open side into those that stand, midway between the two organs, and current flows while it lies on
+--- them. It stops when nothing is under tension, or ten strokes in a row divide nothing. `how`: port, where the shaft
+--- comes from; hardest, the force on its foot that ends a stroke; between, the two organs, first the one that the
+--- tissue hangs on; stretch(tension), if given, called before each stroke with the tautest strand's tension, N, to
+--- keep the plane under tension; is_done(), if given.
+function technique.free(t, hook, tissue, how)
+  given.check(how, how_to_free, "technique.free", 2)
+  local slack, missed, rolled = 10e-3 * N, 0, 0
+  while missed < 10 and not (how.is_done and how.is_done()) do
+    local all, taut = taut_strands(t, tissue, slack)
+    if #taut == 0 then return end
+    if how.stretch then how.stretch(taut[1].tension) end
+    local strand = taut[1 + missed % #taut]
+    local axis, back = unit(minus(strand.from, strand.to)), unit(minus(how.port, strand.middle))
+    local way = inward(strand, all, axis)
+    if way then
+      local foot = unit(across(cross(way, axis), back))
+      local x, y = frame_of(how.port, strand.middle)
+      local turned = math.atan(dot(y, foot), dot(x, foot))
+      local turn = turned - rolled
+      local half_turns = math.floor(turn / math.pi + 0.5) -- the foot may point either way across
+      turn = turn - math.pi * half_turns
+      if half_turns % 2 ~= 0 then foot = plus({ 0, 0, 0 }, foot, -1) end
+      if math.abs(turn) > 25 * deg then
+        hook:rotate(turn, { speed = 400 * deg / s })
+        rolled = rolled + turn
+      end
+      local heel = plus(strand.middle, foot, -2.5 * mm)
+      hook:move_to(plus(plus(heel, back, 14 * mm), way, -5 * mm), { speed = 100 * mm / s })
+      hook:move_to(plus(heel, way, -4 * mm), { speed = 60 * mm / s })
+      stroke(hook, tissue, how, way, axis)
+      hook:move_by(plus(plus({ 0, 0, 0 }, way, -2 * mm), back, 14 * mm), { speed = 100 * mm / s })
+    end
+    missed = #t:strands(tissue) < #all and 0 or missed + 1
+  end
+end
+
 -- ---- clips and scissors
 
 --- How many clips of a tube, or of a piece of one, are shut.
@@ -135,10 +235,7 @@ end
 --- at the place `at`: t:along says both.
 function technique.roll_across(port, at, along)
   if length(minus(at, port)) == 0 then error("technique.roll_across: port and at are one place", 2) end
-  local shaft = unit(minus(at, port))
-  local pitch, yaw = math.atan(shaft[2], -shaft[3]), math.asin(shaft[1])
-  local x = { math.cos(yaw), -math.sin(pitch) * math.sin(yaw), math.cos(pitch) * math.sin(yaw) }
-  local y = { 0, -math.cos(pitch), -math.sin(pitch) }
+  local x, y = frame_of(port, at)
   return math.atan(-dot(x, along) / dot(y, along))
 end
 
@@ -219,7 +316,8 @@ for name, takes in pairs {
   plus = { a, b, { "share", given.optional(given.number) } }, minus = { a, b }, dot = { a, b }, length = { a },
   unit = { { "a", given.way } }, triangle = { t }, angle_of_ducts = { t },
   draw_slack = { t, tool, { "slack", given.above_zero } },
-  take = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
+  take = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
+  free = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
   roll_across = { { "port", given.three }, { "at", given.three }, { "along", given.way } },
   hand = { t, { "name", given.name }, { "port", given.three } }, judge_stump = { { "run", given.run }, tube },
 } do technique[name] = given.checked("technique." .. name, takes, technique[name]) end

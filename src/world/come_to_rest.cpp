@@ -163,7 +163,10 @@ Result<bool> come_to_rest(const SceneDefinition& scene, Field& field, KeptResult
   if (!released.value() && rests_alone(scene.anatomy, field)) return true;
   const Roughness rough(field);
   Roughness::take(field);
+  // Nobody waits for a step on the way: what sinks or falls may be followed in many parts.
+  const StepBudget usual = std::exchange(field.budget, StepBudget{.begin = 500});
   const Result<bool> rested = find_rest(scene, rough, field, kept);
+  field.budget = usual;
   rough.give(field);
   if (!rested) return rested;
   for (Organ& organ : field.organs) {

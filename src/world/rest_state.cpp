@@ -11,7 +11,7 @@ namespace {
 bool fits(const RestState& state, const Field& field) {
   const std::size_t bodies = moving_bodies(field);
   if (state.places.size() != bodies || state.pressures.size() != field.organs.size()) return false;
-  if (state.factored && state.own.size() != bodies) return false;
+  if (state.searched() ? state.own.size() != bodies : state.factored) return false;
   for (std::size_t k = 0; k < bodies; ++k)
     if (state.places[k].size() != state_of(field, k).x.size()) return false;
   return !state.factored || state.constraints.rows() == BodyParts(field).total();
@@ -47,8 +47,7 @@ RestState rest_state(const Field& field) {
   for (std::size_t k = 0; k < moving_bodies(field); ++k) out.places.push_back(state_of(field, k).x);
   for (const Organ& organ : field.organs) out.pressures.push_back(organ.state.datum_pressure);
   const Group& group = field.group;
-  out.factored = group.work.factored;
-  if (!out.factored) return out;
+  if (group.patterns.own.empty()) return out;
   for (std::size_t k = 0; k < moving_bodies(field); ++k) {
     const BlockMatrix& own = group.patterns.own[k];
     const bool widened = own.entries().size() != body_of(field, k).pattern().entries().size();
@@ -56,6 +55,8 @@ RestState rest_state(const Field& field) {
   }
   out.joined = group.patterns.joined;
   out.shifted = group.work.shifted;
+  out.factored = group.work.factored;
+  if (!out.factored) return out;
   out.matrix = group.work.matrix.entries();
   out.constraints = group.work.border.gradients;
   out.compliances = group.work.border.compliances;
@@ -69,7 +70,7 @@ bool take_rest_state(const RestState& state, Field& field) {
   for (std::size_t k = 0; k < field.organs.size(); ++k)
     field.organs[k].state.datum_pressure = state.pressures[k];
   Group& group = field.group;
-  if (state.factored) take_patterns(state, field);
+  if (state.searched()) take_patterns(state, field);
   const std::vector<ContactLoads> loads = solve_loads(field, present_poses(field));
   std::vector<Member> members = members_of(field, loads);
   TissueMembers tissues(field);
@@ -77,9 +78,10 @@ bool take_rest_state(const RestState& state, Field& field) {
   // A solve begins here, too: what joins the bodies is told who they are.
   const std::vector<JoinPointer> joins = all_joins(field, present_poses(field));
   const GroupProblem problem(members, joins, group.patterns);
-  if (!state.factored) return true;
+  if (!state.searched()) return true;
   group.work = problem.workspace();
-  if (take_factor(state, problem.workers(), group.work)) return true;
+  group.work.shifted = state.shifted;
+  if (!state.factored || take_factor(state, problem.workers(), group.work)) return true;
   restore(field, before);
   return false;
 }

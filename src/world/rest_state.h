@@ -13,16 +13,19 @@ namespace calot {
 struct RestState {
   std::vector<VecX> places;       ///< m, 3 a node, of each organ, then of each tissue
   std::vector<double> pressures;  ///< Pa, at the datum, one an organ
-  /// Of each member: what its matrix couples where walls have met; empty: what its body's pattern does.
+  /// Of each member: what its matrix couples where walls have met; empty: what its body's pattern does. Of no member: the
+  /// search began at rest, and all that follows is empty.
   std::vector<std::vector<std::vector<int>>> own;
   std::vector<std::vector<int>> joined;  ///< what the group's matrix was made to couple
-  bool factored = false;                 ///< else what follows is empty: the search began at rest
+  bool factored = false;  ///< else its matrix has no factor, and what follows but `shifted` is empty
   bool shifted = false;
   /// The last matrix that was factorised, as BlockMatrix::entries(): its factor serves the first steps, and from the same
   /// bits the same is made again in a few ms.
   std::vector<double> matrix;
   Eigen::MatrixXd constraints;  ///< Border::gradients
   VecX compliances;             ///< Border::compliances
+
+  bool searched() const { return !own.empty(); }
 };
 
 /// Of a field of two members or more that has just come to rest. (What is alone has another kind of matrix, and rests

@@ -61,7 +61,8 @@ constexpr Shipped shipped[] = {{"grasp_and_traction", true, true},
                                {"critical_view", true},
                                {"clip_and_divide", false},
                                {"exposure", true},
-                               {"dissect_to_critical_view", true}};
+                               {"dissect_to_critical_view", true},
+                               {"liver_bed", true}};
 
 class Scenario : public ::testing::TestWithParam<Shipped> {};
 INSTANTIATE_TEST_SUITE_P(Shipped, Scenario, ::testing::ValuesIn(shipped));

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "anatomy/key_table.h"
+#include "field/field_hash.h"
 #include "support/remembered_results.h"
 #include "triangle_rig.h"
 #include "world/definition_digest.h"
@@ -47,6 +48,23 @@ void expect_same_bits(const SceneDefinition& scene) {
 TEST(RestState, ThatWasKeptPlaysToTheSameBits) { expect_same_bits(triangle()); }
 TEST(RestState, ThatWasKeptPlaysToTheSameBitsInDynamics) {
   expect_same_bits(triangle(SolverMotion::dynamics));
+}
+
+// A search may end in a solve whose last matrix was not positive definite.
+TEST(RestState, WithoutAFactorHasThePatternsThatLaterStepsGoOnFrom) {
+  const World world = made(triangle(), nullptr);
+  Field found = world.field();
+  ASSERT_FALSE(found.group.patterns.joined.empty());
+  found.group.work.factored = false;
+  found.group.work.shifted = true;
+  const std::optional<RestState> kept = rest_state_of(to_bytes(rest_state(found)));
+  ASSERT_TRUE(kept);
+  Field other = world.field();
+  other.group.patterns = {};
+  other.group.work = NewtonWorkspace(BlockMatrix(0, {}));
+  ASSERT_NE(hash_of(other), hash_of(found));
+  ASSERT_TRUE(take_rest_state(*kept, other));
+  EXPECT_EQ(hash_of(other), hash_of(found));
 }
 
 TEST(RestState, OfAFieldWithALobeIsKeptBesideTheLobesReduction) {
