@@ -14,7 +14,7 @@ local ports = {
 }
 -- Where the fundus goes: towards the patient's right shoulder, over the liver.
 local up = { -0.33, 0.6, 0.73 }
-local rows = 0.12 -- of the plane: its first rows
+local rows = 0.08 -- of the plane: its first rows
 local firmly = 2 * N -- what the pouch is drawn with, so that the plane opens
 
 -- Where the plane stands open: the strand nearest to the gallbladder's neck.
@@ -148,9 +148,5 @@ return calot.exercise {
     pass = 80,
   },
 
-  golden = {
-    at = {
-      0, 4 * s, 8.6 * s, 11 * s, 17.2 * s, 24 * s, 32 * s, 40 * s, 50 * s, 60 * s, 67.4 * s,
-    },
-  },
+  golden = { at = { 0, 4 * s, 8.6 * s, 11 * s, 17.2 * s, 24 * s, 28 * s, 32 * s, 40 * s, 45 * s } },
 }
