@@ -14,8 +14,6 @@ local ports = {
   scope = { -40 * mm, 20 * mm, 10 * mm },
   epigastric = { -10 * mm, 120 * mm, -5 * mm },
 }
--- Where the fundus goes: towards the patient's right shoulder, over the liver.
-local up = { -0.33, 0.6, 0.73 }
 local lower_part = 0.4 -- of the gallbladder's way: its lower third in this field, from where its bed begins
 
 -- Calot's own triangle, whose upper side is the cystic artery: there is the tissue.
@@ -84,9 +82,7 @@ end
 
 local function clumsy(t)
   local clips, cuts = technique.hand(t, "applier", ports.epigastric), technique.hand(t, "blades", ports.epigastric)
-  t.hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
-  t.hook:activate(1 * s)
-  t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
+  technique.burn_wall(t.hook)
   clips.enter()
   clips.set_clips("common_duct", { 0.3 }, 36 * deg, 4.5 * mm)
   t.applier:move_to({ 15 * mm, 110 * mm, -85 * mm }, { speed = 100 * mm / s }) -- it will lie on the omentum, in view
@@ -143,15 +139,7 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    t:step("lift", "Take the fundus and push it up over the liver's edge", {
-      limit = 20 * s,
-      hint = "close the jaws on a fold of the fundus and push it towards the patient's right shoulder",
-    })
-    local hung = t:place("gallbladder.fundus")
-    t:wait_until(function()
-      local way = technique.minus(t:place("gallbladder.fundus"), hung)
-      return t.fundus:holds("gallbladder") and technique.dot(way, up) > 15 * mm
-    end)
+    technique.lift_step(t)
     t:step("expose", "Draw the pouch to the side and down", {
       limit = 15 * s,
       hint = "Hartmann's pouch to the patient's right and down opens the triangle between duct and artery",
@@ -176,9 +164,7 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
-    t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
-    t.fundus:close()
-    t.fundus:move_by({ -6.5 * mm, 12.3 * mm, 14.5 * mm }, { speed = 8 * mm / s })
+    technique.lift(t.fundus)
     t:together(function()
       t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })
       t.left:close()

@@ -12,8 +12,6 @@ local ports = {
   scope = { 0, 20 * mm, 10 * mm }, -- from the left one sees between gallbladder and liver
   epigastric = { -10 * mm, 120 * mm, -5 * mm },
 }
--- Where the fundus goes: towards the patient's right shoulder, over the liver.
-local up = { -0.33, 0.6, 0.73 }
 local rows = 0.08 -- of the plane: its first rows
 local firmly = 2 * N -- what the pouch is drawn with, so that the plane opens
 
@@ -38,12 +36,6 @@ local function expert(t)
   })
   t.hook:move_by({ 10 * mm, 0, 30 * mm }, { speed = 100 * mm / s })
   t:time_out("the bed is dry so far")
-end
-
-local function clumsy(t)
-  t.hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
-  t.hook:activate(1 * s)
-  t.hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
 end
 
 return calot.exercise {
@@ -83,15 +75,7 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    t:step("lift", "Take the fundus and push it up over the liver's edge", {
-      limit = 20 * s,
-      hint = "close the jaws on a fold of the fundus and push it towards the patient's right shoulder",
-    })
-    local hung = t:place("gallbladder.fundus")
-    t:wait_until(function()
-      local way = technique.minus(t:place("gallbladder.fundus"), hung)
-      return t.fundus:holds("gallbladder") and technique.dot(way, up) > 15 * mm
-    end)
+    technique.lift_step(t)
     t:step("open", "Draw the pouch up and aside, until the plane behind it is under tension", {
       limit = 20 * s,
       hint = "Hartmann's pouch to the patient's right and towards you; look in from the left",
@@ -112,9 +96,7 @@ return calot.exercise {
   end,
 
   demo = function(t, p)
-    t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
-    t.fundus:close()
-    t.fundus:move_by({ -6.5 * mm, 12.3 * mm, 14.5 * mm }, { speed = 8 * mm / s })
+    technique.lift(t.fundus)
     t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })
     t.left:close()
     t:together(function()
@@ -124,7 +106,7 @@ return calot.exercise {
       t.laparoscope:look_at("gallbladder.neck", { distance = 75 * mm })
     end)
     t.laparoscope:look_at(open_edge(t), { distance = 75 * mm })
-    if p.demo == "expert" then expert(t) else clumsy(t) end
+    if p.demo == "expert" then expert(t) else technique.burn_wall(t.hook) end
   end,
 
   score = calot.score.weighted {

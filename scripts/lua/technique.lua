@@ -1,5 +1,5 @@
--- What demos of several exercises do with their hands: strands taken with the hook, clips set and tubes cut; and small
--- sums with points, { x, y, z } in the patient's frame.
+-- What several exercises share: a step; what demos do with their hands, such as strands taken with the hook, clips set
+-- and tubes cut; and small sums with points, { x, y, z } in the patient's frame.
 
 local calot = require "calot"
 local given = require "given"
@@ -20,6 +20,10 @@ function technique.unit(a) return technique.plus({ 0, 0, 0 }, a, 1 / technique.l
 
 local plus, minus, dot, length, unit =
   technique.plus, technique.minus, technique.dot, technique.length, technique.unit
+local function times(a, share) return plus({ 0, 0, 0 }, a, share) end
+local function cross(a, b)
+  return { a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1] }
+end
 
 -- ---- exposure
 
@@ -33,6 +37,27 @@ end
 function technique.angle_of_ducts(t)
   local neck, union, hilum = technique.triangle(t)
   return math.acos(dot(unit(minus(neck, union)), unit(minus(hilum, union))))
+end
+
+--- A step of an operation: the instrument `fundus` takes the gallbladder's fundus and pushes it up over the liver's
+--- edge, towards the patient's right shoulder, by 15 mm at least.
+function technique.lift_step(t)
+  local up = { -0.33, 0.6, 0.73 }
+  t:step("lift", "Take the fundus and push it up over the liver's edge", {
+    limit = 20 * s,
+    hint = "close the jaws on a fold of the fundus and push it towards the patient's right shoulder",
+  })
+  local hung = t:place("gallbladder.fundus")
+  t:wait_until(function()
+    return t.fundus:holds("gallbladder") and dot(minus(t:place("gallbladder.fundus"), hung), up) > 15 * mm
+  end)
+end
+
+--- The hand that does so.
+function technique.lift(grasper)
+  grasper:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
+  grasper:close()
+  grasper:move_by({ -6.5 * mm, 12.3 * mm, 14.5 * mm }, { speed = 8 * mm / s })
 end
 
 -- ---- the needle
@@ -65,11 +90,18 @@ end
 --- again, towards its heel, and out.
 local function draw_out(hook, back)
   local way, hangs = 15 * mm, 0.1 * N
-  hook:move_by(plus({ 0, 0, 0 }, back, way), { speed = 80 * mm / s })
+  hook:move_by(times(back, way), { speed = 80 * mm / s })
   if hook:force() < hangs then return end
-  hook:move_by(plus({ 0, 0, 0 }, back, -way - 3 * mm), { speed = 80 * mm / s })
+  hook:move_by(times(back, -way - 3 * mm), { speed = 80 * mm / s })
   hook:move_by({ 8 * mm, 0, 0 }, { speed = 40 * mm / s })
-  hook:move_by(plus({ 0, 0, 0 }, back, way + 3 * mm), { speed = 80 * mm / s })
+  hook:move_by(times(back, way + 3 * mm), { speed = 80 * mm / s })
+end
+
+--- A mistake: current on the gallbladder's wall beside its neck, until it is open; then the hook leaves.
+function technique.burn_wall(hook)
+  hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
+  hook:activate(1 * s)
+  hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
 end
 
 local how_to_take = {
@@ -109,22 +141,19 @@ function technique.take(t, hook, tissue, how)
     local function may_burn()
       return hook:touching() and not (off and hook:clearance(off.organ) < off.clear)
     end
-    hook:move_until(lies_on_it, { along = plus({ 0, 0, 0 }, back, -1), speed = 25 * mm / s, limit = 8 * mm })
+    hook:move_until(lies_on_it, { along = times(back, -1), speed = 25 * mm / s, limit = 8 * mm })
     local standing = #t:strands(tissue)
     for _ = 1, how.tries do
       if not may_burn() or #t:strands(tissue) < standing then break end
       hook:activate(0.1 * s)
     end
     missed = #t:strands(tissue) < standing and 0 or missed + 1
-    hook:move_by(plus({ 0, 0, 0 }, back, 5 * mm), { speed = 80 * mm / s })
+    hook:move_by(times(back, 5 * mm), { speed = 80 * mm / s })
   end
 end
 
 -- ---- the plane between two organs
 
-local function cross(a, b)
-  return { a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1] }
-end
 local function across(a, normal) return plus(a, normal, -dot(a, normal)) end
 
 --- Where x and y of an instrument's own frame point for a shaft from a port to a place, not turned.
@@ -151,7 +180,7 @@ local function inward(strand, all, axis)
   for _, other in ipairs(all) do
     if length(minus(other.middle, strand.middle)) < near then centre, count = plus(centre, other.middle), count + 1 end
   end
-  local way = across(minus(plus({ 0, 0, 0 }, centre, 1 / count), strand.middle), axis)
+  local way = across(minus(times(centre, 1 / count), strand.middle), axis)
   return length(way) > 0.5 * mm and unit(way) or nil
 end
 
@@ -166,7 +195,7 @@ local function stroke(hook, tissue, how, way, axis)
     if on_it then hook:activate(0.12 * s) end
     local aside = 0.5 * (hook:clearance(others[1]) - hook:clearance(others[2]))
     aside = math.max(-0.5 * mm, math.min(0.5 * mm, aside))
-    local step = plus(plus({ 0, 0, 0 }, way, on_it and 0.5 * mm or 1.5 * mm), axis, -aside)
+    local step = plus(times(way, on_it and 0.5 * mm or 1.5 * mm), axis, -aside)
     local _, gone = hook:move_until(function()
       local met = hook:contact("tip")
       return hook:force("tip") > how.hardest or hook:force() > 2 * N
@@ -192,6 +221,7 @@ function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local slack, missed, rolled = 10e-3 * N, 0, 0
   while missed < 10 and not (how.is_done and how.is_done()) do
+    local torn = t:torn(tissue)
     local all, taut = taut_strands(t, tissue, slack)
     if #taut == 0 then return end
     if how.stretch then how.stretch(taut[1].tension) end
@@ -205,7 +235,7 @@ function technique.free(t, hook, tissue, how)
       local turn = turned - rolled
       local half_turns = math.floor(turn / math.pi + 0.5) -- the foot may point either way across
       turn = turn - math.pi * half_turns
-      if half_turns % 2 ~= 0 then foot = plus({ 0, 0, 0 }, foot, -1) end
+      if half_turns % 2 ~= 0 then foot = times(foot, -1) end
       if math.abs(turn) > 25 * deg then
         hook:rotate(turn, { speed = 400 * deg / s })
         rolled = rolled + turn
@@ -214,9 +244,9 @@ function technique.free(t, hook, tissue, how)
       hook:move_to(plus(plus(heel, back, 14 * mm), way, -5 * mm), { speed = 100 * mm / s })
       hook:move_to(plus(heel, way, -4 * mm), { speed = 60 * mm / s })
       stroke(hook, tissue, how, way, axis)
-      hook:move_by(plus(plus({ 0, 0, 0 }, way, -2 * mm), back, 14 * mm), { speed = 100 * mm / s })
+      hook:move_by(plus(times(way, -2 * mm), back, 14 * mm), { speed = 100 * mm / s })
     end
-    missed = #t:strands(tissue) < #all and 0 or missed + 1
+    missed = t:torn(tissue) > torn and 0 or missed + 1
   end
 end
 
@@ -271,7 +301,7 @@ function technique.hand(t, name, port)
   end
   self.about = about
   local function back(way, fast)
-    self.tool:move_by(plus({ 0, 0, 0 }, unit(minus(port, self.tool:tip())), way), { speed = fast or 150 * mm / s })
+    self.tool:move_by(times(unit(minus(port, self.tool:tip())), way), { speed = fast or 150 * mm / s })
   end
   self.back = back
   --- Clips at these shares of a tube's way: jaws that come about it, then fire.
@@ -314,7 +344,8 @@ local t, tool, tube, a, b = { "t", given.exercise }, { "tool", given.tool }, { "
   { "a", given.three }, { "b", given.three }
 for name, takes in pairs {
   plus = { a, b, { "share", given.optional(given.number) } }, minus = { a, b }, dot = { a, b }, length = { a },
-  unit = { { "a", given.way } }, triangle = { t }, angle_of_ducts = { t },
+  unit = { { "a", given.way } }, triangle = { t }, angle_of_ducts = { t }, lift_step = { t }, lift = { tool },
+  burn_wall = { tool },
   draw_slack = { t, tool, { "slack", given.above_zero } },
   take = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
   free = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },

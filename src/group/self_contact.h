@@ -35,7 +35,8 @@ inline constexpr double couple_below = 1.25 * self_barrier.range, uncouple_above
 /// 1 nm, from where each solve began far from balance (a held fold turned by 240 degrees took 43 s, now 20). And steep:
 /// near an edge's end, where the pair fades, a pressure by 1 / distance let a drawn fold come to 1e-13 m. No solve
 /// found out from there, as rounding decided its steps, and the field stood still for good.
-inline constexpr Barrier self_edge_barrier{0.25 * self_barrier.range, 10 * self_barrier.stiffness, 0, true};
+inline constexpr Barrier self_edge_barrier{
+    .range = 0.25 * self_barrier.range, .stiffness = 10 * self_barrier.stiffness, .steep = true};
 /// Of these: couple_below and uncouple_above in proportion.
 constexpr double edges_couple(double of_points) {
   return of_points * (self_edge_barrier.range / self_barrier.range);

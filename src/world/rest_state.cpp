@@ -36,7 +36,6 @@ bool take_factor(const RestState& state, Workers* workers, NewtonWorkspace& work
   work.border.compliances = state.compliances;
   work.border.solve_with(work.factor, workers);
   work.factored = true;
-  work.shifted = state.shifted;
   return true;
 }
 
