@@ -89,12 +89,19 @@ Result<Target> make_colour_target(const GlFunctions& gl, int width, int height) 
   return checked(gl, target, "colour");
 }
 
+Result<Target> make_measured_target(const GlFunctions& gl, int width, int height) {
+  Target target = begin_target(gl, width, height);
+  target.colour = make_texture(gl, {GL_RGBA32F, GL_RGBA, GL_FLOAT, width, height, false});
+  attach(gl, GL_COLOR_ATTACHMENT0, target.colour);
+  return checked(gl, target, "measured");
+}
+
 Result<Target> make_multisample_target(const GlFunctions& gl, int width, int height, int samples) {
   Target target = begin_target(gl, width, height);
   gl.GenRenderbuffers(1, &target.colour);
   gl.GenRenderbuffers(1, &target.depth);
   gl.BindRenderbuffer(GL_RENDERBUFFER, target.colour);
-  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
+  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA16F, width, height);
   gl.BindRenderbuffer(GL_RENDERBUFFER, target.depth);
   gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT32F, width, height);
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.colour);
@@ -104,7 +111,7 @@ Result<Target> make_multisample_target(const GlFunctions& gl, int width, int hei
 
 Result<Target> make_resolved_target(const GlFunctions& gl, int width, int height) {
   Target target = begin_target(gl, width, height);
-  target.colour = make_texture(gl, {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height, true});
+  target.colour = make_texture(gl, {GL_RGBA16F, GL_RGBA, GL_FLOAT, width, height, true});
   target.depth =
       make_texture(gl, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height, false});
   attach(gl, GL_COLOR_ATTACHMENT0, target.colour);

@@ -27,11 +27,13 @@ struct Target {
   int width = 0, height = 0;
 };
 
-/// Colour only, one sample.
+/// Colour only, one sample: RGBA8, or RGBA32F for what is measured.
 Result<Target> make_colour_target(const GlFunctions& gl, int width, int height);
-/// Colour (RGBA8) and depth (32-bit float) renderbuffers with `samples` samples a pixel.
+Result<Target> make_measured_target(const GlFunctions& gl, int width, int height);
+/// Colour (RGBA16F: light that another exposure scales must not lie in steps) and depth (32-bit float) renderbuffers with
+/// `samples` samples a pixel.
 Result<Target> make_multisample_target(const GlFunctions& gl, int width, int height, int samples);
-/// What a multisampled target is resolved into: colour and depth textures.
+/// What a multisampled target is resolved into: such colour and depth as textures.
 Result<Target> make_resolved_target(const GlFunctions& gl, int width, int height);
 /// Depth only, compared in hardware (sampler2DShadow).
 Result<Target> make_shadow_target(const GlFunctions& gl, int side);

@@ -50,11 +50,11 @@ struct OffscreenRenderer::Impl {
   Lens lens;
   int width, height;
   DrawQuality quality;
-  Target shadow, drawn, resolved, occlusion, smooth_occlusion, glow, blurred, picture;
+  Target shadow, drawn, resolved, occlusion, smooth_occlusion, glow, blurred, meter, exposure, picture;
   GLuint noise = 0, vertices = 0, indices = 0, vertex_array = 0, empty_array = 0;
   std::array<GLuint, all_materials.size()> scene_programs{};
   GLuint shadow_program = 0, occlusion_program = 0, average_program = 0, glow_program = 0, blur_program = 0,
-         lens_program = 0;
+         meter_program = 0, exposure_program = 0, lens_program = 0;
   SceneArrays arrays;
   std::vector<VesselTexture> vessel_textures;
   const std::shared_ptr<const VesselMap> no_vessels =
@@ -76,6 +76,8 @@ struct OffscreenRenderer::Impl {
   void draw_shadow(const SceneCamera& camera);
   void draw_scene(const SceneCamera& camera);
   void draw_screen(const SceneCamera& camera);
+  void set_lens(GLuint program);
+  void expose(const SceneCamera& camera);
   void full_screen(GLuint program, const Target& target, std::initializer_list<GLuint> textures);
   Image read(GLuint framebuffer, int x, int y, int w, int h) const;
 
@@ -125,6 +127,8 @@ std::optional<Failure> OffscreenRenderer::Impl::build_programs() {
       {&average_program, "average", screen_vertex_shader(), average_fragment_shader()},
       {&glow_program, "glow", screen_vertex_shader(), glow_fragment_shader()},
       {&blur_program, "blur", screen_vertex_shader(), blur_fragment_shader()},
+      {&meter_program, "meter", screen_vertex_shader(), meter_fragment_shader()},
+      {&exposure_program, "exposure", screen_vertex_shader(), exposure_fragment_shader()},
       {&lens_program, "lens", screen_vertex_shader(), lens_fragment_shader()}};
   for (std::size_t i = 0; i < all_materials.size(); ++i)
     wanted.push_back({&scene_programs[i], fmt::format("material {}", i),
@@ -135,10 +139,11 @@ std::optional<Failure> OffscreenRenderer::Impl::build_programs() {
     *w.program = program.value();
     gl.UseProgram(program.value());
     // Texture units: 0 and 1 as each pass binds them; names a program does not have are ignored by OpenGL.
-    const char* const units[3][3] = {{"noise_volume", "picture", "depth_map"},
+    const char* const units[4][3] = {{"noise_volume", "picture", "depth_map"},
                                      {"shadow_map", "occlusion", ""},
-                                     {"glow", "vessel_map", ""}};
-    for (int unit = 0; unit < 3; ++unit)
+                                     {"glow", "vessel_map", ""},
+                                     {"exposure", "", ""}};
+    for (int unit = 0; unit < 4; ++unit)
       for (const char* name : units[unit])
         if (const GLint place = at(program.value(), name); place >= 0) gl.Uniform1i(place, unit);
   }
@@ -157,6 +162,8 @@ std::optional<Failure> OffscreenRenderer::Impl::build_targets() {
       {&smooth_occlusion, make_colour_target(gl, (w + 1) / 2, (h + 1) / 2)},
       {&glow, make_colour_target(gl, (w + 3) / 4, (h + 3) / 4)},
       {&blurred, make_colour_target(gl, (w + 3) / 4, (h + 3) / 4)},
+      {&meter, make_measured_target(gl, meter_cells, meter_cells)},
+      {&exposure, make_measured_target(gl, 1, 1)},
       {&picture, make_colour_target(gl, width, height)}};
   for (const auto& [place, target] : made) {
     if (!target) return target.failure();
@@ -302,6 +309,23 @@ void OffscreenRenderer::Impl::full_screen(GLuint program, const Target& target,
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+/// The lens' distortion: from the round field to the undistorted picture.
+void OffscreenRenderer::Impl::set_lens(GLuint program) {
+  set(program, "extent", lens.inner_extent(width, height));
+  gl.Uniform1f(at(program, "barrel"), static_cast<float>(lens.barrel));
+}
+
+/// What the camera makes of the light is a matter of this one picture: the same scene, the same exposure. Nothing is read
+/// back for it.
+void OffscreenRenderer::Impl::expose(const SceneCamera& camera) {
+  gl.UseProgram(meter_program);
+  set_lens(meter_program);
+  full_screen(meter_program, meter, {resolved.colour});
+  gl.UseProgram(exposure_program);
+  gl.Uniform1f(at(exposure_program, "asked"), static_cast<float>(camera.compensation));
+  full_screen(exposure_program, exposure, {meter.colour});
+}
+
 void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   gl.Disable(GL_DEPTH_TEST);
   gl.Disable(GL_CULL_FACE);
@@ -322,11 +346,11 @@ void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   full_screen(blur_program, blurred, {glow.colour});
   set(blur_program, "texel", Vec2(0, 1.0 / glow.height));
   full_screen(blur_program, glow, {blurred.colour});
+  expose(camera);
   gl.UseProgram(lens_program);
   const double radius = lens.field_radius(height);
   set(lens_program, "field", Vec2(0.5 * width / radius, 0.5 * height / radius));
-  set(lens_program, "extent", extent);
-  gl.Uniform1f(at(lens_program, "barrel"), static_cast<float>(lens.barrel));
+  set_lens(lens_program);
   gl.Uniform1f(at(lens_program, "alive"), is_training_box(arrays) ? 0.0f : 1.0f);
   // In software a pixel outside the round field costs as much as one inside, though its shader returns at once.
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture.framebuffer);
@@ -335,7 +359,8 @@ void OffscreenRenderer::Impl::draw_screen(const SceneCamera& camera) {
   const int half = static_cast<int>(std::ceil(radius)) + 1;
   gl.Enable(GL_SCISSOR_TEST);
   gl.Scissor(width / 2 - half, 0, 2 * half + 1, height);
-  full_screen(lens_program, picture, {resolved.colour, smooth_occlusion.colour, glow.colour});
+  full_screen(lens_program, picture,
+              {resolved.colour, smooth_occlusion.colour, glow.colour, exposure.colour});
   gl.Disable(GL_SCISSOR_TEST);
 }
 

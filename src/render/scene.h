@@ -60,7 +60,8 @@ struct SceneCamera {
   Vec3 up = Vec3::UnitZ();         ///< not parallel to direction
   double field_of_view = 1.3;      ///< rad, diameter of the round field
   double light_intensity = 1.0;    ///< 1: well exposed at 90 mm
-  Vec3 light_offset{0, 4e-3, 0};   ///< m, in camera axes (right, up, forward)
+  double compensation = 1.0;  ///< share of light_intensity that the camera's exposure does not make up for
+  Vec3 light_offset{0, 4e-3, 0};  ///< m, in camera axes (right, up, forward)
 };
 
 struct Scene {

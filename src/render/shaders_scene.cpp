@@ -263,13 +263,14 @@ void main() {
   mirrored += s.film * fresnel * 2.2 * l.around;
   vec3 hides = hidden_share(rest);
   mirrored *= SHINE;
-  vec4 inner = exposed(lit), outer = exposed(mirrored);
-  covered = vec4(hides, hides.g);
+  vec4 inner = exposed(lit, vec3(0.0)), outer = exposed(mirrored, mirrored);
+  // What it mirrors is screened over the rest: sums of a film's values would be far more light than both.
+  covered = 1.0 - (1.0 - vec4(hides, hides.g)) * (1.0 - outer);
   colour = vec4(inner.rgb * hides + outer.rgb * (1.0 - inner.rgb * hides), outer.a);
 #else
   lit += mirrored;
   lit += s.film * fresnel * 2.2 * l.around;
-  colour = exposed(lit);
+  colour = exposed(lit, mirrored);
 #endif
 }
 )";
@@ -301,12 +302,9 @@ Light light_at(vec3 n) {
   return l;
 }
 
-// Light to the sensor's picture: a filmic shoulder, gamma 2; the alpha keeps what the sensor could not.
-vec4 exposed(vec3 lit) {
-  vec3 x = 1.35 * lit;
-  vec3 filmic = clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
-  float beyond = clamp(0.35 * (dot(lit, vec3(0.3, 0.5, 0.2)) - 0.9), 0.0, 1.0);
-  return vec4(sqrt(filmic), beyond);
+// What is kept of light: the alpha is how much of a glint it is, of which the sensor glows.
+vec4 exposed(vec3 lit, vec3 mirrored) {
+  return vec4(film(lit), clamp(0.35 * (dot(mirrored, vec3(0.3, 0.5, 0.2)) - 0.9), 0.0, 1.0));
 }
 )";
 
@@ -335,7 +333,7 @@ void main() {
   vec3 mirror = METAL + EDGE * away * away * away * away * away;
   float spot = SHARP * exp2(11.5 * SHARP * (nh - 1.0)) + BROAD * exp2(20.0 * (nh - 1.0));
   vec3 lit = BASE * nl * l.strength * l.seen + mirror * (nl * spot * l.strength * l.seen + cavity(reflect(-v, n), l.around));
-  colour = exposed(lit);
+  colour = exposed(lit, lit);
 }
 )";
 
@@ -388,7 +386,7 @@ std::string scene_vertex_shader(Material material) { return header(material) + v
 
 std::string scene_fragment_shader(Material material) {
   const std::string common = header(material) + (shines_through(material) ? "#define SHINES_THROUGH\n" : "") +
-                             prelude + light_functions;
+                             prelude + film_functions() + light_functions;
   const char* const bile = "vec3(0.130, 0.172, 0.132)";
   switch (material) {
     case Material::gallbladder:

@@ -93,16 +93,22 @@ void main() {
 }
 
 std::string lens_fragment_shader() {
-  return R"(#version 330 core
+  return "#version 330 core\n" + film_functions() + R"(
 in vec2 uv;
 uniform sampler2D picture;
 uniform sampler2D occlusion;
 uniform sampler2D glow;
+uniform sampler2D exposure;
 uniform vec2 field;    // half the picture over the round field's radius
 uniform vec2 extent;   // of the undistorted picture over the tangent at the field's edge
 uniform float barrel;
 uniform float alive;   // 1: what shades itself is tissue, and shines red; 0: a training box
 out vec4 colour;
+// Bright light rolls off by how bright it is, not a colour channel: yellow stays yellow. Light above 0.5 nears 1 (d).
+vec3 rolled_off(vec3 light) {
+  float bright = dot(light, vec3(0.3, 0.5, 0.2)), above = max(bright - 0.5, 0.0);
+  return light * (bright - above + above / (1.0 + 2.0 * above)) / max(bright, 1e-6);
+}
 void main() {
   vec2 d = (2.0 * uv - 1.0) * field;
   float squared = dot(d, d);
@@ -113,8 +119,10 @@ void main() {
   vec2 at = d * (1.0 - barrel + barrel * squared) / extent * 0.5 + 0.5;
   vec4 seen = texture(picture, at);
   float ao = texture(occlusion, at).r;
-  vec3 c = seen.rgb * mix(mix(vec3(1.0), mix(vec3(ao), vec3(ao, ao * ao, ao * ao), alive), 0.85), vec3(1.0), seen.a);
-  c += 0.55 * texture(glow, at).r * vec3(1.0, 0.94, 0.90);
+  float scale = texelFetch(exposure, ivec2(0), 0).r;
+  vec3 light = scale * light_on(seen.rgb);
+  vec3 c = film(mix(rolled_off(light), light, seen.a)) * mix(mix(vec3(1.0), mix(vec3(ao), vec3(ao, ao * ao, ao * ao), alive), 0.85), vec3(1.0), seen.a);
+  c += 0.55 * min(scale, 1.0) * texture(glow, at).r * vec3(1.0, 0.94, 0.90);
   float grey = dot(c, vec3(0.30, 0.59, 0.11));
   c = grey + 1.08 * (c - grey);
   c *= 1.0 - 0.42 * squared * squared;

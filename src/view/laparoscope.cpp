@@ -11,7 +11,8 @@ SceneCamera laparoscope_camera(const LaparoscopeDefinition& scope, const Laparos
   camera.up = state.view.up;
   camera.field_of_view = scope.field_of_view;
   // Its standard follows the distance, as a surgeon's light source does: what is looked at is well lit.
-  camera.light_intensity = scope.light * scope.exposure * std::pow(state.distance / 90e-3, 2);
+  camera.compensation = scope.light * scope.exposure;
+  camera.light_intensity = camera.compensation * std::pow(state.distance / 90e-3, 2);
   return camera;
 }
 

@@ -212,6 +212,42 @@ TEST(Offscreen, FartherIsDarker) {
   }
 }
 
+/// A plate of fat lit so, beside where it mirrors the lamp: its mean red, green and blue.
+std::array<double, 3> fat_lit(OffscreenRenderer& renderer, double intensity, double compensation) {
+  Scene scene;
+  scene.meshes.push_back(plate(Material::fat, 90e-3, 400e-3));
+  scene.camera.light_intensity = intensity;
+  scene.camera.compensation = compensation;
+  const Image image = draw(renderer, scene);
+  std::array<double, 3> mean{};
+  for (int y = 130; y < 150; ++y)
+    for (int x = 110; x < 130; ++x)
+      for (std::size_t c = 0; c < 3; ++c) mean[c] += image.rgb[3 * (y * image.width + x) + c] / 400.0;
+  return mean;
+}
+
+TEST(Exposure, InTenTimesTheUsualLightYellowIsStillYellow) {
+  OffscreenRenderer renderer = make();
+  const auto usual = fat_lit(renderer, 1, 1), glaring = fat_lit(renderer, 10, 1);
+  EXPECT_GT(glaring[0], usual[0]) << "it is brighter all the same";
+  EXPECT_LT(glaring[2], 0.8 * glaring[0]) << "and not white";
+  EXPECT_LT(glaring[1], 245);
+}
+
+TEST(Exposure, LiftsWhatIsDarkByNoMoreThanItsLimit) {
+  OffscreenRenderer renderer = make();
+  const auto dim = fat_lit(renderer, 0.1, 1), darker = fat_lit(renderer, 0.05, 1);
+  EXPECT_LT(darker[0], 0.75 * dim[0]) << "half of the light is not made up for";
+}
+
+TEST(Exposure, LeavesWhatWasAskedFor) {
+  OffscreenRenderer renderer = make();
+  const double usual = fat_lit(renderer, 1, 1)[1], adapted = fat_lit(renderer, 2, 1)[1];
+  const double asked = fat_lit(renderer, 2, 2)[1];
+  EXPECT_LT(adapted, 1.08 * usual) << "twice the light is taken back for the most part";
+  EXPECT_GT(asked, 1.1 * usual) << "twice the exposure is not";
+}
+
 TEST(Offscreen, HighlightsFollowTheLight) {
   OffscreenRenderer renderer = make(300, 300);
   Scene scene = pear_scene();

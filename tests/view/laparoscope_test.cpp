@@ -37,6 +37,8 @@ TEST(Laparoscope, APictureIsAsBrightAsLightTimesExposure) {
   const double usual = intensity(scope);
   scope.light = 0.5, scope.exposure = 3;
   EXPECT_DOUBLE_EQ(intensity(scope), 1.5 * usual);
+  EXPECT_DOUBLE_EQ(camera_of(scope, Vec3::Zero(), Vec3(0, 0.15, -0.08)).compensation, 1.5)
+      << "the camera leaves that as it is";
 }
 
 TEST(Laparoscope, TheShaftRunsThroughThePortAtTheOpticsAngleAboveTheView) {
