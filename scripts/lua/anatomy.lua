@@ -22,7 +22,7 @@
 --     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it
 --   strength 1: how many times as strong tissue is, and as hard to divide: some 25 in a scarred triangle
 --   areolar_plane false: with true the cystic plate is the plane in which the gallbladder is taken off its bed: five
---     times as many strands, which current divides with a tenth of its energy: uncalibrated
+--     times as many strands, which current divides with a tenth of its energy: uncalibrated; drawn as fibres
 --   hepatic_ducts false: with true the right and the left hepatic duct, which join at the common duct's beginning, are
 --     there to be hurt: 10 mm (9) and 17 mm (17) long, 4 mm (3 to 4) across: common knowledge, uncalibrated. Without
 --     them the common duct comes out of the hilum, at no cost
@@ -346,7 +346,7 @@ local function tissues(p)
     { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2,
       strands = count(p.areolar_plane and 300 or 60), slack = 0.05, stiffness = 20 * kPa,
       strength = 30 * kPa * p.strength, break_energy = 300 * p.strength,
-      divide_energy = p.areolar_plane and 0.1 * divide or divide },
+      divide_energy = p.areolar_plane and 0.1 * divide or divide, looks = p.areolar_plane and "areolar" or "fat" },
     fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
     fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
     fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),

@@ -207,6 +207,7 @@
 ---@field radius? number of a strand, in its middle, as instruments feel it; 0: they pass through; uncalibrated; default 0.2 * mm; 0 to 2 mm
 ---@field divide_energy? number of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; uncalibrated; default 2.5e+06; 1000 to 1e+08
 ---@field covered? boolean true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is torn; default false
+---@field looks? "fat"|"areolar" how its strands are drawn: as yellow lobules of fat, or as the loose tissue of a plane, whose fine fibres whiten as they are stretched; default "fat"
 
 ---A shape that stays and is touched. Instruments stop at it.
 ---@class calot.ground

@@ -232,6 +232,10 @@ struct JointDefinition {
   double stiffness = 2e3;  ///< N/m, of all of it (d)
 };
 
+/// How a tissue's strands are drawn: as lobules of fat, or as the fibres of a loose (areolar) plane.
+enum class TissueLooks { fat, areolar };
+constexpr TissueLooks last_of(TissueLooks) { return TissueLooks::areolar; }
+
 /// Connective tissue between two organs, which may be dissected: strands from the surface of one to the nearest place of
 /// the other, slack until they are stretched, each standing for a part of the area. By area so that its number of strands
 /// changes nothing but how finely it tears.
@@ -251,6 +255,7 @@ struct TissueDefinition {
   /// J/m^2 of current's power that divides it: 1 mm of water, boiled away (d, uncalibrated).
   double divide_energy = 2.5e6;
   bool covered = false;  ///< by a leaf of peritoneum towards the front: how it looks, no more
+  TissueLooks looks = TissueLooks::fat;
 };
 
 enum class GroundType { plane, capsule, box };
@@ -445,7 +450,7 @@ struct Landmark {
   const char* doc;
   double
       along;  ///< share of the way from the neck's end to the fundus' end, from start to end, from back to edge; of a ring
-      ///< of the way round it from +x towards +y, as it was turned
+  ///< of the way round it from +x towards +y, as it was turned
   double
       side;  ///< across: -1 on the free side, 0 on the axis, 1 on the liver's side; of a lobe -1 below, 1 above
   enum class Of { hollow, tube, rigid, ring, lobe } of = Of::hollow;

@@ -118,7 +118,11 @@ std::vector<KeyTable> field_tables() {
                "uncalibrated"),
            flag("covered", &TissueDefinition::covered,
                 "true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is "
-                "torn")}),
+                "torn"),
+           choice("looks", &TissueDefinition::looks, {"fat", "areolar"},
+                  "how its strands are drawn: as yellow lobules of fat, or as the loose tissue of a plane, "
+                  "whose "
+                  "fine fibres whiten as they are stretched")}),
       keys_of<GroundDefinition>(
           "ground", "A shape that stays and is touched. Instruments stop at it.",
           {text("name", &GroundDefinition::name, "its name, unique"),

@@ -19,15 +19,17 @@ namespace calot {
 namespace {
 
 constexpr std::array all_materials{
-    Material::gallbladder, Material::membrane, Material::liver,      Material::fat,
-    Material::peritoneum,  Material::steel,    Material::insulation, Material::artery,
-    Material::capsule,     Material::bowel,    Material::hydrops,    Material::bile,
-    Material::blood,       Material::leaf,     Material::board,      Material::plastic};
+    Material::gallbladder, Material::membrane,   Material::liver,  Material::fat,     Material::peritoneum,
+    Material::steel,       Material::insulation, Material::artery, Material::capsule, Material::bowel,
+    Material::hydrops,     Material::bile,       Material::blood,  Material::leaf,    Material::board,
+    Material::plastic,     Material::areolar,    Material::cobweb};
 
-/// Omentum, bowel, boards and walls lie behind all else: their shadows are never seen. Light goes through a leaf.
+/// Omentum, bowel, boards and walls lie behind all else: their shadows are never seen. Light goes through a leaf, and
+/// round fibres.
 bool casts_shadow(Material material) {
   return material != Material::fat && material != Material::peritoneum && material != Material::bowel &&
-         material != Material::leaf && material != Material::board;
+         material != Material::leaf && material != Material::board && material != Material::areolar &&
+         material != Material::cobweb;
 }
 
 /// What lies around is no tissue.

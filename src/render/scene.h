@@ -28,11 +28,14 @@ enum class Material {
   leaf,  ///< a thin leaf of peritoneum with fine vessels; rest positions: along, across, and 1 mm where it is whole
   board,    ///< a training box's floor and walls: grey, matt
   plastic,  ///< what lies and stands on it: blue, smooth, dry
+  areolar,  ///< fibres of a loose plane; rest positions: along, beside others, and how taut, 1 mm: white; -1 mm: fat
+  cobweb,  ///< films between these fibres; rest positions: along, across, how taut
 };
 
 /// What lies behind it shines through: drawn after all that does not.
 inline bool shines_through(Material material) {
-  return material == Material::bile || material == Material::blood || material == Material::leaf;
+  return material == Material::bile || material == Material::blood || material == Material::leaf ||
+         material == Material::cobweb;
 }
 
 /// Blood vessels as a volume over rest positions: the share of each voxel that they fill.

@@ -193,6 +193,35 @@ vec3 hidden_share(vec3 p) {
 }
 )";
 
+// Fibres of loose tissue: a yellowish felt while slack, whitish and glistening when taut, with what is left of fine
+// vessels. p.z is how taut, and -1 on lobules of fat.
+const char* const areolar_material = R"(
+Surface surface_at(vec3 p) {
+  vec4 patches = noise(vec3(p.xy, 5.0), 2.8);
+  float taut = smoothstep(0.0, 0.8, p.z), fat = smoothstep(0.0, -0.5, p.z);
+  vec3 slack = mix(vec3(0.62, 0.47, 0.29), vec3(0.72, 0.62, 0.46), smoothstep(-0.5, 0.5, patches.a));
+  slack = mix(slack, vec3(0.50, 0.20, 0.15), 0.6 * smoothstep(0.15, 0.5, patches.r));
+  vec3 albedo = mix(slack, vec3(0.80, 0.76, 0.69), taut);
+  albedo = mix(albedo, vec3(0.70, 0.46, 0.17), fat);
+  return Surface(albedo, vec3(0.50, 0.42, 0.34), 0.2 * patches.rgb, 0.3, 140.0, 0.5 + taut);
+}
+)";
+
+// Films of loose tissue: a yellowish felt while slack, thin and whitish with holes when taut.
+const char* const cobweb_material = R"(
+#define SHINE 0.6
+Surface surface_at(vec3 p) {
+  vec4 folds = noise(vec3(p.xy, 3.0), 1.6);
+  vec3 albedo = mix(mix(vec3(0.60, 0.45, 0.28), vec3(0.68, 0.56, 0.40), smoothstep(-0.4, 0.4, folds.a)),
+                    vec3(0.76, 0.70, 0.62), smoothstep(0.0, 0.7, p.z));
+  return Surface(albedo, vec3(0.55, 0.42, 0.33), 0.3 * folds.rgb, 0.6, 120.0, 0.7);
+}
+vec3 hidden_share(vec3 p) {
+  float holes = smoothstep(-0.25, 0.35, noise(vec3(p.xy, 9.0), 1.3).a + 0.35 * (0.5 - p.z));
+  return vec3(mix(0.62, 0.30, clamp(p.z, 0.0, 1.0)) * (0.25 + 0.75 * holes));
+}
+)";
+
 const char* const peritoneum_material = R"(
 Surface surface_at(vec3 p) {
   vec4 middle = noise(p + 6.0 * broad.rgb, 9.0);
@@ -354,6 +383,8 @@ double broad_cell(Material material) {
       return 29;
     case Material::artery:
     case Material::leaf:
+    case Material::areolar:
+    case Material::cobweb:
       return 9;
     case Material::steel:
     case Material::insulation:
@@ -415,6 +446,10 @@ std::string scene_fragment_shader(Material material) {
       return common + liver_material + tissue_lighting;
     case Material::fat:
       return common + fat_material + tissue_lighting;
+    case Material::areolar:
+      return common + areolar_material + tissue_lighting;
+    case Material::cobweb:
+      return common + cobweb_material + tissue_lighting;
     case Material::peritoneum:
       return common + peritoneum_material + tissue_lighting;
     case Material::artery:

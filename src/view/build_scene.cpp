@@ -138,8 +138,7 @@ Scene SceneBuilder::build(const World& world) const {
     drawn.mesh.burnt = burnt_shares(world.field().organs[i], drawn.kept ? &*drawn.kept : nullptr);
     scene.meshes.push_back(std::move(drawn.mesh));
   }
-  if (SceneMesh tissue = tissue_mesh(world, detail_); !tissue.triangles.empty())
-    scene.meshes.push_back(std::move(tissue));
+  for (SceneMesh& tissue : tissue_meshes(world, detail_)) scene.meshes.push_back(std::move(tissue));
   if (SceneMesh leaf = leaf_mesh(world); !leaf.triangles.empty()) scene.meshes.push_back(std::move(leaf));
   for (SceneMesh& mesh : spill_meshes(world)) scene.meshes.push_back(std::move(mesh));
   for (const Organ& organ : world.field().organs) {

@@ -14,10 +14,10 @@
 namespace calot {
 namespace {
 
-constexpr double thickness = 1e-3;  // in units of rest positions: what a whole leaf has
-constexpr double clear = 0.25e-3;   // m, of the tubes that it covers: they are drawn by other triangles
-constexpr double wrapped = 1.1;     // rad, how far it reaches over a tube's front, beyond its crest (d)
-constexpr int columns_a_strand = 3, rows = 18;
+constexpr double thickness = 1e-3;       // in units of rest positions: what a whole leaf has
+constexpr double above_tubes = 0.25e-3;  // m, of the tubes that it covers: they are drawn by other triangles
+constexpr double wrapped = 1.1;          // rad, how far it reaches over a tube's front, beyond its crest (d)
+constexpr int columns_a_strand = 3, leaf_rows = 18;
 
 /// One strand, or what several are in the mean.
 struct Fibre {
@@ -112,7 +112,7 @@ Vec3 across(const Fibre& fibre, const std::array<double, 2>& radii, const Vec3& 
   const Vec3 up = (front - way * way.dot(front)).normalized();
   constexpr double over_tube = 0.22;  // of v, at either end
   const auto on_tube = [&](const Vec3& middle, double radius, double angle) -> Vec3 {
-    return middle + (radius + clear) * (std::cos(angle) * up + std::sin(angle) * way);
+    return middle + (radius + above_tubes) * (std::cos(angle) * up + std::sin(angle) * way);
   };
   if (v < over_tube) return on_tube(fibre.from, radii[0], -wrapped * (1 - v / over_tube));
   if (v > 1 - over_tube) return on_tube(fibre.to, radii[1], wrapped * (1 - (1 - v) / over_tube));
@@ -144,7 +144,7 @@ void lay_out(SceneMesh& mesh, const std::vector<Fibre>& at, double width) {
   for (std::size_t p = 0; p < mesh.positions.size(); ++p) {
     const Fibre& fibre = at[p % at.size()];
     const double u = static_cast<double>(p % at.size()) / static_cast<double>(columns),
-                 v = static_cast<double>(p / at.size()) / rows;
+                 v = static_cast<double>(p / at.size()) / leaf_rows;
     const double rim = smooth_step(0, 0.15, std::min(u, 1 - u)) * smooth_step(0, 0.2, std::min(v, 1 - v));
     mesh.rest_positions[p] = {fibre.at - at.front().at, v * width,
                               thickness * rim * smooth_step(0.35, 0.75, fibre.whole)};
@@ -162,7 +162,7 @@ void add_leaf(const Tissue& tissue, const std::vector<Organ>& organs, SceneMesh&
   const std::vector<Fibre> at = evened(fibres, one, other);
   const Vec3 front = front_of(at);
   const int columns = static_cast<int>(at.size()) - 1;
-  SceneMesh mesh = sheet(Material::leaf, columns, rows, [&](double u, double v) {
+  SceneMesh mesh = sheet(Material::leaf, columns, leaf_rows, [&](double u, double v) {
     return across(at[static_cast<std::size_t>(std::lround(u * columns))], radii, front, v);
   });
   face(mesh, front);

@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "field/field.h"
+#include "view/areolar_mesh.h"
+#include "view/scatter.h"
 #include "view/surfaces.h"
 
 namespace calot {
@@ -15,13 +17,6 @@ constexpr double shrinks = 0.35;  // by which share charred fat is thinner
 constexpr double torn_part =
     0.35;                      // of a strand's length: what is drawn of it at either end after it is torn
 constexpr double curls = 2.2;  // rad, by which the end of that has curled (d)
-
-/// A number in [0, 1) that is the same in every picture.
-double share_of(std::size_t strand, int lobule, int which) {
-  const double x = 12.9898 * static_cast<double>(strand) + 78.233 * lobule + 37.719 * which;
-  const double y = 43758.5453 * std::sin(x);
-  return y - std::floor(y);
-}
 
 /// A ball with dents, about the origin, as thick as 1.
 SceneMesh dented_ball(int columns, int rows) {
@@ -82,8 +77,8 @@ void add_lobule(const LobulePlace& place, double radius, double burnt, std::size
     out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
-void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::size_t first_strand,
-                const SceneMesh& form, SceneMesh& out) {
+void add_fat(const Tissue& tissue, const std::vector<Organ>& organs, std::size_t first_strand,
+             const SceneMesh& form, SceneMesh& out) {
   const std::vector<StrandLine> lines = strand_lines(tissue, organs);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const StrandLine& line = lines[k];
@@ -108,17 +103,26 @@ void add_tissue(const Tissue& tissue, const std::vector<Organ>& organs, std::siz
 
 }  // namespace
 
-SceneMesh tissue_mesh(const World& world, SceneDetail detail) {
+std::vector<SceneMesh> tissue_meshes(const World& world, SceneDetail detail) {
   static const SceneMesh fine_form = dented_ball(10, 7), coarse_form = dented_ball(6, 3);
   const SceneMesh& form = detail == SceneDetail::coarse ? coarse_form : fine_form;
-  SceneMesh out;
-  out.material = Material::fat;
+  SceneMesh fat;
+  fat.material = Material::fat;
+  AreolarMeshes areolar;
+  areolar.fibres.material = Material::areolar;
+  areolar.films.material = Material::cobweb;
   const Field& field = world.field();
   std::size_t strands = 0;
   for (const Tissue& tissue : field.tissues) {
-    add_tissue(tissue, field.organs, strands, form, out);
+    if (tissue.definition.looks == TissueLooks::areolar)
+      add_areolar(tissue, field.organs, strands, detail, areolar);
+    else
+      add_fat(tissue, field.organs, strands, form, fat);
     strands += tissue.strands->strands().size();
   }
+  std::vector<SceneMesh> out;
+  for (SceneMesh* mesh : {&fat, &areolar.fibres, &areolar.films})
+    if (!mesh->triangles.empty()) out.push_back(std::move(*mesh));
   return out;
 }
 

@@ -146,6 +146,14 @@ const TissueDefinition* tissue_called(const SceneDefinition& scene, const std::s
   return nullptr;
 }
 
+TEST(Anatomy, AnAreolarPlaneLooksLikeOneAndAnUsualPlateLikeFat) {
+  const auto looks = [](const std::string& anatomy) {
+    return tissue_called(scene_of(anatomy), "cystic_plate")->looks;
+  };
+  EXPECT_EQ(looks("anatomy.standard {}"), TissueLooks::fat);
+  EXPECT_EQ(looks("anatomy.standard { areolar_plane = true }"), TissueLooks::areolar);
+}
+
 TEST(Anatomy, ATissueThatIsPreparedEndsWhereItIsClearedToWithFewerStrandsOfTheSameArea) {
   const SceneDefinition scene = scene_of(
       "anatomy.standard { prepared = { triangle_fat = 0.5, cystic_plate = { 0.75, 1 }, artery_fat = 1, "

@@ -192,6 +192,11 @@ std::vector<Mistake> mistakes() {
       {"TissueWithoutAnEnd",
        with_anatomy("calot.anatomy('standard', { tissue = {\n { from = 'gallbladder' } } })"), "from =", "to",
        ""},
+      {"UnknownLooksOfTissue",
+       with_anatomy("calot.anatomy('standard', { organs = { {}, { name = 'duct', shape = { type = 'tube', "
+                    "points = { { 0, 0, 0 }, { 30 * mm, 0, 0 } } } } },\n tissue = { { from = 'gallbladder', "
+                    "to = 'duct',\n looks = 'areola' } } })"),
+       "looks =", "unknown looks", "areolar"},
       {"UnknownTissue", with_steps("\nlocal x = t:torn('plate')"), "t:torn", "unknown tissue", ""},
       {"StrandsOfAnUnknownTissue", with_steps("\nlocal x = t:strands('plate')"), "t:strands",
        "unknown tissue", ""},

@@ -25,10 +25,11 @@ struct Extent {
 
 Extent extent(const World& world) {
   Extent out;
-  for (const Vec3& p : tissue_mesh(world).positions) {
-    out.in_the_middle += std::abs(p.x() - 8e-3) < 1e-3;
-    out.front = std::max(out.front, p.z());
-  }
+  for (const SceneMesh& mesh : tissue_meshes(world))
+    for (const Vec3& p : mesh.positions) {
+      out.in_the_middle += std::abs(p.x() - 8e-3) < 1e-3;
+      out.front = std::max(out.front, p.z());
+    }
   return out;
 }
 
@@ -47,6 +48,57 @@ TEST(TissueMesh, WhatIsTornDrawsBackToBothSidesAndCurlsUpTowardsTheFront) {
   const Extent torn = extent(world);
   EXPECT_EQ(torn.in_the_middle, 0) << "the sheet is open there";
   EXPECT_GT(torn.front, whole.front + 1e-3) << "its edges stand up";
+}
+
+SceneDefinition areolar_sheet() {
+  SceneDefinition scene = sheet_between_tubes();
+  scene.anatomy.tissue[0].looks = TissueLooks::areolar;
+  return scene;
+}
+
+/// 1: all that is drawn of the fibres is as white as any; of no fibres 0.
+double whiteness(const World& world) {
+  double sum = 0, points = 1e-9;
+  for (const SceneMesh& mesh : tissue_meshes(world))
+    for (const Vec3& p : mesh.rest_positions)
+      if (p.z() >= 0) sum += p.z() / 1e-3, ++points;  // lobules of fat are below
+  return sum / points;
+}
+
+TEST(AreolarTissue, IsDrawnAsFibresAndFilms) {
+  std::vector<Material> materials;
+  for (const SceneMesh& mesh : tissue_meshes(World::create(areolar_sheet()).value()))
+    materials.push_back(mesh.material);
+  EXPECT_EQ(materials, (std::vector{Material::areolar, Material::cobweb}));
+}
+
+TEST(AreolarTissue, WhitensAsItIsStretched) {
+  World world = World::create(areolar_sheet()).value();
+  const double slack = whiteness(world);
+  FieldState state = world.state();
+  VecX& nodes = state.group.tissues[0].state.x;
+  for (Eigen::Index i = 2; i < nodes.size(); i += 3) nodes[i] += 12e-3;  // carried off by some hook
+  ASSERT_TRUE(world.restore(state));
+  EXPECT_LT(slack, 0.2);
+  EXPECT_GT(whiteness(world), slack + 0.3);
+}
+
+TEST(AreolarTissue, ATornStrandIsNoBridge) {
+  World world = World::create(areolar_sheet()).value();
+  EXPECT_GT(extent(world).in_the_middle, 0);
+  tear_all(world);
+  EXPECT_EQ(extent(world).in_the_middle, 0);
+  EXPECT_FALSE(tissue_meshes(world).empty()) << "a fuzz is left on both sides";
+}
+
+TEST(AreolarTissue, CoarseHasAThirdOfThePoints) {
+  const World world = World::create(areolar_sheet()).value();
+  const auto points = [&](SceneDetail detail) {
+    std::size_t sum = 0;
+    for (const SceneMesh& mesh : tissue_meshes(world, detail)) sum += mesh.positions.size();
+    return sum;
+  };
+  EXPECT_LT(3 * points(SceneDetail::coarse), points(SceneDetail::full));
 }
 
 SceneDefinition covered_sheet() {
