@@ -259,7 +259,7 @@ Surface heated(Surface s) {
   float blotch = textureLod(noise_volume, rest * (1.0 / (CELLS * 1.3)), 0.0).a * 2.0 - 1.0;
   float b = clamp(burnt * (1.0 + 0.25 * blotch), 0.0, 1.0);
   s.albedo = mix(s.albedo, vec3(0.60, 0.53, 0.43), smoothstep(0.04, 0.45, b));
-  s.albedo = mix(s.albedo, vec3(0.20, 0.085, 0.030), smoothstep(0.45, 0.75, b));
+  s.albedo = mix(s.albedo, BROWNED, smoothstep(0.45, 0.75, b));
   s.albedo = mix(s.albedo, vec3(0.024, 0.018, 0.015), smoothstep(0.75, 0.98, b));
   s.film *= 1.0 - 0.85 * smoothstep(0.1, 0.8, b);
   s.scatter *= 1.0 - 0.8 * smoothstep(0.4, 0.9, b);
@@ -397,6 +397,12 @@ double broad_cell(Material material) {
   return 10;
 }
 
+/// What heat makes of it before it is black: of the liver's capsule, raw red-brown parenchyma.
+const char* browned(Material material) {
+  const bool is_liver = material == Material::liver || material == Material::capsule;
+  return is_liver ? "vec3(0.095, 0.028, 0.018)" : "vec3(0.20, 0.085, 0.030)";
+}
+
 /// What the gallbladder's wall shows: what is in it, its vessels, its patches of fat.
 std::string wall_of(const char* bile, double vessels, const char* fat_bias) {
   return fmt::format("#define BILE {}\n#define VESSELS {:.2f}\n#define FAT_BIAS ({})\n", bile, vessels,
@@ -407,8 +413,8 @@ std::string wall_of(const char* bile, double vessels, const char* fat_bias) {
 std::string header(Material material) {
   return fmt::format(
       "#version 330 core\n#define CELLS {:.1f}\n#define GRADIENT_RANGE {:.3f}\n"
-      "#define BROAD_CELL {:.1f}\n",
-      static_cast<double>(noise_volume_cells), noise_gradient_range, broad_cell(material));
+      "#define BROAD_CELL {:.1f}\n#define BROWNED {}\n",
+      static_cast<double>(noise_volume_cells), noise_gradient_range, broad_cell(material), browned(material));
 }
 
 }  // namespace

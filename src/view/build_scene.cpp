@@ -2,6 +2,7 @@
 
 #include "anatomy/organ_frame.h"
 #include "liquid/aspirate.h"
+#include "view/burnt_shares.h"
 #include "view/clip_mesh.h"
 #include "view/instrument_mesh.h"
 #include "view/laparoscope.h"
@@ -68,27 +69,6 @@ SceneBuilder::SceneBuilder(const World& world, SceneDetail detail)
   }
 }
 
-namespace {
-
-/// One a drawn point, or one of each of these (null: all); none where nothing is burnt.
-std::vector<double> burnt_shares(const Organ& organ, const std::vector<int>* points) {
-  constexpr double wide = 1.6e-3;  // m, of a burn: the electrode's foot and what it heats around (d)
-  if (organ.burns.empty()) return {};
-  const std::vector<Vec3>& rest = organ.body->drawn_rest();
-  std::vector<double> shares(points == nullptr ? rest.size() : points->size(), 0.0);
-  for (const Burn& burn : organ.burns) {
-    const double most = std::min(1.0, burn.energy / organ.definition.wall.burn_energy);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const Vec3& place = rest[points == nullptr ? i : static_cast<std::size_t>((*points)[i])];
-      const double squared = (place - rest[burn.point]).squaredNorm() / (wide * wide);
-      shares[i] = std::min(1.0, shares[i] + most * std::exp(-squared));
-    }
-  }
-  return shares;
-}
-
-}  // namespace
-
 SceneMesh SceneBuilder::organ_mesh(const World& world, OrganIndex organ) {
   const OrganDefinition& definition = world.field().organ(organ).definition;
   const Pose to_organ = organ_frame(definition).inverse();
@@ -135,7 +115,7 @@ Scene SceneBuilder::build(const World& world) const {
                                 : moulds_.skin(world, index);
     drawn.mesh.positions = std::move(skin.positions);
     drawn.mesh.normals = std::move(skin.normals);
-    drawn.mesh.burnt = burnt_shares(world.field().organs[i], drawn.kept ? &*drawn.kept : nullptr);
+    drawn.mesh.burnt = burnt_shares(world.field(), index, drawn.kept ? &*drawn.kept : nullptr);
     scene.meshes.push_back(std::move(drawn.mesh));
   }
   for (SceneMesh& tissue : tissue_meshes(world, detail_)) scene.meshes.push_back(std::move(tissue));

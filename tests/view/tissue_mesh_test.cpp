@@ -2,6 +2,8 @@
 
 #include "field/field_state.h"
 #include "sim/act_rig.h"
+#include "sim/triangle_rig.h"
+#include "view/burnt_shares.h"
 #include "view/leaf_mesh.h"
 
 namespace calot {
@@ -99,6 +101,26 @@ TEST(AreolarTissue, CoarseHasAThirdOfThePoints) {
     return sum;
   };
   EXPECT_LT(3 * points(SceneDetail::coarse), points(SceneDetail::full));
+}
+
+double most_burnt(const World& world) {
+  const std::vector<double> shares = burnt_shares(world.field(), OrganIndex(0), nullptr);
+  return shares.empty() ? 0 : *std::max_element(shares.begin(), shares.end());
+}
+
+TEST(BurntShares, WhereALoosePlaneHangsIsAWhitishSheetThatCharsWithIt) {
+  SceneDefinition scene = test::triangle_scene();
+  EXPECT_EQ(most_burnt(World::create(scene).value()), 0) << "fat leaves none";
+  scene.anatomy.tissue[0].looks = TissueLooks::areolar;
+  World world = World::create(scene).value();
+  const double sheet = most_burnt(world);
+  EXPECT_GT(sheet, 0.05) << "whitish";
+  EXPECT_LT(sheet, 0.3) << "and no more";
+  FieldState state = world.state();
+  std::vector<double>& heated = state.group.tissues[0].heated;
+  heated.assign(heated.size(), 1e3);
+  ASSERT_TRUE(world.restore(state));
+  EXPECT_GT(most_burnt(world), 0.6);
 }
 
 SceneDefinition covered_sheet() {
