@@ -250,7 +250,7 @@
 ---@field distance? number from its tip to what it looks at; default 90 * mm; 10 to 400 mm
 ---@field field_of_view? number across the round picture; default 75 * deg; 20 to 120 deg
 ---@field light? number brightness of its light; 1: what it looks at is well lit; 0: it is off; default 1; 0 to 10
----@field exposure? number of the camera; a picture is as bright as light times exposure; default 1; 0.05 to 20
+---@field exposure? number of the camera, which adapts to bright and dark pictures by itself; what it makes of them is then as bright as light times exposure; default 1; 0.05 to 20
 ---@field horizon? "level"|"held" who keeps it level: the camera, or who turns the shaft that it is fixed to; default "level"
 ---@field show_structure? boolean draw elements and nodes on the organs, to look into the simulation; default false
 

@@ -226,7 +226,8 @@ std::vector<KeyTable> field_tables() {
                       number("light", &Scope::light, quantity::number, 0, 10, "a light's brightness",
                              "brightness of its light; 1: what it looks at is well lit; 0: it is off"),
                       number("exposure", &Scope::exposure, quantity::number, 0.05, 20, "a camera's exposure",
-                             "of the camera; a picture is as bright as light times exposure"),
+                             "of the camera, which adapts to bright and dark pictures by itself; what it "
+                             "makes of them is then as bright as light times exposure"),
                       choice("horizon", &Scope::horizon, {"level", "held"},
                              "who keeps it level: the camera, or who turns the shaft that it is fixed to"),
                       flag("show_structure", &Scope::show_structure,
