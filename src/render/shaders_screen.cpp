@@ -121,7 +121,8 @@ void main() {
   float ao = texture(occlusion, at).r;
   float scale = texelFetch(exposure, ivec2(0), 0).r;
   vec3 light = scale * light_on(seen.rgb);
-  vec3 c = film(mix(rolled_off(light), light, seen.a)) * mix(mix(vec3(1.0), mix(vec3(ao), vec3(ao, ao * ao, ao * ao), alive), 0.85), vec3(1.0), seen.a);
+  vec3 shade = mix(mix(vec3(1.0), mix(vec3(ao), vec3(ao, ao * ao, ao * ao), alive), 0.85), vec3(1.0), seen.a);
+  vec3 c = film(mix(rolled_off(light), light, seen.a)) * shade;
   c += 0.55 * min(scale, 1.0) * texture(glow, at).r * vec3(1.0, 0.94, 0.90);
   float grey = dot(c, vec3(0.30, 0.59, 0.11));
   c = grey + 1.08 * (c - grey);

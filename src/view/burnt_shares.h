@@ -7,8 +7,8 @@
 
 namespace calot {
 
-/// How far it is burnt at each of its drawn points, 0 to 1 (SceneMesh::burnt), or at each of `points` (null: all); none where
-/// nothing is. Where an areolar tissue hangs on an organ that is no tube, it is a little whitish, and charred where the
+/// How far it is burnt at each of its drawn points, 0 to 1 (SceneMesh::burnt), or at each of `points` (null: all); none
+/// where nothing is. Where an areolar tissue hangs on an organ that is no tube, it is a little whitish, and charred where the
 /// tissue was divided.
 std::vector<double> burnt_shares(const Field& field, OrganIndex organ, const std::vector<int>* points);
 
