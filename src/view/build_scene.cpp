@@ -80,7 +80,7 @@ std::vector<double> burnt_shares(const Organ& organ, const std::vector<int>* poi
     const double most = std::min(1.0, burn.energy / organ.definition.wall.burn_energy);
     for (std::size_t i = 0; i < shares.size(); ++i) {
       const Vec3& place = rest[points == nullptr ? i : static_cast<std::size_t>((*points)[i])];
-      const double squared = (place - rest[burn.point]).squaredNorm() / (wide * wide);
+      const double squared = (place - burn.at).squaredNorm() / (wide * wide);
       shares[i] = std::min(1.0, shares[i] + most * std::exp(-squared));
     }
   }
