@@ -24,12 +24,42 @@ bool may_reach(const Body& body, const VecX& x, const std::vector<Shape>& shapes
   });
 }
 
-/// Of the points that an organ is felt at, which lie 0.2 mm apart on a gallbladder, the nearest to some shapes.
+/// What of a surface is nearest to a shape.
 struct NearestSurface {
-  double distance =
-      std::numeric_limits<double>::infinity();  ///< m; infinite: none is nearer than was asked for
-  Vec3 at = Vec3::Zero();                       ///< m
+  double distance = std::numeric_limits<double>::infinity();  ///< m; infinite: nothing is near enough
+  Vec3 at = Vec3::Zero();                                     ///< m
 };
+
+/// On a triangle (columns, m) that carries a surface of such radii (m) around its corners. The distance is convex along it:
+/// steps from corner to corner that only go down end where it is least.
+NearestSurface nearest_on_triangle(const Shape& shape, const Mat3& corners, const Vec3& radii) {
+  constexpr double finest = 1e-3;  // of an edge
+  const auto distance = [&](const Vec3& weights) {
+    return signed_distance(shape, corners * weights) - radii.dot(weights);
+  };
+  Vec3 weights = Vec3::Constant(1.0 / 3);
+  double least = distance(weights);
+  for (double step = 1.0 / 3; step > finest;) {
+    bool lower = false;
+    for (int way = 0; way < 6; ++way) {
+      Vec3 next = weights;
+      const int from = way / 2, to = (from + 1 + way % 2) % 3;
+      const double moved = std::min(step, weights[from]);
+      next[from] -= moved;
+      next[to] += moved;
+      if (const double there = distance(next); there < least) {
+        weights = next;
+        least = there;
+        lower = true;
+      }
+    }
+    if (!lower) step *= 0.5;
+  }
+  const Vec3 at = corners * weights;
+  return {least, at - radii.dot(weights) * distance_slope(shape, at).gradient};
+}
+
+/// Of an organ's surface what is nearest to some shapes and nearer than `reach` (m).
 NearestSurface nearest_surface(const Organ& organ, const std::vector<Shape>& shapes, double reach) {
   const Body& body = *organ.body;
   const VecX& x = organ.state.x;
@@ -38,11 +68,16 @@ NearestSurface nearest_surface(const Organ& organ, const std::vector<Shape>& sha
   ContactLoads near;
   near.shapes = shapes;
   near.barrier.range = reach;
-  for_touching(body, x, near, gather_pairs(body, x, near, -contact_margin), 0,
-               [&](int point, int, const Vec3& at, const DistanceSlope& slope) {
-                 if (slope.distance < nearest.distance)
-                   nearest = {slope.distance, at - body.radius_at_contact(point) * slope.gradient};
-               });
+  const std::vector<double>& radii = body.skin_radii();
+  ContactPlaces places(body.skin(), x, radii);
+  for (const ContactPair& pair : gather_pairs(body, x, near, -contact_margin)) {
+    if (pair.distance >= nearest.distance) continue;
+    const Triangle& t = body.skin().triangles[pair.triangle];
+    const Vec3 around = radii.empty() ? Vec3::Zero().eval() : Vec3(radii[t[0]], radii[t[1]], radii[t[2]]);
+    const NearestSurface found =
+        nearest_on_triangle(shapes[pair.shape], places.corners(pair.triangle), around);
+    if (found.distance < nearest.distance) nearest = found;
+  }
   return nearest;
 }
 
@@ -76,14 +111,16 @@ std::size_t burnt_place(std::vector<Burn>& burns, const Vec3& at) {
   return nearest;
 }
 
-/// All that hang together with one of them, itself too: two places do where their rims meet.
+/// All that hang together with one of them, itself too. What counts to a place lies up to burn_radius from its middle: of
+/// two that meet the middles may be this far apart.
 std::vector<std::size_t> in_one_piece(const std::vector<Burn>& burns, std::size_t with) {
+  constexpr double meet = 3 * burn_radius;
   std::vector<std::size_t> piece{with};
   std::vector<char> known(burns.size(), 0);
   known[with] = 1;
   for (std::size_t i = 0; i < piece.size(); ++i)
     for (std::size_t k = 0; k < burns.size(); ++k) {
-      if (known[k] != 0 || (burns[k].at - burns[piece[i]].at).norm() > 2 * burn_radius) continue;
+      if (known[k] != 0 || (burns[k].at - burns[piece[i]].at).norm() > meet) continue;
       known[k] = 1;
       piece.push_back(k);
     }
