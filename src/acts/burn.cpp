@@ -1,85 +1,15 @@
 #include "acts/burn.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "acts/clearance.h"
 #include "base/units.h"
-#include "body/skin_bounds.h"
 #include "collision/simplex_distance.h"
 #include "group/contact_search.h"
 #include "liquid/perforate.h"
 
 namespace calot {
 namespace {
-
-/// Whether a body's surface may be nearer than `reach` (m) to one of some shapes, by boxes around both.
-bool may_reach(const Body& body, const VecX& x, const std::vector<Shape>& shapes, double reach) {
-  Eigen::AlignedBox3d box = skin_box(body, x);
-  const Vec3 wider = Vec3::Constant(reach + body.thickest());
-  box.min() -= wider;
-  box.max() += wider;
-  return std::any_of(shapes.begin(), shapes.end(), [&](const Shape& shape) {
-    const Bounds around = bounds(shape);
-    return box.intersects(Eigen::AlignedBox3d(around.lower, around.upper));
-  });
-}
-
-/// What of a surface is nearest to a shape.
-struct NearestSurface {
-  double distance = std::numeric_limits<double>::infinity();  ///< m; infinite: nothing is near enough
-  Vec3 at = Vec3::Zero();                                     ///< m
-};
-
-/// On a triangle (columns, m) that carries a surface of such radii (m) around its corners. The distance is convex along it:
-/// steps from corner to corner that only go down end where it is least.
-NearestSurface nearest_on_triangle(const Shape& shape, const Mat3& corners, const Vec3& radii) {
-  constexpr double finest = 1e-3;  // of an edge
-  const auto distance = [&](const Vec3& weights) {
-    return signed_distance(shape, corners * weights) - radii.dot(weights);
-  };
-  Vec3 weights = Vec3::Constant(1.0 / 3);
-  double least = distance(weights);
-  for (double step = 1.0 / 3; step > finest;) {
-    bool lower = false;
-    for (int way = 0; way < 6; ++way) {
-      Vec3 next = weights;
-      const int from = way / 2, to = (from + 1 + way % 2) % 3;
-      const double moved = std::min(step, weights[from]);
-      next[from] -= moved;
-      next[to] += moved;
-      if (const double there = distance(next); there < least) {
-        weights = next;
-        least = there;
-        lower = true;
-      }
-    }
-    if (!lower) step *= 0.5;
-  }
-  const Vec3 at = corners * weights;
-  return {least, at - radii.dot(weights) * distance_slope(shape, at).gradient};
-}
-
-/// Of an organ's surface what is nearest to some shapes and nearer than `reach` (m).
-NearestSurface nearest_surface(const Organ& organ, const std::vector<Shape>& shapes, double reach) {
-  const Body& body = *organ.body;
-  const VecX& x = organ.state.x;
-  NearestSurface nearest;
-  if (!may_reach(body, x, shapes, reach)) return nearest;
-  ContactLoads near;
-  near.shapes = shapes;
-  near.barrier.range = reach;
-  const std::vector<double>& radii = body.skin_radii();
-  ContactPlaces places(body.skin(), x, radii);
-  for (const ContactPair& pair : gather_pairs(body, x, near, -contact_margin)) {
-    if (pair.distance >= nearest.distance) continue;
-    const Triangle& t = body.skin().triangles[pair.triangle];
-    const Vec3 around = radii.empty() ? Vec3::Zero().eval() : Vec3(radii[t[0]], radii[t[1]], radii[t[2]]);
-    const NearestSurface found =
-        nearest_on_triangle(shapes[pair.shape], places.corners(pair.triangle), around);
-    if (found.distance < nearest.distance) nearest = found;
-  }
-  return nearest;
-}
 
 /// Where a place of an organ's surface (m) is at rest, m: the same place of what is drawn, whatever its triangles.
 Vec3 place_at_rest(const Organ& organ, const Vec3& at) {
@@ -138,9 +68,8 @@ std::vector<ReachedWall> reached_walls(Field& field, const std::vector<Shape>& s
   std::vector<ReachedWall> out;
   for (Organ& organ : field.organs) {
     const double reach = std::max(contact_gap, organ.definition.wall.burn_reach);
-    const NearestSurface nearest = nearest_surface(organ, shapes, reach);
-    if (const double weight = burn_weight(nearest.distance, reach); weight > 0)
-      out.push_back({&organ, weight, nearest.at});
+    if (const std::optional<Clearance> near = clearance_within(shapes, organ, reach))
+      out.push_back({&organ, burn_weight(near->distance, reach), near->place});
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "acts/burn.h"
+#include "acts/clearance.h"
 #include "base/units.h"
 #include "body/rod_body.h"
 #include "field/field_tissues.h"
@@ -50,22 +51,6 @@ bool heat(Tissue& tissue, std::size_t strand, double energy) {
   return true;
 }
 
-/// Of a tool, what current flows through: its jaws, or the electrode that its rod ends in.
-std::vector<Shape> working_shapes(const Tool& tool) {
-  const std::vector<Shape> all = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
-  std::vector<Shape> out;
-  for (int part = 0; part < shapes_per_tool; ++part)
-    if (conducts(tool.geometry, part)) out.push_back(all[static_cast<std::size_t>(part)]);
-  return out;
-}
-
-/// From a place to the nearest of some shapes, m.
-double distance_to(const std::vector<Shape>& shapes, const Vec3& place) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Shape& shape : shapes) nearest = std::min(nearest, signed_distance(shape, place));
-  return nearest;
-}
-
 /// Where a shut clip's legs are: from their ends to what joins them, m.
 std::array<Vec3, 2> ends_of(const Organ& organ, const Clip& clip) {
   const RodBody& rod = *organ.body->as_tube();
@@ -84,7 +69,8 @@ std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field,
       const auto [from, to] = ends_of(organ, clip);
       for (int k = 0; k <= looks; ++k)
         if (const Vec3 at = from + static_cast<double>(k) / looks * (to - from);
-            distance_to(shapes, at) < half)
+            std::any_of(shapes.begin(), shapes.end(),
+                        [&](const Shape& shape) { return signed_distance(shape, at) < half; }))
           return {{&organ, at}};
     }
   return std::nullopt;
@@ -100,13 +86,13 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
                       clip->second, EventCause::current});
   tool.on_clip = clip.has_value();
   const Organ* kept = nullptr;
-  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  Clearance nearest{std::numeric_limits<double>::infinity()};
   for (const Organ& organ : field.organs) {
     if (!active || organ.definition.keep_clear == 0) continue;
-    const Clearance found = clearance(shapes, organ);
-    if (found.distance >= organ.definition.keep_clear || found.distance >= nearest.distance) continue;
+    const std::optional<Clearance> found = clearance_within(shapes, organ, organ.definition.keep_clear);
+    if (!found || found->distance >= nearest.distance) continue;
     kept = &organ;
-    nearest = found;
+    nearest = *found;
   }
   if (kept != nullptr && !tool.beside_kept)
     events.push_back({EventKind::activation_beside, 0, tool.definition.name, kept->definition.name,
@@ -168,25 +154,6 @@ std::vector<WorldEvent> apply_current(Field& field, const std::vector<ToolLoad>&
     if (is_active(tool)) share_out(field, tool, heated[i], tool.definition.power * duration, events);
   }
   return events;
-}
-
-Clearance clearance(const Tool& tool, const Organ& organ) { return clearance(working_shapes(tool), organ); }
-
-Clearance clearance(const std::vector<Shape>& shapes, const Organ& organ) {
-  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-  const std::vector<double>& radii = organ.body->skin_radii();
-  // Of a tube, whose points stand far apart, between them too.
-  const std::size_t parts = organ.body->is_line() ? 8 : 1;
-  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
-  for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
-    const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
-    const Vec3 at =
-        skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
-    const double distance = distance_to(shapes, at) - (radii.empty() ? 0.0 : radii[p]);
-    if (distance < nearest.distance) nearest = {distance, at};
-  }
-  nearest.distance = std::max(0.0, nearest.distance);
-  return nearest;
 }
 
 }  // namespace calot

@@ -16,14 +16,4 @@ namespace calot {
 /// or lose their capsule; of a clip and of what is to be kept clear of there are only events. They have no time yet.
 std::vector<WorldEvent> apply_current(Field& field, const std::vector<ToolLoad>& loads, double duration);
 
-/// How near something is to an organ's skin.
-struct Clearance {
-  double distance = 0;  ///< m; 0 where they touch
-  Vec3 place;           ///< m, of the skin, nearest to it
-};
-/// Of the nearest of some shapes.
-Clearance clearance(const std::vector<Shape>& shapes, const Organ& organ);
-/// Of what a tool works with: its jaws, or what its rod ends in (`conducts`), as it is posed now.
-Clearance clearance(const Tool& tool, const Organ& organ);
-
 }  // namespace calot

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "acts/advance.h"
+#include "acts/clearance.h"
 #include "acts/clips.h"
 #include "acts/current.h"
 #include "acts/exchange.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "acts/burn.h"
+#include "acts/clearance.h"
 #include "acts/current.h"
 #include "base/units.h"
 #include "group/contact_search.h"
@@ -152,6 +153,21 @@ TEST(WoundsOfCurrent, BesideOneOfTwoWallsItHurtsThatByItsDistanceAndMidwayNone) 
       EXPECT_EQ(plane.taken(1 - wall), 0) << wall << ", m: " << gap;
       EXPECT_EQ(plane.taken(wall) > 0, gap < 0.3e-3);
     }
+}
+
+TEST(WoundsOfCurrent, ClearanceIsToTheSurfaceBetweenItsPointsToo) {
+  BetweenWalls plane(6.4e-3);
+  for (const double nearer : {-0.5e-3, 0.0, 0.4e-3}) {
+    plane.put_at(nearer);
+    for (const std::size_t wall : {0u, 1u})
+      EXPECT_NEAR(clearance(plane.field.tools[0], plane.organ(wall)).distance, plane.distance(wall), 0.01e-3);
+  }
+  // The liver's points lie up to 5 mm apart: to the nearest of them it is further.
+  const std::vector<Shape> end = working_shapes(plane.field.tools[0]);
+  EXPECT_FALSE(clearance_within(end, plane.organ(0), plane.distance(0) - 0.02e-3));
+  ASSERT_TRUE(clearance_within(end, plane.organ(0), plane.distance(0) + 0.02e-3));
+  EXPECT_NEAR(signed_distance(end[0], clearance_within(end, plane.organ(0), 5e-3)->place), plane.distance(0),
+              0.01e-3);
 }
 
 TEST(WoundsOfCurrent, WallsThatAreBothNearShareThePowerAndAllOfItIsCounted) {
