@@ -136,9 +136,9 @@ void share_out(Field& field, const Tool& tool, const std::vector<Heated>& strand
   const std::string& name = tool.definition.name;
   const std::vector<ReachedWall> walls = reached_walls(field, working_shapes(tool));
   double sum = strands.empty() ? 0.0 : 1.0;
-  for (const ReachedWall& wall : walls) sum += wall.weight;
+  for (const ReachedWall& wall : walls) sum += wall.weight();
   const double whole = energy / std::max(1.0, sum);
-  for (const ReachedWall& wall : walls) burn(wall, name, whole * wall.weight, events);
+  for (const ReachedWall& wall : walls) burn(wall, name, whole * wall.weight(), events);
   heat_strands(field, name, strands, whole, events);
 }
 
