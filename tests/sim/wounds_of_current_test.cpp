@@ -259,7 +259,7 @@ TEST(WoundsOfCurrent, WhatLiesAlongAWallBurnsALineAndATipASpot) {
     const std::vector<ReachedWall> walls =
         reached_walls(liver.field, {Capsule{end, end + length * side.along, 0.9e-3}});
     ASSERT_EQ(walls.size(), 1u);
-    EXPECT_NEAR(walls[0].weight(), 0.8, 0.15);
+    EXPECT_GT(walls[0].weight(), 0.6);
     burn(walls[0], "hook", 10, liver.events);
     EXPECT_NEAR(liver.taken(0), 10, 1e-12);
   };
