@@ -11,7 +11,7 @@
 namespace calot {
 namespace {
 
-/// The same in pieces along it that are no longer than a burnt place's radius.
+/// A shape in pieces along it, each once to twice as long as a burnt place's radius, but where it is shorter itself.
 std::vector<Shape> pieces_of(const Shape& shape) {
   std::vector<Shape> out;
   const auto count_of = [](double length) { return std::max(1, static_cast<int>(length / burn_radius)); };

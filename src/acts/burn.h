@@ -31,8 +31,8 @@ struct ReachedWall {
   std::vector<HeatedPlace> places;  ///< one or more, along what current flows through
   double weight() const;            ///< by what is nearest: the largest of them
 };
-/// Those of a field, in its organs' order. `shapes`: what current flows through, as it is made. It heats by pieces of 1 mm
-/// along it: what lies along a wall burns a line, and a tip a spot.
+/// Those of a field, in its organs' order. `shapes`: what current flows through, as it is made. It heats by pieces of 1 to
+/// 2 mm along it: what lies along a wall burns a line, and a tip a spot.
 std::vector<ReachedWall> reached_walls(Field& field, const std::vector<Shape>& shapes);
 
 /// Shares energy (J, >= 0) among a wall's heated places by their weights. What that begins is an event, without a time: a
