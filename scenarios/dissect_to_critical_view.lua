@@ -108,7 +108,7 @@ return calot.exercise {
 
   demo = function(t, p)
     local begun = t:time()
-    local function gives_up() return p.demo == "bail_out" and t:time() - begun > 12 * s end
+    local function gives_up() return p.demo == "bail_out" and t:time() - begun > 14 * s end
 
     t:together(function()
       t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })

@@ -110,13 +110,13 @@ local how_to_take = {
 }
 local where_to_keep_off = { organ = given.name, place = given.three, clear = given.above_zero }
 
---- Strand by strand: the hook's foot, which points to the patient's right, comes down on the nearest one, and current
---- flows until one has parted; else it comes down nearer to either end of it, as what a slack strand hangs on may keep
---- the hook off its middle, and then on all three nearer to its heel. Before a longer way it is drawn out. `how`: port,
---- where its shaft comes from; tries, of a tenth of a second; hardest, the force that ends its way down;
---- wanted(strand), if given, those that are taken; is_done(), if given, asked before each strand; keep_off, an organ
---- and a place of it: current flows no nearer to the organ than `clear`, and beside the place the heel comes down
---- first, on the middle, and the foot points away.
+--- Strand by strand: the hook's foot, which points to the patient's right, comes down on the nearest one and draws
+--- back off the walls that it lies on too, as they would be burnt. Current flows until one strand has parted; else the
+--- foot comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and
+--- then on all three nearer to its heel. Before a longer way it is drawn out. `how`: port, where its shaft comes from;
+--- tries, of a tenth of a second; hardest, the force that ends its way down; wanted(strand), if given, those that are
+--- taken; is_done(), if given, asked before each strand; keep_off, an organ and a place of it: current flows no nearer
+--- to the organ than `clear`, and beside the place the heel comes down first, on the middle, and the foot points away.
 function technique.take(t, hook, tissue, how)
   given.check(how, how_to_take, "technique.take", 2)
   if how.keep_off then given.check(how.keep_off, where_to_keep_off, "keep_off", 2) end
@@ -142,6 +142,10 @@ function technique.take(t, hook, tissue, how)
       return hook:touching() and not (off and hook:clearance(off.organ) < off.clear)
     end
     hook:move_until(lies_on_it, { along = times(back, -1), speed = 25 * mm / s, limit = 8 * mm })
+    hook:move_until(function()
+      local contact = hook:contact()
+      return contact == nil or contact.organ == tissue
+    end, { along = back, speed = 5 * mm / s, limit = 2 * mm })
     local standing = #t:strands(tissue)
     for _ = 1, how.tries do
       if not may_burn() or #t:strands(tissue) < standing then break end

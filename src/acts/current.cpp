@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "acts/burn.h"
+#include "acts/clearance.h"
 #include "base/units.h"
 #include "body/rod_body.h"
 #include "field/field_tissues.h"
-#include "liquid/perforate.h"
 
 namespace calot {
 namespace {
@@ -50,22 +51,6 @@ bool heat(Tissue& tissue, std::size_t strand, double energy) {
   return true;
 }
 
-/// Of a tool, what current flows through: its jaws, or the electrode that its rod ends in.
-std::vector<Shape> working_shapes(const Tool& tool) {
-  const std::vector<Shape> all = instrument_shapes(tool.trocar, tool.pose, tool.geometry);
-  std::vector<Shape> out;
-  for (int part = 0; part < shapes_per_tool; ++part)
-    if (conducts(tool.geometry, part)) out.push_back(all[static_cast<std::size_t>(part)]);
-  return out;
-}
-
-/// From a place to the nearest of some shapes, m.
-double distance_to(const std::vector<Shape>& shapes, const Vec3& place) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Shape& shape : shapes) nearest = std::min(nearest, signed_distance(shape, place));
-  return nearest;
-}
-
 /// Where a shut clip's legs are: from their ends to what joins them, m.
 std::array<Vec3, 2> ends_of(const Organ& organ, const Clip& clip) {
   const RodBody& rod = *organ.body->as_tube();
@@ -84,7 +69,8 @@ std::optional<std::pair<const Organ*, Vec3>> touched_clip(const Field& field,
       const auto [from, to] = ends_of(organ, clip);
       for (int k = 0; k <= looks; ++k)
         if (const Vec3 at = from + static_cast<double>(k) / looks * (to - from);
-            distance_to(shapes, at) < half)
+            std::any_of(shapes.begin(), shapes.end(),
+                        [&](const Shape& shape) { return signed_distance(shape, at) < half; }))
           return {{&organ, at}};
     }
   return std::nullopt;
@@ -100,13 +86,13 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
                       clip->second, EventCause::current});
   tool.on_clip = clip.has_value();
   const Organ* kept = nullptr;
-  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  Clearance nearest{std::numeric_limits<double>::infinity()};
   for (const Organ& organ : field.organs) {
     if (!active || organ.definition.keep_clear == 0) continue;
-    const Clearance found = clearance(shapes, organ);
-    if (found.distance >= organ.definition.keep_clear || found.distance >= nearest.distance) continue;
+    const std::optional<Clearance> found = clearance_within(shapes, organ, organ.definition.keep_clear);
+    if (!found || found->distance >= nearest.distance) continue;
     kept = &organ;
-    nearest = found;
+    nearest = *found;
   }
   if (kept != nullptr && !tool.beside_kept)
     events.push_back({EventKind::activation_beside, 0, tool.definition.name, kept->definition.name,
@@ -114,44 +100,46 @@ void judge_neighbours(const Field& field, Tool& tool, std::vector<WorldEvent>& e
   tool.beside_kept = kept != nullptr;
 }
 
-/// The organ whose skin what current flows through touches; null: none.
-Organ* touched_wall(Field& field, const Tool& tool, const PartLoad& load) {
-  if (!is_active(tool) || load.touches == 0) return nullptr;
-  const std::optional<OrganIndex> touched = organ_called(field, load.organ);
-  return touched ? &field.organ(*touched) : nullptr;
-}
-
-/// Leaves a mark, which grows as long as the current stays there.
-void mark(Organ& wall, const Vec3& at, double energy) {
-  if (energy == 0) return;
-  const int point = nearest_of(wall.body->drawn(wall.state.x).positions, at);
-  const auto known = std::find_if(wall.burns.begin(), wall.burns.end(),
-                                  [&](const Burn& burn) { return burn.point == point; });
-  if (known == wall.burns.end())
-    wall.burns.push_back({point, energy});
-  else
-    known->energy += energy;
-}
-
-/// Raised when it has taken what opens it: once, as long as the current stays there.
-void burn_wall(Organ* wall, Tool& tool, const Vec3& at, double energy, std::vector<WorldEvent>& events) {
-  if (wall == nullptr || wall->record != tool.burnt_record) tool.burnt = 0;
-  tool.burnt_record = wall == nullptr ? -1 : wall->record;
-  if (wall == nullptr) return;
-  mark(*wall, at, energy);
-  const OrganDefinition& organ = wall->definition;
-  const double limit = organ.wall.burn_energy;
-  if (tool.burnt >= limit) return;
-  tool.burnt += energy;
-  if (tool.burnt < limit) return;
-  const std::string& name = tool.definition.name;
-  if (is_hollow(organ.shape)) {
-    perforate(*wall, at, name);
-    events.push_back({EventKind::perforation, 0, name, organ.name, 0, at, EventCause::current});
+/// Current that flows while its instrument touches nothing: raised once it has for too long.
+void judge_dry(Tool& tool, const ToolLoad& load, double duration, std::vector<WorldEvent>& events) {
+  if (!is_active(tool) || load.touches > 0 || tool.ground.touches()) {
+    tool.dry = 0;
+  } else if (tool.dry < dry_limit) {
+    tool.dry = std::min(tool.dry + duration, dry_limit);
+    if (tool.dry == dry_limit) events.push_back({EventKind::dry_activation, 0, tool.definition.name, {}, 0});
   }
-  if (!organ.injury.partly.empty())
-    events.push_back(
-        {EventKind::injury, 0, name, organ.name, 0, at, EventCause::current, organ.injury.partly});
+}
+
+/// Strands take `energy` (J) evenly; those that have taken enough are divided.
+void heat_strands(Field& field, const std::string& instrument, const std::vector<Heated>& strands,
+                  double energy, std::vector<WorldEvent>& events) {
+  std::vector<double> areas(field.tissues.size(), 0.0);
+  for (const Heated& one : strands) {
+    Tissue& tissue = field.tissues[one.tissue];
+    if (heat(tissue, one.strand, energy / static_cast<double>(strands.size())))
+      areas[one.tissue] += tissue.strands->strands()[one.strand].area;
+  }
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    if (areas[t] == 0) continue;
+    const Tissue& tissue = field.tissues[t];
+    const std::string& name = tissue.definition.name;
+    events.push_back({EventKind::divided, 0, instrument, name, areas[t] / (units::mm * units::mm),
+                      std::nullopt, EventCause::current});
+    if (tissue.torn() == static_cast<int>(tissue.now.opened.size()))
+      events.push_back({EventKind::parted, 0, {}, name, 0, std::nullopt, EventCause::current});
+  }
+}
+
+/// Shares what a tool's current brings, J, among the walls that it reaches and the strands that it touches.
+void share_out(Field& field, const Tool& tool, const std::vector<Heated>& strands, double energy,
+               std::vector<WorldEvent>& events) {
+  const std::string& name = tool.definition.name;
+  const std::vector<ReachedWall> walls = reached_walls(field, working_shapes(tool));
+  double sum = strands.empty() ? 0.0 : 1.0;
+  for (const ReachedWall& wall : walls) sum += wall.weight();
+  const double whole = energy / std::max(1.0, sum);
+  for (const ReachedWall& wall : walls) burn(wall, name, whole * wall.weight(), events);
+  heat_strands(field, name, strands, whole, events);
 }
 
 }  // namespace
@@ -161,54 +149,11 @@ std::vector<WorldEvent> apply_current(Field& field, const std::vector<ToolLoad>&
   const std::vector<std::vector<Heated>> heated = heated_strands(field);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
-    if (!is_active(tool) || loads[i].touches > 0 || tool.ground.touches()) {
-      tool.dry = 0;
-    } else if (tool.dry < dry_limit) {
-      tool.dry = std::min(tool.dry + duration, dry_limit);
-      if (tool.dry == dry_limit)
-        events.push_back({EventKind::dry_activation, 0, tool.definition.name, {}, 0});
-    }
+    judge_dry(tool, loads[i], duration, events);
     judge_neighbours(field, tool, events);
-    const ToolPart end = tool.geometry.has_jaws() ? ToolPart::jaws : ToolPart::tip;
-    const PartLoad& load = loads[i].parts[static_cast<std::size_t>(end)];
-    burn_wall(touched_wall(field, tool, load), tool, load.at,
-              heated[i].empty() ? tool.definition.power * duration : 0, events);
-    std::vector<double> areas(field.tissues.size(), 0.0);
-    for (const Heated& one : heated[i]) {
-      Tissue& tissue = field.tissues[one.tissue];
-      if (heat(tissue, one.strand, tool.definition.power * duration / static_cast<double>(heated[i].size())))
-        areas[one.tissue] += tissue.strands->strands()[one.strand].area;
-    }
-    for (std::size_t t = 0; t < areas.size(); ++t) {
-      if (areas[t] == 0) continue;
-      const Tissue& tissue = field.tissues[t];
-      const std::string& name = tissue.definition.name;
-      events.push_back({EventKind::divided, 0, tool.definition.name, name, areas[t] / (units::mm * units::mm),
-                        std::nullopt, EventCause::current});
-      if (tissue.torn() == static_cast<int>(tissue.now.opened.size()))
-        events.push_back({EventKind::parted, 0, {}, name, 0, std::nullopt, EventCause::current});
-    }
+    if (is_active(tool)) share_out(field, tool, heated[i], tool.definition.power * duration, events);
   }
   return events;
-}
-
-Clearance clearance(const Tool& tool, const Organ& organ) { return clearance(working_shapes(tool), organ); }
-
-Clearance clearance(const std::vector<Shape>& shapes, const Organ& organ) {
-  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
-  const std::vector<double>& radii = organ.body->skin_radii();
-  // Of a tube, whose points stand far apart, between them too.
-  const std::size_t parts = organ.body->is_line() ? 8 : 1;
-  Clearance nearest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
-  for (std::size_t i = 0; i + parts <= parts * skin.size(); ++i) {
-    const std::size_t p = i / parts, next = std::min(p + 1, skin.size() - 1);
-    const Vec3 at =
-        skin[p] + static_cast<double>(i % parts) / static_cast<double>(parts) * (skin[next] - skin[p]);
-    const double distance = distance_to(shapes, at) - (radii.empty() ? 0.0 : radii[p]);
-    if (distance < nearest.distance) nearest = {distance, at};
-  }
-  nearest.distance = std::max(0.0, nearest.distance);
-  return nearest;
 }
 
 }  // namespace calot

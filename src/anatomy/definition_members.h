@@ -48,9 +48,9 @@ void visit_members(auto&& visit, MembersOf<FibreDefinition> auto& definition) {
 }
 void visit_members(auto&& visit, MembersOf<WallDefinition> auto& definition) {
   auto& [thickness, shear_modulus, stiffening, fibres, overstretch, perforation_stretch, pinch_limit,
-         burn_energy, density, retardation] = definition;
+         burn_energy, density, retardation, burn_reach, raw_energy] = definition;
   visit(thickness, shear_modulus, stiffening, fibres, overstretch, perforation_stretch, pinch_limit,
-        burn_energy, density, retardation);
+        burn_energy, density, retardation, burn_reach, raw_energy);
 }
 void visit_members(auto&& visit, MembersOf<BileDefinition> auto& definition) {
   auto& [density, fill_volume, fill_pressure] = definition;

@@ -123,6 +123,8 @@ const std::string* mesh_path(const OrganShape& shape);
 const std::vector<std::string>& shape_names();
 /// A closed shell with bile; else it has neither neck nor fundus, and no filling that is kept.
 inline bool is_hollow(const OrganShape& shape) { return shape.index() <= 3; }
+/// Soft inside under a thin capsule, which current takes off: a liver's lobe.
+inline bool has_capsule(const OrganShape& shape) { return std::holds_alternative<LobeShape>(shape); }
 
 /// Two families of fibres at `angle` to either side of the organ's axis (neck to fundus), tight only when
 /// stretched, fading towards the poles: fem/shell.h, FibreLayout. The defaults are the human gallbladder's: E
@@ -150,6 +152,10 @@ struct WallDefinition {
   double burn_energy = 15;  ///< J of current in one place: a spot of 2 mm, 2 mm deep, boiled away (d)
   double density = 0;       ///< kg/m^3; soft tissue 1050 (c); 0: neither weight nor inertia, as in the paper
   double retardation = 5e-3;  ///< s; its stress is that at x + this dx/dt, where it moves (d, uncalibrated)
+  double burn_reach =
+      0.3e-3;  ///< m: current that flows nearer than this heats it (acts/burn.h; d, uncalibrated)
+  double raw_energy =
+      2.5e6;  ///< J/m^2 that takes its capsule off: 1 mm of water, boiled away (d, uncalibrated)
 };
 
 /// Give one of the two; with neither the organ is filled to its unstressed volume.

@@ -356,7 +356,14 @@ std::vector<KeyTable> organ_tables() {
            number("density", &Wall::density, quantity::density, 0, 2000, "a wall's density",
                   "kg/m^3; 1050 is usual; 0: without weight and inertia"),
            number("retardation", &Wall::retardation, quantity::time, 0, 1, "a time of retardation",
-                  "how long stress lags behind a change of shape where motion is dynamic: it damps")}),
+                  "how long stress lags behind a change of shape where motion is dynamic: it damps"),
+           number("burn_reach", &Wall::burn_reach, quantity::length, 0, 5 * mm, "a reach of current's heat",
+                  "current that flows nearer to it heats it, the more the nearer; 0: only where it is "
+                  "touched; uncalibrated"),
+           number("raw_energy", &Wall::raw_energy, quantity::number, 1e4, 1e9,
+                  "an energy that takes a capsule off",
+                  "J/m^2 of current that leave a lobe's surface raw; 1 mm of water takes 2.5e6 to boil away; "
+                  "uncalibrated")}),
       keys_of<Fibres>(
           "fibres",
           "Two families of fibres (Holzapfel, Gasser, Ogden) on either side of the axis; they bear tension "

@@ -70,16 +70,12 @@ std::vector<Opening> openings_of(const Organ& whole, const BodyCut& cut, int sid
   return out;
 }
 
-/// Those that at rest are as near to one of the piece's drawn points as these are to each other.
+/// Those that reach one of the piece's drawn points.
 std::vector<Burn> burns_of(const Organ& whole, const Body& piece) {
-  constexpr double near = 1e-3;  // m
   std::vector<Burn> out;
   const std::vector<Vec3>& rest = piece.drawn_rest();
-  for (const Burn& burn : whole.burns) {
-    const Vec3& at = whole.body->drawn_rest()[burn.point];
-    const int nearest = nearest_of(rest, at);
-    if ((rest[nearest] - at).norm() < near) out.push_back({nearest, burn.energy});
-  }
+  for (const Burn& burn : whole.burns)
+    if ((rest[nearest_of(rest, burn.at)] - burn.at).norm() < burn_radius) out.push_back(burn);
   return out;
 }
 

@@ -140,6 +140,11 @@ std::vector<ApiFunction> session_functions() {
        {required(text("tissue", "", "its name"))},
        "number"},
       {"Session",
+       "raw",
+       "Surface of a liver's lobe that has lost its capsule to current until now, m^2.",
+       {organ(true)},
+       "number"},
+      {"Session",
        "divided",
        "Whether a tube, a duct or a vessel, has been divided. Its pieces then are organs of their own, "
        "\"cystic_duct.patient\" and \"cystic_duct.specimen\".",

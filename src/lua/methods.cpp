@@ -61,6 +61,11 @@ int volume(lua_State* L) {
   return 1;
 }
 
+int raw(lua_State* L) {
+  lua_pushnumber(L, organ_state(L, "raw").raw);
+  return 1;
+}
+
 int torn(lua_State* L) {
   ScriptSession& session = session_target(L, "torn");
   const Arguments arguments(L, session, "Session", "torn");
@@ -568,6 +573,7 @@ const Method own_methods[] = {{"Session", "wait", guarded<wait>},
                               {"Session", "pressure", guarded<pressure>},
                               {"Session", "volume", guarded<volume>},
                               {"Session", "torn", guarded<torn>},
+                              {"Session", "raw", guarded<raw>},
                               {"Session", "divided", guarded<divided>},
                               {"Session", "clips", guarded<clips>},
                               {"Session", "lost", guarded<lost>},

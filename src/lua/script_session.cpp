@@ -31,6 +31,7 @@ constexpr int levels = 3;
 constexpr double force_at[levels] = {0, 2, 10};  // N
 constexpr double share_of_filling[levels] = {0.5, 1, 2};
 constexpr double share_torn[levels] = {0, 0.5, 1};
+constexpr double raw_surface[levels] = {0, 5e-6, 1e-3};  // m^2
 constexpr double share_lost[levels] = {0, 0.1, 1};
 constexpr double share_seen[levels] = {0, 0.5, 1};
 constexpr double clear_by[levels] = {0, 5e-3, 50e-3};  // m
@@ -308,12 +309,16 @@ std::pair<Vec3, Vec3> ScriptSession::along(lua_State* L, const std::string& name
 void ScriptSession::expect_kind(lua_State* L, int index, const std::string& method) {
   const OrganDefinition organ =
       checking() ? known_organ(index) : world(L).field().organs[static_cast<std::size_t>(index)].definition;
-  const bool of_tubes = method == "clips" || method == "divided";
-  if (of_tubes ? std::holds_alternative<TubeShape>(organ.shape) : is_hollow(organ.shape)) return;
-  complain(
-      L,
-      fmt::format("'{}' {}", organ.name, of_tubes ? "is no tube" : "is no hollow organ: it keeps no liquid"),
-      of_tubes ? "name a duct or a vessel" : "name a gallbladder, or another organ with bile");
+  const auto expect = [&](bool is_it, const char* is_not, const char* hint) {
+    if (!is_it) complain(L, fmt::format("'{}' is {}", organ.name, is_not), hint);
+  };
+  if (method == "clips" || method == "divided")
+    expect(std::holds_alternative<TubeShape>(organ.shape), "no tube", "name a duct or a vessel");
+  else if (method == "raw")
+    expect(has_capsule(organ.shape), "no lobe: it has no capsule", "name a liver");
+  else
+    expect(is_hollow(organ.shape), "no hollow organ: it keeps no liquid",
+           "name a gallbladder, or another organ with bile");
 }
 
 bool ScriptSession::divided(lua_State* L, const std::string& name) {
@@ -422,11 +427,13 @@ InstrumentState ScriptSession::stand_in_instrument(int instrument) {
 }
 
 OrganState ScriptSession::stand_in_organ(int organ) {
-  const double share = share_of_filling[next_level()];
+  const int level = next_level();
+  const double share = share_of_filling[level];
   const BileDefinition bile = known_organ(organ).bile;
   OrganState state;
   state.pressure = share * bile.fill_pressure.value_or(usual_pressure);
   state.volume = share * bile.fill_volume.value_or(usual_volume);
+  state.raw = raw_surface[level];
   return state;
 }
 

@@ -95,8 +95,8 @@ class ScriptSession {
   bool can_act(lua_State* L, int instrument, InstrumentAction action, const std::string& command);
   /// A place on a tube, m, and its direction there, unit; of a stand-in where there is none, or after a complaint.
   std::pair<Vec3, Vec3> along(lua_State* L, const std::string& tube, double share);
-  /// Complains about an organ that is not of the kind that a method asks about: clips and divided of tubes, pressure and
-  /// volume of hollow organs.
+  /// Complains about an organ that is not of the kind that a method asks about: clips and divided of tubes, raw of lobes,
+  /// pressure and volume of hollow organs.
   void expect_kind(lua_State* L, int index, const std::string& method);
   /// Whether a tube has been divided; complains about what is none.
   bool divided(lua_State* L, const std::string& tube);

@@ -15,6 +15,13 @@ void restore(Organ& organ, const OrganSnapshot& snapshot) {
   static_cast<OrganMotion&>(organ) = snapshot;
 }
 
+double raw_area(const Organ& organ) {
+  if (!has_capsule(organ.definition.shape)) return 0;
+  double sum = 0;  // J
+  for (const Burn& burn : organ.burns) sum += burn.energy;
+  return sum / organ.definition.wall.raw_energy;
+}
+
 std::string quoted(const Organ& organ) { return "'" + organ.definition.name + "'"; }
 
 Failure at_organ(Failure failure, std::size_t index) {

@@ -89,14 +89,18 @@ void visit_members(auto&& visit, MembersOf<Opening> auto& hole) {
   visit(point, area, cause, rate, lost, drop, leaks);
 }
 
-/// What current has done to a wall, for pictures.
+/// Radius of a place that current burns, m: what it brings into a wall nearer to the place's middle than this, at rest,
+/// counts together. A wall's burn_energy boils away a spot that wide, and the hole that it leaves is as wide.
+inline constexpr double burn_radius = 1e-3;
+/// What current has brought into a wall at one place.
 struct Burn {
-  int point = 0;      ///< of what is drawn of it
-  double energy = 0;  ///< J
+  Vec3 at = Vec3::Zero();  ///< m, the place's middle, where the wall is at rest
+  double energy = 0;       ///< J, ever
+  bool told = false;       ///< the event raw_surface has said so of it
 };
 void visit_members(auto&& visit, MembersOf<Burn> auto& burn) {
-  auto& [point, energy] = burn;
-  visit(point, energy);
+  auto& [at, energy, told] = burn;
+  visit(at, energy, told);
 }
 
 /// All of an organ that a step changes, but for its body, which another one replaces.
@@ -141,6 +145,9 @@ struct Organ : OrganMotion {
 
 inline OrganMotion& motion_of(Organ& organ) { return organ; }
 inline const OrganMotion& motion_of(const Organ& organ) { return organ; }
+
+/// What current has taken off its capsule, m^2: what it brought there by the wall's raw_energy; 0 of what has no capsule.
+double raw_area(const Organ& organ);
 
 /// All that a step changes. `search` only remembers.
 struct OrganSnapshot : OrganMotion {

@@ -198,6 +198,15 @@ void sum_lost(const SceneDefinition& scene, const std::vector<LostState>& lost, 
   metrics["total.aspirated_mL"] = aspirated / units::mL;
 }
 
+void measure_raw(const SceneDefinition& scene, const Traces& traces, Metrics& metrics) {
+  const std::string raw = ".raw_mm2";
+  for (const OrganDefinition& organ : scene.anatomy.organs)
+    if (has_capsule(organ.shape)) metrics[organ.name + raw] = 0;
+  for (std::size_t i = 0; i < traces.organs.size(); ++i)
+    if (!traces.organs[i].empty() && traces.organs[i].back().raw > 0)
+      metrics[traces.organ_names[i] + raw] = traces.organs[i].back().raw / (units::mm * units::mm);
+}
+
 /// The owners' names of the exercise, "" for the total.
 std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner owner) {
   std::vector<std::string> names;
@@ -218,6 +227,11 @@ std::vector<std::string> owners(const ExerciseDefinition& exercise, MetricOwner 
       for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
         for (const OrganDefinition& organ : *organs)
           if (is_hollow(organ.shape)) names.push_back(organ.name);
+      return names;
+    case MetricOwner::has_capsule:
+      for (const auto* organs : {&exercise.scene.anatomy.organs, &exercise.later_organs})
+        for (const OrganDefinition& organ : *organs)
+          if (has_capsule(organ.shape)) names.push_back(organ.name);
       return names;
     case MetricOwner::holds_bile:
     case MetricOwner::holds_blood:
@@ -298,6 +312,7 @@ const std::vector<MetricRow>& metric_rows() {
       {"bile_lost_mL", holds_bile, "bile that left it by openings", EventKind::bile_leak},
       {"blood_lost_mL", holds_blood, "blood that left it by openings", EventKind::bleeding},
       {"aspirated_mL", hollow, "what needles drew out of it", EventKind::aspirated},
+      {"raw_mm2", has_capsule, "surface that lost its capsule to current", EventKind::raw_surface},
       {"lowest_frequency_Hz", organ,
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
       {"rest_shift_mm", organ, "how far its furthest point came to rest from where it is drawn"},
@@ -342,6 +357,7 @@ std::string pattern(const MetricRow& row) {
       return of(laparoscope_name);
     case MetricOwner::organ:
     case MetricOwner::hollow:
+    case MetricOwner::has_capsule:
     case MetricOwner::holds_bile:
     case MetricOwner::holds_blood:
     case MetricOwner::compared_organ:
@@ -423,6 +439,7 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
   for (const TissueState& tissue : traces.tissues)
     metrics[tissue.name + ".torn_pct"] = 100.0 * tissue.torn / tissue.strands;
   sum_lost(scene, traces.lost, metrics);
+  measure_raw(scene, traces, metrics);
   for (const StepRecord& step : progress.steps()) {
     if (step.ended >= 0) metrics[step.name + ".time_s"] = step.ended - step.started;
   }

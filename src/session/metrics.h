@@ -20,14 +20,16 @@ namespace calot {
 /// 1: overforce judged the sum of all forces on an instrument. 2: it judges those on its jaws.
 /// 3: ground is among what an instrument touches, is pressed by and hurts; a perforation is counted for each wall.
 /// 4: forces, pressures and stretches of steps that did not end in balance are left out, as overforce always left them.
-inline constexpr int measures_version = 4;
+/// 5: current hurts walls by its distance to them; a place of a wall keeps what it took, and opens once.
+inline constexpr int measures_version = 5;
 
 enum class MetricOwner {
   instrument,
   moved,  ///< an instrument or the laparoscope
   laparoscope,
   organ,
-  hollow,  ///< organ
+  hollow,       ///< organ
+  has_capsule,  ///< organ
   holds_bile,
   holds_blood,
   tissue,

@@ -79,7 +79,7 @@ void append_sample(const World& world, Traces& traces) {
       traces.organ_names.resize(row + 1);
     }
     traces.organ_names[row] = organ.name;
-    traces.organs[row].push_back({organ.pressure, organ.max_stretch, report.balanced});
+    traces.organs[row].push_back({organ.pressure, organ.max_stretch, report.balanced, organ.raw});
   }
   traces.lost = report.lost;
   for (const TissueState& tissue : report.tissues) {

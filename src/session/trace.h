@@ -24,13 +24,14 @@ struct InstrumentSample {
   bool waits = false;                      ///< outside, while another one was in its port
   double lag = 0;                          ///< m, of the tip behind its command: its hand gave way
   double pad_pressure = 0;                 ///< Pa, of its pads on the wall they hold
-  bool balanced = true;  ///< the step that ended here was; else its forces tell nothing
+  bool balanced = true;                    ///< the step that ended here was; else its forces tell nothing
 };
 
 struct OrganSample {
   double pressure = 0;  ///< Pa
   double max_stretch = 1;
   bool balanced = true;  ///< as an instrument's
+  double raw = 0;        ///< m^2
 };
 
 struct Traces {

@@ -94,6 +94,9 @@ const std::vector<EventRow>& event_rows() {
        true},
       {step_missed, "step_missed", "a step of the exercise can no longer be done; its text says why",
        "duration_s", false, false, true},
+      {raw_surface, "raw_surface",
+       "current has taken the capsule off more than 1 mm^2 of the liver in one piece; with that area",
+       "area_mm2", true, true, true},
   };
   return rows;
 }

@@ -47,8 +47,9 @@ enum class EventKind {
   step_done,
   step_timeout,
   step_missed,
+  raw_surface,
 };
-constexpr EventKind last_of(EventKind) { return EventKind::step_missed; }
+constexpr EventKind last_of(EventKind) { return EventKind::raw_surface; }
 
 struct EventRow {
   EventKind kind;

@@ -95,10 +95,11 @@ struct OrganState {
   int extensions = 0;      ///< places where an instrument has structural extensions
   int details = 0;         ///< nodes that they add
   std::vector<ClipState> clips = {};  ///< in the order of their places
+  double raw = 0;                     ///< m^2 that have lost their capsule to current
 };
 void visit_members(auto&& visit, MembersOf<OrganState> auto& state) {
-  auto& [name, record, pressure, volume, energy, max_stretch, extensions, details, clips] = state;
-  visit(name, record, pressure, volume, energy, max_stretch, extensions, details, clips);
+  auto& [name, record, pressure, volume, energy, max_stretch, extensions, details, clips, raw] = state;
+  visit(name, record, pressure, volume, energy, max_stretch, extensions, details, clips, raw);
 }
 
 struct TissueState {
@@ -138,7 +139,7 @@ struct SolveStatistics {
   /// Whether its last solve found a balance in which no more is asked of what is held than holds; else bodies stand where
   /// that left them.
   bool balanced = true;
-  double residual = 0;   ///< of that solve where it found none: how far from balance, as of NewtonResult
+  double residual = 0;  ///< of that solve where it found none: how far from balance, as of NewtonResult
   /// Changes of the active details, and those given up because the organ found no rest with them.
   int extensions_changed = 0, extensions_refused = 0;
   /// Wall time, not part of any hash: energies and their derivatives (those of contact too), factors, solves,

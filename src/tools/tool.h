@@ -87,10 +87,7 @@ struct ToolState {
   bool has_cut = false;   ///< its blades divided something since they opened last, for events
   int clips = 0;          ///< that it still carries
   bool on_clip = false, beside_kept = false;  ///< its current was let flow there at the last step, for events
-  double burnt =
-      0;  ///< J that its current has brought into one wall without a pause; at the wall's limit that opens
-  int burnt_record = -1;  ///< the organ of that wall, by its place on the world's roll; none: -1
-  bool waits = false;     ///< outside: another one is in its port (acts/exchange.h)
+  bool waits = false;                         ///< outside: another one is in its port (acts/exchange.h)
   NeedleState needle = {};
   InstrumentPose command = {};  ///< of the last step: a hand that gives way is not there
   bool closes = false;          ///< its jaws were commanded to close further in the last step
@@ -113,11 +110,11 @@ struct ToolState {
 };
 void visit_members(auto&& visit, MembersOf<ToolState> auto& state) {
   auto& [pose, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
-         beside_kept, burnt, burnt_record, waits, needle, command, closes, tissue_stiffness, stiffness_across,
-         roll_stiffness, meeting, ground, hurts_ground, drag, pressing, pinch_slope] = state;
+         beside_kept, waits, needle, command, closes, tissue_stiffness, stiffness_across, roll_stiffness,
+         meeting, ground, hurts_ground, drag, pressing, pinch_slope] = state;
   visit(pose, over_limit, jaw_stopped, lost, beside, action, dry, slipping, has_cut, clips, on_clip,
-        beside_kept, burnt, burnt_record, waits, needle, command, closes, tissue_stiffness, stiffness_across,
-        roll_stiffness, meeting, ground, hurts_ground, drag, pressing, pinch_slope);
+        beside_kept, waits, needle, command, closes, tissue_stiffness, stiffness_across, roll_stiffness,
+        meeting, ground, hurts_ground, drag, pressing, pinch_slope);
 }
 
 struct Tool : ToolState {

@@ -117,11 +117,12 @@ void report_states(const Field& field, StepReport& report) {
     const auto k = static_cast<std::size_t>(chunk);
     report.organs[k] = organ_state(field.organs[k]);
   });
-  report_tissues(field, report);
+  report_burnt(field, report);
   report.lost = field.spill.lost;
 }
 
-void report_tissues(const Field& field, StepReport& report) {
+void report_burnt(const Field& field, StepReport& report) {
+  for (std::size_t k = 0; k < field.organs.size(); ++k) report.organs[k].raw = raw_area(field.organs[k]);
   std::vector<TissueState>& out = report.tissues;
   out.clear();
   // Those of one name are pieces of one tissue, whose organ was divided.

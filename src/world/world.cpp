@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "acts/advance.h"
+#include "acts/clearance.h"
 #include "acts/clips.h"
 #include "acts/current.h"
 #include "acts/exchange.h"
@@ -162,7 +163,7 @@ void World::Impl::observe_step(const std::vector<InstrumentAction>& actions, dou
   // Of organs and strands alone: the report's have ground's in them.
   const std::vector<ToolLoad> loads = flows ? tool_loads(field) : std::vector<ToolLoad>(field.tools.size());
   const std::vector<WorldEvent> burnt = apply_current(field, loads, duration);
-  report_tissues(field, report);
+  report_burnt(field, report);
   events.insert(events.end(), begun.begin(), begun.end());
   events.insert(events.end(), hurt.begin(), hurt.end());
   events.insert(events.end(), burnt.begin(), burnt.end());

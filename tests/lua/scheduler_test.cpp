@@ -549,6 +549,20 @@ TEST(Steps, SeeWhatIsTorn) {
   EXPECT_THAT(played.printed, ::testing::ElementsAre("0.0", "true", "0.0\t0\t0", "1.0\t0"));
 }
 
+TEST(Steps, SeeWhatIsRawOfALiver) {
+  ScenarioText text =
+      with_steps("t:step('a', 'A') print(t:raw('liver')) t:wait(1.8 * s) print(t:raw('liver') > 0)");
+  text.scene =
+      "return { anatomy = { organs = { { name = 'liver', shape = { type = 'lobe', bed_width = 0, bed_depth = "
+      "0 "
+      "}, wall = { burn_reach = 5 * mm } } } }, laparoscope = { look_at = 'liver.edge' },\n"
+      "instruments = { left = { type = 'bipolar_electrode', port = 'right_subcostal' } } }";
+  text.demo = "t.left:approach('liver.edge', { speed = 400 * mm / s }) t.left:activate(0.1 * s)";
+  const Played played = play_own(text, 50, 2);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("0.0", "true"));
+}
+
 TEST(Steps, ErrorsWhileTheyRunNameTheScriptsLines) {
   const ScenarioText text = with_steps(
       "t:step('a', 'A') t:wait_until(function()\n local x = t:time() > 0.1 and nil\n return x + 1 end)");

@@ -188,6 +188,19 @@ TEST(Metrics, OrgansReportTheirPeaks) {
   EXPECT_EQ(measured(traces, "ball.max_stretch"), 1.3);
 }
 
+TEST(Metrics, WhatIsRawIsThatOfTheEndAndZeroOfAnUntouchedLiver) {
+  Traces traces = traced(50, 0.04, [](double) { return at(Vec3::Zero()); });
+  EXPECT_TRUE(std::isnan(measured(traces, "ball.raw_mm2"))) << "it has no capsule";
+  SceneDefinition scene = test::small_scene();
+  scene.anatomy.organs[0].shape = LobeShape{};
+  EXPECT_EQ(measure(scene, traces, {}).at("ball.raw_mm2"), 0);
+  traces.organ_names = {"ball"};
+  traces.organs = {{{0, 1, true, 0}, {0, 1, true, 2 * mm * mm}, {0, 1, false, 12.5 * mm * mm}}};
+  EXPECT_NEAR(measure(scene, traces, {}).at("ball.raw_mm2"), 12.5, 1e-9);
+  EXPECT_EQ(event_behind("raw_mm2"), EventKind::raw_surface);
+  EXPECT_EQ(metric_title("liver.raw_mm2"), "liver: raw, mm²");
+}
+
 TEST(Metrics, EveryMeasuredNameIsAnnouncedAndOnlyTheUnmeasurableIsMissing) {
   Traces traces = traced(50, 1, [](double t) { return at({0.05 * t, 0, 0}); });
   traces.organ_names = {"ball"};

@@ -175,9 +175,10 @@ TEST(EventCauses, CurrentThatStaysOnAWallGoesThroughItOnceAndBrieflyDoesNot) {
   // What flowed in leaves a mark where it did, with all its energy.
   double marked = 0;
   const Organ& tube = burns.scene.world.field().organs[0];
-  const std::vector<Vec3> drawn = tube.body->drawn(tube.state.x).positions;
+  const std::vector<Vec3> drawn = tube.body->drawn_positions(tube.state.x);
   for (const Burn& burn : tube.burns) {
-    EXPECT_LT((drawn.at(burn.point) - burns.scene.world.report().instruments[0].tip).norm(), 4e-3);
+    const Vec3& now = drawn.at(nearest_of(tube.body->drawn_rest(), burn.at));
+    EXPECT_LT((now - burns.scene.world.report().instruments[0].tip).norm(), 4e-3);
     marked += burn.energy;
   }
   EXPECT_NEAR(marked, 20, 1e-9) << "1 J in each of 20 steps";

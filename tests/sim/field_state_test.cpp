@@ -109,7 +109,6 @@ TEST(FieldState, EachPartOfItIsInTheStateHash) {
   differs("limit", [](FieldState& s) { s.tools[0].over_limit ^= true; });
   differs("on a clip", [](FieldState& s) { s.tools[0].on_clip ^= true; });
   differs("beside what is kept", [](FieldState& s) { s.tools[0].beside_kept ^= true; });
-  differs("burnt", [](FieldState& s) { s.tools[0].burnt += 1; });
   ASSERT_TRUE(path.world.restore(state));
   EXPECT_EQ(path.world.state_hash(), hash);
 }
@@ -133,6 +132,11 @@ TEST(FieldState, WhatIsListedInsideAPartOfItIsInTheStateHash) {
   const auto wet = [](FieldState& s, int first, int second) {
     s.spill.films = {{0, std::vector<WetPoint>(first)}, {0, std::vector<WetPoint>(second)}};
   };
+  const auto burnt = [](FieldState& s, const Burn& burn) { s.group.organs[0].burns = {burn}; };
+  differs("a burn", [&](FieldState& s) { burnt(s, {Vec3::Zero(), 1}); });
+  differs("its place", [&](FieldState& s) { burnt(s, {Vec3(1e-9, 0, 0), 1}); });
+  differs("its energy", [&](FieldState& s) { burnt(s, {Vec3::Zero(), 1.5}); });
+  differs("what was said of it", [&](FieldState& s) { burnt(s, {Vec3::Zero(), 1, true}); });
   differs("films", [&](FieldState& s) { wet(s, 1, 2); });
   differs("films of which the first is longer", [&](FieldState& s) { wet(s, 2, 1); });
   differs("what was drained", [](FieldState& s) { s.spill.drained[0] = 1e-9; });

@@ -208,6 +208,27 @@ TEST(HookedTissue, CurrentDividesWhatItsElectrodeTouchesByPowerAndTime) {
   EXPECT_EQ(world.report().instruments[0].force.norm(), 0);
 }
 
+TEST(HookedTissue, AStrandAndAWallThatIsNearShareThePowerByTheirWeights) {
+  SceneDefinition scene = railed(SolverMotion::dynamics, 100e3);
+  scene.anatomy.tissue[0].divide_energy = 1e8;
+  scene.anatomy.organs[0].wall.burn_reach = 5e-3;
+  World world = railed_world(scene);
+  test::Driver driver(world);
+  const double level = rail_height - 6e-3;
+  ASSERT_TRUE(driver.go({-95e-3, 90e-3, level}, 0, 12)) << driver.why();
+  ASSERT_TRUE(driver.go({-83.4e-3, 90e-3, level}, 0, 8)) << driver.why();
+  const double distance = world.clearance(ToolIndex(0), OrganIndex(0));
+  const double weight = (5e-3 - distance) / (5e-3 - 0.05e-3);
+  ASSERT_GT(weight, 0.1);
+  keep_acting(world, InstrumentAction::activate, 10);
+  double strands = 0, wall = 0;  // J
+  for (const double heated : world.field().tissues[0].now.heated) strands += heated;
+  for (const Burn& burn : world.field().organs[0].burns) wall += burn.energy;
+  EXPECT_NEAR(strands + wall, 10 * 30 / scene.solver.rate, 1e-9) << "J: 30 W, shared";
+  EXPECT_NEAR(wall / strands, weight, 0.03);
+  EXPECT_TRUE(world.field().organs[1].burns.empty()) << "the other's reach is 0.3 mm";
+}
+
 TEST(HookedTissue, JawsDivideAllThatTheyCarryAndTheLastStrandPartsTheTissue) {
   SceneDefinition scene = railed(SolverMotion::dynamics, 100e3);
   scene.anatomy.tissue[0].divide_energy = 1e4;
