@@ -145,6 +145,7 @@
 ---@field towards? string a landmark to move towards, instead of along
 ---@field speed? number largest speed of the tip; default 5 * mm / s; 0.1 to 500 mm / s
 ---@field limit? number how far the tip goes at most; default 20 * mm; 0.1 to 200 mm
+---@field active? boolean true: current flows until the motion ends; only for what can be activated; default false
 
 ---Options of an approach.
 ---@class calot.approach_options

@@ -168,88 +168,162 @@ local function frame_of(port, at)
     { 0, -math.cos(pitch), -math.sin(pitch) }
 end
 
---- The strands that stand, and those of them that are under tension, the tautest first.
-local function taut_strands(t, tissue, slack)
-  local all, taut = t:strands(tissue), {}
+local function middle_of(strands)
+  local sum = { 0, 0, 0 }
+  for _, strand in ipairs(strands) do sum = plus(sum, strand.middle) end
+  return times(sum, 1 / #strands)
+end
+
+--- The strands that stand, those of them that are under tension and longer than the hook's foot is thick, and of these
+--- the one nearest to a place.
+local function open_strands(t, tissue, place)
+  local all, open, nearest, least = t:strands(tissue), {}, nil, math.huge
   for _, strand in ipairs(all) do
-    if strand.tension > slack then taut[#taut + 1] = strand end
+    if strand.tension > 10e-3 * N and length(minus(strand.from, strand.to)) > 3.5 * mm then
+      open[#open + 1] = strand
+      local far = length(minus(strand.middle, place))
+      if far < least then nearest, least = strand, far end
+    end
   end
-  table.sort(taut, function(a, b) return a.tension > b.tension end)
-  return all, taut
+  return all, open, nearest
 end
 
---- Which way leads from a strand into those that stand around it, in the plane: from the open side inward.
-local function inward(strand, all, axis)
-  local near, centre, count = 9 * mm, { 0, 0, 0 }, 0
-  for _, other in ipairs(all) do
-    if length(minus(other.middle, strand.middle)) < near then centre, count = plus(centre, other.middle), count + 1 end
+--- The plane's front nearest to a place: see technique.free. nil: nothing is under tension.
+local function front_of(t, tissue, port, place)
+  local all, open, nearest = open_strands(t, tissue, place)
+  if not nearest then return nil end
+  local near, out, tension = {}, { 0, 0, 0 }, 0
+  for _, strand in ipairs(open) do
+    if length(minus(strand.middle, nearest.middle)) < 18 * mm then
+      near[#near + 1] = strand
+      out = plus(out, unit(minus(strand.from, strand.to)), strand.tension)
+      tension = math.max(tension, strand.tension)
+    end
   end
-  local way = across(minus(times(centre, 1 / count), strand.middle), axis)
-  return length(way) > 0.5 * mm and unit(way) or nil
+  local at = middle_of(near)
+  out = unit(out)
+  local along = unit(across(minus(at, port), out))
+  local inward = cross(out, along)
+  if dot(inward, minus(middle_of(all), at)) < 0 then inward = times(inward, -1) end
+  return { at = at, out = out, along = along, inward = inward, tension = tension, strands = near }
 end
 
---- A stroke along `way` in the plane's middle: current flows wherever the foot lies on the tissue. It ends after 12 mm,
---- or where the foot meets more than `hardest`, or the whole hook 2 N. `axis`: from the one organ to the other.
-local function stroke(hook, tissue, how, way, axis)
-  local others, long = how.between, 12 * mm
-  for _ = 1, 20 do
-    if how.is_done and how.is_done() then return end
-    local contact = hook:contact("tip")
-    local on_it = contact ~= nil and contact.organ == tissue
-    if on_it then hook:activate(0.12 * s) end
-    local aside = 0.5 * (hook:clearance(others[1]) - hook:clearance(others[2]))
-    aside = math.max(-0.5 * mm, math.min(0.5 * mm, aside))
-    local step = plus(times(way, on_it and 0.5 * mm or 1.5 * mm), axis, -aside)
-    local _, gone = hook:move_until(function()
-      local met = hook:contact("tip")
-      return hook:force("tip") > how.hardest or hook:force() > 2 * N
-        or not on_it and met ~= nil and met.organ == tissue
-    end, { along = step, speed = 25 * mm / s, limit = length(step) })
-    long = long - gone
-    if long < 0 or not on_it and gone < 0.05 * mm then return end
+--- Of each 2.5 mm of the front's way the foremost strand's middle, from the near side to the far one: but for those
+--- that stand 7 mm behind the very first, as the way to them leads over an organ.
+local function foremost(front)
+  local wide, behind, rows, line, least = 2.5 * mm, 7 * mm, {}, {}, math.huge
+  for _, strand in ipairs(front.strands) do
+    local from = minus(strand.middle, front.at)
+    local row, deep = math.floor(dot(from, front.along) / wide), dot(from, front.inward)
+    if not rows[row] or deep < rows[row].deep then rows[row] = { deep = deep, row = row, middle = strand.middle } end
+    least = math.min(least, deep)
   end
+  for _, row in pairs(rows) do
+    if row.deep < least + behind then line[#line + 1] = row end
+  end
+  table.sort(line, function(a, b) return a.row < b.row end)
+  return line
+end
+
+local harmless = 0.4 * mm -- from an organ's skin, beyond which current spares it
+
+local function presses(hook, how) return hook:force("tip") > how.hardest or hook:force() > 2.5 * N end
+
+local function lies_on(hook, tissue)
+  local contact = hook:contact("tip")
+  return contact ~= nil and contact.organ == tissue
+end
+
+--- How far the foot is from the organ that is nearer, and how far it would move off the first one to lie midway.
+local function between(hook, how)
+  local below, above = hook:clearance(how.between[1]), hook:clearance(how.between[2])
+  return math.min(below, above), 0.5 * (above - below)
+end
+
+--- One piece of a sweep, of 3 mm at most: with current, if the foot lies on the tissue, until it no longer does.
+local function sweep_on(hook, tissue, how, step, burns, is_done)
+  local since = 0
+  hook:move_until(function()
+    since = lies_on(hook, tissue) and 0 or since + 1
+    if is_done() or presses(hook, how) then return true end
+    if burns then return since > 3 or between(hook, how) < harmless end
+    return since == 0
+  end, { along = step, speed = (burns and 15 or 30) * mm / s, limit = length(step), active = burns })
+end
+
+--- Moves the hook to a place, with current while its foot lies on the tissue, and off the nearer organ where it presses
+--- on one or would burn it. Whether it came there.
+local function sweep_to(hook, tissue, how, front, place)
+  local eased = 0
+  local function is_done() return how.is_done ~= nil and how.is_done() end
+  for _ = 1, 30 do
+    local way = minus(place, hook:tip())
+    local far, on_it = length(way), lies_on(hook, tissue)
+    if far < 0.4 * mm then return true end
+    if is_done() then return false end
+    local skin, aside = between(hook, how)
+    if on_it and skin > harmless and hook:force("tip") > how.hardest then
+      hook:activate(0.12 * s)
+    elseif presses(hook, how) or on_it and skin < harmless then
+      if eased == 5 then return false end
+      eased = eased + 1
+      local off = aside > 0 and 0.8 * mm or -0.8 * mm
+      place = plus(place, front.out, off)
+      hook:move_by(plus(times(front.inward, -0.5 * mm), front.out, off), { speed = 30 * mm / s })
+    else
+      aside = skin < 1 * mm and math.max(-1 * mm, math.min(1 * mm, aside)) or 0
+      place = plus(place, front.out, aside)
+      local step = plus(times(way, math.min(1, 3 * mm / far)), front.out, aside)
+      sweep_on(hook, tissue, how, step, on_it, is_done)
+    end
+  end
+  return false
 end
 
 local how_to_free = {
-  port = given.three, hardest = given.above_zero, between = given.names, stretch = given.optional(given.called),
-  is_done = given.optional(given.called),
+  port = given.three, from = given.three, hardest = given.above_zero, between = given.names,
+  stretch = given.optional(given.called), is_done = given.optional(given.called),
 }
 
---- Takes a tissue off by strokes of the hook, where it is under tension: the foot, turned across strands and way,
---- sweeps from the open side into those that stand, midway between the two organs, and current flows while it lies on
---- them. It stops when nothing is under tension, or ten strokes in a row divide nothing. `how`: port, where the shaft
---- comes from; hardest, the force on its foot that ends a stroke; between, the two organs, first the one that the
---- tissue hangs on; stretch(tension), if given, called before each stroke with the tautest strand's tension, N, to
---- keep the plane under tension; is_done(), if given.
+--- Takes a tissue off by strokes of the hook along its front, where it stands open under tension. The foot points
+--- inward, 2 mm past the foremost strands; it sweeps along them from the near side to the far one, midway between the
+--- two organs, and current flows while it lies on strands and no organ is within 0.4 mm. It ends when nothing is under
+--- tension, or ten strokes in a row divide nothing. `how`: port, where the shaft comes from; from, the place nearest to
+--- which it begins; hardest, the force on the foot at which it stops and burns, or eases off a skin; between, the two
+--- organs, first the one that the tissue ends on; stretch(front), if given, called before each stroke to keep the plane
+--- under tension; is_done(), if given. `front`: at, its middle; out, from the first organ to the other one; along, its
+--- own way, as the shaft points; inward, to the strands behind it; tension, of its tautest strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
-  local slack, missed, rolled = 10e-3 * N, 0, 0
+  local missed, rolled, near = 0, 0, how.from
   while missed < 10 and not (how.is_done and how.is_done()) do
-    local torn = t:torn(tissue)
-    local all, taut = taut_strands(t, tissue, slack)
-    if #taut == 0 then return end
-    if how.stretch then how.stretch(taut[1].tension) end
-    local strand = taut[1 + missed % #taut]
-    local axis, back = unit(minus(strand.from, strand.to)), unit(minus(how.port, strand.middle))
-    local way = inward(strand, all, axis)
-    if way then
-      local foot = unit(across(cross(way, axis), back))
-      local x, y = frame_of(how.port, strand.middle)
-      local turned = math.atan(dot(y, foot), dot(x, foot))
-      local turn = turned - rolled
-      local half_turns = math.floor(turn / math.pi + 0.5) -- the foot may point either way across
-      turn = turn - math.pi * half_turns
-      if half_turns % 2 ~= 0 then foot = times(foot, -1) end
-      if math.abs(turn) > 25 * deg then
-        hook:rotate(turn, { speed = 400 * deg / s })
-        rolled = rolled + turn
-      end
-      local heel = plus(strand.middle, foot, -2.5 * mm)
-      hook:move_to(plus(plus(heel, back, 14 * mm), way, -5 * mm), { speed = 100 * mm / s })
-      hook:move_to(plus(heel, way, -4 * mm), { speed = 60 * mm / s })
-      stroke(hook, tissue, how, way, axis)
-      hook:move_by(plus(times(way, -2 * mm), back, 14 * mm), { speed = 100 * mm / s })
+    local torn, front = t:torn(tissue), front_of(t, tissue, how.port, near)
+    if front and how.stretch then
+      how.stretch(front)
+      front = front_of(t, tissue, how.port, near)
     end
+    if not front then return end
+    near = front.at
+    local line = foremost(front)
+    local first = 1 + missed % #line -- where a stroke came to nothing the next one begins further on
+    local function heel(place) return plus(place, front.inward, -3 * mm) end
+    local start = plus(heel(line[first].middle), front.along, -4 * mm)
+    local back = unit(minus(how.port, start))
+    local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
+    local turn = math.atan(dot(y, foot), dot(x, foot)) - rolled
+    turn = turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
+    if math.abs(turn) > 10 * deg then
+      hook:rotate(turn, { speed = 400 * deg / s })
+      rolled = rolled + turn
+    end
+    hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
+    hook:move_until(function() return presses(hook, how) end,
+      { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
+    for k = first, #line do
+      if not sweep_to(hook, tissue, how, front, heel(line[k].middle)) then break end
+    end
+    hook:move_by(times(front.inward, -4 * mm), { speed = 60 * mm / s })
+    hook:move_by(times(back, 15 * mm), { speed = 100 * mm / s })
     missed = t:torn(tissue) > torn and 0 or missed + 1
   end
 end

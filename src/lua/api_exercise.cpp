@@ -196,7 +196,9 @@ std::vector<KeyTable> option_tables() {
            number("speed", &MoveUntil::speed, quantity::speed, 0.1 * mm / s, 500 * mm / s, "",
                   "largest speed of the tip"),
            number("limit", &MoveUntil::limit, quantity::length, 0.1 * mm, 200 * mm, "",
-                  "how far the tip goes at most")}),
+                  "how far the tip goes at most"),
+           flag("active", &MoveUntil::active,
+                "true: current flows until the motion ends; only for what can be activated")}),
       keys_of<Approach>(
           "approach_options", "Options of an approach.",
           {bound(speed(), &Approach::speed),

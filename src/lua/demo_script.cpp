@@ -121,6 +121,7 @@ bool DemoScript::end_condition(Task& task, bool answer, double now) {
   if (task.moving < 0) return true;
   InstrumentPath& path = paths_[static_cast<std::size_t>(task.moving)];
   path.halt(now);
+  if (task.active) flows_[static_cast<std::size_t>(task.moving)].to = now;
   lua_pushnumber(task.thread, (path.tip() - task.moved_from).norm());
   task.arguments = 2;
   task.moving = -1;
@@ -413,6 +414,7 @@ int DemoScript::dry_move_until(lua_State* L, const MoveUntil& how) {
 
 int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
   if (!is_in_port(L, instrument)) return 0;
+  if (how.active && !can_act(L, instrument, InstrumentAction::activate, "move_until's active")) return 0;
   if (checking() && !has_world()) return dry_move_until(L, how);
   InstrumentPath* path = free_path(L, instrument);
   if (path == nullptr) return 0;
@@ -430,6 +432,9 @@ int DemoScript::move_until(lua_State* L, int instrument, const MoveUntil& how) {
   }
   task.moving = instrument;
   task.arrives = path->busy_until();
+  task.active = how.active;
+  if (how.active)
+    flows_[static_cast<std::size_t>(instrument)] = {task.clock, task.arrives, InstrumentAction::activate};
   task.predicate = how.predicate;
   task.state = Task::condition;
   return lua_yield(L, 0);

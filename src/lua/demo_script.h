@@ -27,6 +27,7 @@ struct MoveUntil {
   std::string towards;        ///< a landmark, instead of a direction; may be empty
   double speed = 5e-3;        ///< m/s
   double limit = 20e-3;       ///< m
+  bool active = false;        ///< current flows until it ends
 };
 
 /// Of the laparoscope.
@@ -95,6 +96,7 @@ class DemoScript final : public ScriptSession, public InputSource {
     int moving = -1;
     Vec3 moved_from = Vec3::Zero();  ///< m, its tip's place when it set out
     double arrives = 0;              ///< s, when it has gone as far as it may
+    bool active = false;             ///< current flows until then
     enum { ready, until, condition, children, finished } state = ready;
   };
 

@@ -22,8 +22,7 @@ std::vector<SurfaceMark> burns_of(const Organ& organ) {
   constexpr double wide = 1.6e-3;  // m, of a burn: the electrode's foot and what it heats around (d)
   std::vector<SurfaceMark> marks;
   for (const Burn& burn : organ.burns)
-    marks.push_back(
-        {burn.at, std::min(1.0, burn.energy / organ.definition.wall.burn_energy), wide * wide});
+    marks.push_back({burn.at, std::min(1.0, burn.energy / organ.definition.wall.burn_energy), wide * wide});
   return marks;
 }
 

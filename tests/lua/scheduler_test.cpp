@@ -299,6 +299,22 @@ TEST(Demo, CurrentFlowsInTheStepsThatEndWithinItsTimeAndStepsSeeIt) {
   EXPECT_THAT(played.printed, ::testing::ElementsAre("0.12", "0.42"));
 }
 
+TEST(Demo, CurrentFlowsUntilAMotionEndsAndNotToItsLimit) {
+  ScenarioText text = with_steps(
+      "t:wait_until(function() return t.left:active() end) print(t:time())\n"
+      "t:wait_until(function() return not t.left:active() end) print(t:time())\n"
+      "t:wait_until(function() return t.left:active() end) print(t:time())");
+  text.demo =
+      "t.left:move_until(function() return t:time() > 0.29 * s end, { along = { 0, 0, -1 }, active = true "
+      "})\n"
+      "t.left:move_until(function() return false end, { along = { 0, 0, -1 }, limit = 1 * mm })\n"
+      "t:wait(0.2 * s)";
+  text.scene = electrode_scene;
+  const Played played = play_own(text, 50, 1.2);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  EXPECT_THAT(played.printed, ::testing::ElementsAre("0.02", "0.32"));
+}
+
 TEST(Demo, TakesTimeOutsInTheStepInWhichItIsAndStepsCountTheEvents) {
   const Folder folder;
   ScenarioText text;
