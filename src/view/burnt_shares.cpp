@@ -19,7 +19,7 @@ double depth_at(const SurfaceMark& mark, const Vec3& place) {
 }
 
 std::vector<SurfaceMark> burns_of(const Organ& organ) {
-  constexpr double wide = 1.6e-3;  // m, of a burn: the electrode's foot and what it heats around (d)
+  constexpr double wide = 1.7e-3;  // m, of a burn: the place that takes the heat, and what whitens around it (d)
   std::vector<SurfaceMark> marks;
   for (const Burn& burn : organ.burns)
     marks.push_back({burn.at, std::min(1.0, burn.energy / organ.definition.wall.burn_energy), wide * wide});

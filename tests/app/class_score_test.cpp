@@ -272,7 +272,7 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
       "left.path_length_mm measured,left.path_length_mm reason,empty_grasp points,"))
       << head;
   EXPECT_TRUE(row.starts_with("out/recording.jsonl,demo,")) << row;
-  EXPECT_NE(row.find(",recording,done,true,0.2,4,2,"), std::string::npos) << row;
+  EXPECT_NE(row.find(",recording,done,true,0.2,5,2,"), std::string::npos) << row;
   const auto fields = [](const std::string& line) {
     bool quoted = false;
     return 1 + std::count_if(line.begin(), line.end(), [&](char c) {
@@ -417,11 +417,11 @@ TEST_F(ScoredClass, OtherParametersAreAScoreOfTheirOwn) {
 }
 
 TEST_F(ScoredClass, WhatWasMeasuredByAnOlderVersionIsMeasuredAnew) {
-  const Json newer = entry(sealed(replaced(text_, "\"measures\":4", "\"measures\":1")));
+  const Json newer = entry(sealed(replaced(text_, "\"measures\":5", "\"measures\":1")));
   EXPECT_EQ(newer["from"], "simulation");
-  EXPECT_EQ(newer["measures"], 4);
+  EXPECT_EQ(newer["measures"], 5);
   EXPECT_EQ(newer["recorded"]["measures"], 1);
-  EXPECT_NE(outcome_.err.find("measured by version 1, and this program measures by version 4"),
+  EXPECT_NE(outcome_.err.find("measured by version 1, and this program measures by version 5"),
             std::string::npos)
       << outcome_.err;
   EXPECT_EQ(newer["metrics"], entry(text_)["metrics"]) << "the same session";
