@@ -104,6 +104,14 @@ function technique.burn_wall(hook)
   hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
 end
 
+local function is_done(how) return how.is_done ~= nil and how.is_done() end
+
+--- Whether what the hook, or the part named, presses on most is the tissue.
+local function lies_on(hook, tissue, part)
+  local contact = hook:contact(part)
+  return contact ~= nil and contact.organ == tissue
+end
+
 local how_to_take = {
   port = given.three, tries = given.whole, hardest = given.above_zero, wanted = given.optional(given.called),
   is_done = given.optional(given.called), keep_off = given.optional(given.by_name),
@@ -123,7 +131,7 @@ function technique.take(t, hook, tissue, how)
   local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
   local wanted = how.wanted or function() return true end
   local missed = 0
-  while missed < 9 and not (how.is_done and how.is_done()) do
+  while missed < 9 and not is_done(how) do
     local strand = nearest_strand(t, hook, tissue, wanted)
     if not strand then return end
     local off = how.keep_off
@@ -134,10 +142,7 @@ function technique.take(t, hook, tissue, how)
     local back = unit(minus(how.port, at))
     if length(minus(aim, hook:tip())) > 12 * mm then draw_out(hook, back) end
     hook:move_to(plus(aim, back, 5 * mm), { speed = 80 * mm / s })
-    local function lies_on_it()
-      local contact = hook:contact()
-      return contact ~= nil and contact.organ == tissue or hook:force() > how.hardest
-    end
+    local function lies_on_it() return lies_on(hook, tissue) or hook:force() > how.hardest end
     local function may_burn()
       return hook:touching() and not (off and hook:clearance(off.organ) < off.clear)
     end
@@ -229,11 +234,6 @@ local harmless = 0.4 * mm -- from an organ's skin, beyond which current spares i
 
 local function presses(hook, how) return hook:force("tip") > how.hardest or hook:force() > 2.5 * N end
 
-local function lies_on(hook, tissue)
-  local contact = hook:contact("tip")
-  return contact ~= nil and contact.organ == tissue
-end
-
 --- How far the foot is from the organ that is nearer, and how far it would move off the first one to lie midway.
 local function between(hook, how)
   local below, above = hook:clearance(how.between[1]), hook:clearance(how.between[2])
@@ -241,11 +241,11 @@ local function between(hook, how)
 end
 
 --- One piece of a sweep, of 3 mm at most: with current, if the foot lies on the tissue, until it no longer does.
-local function sweep_on(hook, tissue, how, step, burns, is_done)
+local function sweep_on(hook, tissue, how, step, burns)
   local since = 0
   hook:move_until(function()
-    since = lies_on(hook, tissue) and 0 or since + 1
-    if is_done() or presses(hook, how) then return true end
+    since = lies_on(hook, tissue, "tip") and 0 or since + 1
+    if is_done(how) or presses(hook, how) then return true end
     if burns then return since > 3 or between(hook, how) < harmless end
     return since == 0
   end, { along = step, speed = (burns and 15 or 30) * mm / s, limit = length(step), active = burns })
@@ -255,12 +255,11 @@ end
 --- on one or would burn it. Whether it came there.
 local function sweep_to(hook, tissue, how, front, place)
   local eased = 0
-  local function is_done() return how.is_done ~= nil and how.is_done() end
   for _ = 1, 30 do
     local way = minus(place, hook:tip())
-    local far, on_it = length(way), lies_on(hook, tissue)
+    local far, on_it = length(way), lies_on(hook, tissue, "tip")
     if far < 0.4 * mm then return true end
-    if is_done() then return false end
+    if is_done(how) then return false end
     local skin, aside = between(hook, how)
     if on_it and skin > harmless and hook:force("tip") > how.hardest then
       hook:activate(0.12 * s)
@@ -274,7 +273,7 @@ local function sweep_to(hook, tissue, how, front, place)
       aside = skin < 1 * mm and math.max(-1 * mm, math.min(1 * mm, aside)) or 0
       place = plus(place, front.out, aside)
       local step = plus(times(way, math.min(1, 3 * mm / far)), front.out, aside)
-      sweep_on(hook, tissue, how, step, on_it, is_done)
+      sweep_on(hook, tissue, how, step, on_it)
     end
   end
   return false
@@ -296,7 +295,7 @@ local how_to_free = {
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near = 0, 0, how.from
-  while missed < 10 and not (how.is_done and how.is_done()) do
+  while missed < 10 and not is_done(how) do
     local torn, front = t:torn(tissue), front_of(t, tissue, how.port, near)
     if front and how.stretch then
       how.stretch(front)

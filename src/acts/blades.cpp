@@ -51,22 +51,13 @@ Result<bool> divide_tube(Field& field, ToolIndex instrument, const TubeBetween& 
 
 /// Of the strands of a tissue those that an edge passes before the blades are looked at again. Returns how many.
 int cut_strands(const Field& field, const Tool& tool, Tissue& tissue) {
-  const auto ends = [&](const CarriedPlace& place, int body) {
-    const Organ& organ = field.organs[body];
-    Vec3 at = Vec3::Zero();
-    for (std::size_t k = 0; k < place.points.size(); ++k)
-      at += place.weights[k] * organ.body->skin_point(place.points[k], organ.state.x);
-    return at;
-  };
+  const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
   int cut = 0;
-  const auto& [one, other] = tissue.strands->bodies();
   for (std::size_t i = 0; i < tissue.now.opened.size(); ++i) {
-    const PlacedStrand& placed = tissue.strands->strands()[i];
-    const StrandLaw& law = placed.strand.law;
+    const StrandLaw& law = tissue.strands->strands()[i].strand.law;
     if (law.torn(tissue.now.opened[i])) continue;
-    const Vec3 middle = tissue.now.state.x.segment<3>(3 * static_cast<Eigen::Index>(i));
-    if (!is_passed(tool, ends(placed.one, one), middle, grip_grid) &&
-        !is_passed(tool, middle, ends(placed.other, other), grip_grid))
+    const StrandLine& line = lines[i];
+    if (!is_passed(tool, line.from, line.by, grip_grid) && !is_passed(tool, line.by, line.to, grip_grid))
       continue;
     tissue.now.opened[i] = law.peak() + law.tail();
     ++cut;

@@ -86,12 +86,11 @@ void visit_members(auto&& visit, MembersOf<JointDefinition> auto& definition) {
   auto& [from, to, radius, stiffness] = definition;
   visit(from, to, radius, stiffness);
 }
-/// How it looks is no part of any result.
 void visit_members(auto&& visit, MembersOf<TissueDefinition> auto& definition) {
   auto& [name, from, to, within, start, stop, strands, slack, stiffness, stiffening, strength, break_energy,
          density, radius, divide_energy, covered, looks] = definition;
   visit(name, from, to, within, start, stop, strands, slack, stiffness, stiffening, strength, break_energy,
-        density, radius, divide_energy, covered);
+        density, radius, divide_energy, covered, looks);
 }
 void visit_members(auto&& visit, MembersOf<GroundDefinition> auto& definition) {
   auto& [name, type, point, normal, to, size, radius, friction, looks, injury, thrust_limit] = definition;

@@ -60,13 +60,6 @@ bool fits(const Organ& organ, std::size_t tools) {
          std::all_of(organ.unfelt.begin(), organ.unfelt.end(), is_tool);
 }
 
-/// Of each: its definition's list of members leaves it out.
-std::vector<TissueLooks> looks_of(const std::vector<Tissue>& tissues) {
-  std::vector<TissueLooks> out;
-  for (const Tissue& tissue : tissues) out.push_back(tissue.definition.looks);
-  return out;
-}
-
 bool fits(const Tissue& tissue) {
   const std::size_t strands = tissue.strands->strands().size();
   return fits(tissue.now.state, *tissue.body) && tissue.now.opened.size() == strands &&
@@ -109,19 +102,16 @@ bool find_flows(Field& field) {
 
 void add_bytes_of(const Field& field, ByteWriter& out) {
   MemberWriter put{out};
-  put(note_of(field), looks_of(field.tissues), field.membership.roll, details_of(field));
+  put(note_of(field), field.membership.roll, details_of(field));
   visit_moving(put, field);
 }
 
 void read_field(MemberReader& read, const OrganMaker& make, Field& field) {
   MembersNote members;
-  std::vector<TissueLooks> looks;
   std::vector<BodyRecord> roll;
   std::vector<std::vector<int>> details;
-  read(members, looks, roll, details);
+  read(members, roll, details);
   if (read.lacks()) return;
-  if (looks.size() != members.tissues.size()) return read.refuse();
-  for (std::size_t k = 0; k < looks.size(); ++k) members.tissues[k].definition.looks = looks[k];
   if (!bring_members(members, roll, make, field) || !refine(details, field)) return read.refuse();
   visit_moving(read, field);
   if (read.lacks()) return;

@@ -9,14 +9,8 @@
 namespace calot {
 namespace {
 
-Vec3 place_at(const CarriedPlace& place, const std::vector<Vec3>& skin) {
-  Vec3 at = Vec3::Zero();
-  for (std::size_t i = 0; i < place.points.size(); ++i) at += place.weights[i] * skin[place.points[i]];
-  return at;
-}
-
 Vec3 place_now(const Organ& organ, const CarriedPlace& place) {
-  return place_at(place, organ.body->skin_positions(organ.state.x));
+  return carried_to(place, organ.body->skin_positions(organ.state.x));
 }
 
 /// A place of a body that is divided on the piece that it is nearest to at rest; where that carries it but in part, the
@@ -26,7 +20,7 @@ struct PlaceOnPiece {
   CarriedPlace place;
 
   PlaceOnPiece(const CarriedPlace& of_whole, const BodyCut& cut, const std::vector<Vec3>& rest) {
-    const int nearest = nearest_of(rest, place_at(of_whole, rest));
+    const int nearest = nearest_of(rest, carried_to(of_whole, rest));
     side = cut.side_of(nearest);
     const std::vector<int>& points = cut.pieces[side].points;
     place = {{points[nearest]}, {1.0}};

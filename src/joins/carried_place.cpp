@@ -89,6 +89,12 @@ std::optional<CarriedPlace> carried_place(const Skin& skin, const Vec3& place, d
   return best && total(*best) <= wildest ? best : std::nullopt;
 }
 
+Vec3 carried_to(const CarriedPlace& place, const std::vector<Vec3>& skin) {
+  Vec3 at = Vec3::Zero();
+  for (std::size_t i = 0; i < place.points.size(); ++i) at += place.weights[i] * skin[place.points[i]];
+  return at;
+}
+
 void append_place(const CarriedPlace& place, const StencilTable& skin, int first_node, StencilTable& rows) {
   std::map<int, double> weights;
   for (std::size_t i = 0; i < place.points.size(); ++i)

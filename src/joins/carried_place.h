@@ -23,6 +23,9 @@ void visit_members(auto&& visit, MembersOf<CarriedPlace> auto& place) {
   visit(points, weights);
 }
 
+/// Where a place lies, m, while the body's skin points lie at `skin`, m.
+Vec3 carried_to(const CarriedPlace& place, const std::vector<Vec3>& skin);
+
 /// Adds a row of the nodes that it depends on, counted from `first_node`; `skin`: the body's.
 void append_place(const CarriedPlace& place, const StencilTable& skin, int first_node, StencilTable& rows);
 

@@ -43,10 +43,6 @@ NearestSkin SkinFinder::nearest(const Vec3& to, double within) const {
   return out;
 }
 
-Vec3 SkinFinder::at(const CarriedPlace& place) const {
-  Vec3 out = Vec3::Zero();
-  for (std::size_t i = 0; i < place.points.size(); ++i) out += place.weights[i] * skin_[place.points[i]];
-  return out;
-}
+Vec3 SkinFinder::at(const CarriedPlace& place) const { return carried_to(place, skin_); }
 
 }  // namespace calot

@@ -121,9 +121,7 @@ double share_along(const Organ& organ, const CarriedPlace& place) {
     return share;
   }
   const Vec3 axis = organ.definition.fundus - organ.definition.neck;
-  Vec3 rest = Vec3::Zero();
-  for (std::size_t i = 0; i < place.points.size(); ++i)
-    rest += place.weights[i] * organ.body->skin_rest()[place.points[i]];
+  const Vec3 rest = carried_to(place, organ.body->skin_rest());
   return (rest - organ.definition.neck).dot(axis) / axis.squaredNorm();
 }
 

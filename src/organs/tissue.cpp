@@ -67,6 +67,10 @@ int Tissue::torn() const {
   return count;
 }
 
+double Tissue::heated_share(std::size_t strand) const {
+  return std::min(1.0, now.heated[strand] / (definition.divide_energy * strands->strands()[strand].area));
+}
+
 Tissue Tissue::between(std::array<int, 2> bodies) const {
   Tissue out = *this;
   out.strands = std::make_shared<StrandJoin>(bodies, strands->strands());

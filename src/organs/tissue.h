@@ -33,6 +33,8 @@ struct Tissue {
   bool torn(std::size_t strand) const {
     return strands->strands()[strand].strand.law.torn(now.opened[strand]);
   }
+  /// Of what divides a strand, 0 to 1: the heat that it has taken.
+  double heated_share(std::size_t strand) const;
   /// The same between bodies that have other places in the group now.
   Tissue between(std::array<int, 2> bodies) const;
   /// `which` of its strands, increasing, as `strands` between two bodies; they move on as they do.

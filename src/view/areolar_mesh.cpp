@@ -135,11 +135,7 @@ Neighbours neighbours_of(const Tissue& tissue, const std::vector<Organ>& organs)
   const std::vector<Vec3>& skin =
       organs[static_cast<std::size_t>(tissue.strands->bodies()[0])].body->skin_rest();
   std::vector<Vec3> begins;
-  for (const PlacedStrand& strand : strands) {
-    Vec3& at = begins.emplace_back(Vec3::Zero());
-    for (std::size_t i = 0; i < strand.one.points.size(); ++i)
-      at += strand.one.weights[i] * skin[static_cast<std::size_t>(strand.one.points[i])];
-  }
+  for (const PlacedStrand& strand : strands) begins.push_back(carried_to(strand.one, skin));
   Neighbours out(strands.size());
   std::vector<std::pair<double, std::size_t>> by_distance(strands.size());
   for (std::size_t k = 0; k < strands.size(); ++k) {
@@ -178,9 +174,7 @@ class AreolarFibres {
   const PlacedStrand& strand(std::size_t k) const { return tissue_.strands->strands()[k]; }
   const StrandLaw& law(std::size_t k) const { return strand(k).strand.law; }
   double spacing(std::size_t k) const { return std::sqrt(strand(k).area); }
-  double heat(std::size_t k) const {
-    return std::min(1.0, tissue_.now.heated[k] / (tissue_.definition.divide_energy * strand(k).area));
-  }
+  double heat(std::size_t k) const { return tissue_.heated_share(k); }
   double way(std::size_t k) const {
     const StrandLine& line = lines_[k];
     return (line.by - line.from).norm() + (line.to - line.by).norm();

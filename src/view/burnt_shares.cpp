@@ -19,18 +19,12 @@ double depth_at(const SurfaceMark& mark, const Vec3& place) {
 }
 
 std::vector<SurfaceMark> burns_of(const Organ& organ) {
-  constexpr double wide = 1.7e-3;  // m, of a burn: the place that takes the heat, and what whitens around it (d)
+  constexpr double wide =
+      1.7e-3;  // m, of a burn: the place that takes the heat, and what whitens around it (d)
   std::vector<SurfaceMark> marks;
   for (const Burn& burn : organ.burns)
     marks.push_back({burn.at, std::min(1.0, burn.energy / organ.definition.wall.burn_energy), wide * wide});
   return marks;
-}
-
-Vec3 at_rest(const CarriedPlace& place, const Body& body) {
-  Vec3 at = Vec3::Zero();
-  for (std::size_t i = 0; i < place.points.size(); ++i)
-    at += place.weights[i] * body.skin_rest()[static_cast<std::size_t>(place.points[i])];
-  return at;
 }
 
 /// The fibrous sheet that a loose plane leaves on either side: whitish, more so where heat has divided its strands, and
@@ -39,9 +33,9 @@ void add_bed(const Tissue& tissue, int side, const Body& body, std::vector<Surfa
   constexpr double sheet_is = 0.15, heat_adds = 0.09, char_adds = 0.80, charred = 0.2;  // (d)
   for (std::size_t k = 0; k < tissue.strands->strands().size(); ++k) {
     const PlacedStrand& strand = tissue.strands->strands()[k];
-    const double hot = std::min(1.0, tissue.now.heated[k] / (tissue.definition.divide_energy * strand.area));
+    const double hot = tissue.heated_share(k);
     const double adds = heat_adds + (share_of(k, side, 0) < charred ? char_adds : 0);
-    marks.push_back({at_rest(side == 0 ? strand.one : strand.other, body),
+    marks.push_back({carried_to(side == 0 ? strand.one : strand.other, body.skin_rest()),
                      std::min(1.0, sheet_is + adds * hot * hot), 0.6 * strand.area});
   }
 }

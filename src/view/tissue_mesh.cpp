@@ -87,7 +87,7 @@ void add_fat(const Tissue& tissue, const std::vector<Organ>& organs, std::size_t
     const double radius = lobule_radius(strand);
     const bool torn = tissue.torn(k);
     const int lobules = std::max(1, static_cast<int>(std::lround(law.taut / (1.3 * radius))));
-    const double heat = std::min(1.0, tissue.now.heated[k] / (tissue.definition.divide_energy * strand.area));
+    const double heat = tissue.heated_share(k);
     for (int i = 0; i < lobules; ++i) {
       const double share = (i + 0.5) / lobules;
       // Where it is lifted it is heated most, and shrinks.
