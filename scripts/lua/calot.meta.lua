@@ -53,7 +53,7 @@
 
 ---Full marks, less a share for each event of a kind.
 ---@class calot.penalty
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" the kind of event
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" the kind of event
 ---@field each? number share lost with each; default 0.25; 0 to 1
 
 ---Steps done less weighted errors: 100 steps done / steps - costs of each error, not below 0.
@@ -84,14 +84,14 @@
 ---Caps the total, and fails the exercise, where all of its conditions hold: an event, one that came too early, a metric beyond a value. A metric that was never measured is beyond.
 ---@class calot.gate
 ---@field reason string one sentence for the trainee
----@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" this happened
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" this happened
 ---@field organ? string to this organ or tissue, or a piece of it
----@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" and this had not happened before
+---@field only_after? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" and this had not happened before
 ---@field after_organ? string to this organ or tissue, or a piece of it
 ---@field metric? string this metric is beyond a value
 ---@field below? number below this
 ---@field above? number above this
----@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" an event that excuses it, such as bail_out
+---@field unless? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" an event that excuses it, such as bail_out
 ---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
 ---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
@@ -441,14 +441,14 @@
 
 ---An event of a session, as a rule sees it.
 ---@class calot.event
----@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" its kind
+---@field event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" its kind
 ---@field time number when, s
 ---@field step string the step that ran
 ---@field instrument? string whose it is
 ---@field organ? string or tissue, that it happened to
 ---@field value? number as the kind says, in the unit that it says
 ---@field place? calot.point where, m
----@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped"|"turned"|"thrust" what did it
+---@field cause? "scissors"|"current"|"clip"|"pinch"|"overstretch"|"opened"|"slipped"|"thrust" what did it
 ---@field text? string an injury's class; what was said at a time-out or a bail-out
 
 ---A step of a session, as a rule sees it.
@@ -658,7 +658,7 @@ function Steps:tie(joint) end
 function Steps:untie(organ, other) end
 
 ---How many events of a kind there have been, such as time_out; those of this step come before it.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number
 function Steps:count(event, organ) end
@@ -891,13 +891,13 @@ function DemoLaparoscope:rotate(angle, options) end
 local Run = {}
 
 ---How many events of a kind there were.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return integer
 function Run:count(event, organ) end
 
 ---When there were events of a kind, s, ascending.
----@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface" the kind of event
+---@param event "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" the kind of event
 ---@param organ? string only those of this organ or tissue, or a piece of it
 ---@return number[]
 function Run:times(event, organ) end

@@ -125,8 +125,8 @@ Result<bool> let_slip(Field& field, const std::vector<char>& slipped_before, std
     if (!slipped) return slipped.failure();
     const bool slid = slipped->slid;
     if (slid && !tool.slipping && !slipped_before[i])
-      events.push_back({EventKind::slip, 0, tool.definition.name, organ, slipped->pull, std::nullopt,
-                        slipped->turned ? EventCause::turning : EventCause::none});
+      events.push_back({slipped->turned ? EventKind::turn : EventKind::slip, 0, tool.definition.name, organ,
+                        slipped->pull});
     tool.slipping |= slid;
     if (slid) let_clips_fall(field, index, events);
     // What one pad alone has bitten is held as far as that goes.

@@ -21,7 +21,8 @@ namespace calot {
 /// 3: ground is among what an instrument touches, is pressed by and hurts; a perforation is counted for each wall.
 /// 4: forces, pressures and stretches of steps that did not end in balance are left out, as overforce always left them.
 /// 5: current hurts walls by its distance to them; a place of a wall keeps what it took, and opens once.
-inline constexpr int measures_version = 5;
+/// 6: what turns in the jaws that hold it on is the event turn, and no slip.
+inline constexpr int measures_version = 6;
 
 enum class MetricOwner {
   instrument,

@@ -12,10 +12,8 @@ const std::vector<EventRow>& event_rows() {
       {grasp, "grasp", "jaws close on a fold and hold it", "", true, true},
       {empty_grasp, "empty_grasp", "jaws close and hold nothing", "", true, false, true},
       {release, "release", "what was held is let go, by opening or because it slipped off", "", true, true},
-      {slip, "slip",
-       "what is held begins to slide through the jaws, or by the cause turned to turn in them; with its pull "
-       "then",
-       "force_N", true, true, true},
+      {slip, "slip", "what is held begins to slide through the jaws; with its pull then", "force_N", true,
+       true, true},
       {activation, "activation", "current begins to flow in an instrument; with the organ it touches", "",
        true, true},
       {overforce, "overforce",
@@ -97,6 +95,9 @@ const std::vector<EventRow>& event_rows() {
       {raw_surface, "raw_surface",
        "current has taken the capsule off more than 1 mm^2 of the liver in one piece; with that area",
        "area_mm2", true, true, true},
+      {turn, "turn",
+       "what is held begins to turn about the shaft between the jaws, which hold it on; with its pull then",
+       "force_N", true, true},
   };
   return rows;
 }
@@ -107,7 +108,7 @@ namespace {
 
 const std::vector<std::string>& cause_names() {
   static const std::vector<std::string> names = {
-      "", "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned", "thrust"};
+      "", "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "thrust"};
   return names;
 }
 

@@ -48,8 +48,9 @@ enum class EventKind {
   step_timeout,
   step_missed,
   raw_surface,
+  turn,
 };
-constexpr EventKind last_of(EventKind) { return EventKind::raw_surface; }
+constexpr EventKind last_of(EventKind) { return EventKind::turn; }
 
 struct EventRow {
   EventKind kind;
@@ -62,9 +63,9 @@ struct EventRow {
 };
 
 /// What did it.
-enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping, turning, thrust };
+enum class EventCause { none, blades, current, clip, pinch, stretch, opening, slipping, thrust };
 constexpr EventCause last_of(EventCause) { return EventCause::thrust; }
-/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "turned", "thrust"; of none empty.
+/// "scissors", "current", "clip", "pinch", "overstretch", "opened", "slipped", "thrust"; of none empty.
 std::string to_text(EventCause cause);
 std::optional<EventCause> event_cause_called(const std::string& name);
 /// But for none.

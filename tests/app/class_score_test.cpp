@@ -417,11 +417,11 @@ TEST_F(ScoredClass, OtherParametersAreAScoreOfTheirOwn) {
 }
 
 TEST_F(ScoredClass, WhatWasMeasuredByAnOlderVersionIsMeasuredAnew) {
-  const Json newer = entry(sealed(replaced(text_, "\"measures\":5", "\"measures\":1")));
+  const Json newer = entry(sealed(replaced(text_, "\"measures\":6", "\"measures\":1")));
   EXPECT_EQ(newer["from"], "simulation");
-  EXPECT_EQ(newer["measures"], 5);
+  EXPECT_EQ(newer["measures"], 6);
   EXPECT_EQ(newer["recorded"]["measures"], 1);
-  EXPECT_NE(outcome_.err.find("measured by version 1, and this program measures by version 5"),
+  EXPECT_NE(outcome_.err.find("measured by version 1, and this program measures by version 6"),
             std::string::npos)
       << outcome_.err;
   EXPECT_EQ(newer["metrics"], entry(text_)["metrics"]) << "the same session";
