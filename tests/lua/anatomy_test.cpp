@@ -88,6 +88,44 @@ TEST(Anatomy, AGallbladderThatHardlyHoldsRestsWhereGravityPutsIt) {
   EXPECT_LT((world->landmark("gallbladder.neck") - neck).norm(), 0.5 * mm);
 }
 
+/// m, up from the origin, of an organ's skin on average.
+double height_of(const World& world, const Organ& organ) {
+  Vec3 sum = Vec3::Zero();
+  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+  for (const Vec3& p : skin) sum += p;
+  return world.up().dot(sum) / static_cast<double>(skin.size());
+}
+
+// Of the field in which it is taken off its bed, with fewer nodes and strands: a rest takes seconds.
+TEST(Anatomy, TheMoreOfThePlaneIsGoneTheLowerTheGallbladderRests) {
+  CALOT_SLOW_WHEN_SANITIZED("three whole fields");
+  double before = std::numeric_limits<double>::infinity();
+  for (const char* gone : {"0.3", "0.6", "0.85"}) {
+    Result<World> made = World::create(
+        scene_of("anatomy.standard { assistant = false, areolar_plane = true, nodes = 120, strands = 0.5,\n"
+                 " without = { 'cystic_node', 'hilar_fat', 'triangle_fat', 'artery_fat', 'cystic_artery', "
+                 "'cystic_duct',\n"
+                 " 'right_hepatic_artery' }, prepared = { cystic_plate = " +
+                 std::string(gone) + " } }"));
+    ASSERT_TRUE(made) << gone << ": " << to_text(made.failure());
+    World& world = made.value();
+    const Organ& gallbladder = world.field().organs[0];
+    const double height = height_of(world, gallbladder);
+    EXPECT_LT(height, before - 1 * mm) << gone;
+    before = height;
+    StepInput still;
+    for (const InstrumentState& tool : world.report().instruments) still.instruments.push_back(tool.pose);
+    for (int step = 0; step < 10; ++step) {
+      const Result<StepReport> report = world.step(still);
+      ASSERT_TRUE(report) << gone << ": " << to_text(report.failure());
+      EXPECT_TRUE(report->balanced) << gone;
+      for (const Organ& organ : world.field().organs) EXPECT_TRUE(organ.state.x.allFinite()) << gone;
+    }
+    EXPECT_NEAR(height_of(world, gallbladder), height, 0.05 * mm) << gone;
+    fmt::print("{} {}\n", gone, height / mm);
+  }
+}
+
 TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {
   const std::vector<std::string> variants = {
       "short_cystic_duct", "low_union",    "double_cystic_artery", "hepatic_artery_near_neck",
