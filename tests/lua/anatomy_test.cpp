@@ -19,18 +19,19 @@ using test::load_text;
 using units::mL;
 using units::mm;
 
-std::string field(const std::string& anatomy) {
+std::string field(const std::string& anatomy, const std::string& look_at = "cystic_duct.middle") {
   test::ScenarioText text;
   text.head = "local anatomy = require 'anatomy'\n";
   text.scene = "return { anatomy = " + anatomy +
-               ",\n solver = { motion = 'dynamic' }, laparoscope = { look_at = 'cystic_duct.middle' },\n"
+               ",\n solver = { motion = 'dynamic' }, laparoscope = { look_at = '" + look_at +
+               "' },\n"
                " instruments = { left = { port = 'right_lateral' } } }";
   return text.text();
 }
 
-SceneDefinition scene_of(const std::string& anatomy) {
+SceneDefinition scene_of(const std::string& anatomy, const std::string& look_at = "cystic_duct.middle") {
   const Folder folder;
-  const auto loaded = load_text(folder, field(anatomy));
+  const auto loaded = load_text(folder, field(anatomy, look_at));
   EXPECT_TRUE(loaded) << to_text(loaded.failure());
   return loaded ? loaded.value()->definition().scene : SceneDefinition{};
 }
@@ -106,7 +107,8 @@ TEST(Anatomy, TheMoreOfThePlaneIsGoneTheLowerTheGallbladderRests) {
                  " without = { 'cystic_node', 'hilar_fat', 'triangle_fat', 'artery_fat', 'cystic_artery', "
                  "'cystic_duct',\n"
                  " 'right_hepatic_artery' }, prepared = { cystic_plate = " +
-                 std::string(gone) + " } }"));
+                     std::string(gone) + " } }",
+                 "gallbladder.fundus"));
     ASSERT_TRUE(made) << gone << ": " << to_text(made.failure());
     World& world = made.value();
     const Organ& gallbladder = world.field().organs[0];
@@ -122,7 +124,6 @@ TEST(Anatomy, TheMoreOfThePlaneIsGoneTheLowerTheGallbladderRests) {
       for (const Organ& organ : world.field().organs) EXPECT_TRUE(organ.state.x.allFinite()) << gone;
     }
     EXPECT_NEAR(height_of(world, gallbladder), height, 0.05 * mm) << gone;
-    fmt::print("{} {}\n", gone, height / mm);
   }
 }
 
