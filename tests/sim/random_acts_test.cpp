@@ -36,14 +36,14 @@ SceneDefinition field_of_all_kinds(bool lobe, double rate = 50) {
   return scene;
 }
 
-/// A bag of bile that hangs on a lobe by a plane alone, over a floor, two graspers and a hook: what a bed is, but coarse.
+/// A bag of bile that hangs on a bar by a plane alone, over a floor, two graspers and a hook: what a bed is, but coarse.
 SceneDefinition bag_on_its_bed() {
-  SceneDefinition scene = field_of_all_kinds(true, 25);
+  SceneDefinition scene = field_of_all_kinds(false, 25);
   AnatomyDefinition& anatomy = scene.anatomy;
   anatomy.organs.resize(2);
   anatomy.joints.clear();
-  anatomy.organs[0].held = {{"bed", "bed", 14e-3, 3e5, true}};
-  anatomy.tissue = {test::tissue_between("cystic_plate", "gallbladder", "liver", 12e-3, 100)};
+  anatomy.organs[0].held = {{"base", "neck", 22e-3, 1e6, true}};  // until it is filled
+  anatomy.tissue = {test::tissue_between("cystic_plate", "gallbladder", "liver", 12e-3, 60)};
   anatomy.tissue[0].looks = TissueLooks::areolar;
   anatomy.tissue[0].slack = 0.05;
   anatomy.tissue[0].stiffness = 20e3;
@@ -81,13 +81,19 @@ void perform(const SceneDefinition& scene, std::uint64_t seed, int acts, double 
   EXPECT_LE(failed, most * acts) << "acts that could not be followed";
 }
 
-TEST(RandomActs, OnABedAreAllFollowedAndAgainWithTheSameBits) {
+// Two seconds an act: hundreds are left to scripts/test --long.
+TEST(BedActs, AreFollowedWhateverHandsDoToTheBagAndItsPlane) {
   CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
-  perform(bag_on_its_bed(), 7, test::cases(50, 1000), 0);
+  perform(bag_on_its_bed(), 7, test::cases(10, 1000), test::long_run() ? 0.1 : 0);
+}
+
+TEST(BedActs, ThatAreDoneAgainHaveTheSameBits) {
+  CALOT_SLOW_WHEN_SANITIZED("a hundred steps");
   std::vector<std::uint64_t> hashes;
   for (int run = 0; run < 2; ++run) {
     test::RandomActs hands(World::create(bag_on_its_bed()).value(), 8);
-    for (int k = 0; k < 5; ++k) hands.act();
+    for (int k = 0; k < 2; ++k) hands.act();
+    EXPECT_GT(hands.steps, 10);
     hashes.push_back(hands.hash());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
