@@ -1,8 +1,11 @@
 #include "fem/framed_solid.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/decompose.h"
 
@@ -49,6 +52,34 @@ Mat3 turning_hessian(double turning, const Mat3& mean, const Mat3& forces_by_pla
   const Mat3 left = change_of_left(mean);
   return turning * left.transpose() * left + 0.5 * (forces_by_places + forces_by_places.transpose()) -
          forces_by_places.trace() * Mat3::Identity();
+}
+
+/// Turns frames about their own axes by what turns(frames) says, a column a frame, until that is nothing. Whether it became
+/// so; not where one is to turn further than the first time, nor where one ends far from where it began: energies are least
+/// there, too, but of other ways to turn.
+template <class Turns>
+bool turn_until_still(std::vector<Mat3>& frames, const Turns& turns) {
+  constexpr int most_rounds = 60;
+  constexpr double still = 1e-12, furthest = 0.1, far = 0.5;  // rad; at a time, and in all
+  const std::vector<Mat3> begin = frames;
+  double first = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < most_rounds; ++round) {
+    const Eigen::Matrix3Xd by = turns(frames);
+    const double largest = by.colwise().norm().maxCoeff();
+    if (!by.allFinite() || largest > first) return false;
+    if (round == 0) first = largest;
+    const double share = std::min(1.0, furthest / largest);
+    for (std::size_t p = 0; p < frames.size(); ++p) {
+      const Vec3 turn = share * by.col(static_cast<Eigen::Index>(p));
+      const double angle = turn.norm();
+      if (angle > still) frames[p] = frames[p] * Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+    }
+    if (largest > still) continue;
+    return std::equal(frames.begin(), frames.end(), begin.begin(), [](const Mat3& now, const Mat3& before) {
+      return (before.transpose() * now).trace() > 1 + 2 * std::cos(far);
+    });
+  }
+  return false;
 }
 
 /// How a block of the stiffness, all of one frame's ways by the other's (entry 3 force + motion), is seen from outside the
@@ -130,33 +161,62 @@ void FramedSolid::answer(Placed& placed) const {
         Eigen::Map<const Eigen::MatrixXd>(placed.forces[p].data(), count(p), 3 * entries).transpose() *
         placed.at[p];
     for (Eigen::Index k = 0; k < 3; ++k) moments.middleRows<3>(3 * k) = summed.col(k).reshaped(3, entries);
+    if (!held_by_rest_.empty())
+      placed.moments_of_rest.emplace_back(held_by_rest_[p].transpose() * placed.at[p]);
   }
 }
 
-bool FramedSolid::fit(const Placed& placed, std::vector<Mat3>& frames) const {
-  constexpr int most_rounds = 60;
-  constexpr double turned = 1e-12;  // rad
-  const std::size_t pieces = parts_.pieces.size();
-  std::vector<Mat3> of_rest;
-  for (std::size_t p = 0; p < pieces; ++p) of_rest.emplace_back(held_by_rest_[p].transpose() * placed.at[p]);
-  for (int round = 0; round < most_rounds; ++round) {
-    const VecX entries = entries_of(frames);
-    double largest = 0;
-    for (std::size_t p = 0; p < pieces; ++p) {
-      const double turning = parts_.pieces[p].turning;
-      const Mat3 mean = frames[p].transpose() * placed.means[p];
-      const Vec3 left = 0.5 * axis_of(mean);
-      const Mat3 moments = (placed.moments[p] * entries).reshaped(3, 3) - of_rest[p];
-      const Mat3 by_places = moments * frames[p] + 0.5 * turning * cross_matrix(left) * mean.transpose();
-      const Vec3 turn = turning_hessian(turning, mean, by_places).inverse() * -axis_of(by_places.transpose());
-      const double angle = turn.norm();
-      if (!std::isfinite(angle)) return false;
-      largest = std::max(largest, angle);
-      if (angle > turned) frames[p] = frames[p] * Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-    }
-    if (largest <= turned) return true;
+std::vector<FramedSolid::Twisted> FramedSolid::twisted(const Placed& placed,
+                                                       const std::vector<Mat3>& frames) const {
+  const VecX entries = entries_of(frames);
+  std::vector<Twisted> out;
+  for (std::size_t p = 0; p < frames.size(); ++p) {
+    const double turning = parts_.pieces[p].turning;
+    const Mat3 mean = frames[p].transpose() * placed.means[p];
+    const Vec3 left = 0.5 * axis_of(mean);
+    const Mat3 moments = (placed.moments[p] * entries).reshaped(3, 3) - placed.moments_of_rest[p];
+    out.push_back({mean, moments * frames[p] + 0.5 * turning * cross_matrix(left) * mean.transpose()});
   }
-  return false;
+  return out;
+}
+
+Eigen::Matrix3Xd FramedSolid::turns_one_by_one(const Placed& placed, const std::vector<Mat3>& frames) const {
+  const std::vector<Twisted> pieces = twisted(placed, frames);
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(frames.size()));
+  for (std::size_t p = 0; p < frames.size(); ++p) {
+    const auto& [mean, by_places] = pieces[p];
+    out.col(static_cast<Eigen::Index>(p)) =
+        turning_hessian(parts_.pieces[p].turning, mean, by_places).inverse() *
+        -axis_of(by_places.transpose());
+  }
+  return out;
+}
+
+Eigen::Matrix3Xd FramedSolid::turns_together(const Placed& placed, const std::vector<Mat3>& frames) const {
+  const std::vector<Twisted> pieces = twisted(placed, frames);
+  Eigen::MatrixXd second = second_by_turns(placed, frames);
+  VecX slope(second.rows());
+  for (std::size_t p = 0; p < frames.size(); ++p) {
+    const auto row = 3 * static_cast<Eigen::Index>(p);
+    const auto& [mean, by_places] = pieces[p];
+    slope.segment<3>(row) = axis_of(by_places.transpose());
+    second.block<3, 3>(row, row) += turning_hessian(parts_.pieces[p].turning, mean, by_places);
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(second);
+  if (factor.info() != Eigen::Success)
+    return Eigen::Matrix3Xd::Constant(3, slope.size() / 3, std::numeric_limits<double>::quiet_NaN());
+  return -factor.solve(slope).reshaped(3, slope.size() / 3);
+}
+
+bool FramedSolid::fit(const Placed& placed, std::vector<Mat3>& frames) const {
+  // Most solids need a few of these rounds. But where strands draw a place far out each leaves two thirds of what was to
+  // be turned, or more.
+  std::vector<Mat3> one_by_one = frames;
+  if (turn_until_still(one_by_one, [&](const auto& now) { return turns_one_by_one(placed, now); })) {
+    frames = std::move(one_by_one);
+    return true;
+  }
+  return turn_until_still(frames, [&](const auto& now) { return turns_together(placed, now); });
 }
 
 void FramedSolid::look(Seen& seen) const {
@@ -203,10 +263,22 @@ void FramedSolid::add_gradient(const VecX& x, VecX& gradient) const {
     }
 }
 
+Eigen::MatrixXd FramedSolid::second_by_turns(const Placed& placed, const std::vector<Mat3>& frames) const {
+  const auto pieces = static_cast<Eigen::Index>(frames.size());
+  Eigen::MatrixXd out(3 * pieces, 3 * pieces);
+  for (int q = 0; q < pieces; ++q) {
+    const Eigen::Matrix<double, 9, 3> turn = entries_by_turn(frames[q]);
+    for (int p = 0; p < pieces; ++p)
+      out.block<3, 3>(3 * p, 3 * q) =
+          entries_by_turn(frames[p]).transpose() * placed.moments[p].middleCols<9>(9 * q) * turn;
+  }
+  return out;
+}
+
 FramedSolid::TurnSlopes FramedSolid::turn_slopes(const Seen& seen) const {
   const auto pieces = static_cast<Eigen::Index>(parts_.pieces.size());
   const auto rows = [&](int p) { return 3 * first_[p]; };
-  TurnSlopes out{Eigen::MatrixXd(3 * first_.back(), 3 * pieces), Eigen::MatrixXd(3 * pieces, 3 * pieces)};
+  TurnSlopes out{Eigen::MatrixXd(3 * first_.back(), 3 * pieces), second_by_turns(seen.placed, seen.frames)};
   for (int q = 0; q < pieces; ++q) {
     const Eigen::Matrix<double, 9, 3> turn = entries_by_turn(seen.frames[q]);
     for (int p = 0; p < pieces; ++p) {
@@ -215,8 +287,6 @@ FramedSolid::TurnSlopes FramedSolid::turn_slopes(const Seen& seen) const {
       for (Eigen::Index a = 0; a < count(p); ++a)
         for (Eigen::Index k = 0; k < 3; ++k)
           out.forces.block<1, 3>(rows(p) + 3 * a + k, 3 * q) = forces.row(k * count(p) + a);
-      out.second.block<3, 3>(3 * p, 3 * q) =
-          entries_by_turn(seen.frames[p]).transpose() * seen.placed.moments[p].middleCols<9>(9 * q) * turn;
     }
   }
   for (int p = 0; p < pieces; ++p) {

@@ -56,6 +56,7 @@ class FramedSolid {
     /// Of each piece, N and J by the entries of all frames: forces on its nodes, all in x, then y, then z; and the sums
     /// of these times the nodes' places, by the entries of its own frame.
     std::vector<Eigen::MatrixXd> forces, moments;
+    std::vector<Mat3> moments_of_rest;  ///< J, of what the stiffness does at rest
   };
   /// The pieces in their frames.
   struct Seen {
@@ -70,6 +71,15 @@ class FramedSolid {
   Placed placed_at(const VecX& x) const;
   /// What the stiffness does there.
   void answer(Placed& placed) const;
+  /// A piece in its frame: its mean deformation gradient, and the sum of its forces times its places, J.
+  struct Twisted {
+    Mat3 mean, by_places;
+  };
+  std::vector<Twisted> twisted(const Placed& placed, const std::vector<Mat3>& frames) const;
+  /// What turns the frames towards where the energy is least, three numbers a frame, rad: each as if the others stood
+  /// still; or all by Newton's method, not finite where the energy curves down.
+  Eigen::Matrix3Xd turns_one_by_one(const Placed& placed, const std::vector<Mat3>& frames) const;
+  Eigen::Matrix3Xd turns_together(const Placed& placed, const std::vector<Mat3>& frames) const;
   /// Turns the frames to where the energy is least; false: there is no such place near.
   bool fit(const Placed& placed, std::vector<Mat3>& frames) const;
   /// Energy and forces in the frames.
@@ -81,6 +91,8 @@ class FramedSolid {
     Eigen::MatrixXd forces;
     Eigen::MatrixXd second;  ///< J a rad^2, the energy's second derivative by two turns
   };
+  /// What the stiffness by itself has of that second derivative.
+  Eigen::MatrixXd second_by_turns(const Placed& placed, const std::vector<Mat3>& frames) const;
   /// These slopes at fixed places of the nodes.
   TurnSlopes turn_slopes(const Seen& seen) const;
   /// The slopes' forces in the world's directions, N a rad, summed over the pieces: three rows a node of nodes_.

@@ -156,6 +156,30 @@ TEST(FramedSolid, APieceInsideOutIsNotAdmissible) {
   EXPECT_EQ(reduce(folded.mesh, folded.rest, liver).failure().kind, FailureKind::scenario);
 }
 
+// As strands do that stand alone. Frames that turn one by one then find the least energy ever more slowly, or another one.
+TEST(FramedSolid, HoweverFarAPlaceIsDrawnOutItsEnergyIsFiniteAndItsForceTheSlope) {
+  const test::BentBox box = test::bent_box({2, 4, 2}, 4, test::wedge);
+  const FramedSolid solid = reduced(box);
+  const VecX x = thrown(box.rest, 6);
+  const Vec3 out = Vec3(0.2, 0.3, 1).normalized();
+  double before = 0;
+  for (double way = 0; way < 100e-3; way += 2e-3) {
+    const auto drawn = [&](double by) {
+      VecX at = x;
+      at.tail<3>() += by * out;
+      return at;
+    };
+    const double energy = solid.value(drawn(way));
+    ASSERT_TRUE(std::isfinite(energy)) << way;
+    if (way > 0) EXPECT_GT(energy, before) << way;
+    before = energy;
+    const VecX g = gradient_of(solid, drawn(way));
+    constexpr double step = 1e-6;  // m; differences are wrong by (1e-6 / 1e-2)^2 and by rounding
+    const double slope = (solid.value(drawn(way + step)) - solid.value(drawn(way - step))) / (2 * step);
+    EXPECT_NEAR(g.tail<3>().dot(out), slope, 1e-6 * g.norm()) << way;
+  }
+}
+
 TEST(Tetrahedron, ItsRuleIntegratesProductsOfItsFunctionsExactly) {
   const std::array<Vec3, 4> corners{Vec3(0, 0, 0), Vec3(2e-2, 0, 1e-3), Vec3(1e-3, 3e-2, 0),
                                     Vec3(0, 2e-3, 1e-2)};

@@ -19,18 +19,19 @@ using test::load_text;
 using units::mL;
 using units::mm;
 
-std::string field(const std::string& anatomy) {
+std::string field(const std::string& anatomy, const std::string& look_at = "cystic_duct.middle") {
   test::ScenarioText text;
   text.head = "local anatomy = require 'anatomy'\n";
   text.scene = "return { anatomy = " + anatomy +
-               ",\n solver = { motion = 'dynamic' }, laparoscope = { look_at = 'cystic_duct.middle' },\n"
+               ",\n solver = { motion = 'dynamic' }, laparoscope = { look_at = '" + look_at +
+               "' },\n"
                " instruments = { left = { port = 'right_lateral' } } }";
   return text.text();
 }
 
-SceneDefinition scene_of(const std::string& anatomy) {
+SceneDefinition scene_of(const std::string& anatomy, const std::string& look_at = "cystic_duct.middle") {
   const Folder folder;
-  const auto loaded = load_text(folder, field(anatomy));
+  const auto loaded = load_text(folder, field(anatomy, look_at));
   EXPECT_TRUE(loaded) << to_text(loaded.failure());
   return loaded ? loaded.value()->definition().scene : SceneDefinition{};
 }
@@ -86,6 +87,44 @@ TEST(Anatomy, AGallbladderThatHardlyHoldsRestsWhereGravityPutsIt) {
   }
   EXPECT_LT((world->landmark("gallbladder.fundus") - fundus).norm(), 0.5 * mm);
   EXPECT_LT((world->landmark("gallbladder.neck") - neck).norm(), 0.5 * mm);
+}
+
+/// m, up from the origin, of an organ's skin on average.
+double height_of(const World& world, const Organ& organ) {
+  Vec3 sum = Vec3::Zero();
+  const std::vector<Vec3> skin = organ.body->skin_positions(organ.state.x);
+  for (const Vec3& p : skin) sum += p;
+  return world.up().dot(sum) / static_cast<double>(skin.size());
+}
+
+// Of the field in which it is taken off its bed, with fewer nodes and strands: a rest takes seconds.
+TEST(Anatomy, TheMoreOfThePlaneIsGoneTheLowerTheGallbladderRests) {
+  CALOT_SLOW_WHEN_SANITIZED("three whole fields");
+  double before = std::numeric_limits<double>::infinity();
+  for (const char* gone : {"0.3", "0.6", "0.85"}) {
+    Result<World> made = World::create(
+        scene_of("anatomy.standard { assistant = false, areolar_plane = true, nodes = 120, strands = 0.5,\n"
+                 " without = { 'cystic_node', 'hilar_fat', 'triangle_fat', 'artery_fat', 'cystic_artery', "
+                 "'cystic_duct',\n"
+                 " 'right_hepatic_artery' }, prepared = { cystic_plate = " +
+                     std::string(gone) + " } }",
+                 "gallbladder.fundus"));
+    ASSERT_TRUE(made) << gone << ": " << to_text(made.failure());
+    World& world = made.value();
+    const Organ& gallbladder = world.field().organs[0];
+    const double height = height_of(world, gallbladder);
+    EXPECT_LT(height, before - 1 * mm) << gone;
+    before = height;
+    StepInput still;
+    for (const InstrumentState& tool : world.report().instruments) still.instruments.push_back(tool.pose);
+    for (int step = 0; step < 10; ++step) {
+      const Result<StepReport> report = world.step(still);
+      ASSERT_TRUE(report) << gone << ": " << to_text(report.failure());
+      EXPECT_TRUE(report->balanced) << gone;
+      for (const Organ& organ : world.field().organs) EXPECT_TRUE(organ.state.x.allFinite()) << gone;
+    }
+    EXPECT_NEAR(height_of(world, gallbladder), height, 0.05 * mm) << gone;
+  }
 }
 
 TEST(Anatomy, EveryVariantIsAnAnatomyOfItsOwn) {

@@ -57,6 +57,8 @@ class RandomActs {
     leave();
   }
 
+  std::uint64_t hash() const { return world_.state_hash(); }
+
   int acts = 0, steps = 0, iterations = 0;
   std::map<std::string, int> events = {}, failures = {};  ///< how often, by kind and by reason
 
