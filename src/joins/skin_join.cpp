@@ -52,6 +52,7 @@ void SkinJoin::begin(std::span<const GroupPlace> bodies) const {
     if (side.body == nullptr || side.first != first || side.details != place.body->details()) {
       patches_known_ = pairs_known_ = edges_known_ = false;
       found_ = {};
+      at_x_ = {};
     }
     side.body = place.body;
     side.first = first;

@@ -145,6 +145,8 @@ class SkinJoin : public Join {
   void look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const;
   void look_up(const Parts& x, bool motions, std::span<const EdgesNear> pairs) const;
   void look_up(const Parts& x, bool motions, int skin, std::span<const int> points) const;
+  /// Whether the places of all points near the other body were looked up last, and here.
+  bool all_are_at(const Parts& x) const;
   std::array<PlacedSkin, 2> placed(bool motions) const;
   std::array<PlacedEdges, 2> placed_edges(bool motions) const;
   bool are_surfaces() const { return sides_[0].radius + sides_[1].radius == 0; }
@@ -174,6 +176,7 @@ class SkinJoin : public Join {
   mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
   mutable bool pairs_known_ = false, edges_known_ = false, lacking_ = false;
   mutable Parts patches_x_, pairs_x_, edges_x_;
+  mutable Parts at_x_;  ///< see all_are_at(); empty: nowhere
   /// Patches of either that are near each other, by their places among those of their side, and how far apart, m, at
   /// patches_x_.
   struct NearPatches {

@@ -135,6 +135,7 @@ void SkinJoin::gather_patches(const Parts& x) const {
     return;
   }
   keep_near(patches, patches_reach_);
+  at_x_ = {};
   ++looks_;
   for (int k = 0; k < 2; ++k)
     for (BoxedPatch& patch : patches[k]) patch.box = box_of_points(k, patch.patch, x);
@@ -207,7 +208,13 @@ void SkinJoin::take_patches(Side& side) const {
   side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
 }
 
+bool SkinJoin::all_are_at(const Parts& x) const {
+  return at_x_[0].size() > 0 && at_x_[0] == x[0] && at_x_[1] == x[1];
+}
+
 void SkinJoin::look_up(const Parts& x, bool motions) const {
+  if (!motions && all_are_at(x)) return;
+  if (!motions) at_x_ = x;
   for (int k = 0; k < 2; ++k) {
     Side& side = sides_[k];
     for (int row : side.rows) (motions ? side.way : side.at)[row] = side.body->skin_point(row, x[k]);
@@ -215,6 +222,8 @@ void SkinJoin::look_up(const Parts& x, bool motions) const {
 }
 
 void SkinJoin::look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const {
+  if (!motions && all_are_at(x)) return;
+  if (!motions && !pairs.empty()) at_x_ = {};
   ++looks_;
   for (const SkinPair& pair : pairs) {
     look_up(x, motions, pair.skin, {&pair.point, 1});
@@ -223,6 +232,8 @@ void SkinJoin::look_up(const Parts& x, bool motions, std::span<const SkinPair> p
 }
 
 void SkinJoin::look_up(const Parts& x, bool motions, std::span<const EdgesNear> pairs) const {
+  if (!motions && all_are_at(x)) return;
+  if (!motions && !pairs.empty()) at_x_ = {};
   ++looks_;
   for (const EdgesNear& pair : pairs) {
     look_up(x, motions, 0, sides_[0].edges->ends[pair.edge]);

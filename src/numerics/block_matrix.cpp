@@ -171,8 +171,8 @@ void BlockMatrix::add(int i, int j, const Mat3& block) {
     for (int r = 0; r < 3; ++r) values_[at + c * step + r] += block(r, c);
 }
 
-void BlockMatrix::add(const std::vector<double>& values) {
-  for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += values[k];
+void BlockMatrix::add(const std::vector<double>& values, double factor) {
+  for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += factor * values[k];
 }
 
 void BlockMatrix::scale(double factor) {
