@@ -47,10 +47,8 @@ Inertia::Inertia(const Body& body, const BodyState& state, double retardation)
       retarded_(retardation, state.motion.duration, begin_),
       constant_(body.pattern()) {
   if (const BlockMatrix* mass = body.mass()) {
-    BlockMatrix inertia = *mass;
     mass_.emplace(*mass);
-    inertia.scale(by_time_squared_ / retarded_.hessian_factor());
-    constant_.add(inertia.entries());
+    constant_.add(mass->entries(), by_time_squared_ / retarded_.hessian_factor());
   }
   if (const Liquid* liquid = body.liquid())
     liquid_.emplace(

@@ -18,22 +18,30 @@ Box motion_beyond(const Body& body, const VecX& dx) {
   return {mean - further, mean + further};
 }
 
+/// What details among the nodes add to the motion.
+template <class Node>
+double motion_of_details(const Body& body, const VecX& dx, int count, const Node& node) {
+  const int coarse = body.coarse_nodes();
+  std::vector<double> of_level(body.levels_used() + 1, 0.0);
+  for (int i = 0; i < count; ++i) {
+    if (node(i) < coarse) continue;
+    double& largest = of_level[body.level_of_detail(node(i) - coarse)];
+    largest = std::max(largest, dx.segment<3>(Eigen::Index{3} * node(i)).norm());
+  }
+  double out = 0;
+  for (double largest : of_level) out += largest;
+  return out;
+}
+
 /// `node(i)`: the i-th of `count` nodes.
 template <class Node>
 SkinMoves motion_of(const Body& body, const VecX& dx, int count, const Node& node) {
   if (body.beyond_nodes() > 0) return {motion_beyond(body, dx), 0};
   SkinMoves out;
-  std::vector<double> of_level(body.levels_used() + 1, 0.0);
-  for (int i = 0; i < count; ++i) {
-    const Vec3 move = dx.segment<3>(Eigen::Index{3} * node(i));
-    if (node(i) < body.coarse_nodes()) {
-      out.box.extend(move);
-    } else {
-      double& largest = of_level[body.level_of_detail(node(i) - body.coarse_nodes())];
-      largest = std::max(largest, move.norm());
-    }
-  }
-  for (double largest : of_level) out.further += largest;
+  const int coarse = body.coarse_nodes();
+  for (int i = 0; i < count; ++i)
+    if (node(i) < coarse) out.box.extend(dx.segment<3>(Eigen::Index{3} * node(i)));
+  if (coarse < body.nodes()) out.further = motion_of_details(body, dx, count, node);
   return out;
 }
 

@@ -13,15 +13,53 @@
 namespace calot {
 namespace {
 
-using Box = Eigen::AlignedBox3d;
+/// A box. The fourth coordinate is always 0: four are taken at a time.
+struct Box {
+  using Corner = Eigen::Array4d;
+  Corner min = Corner::Constant(std::numeric_limits<double>::max());
+  Corner max = Corner::Constant(std::numeric_limits<double>::lowest());
 
-/// Where some points are, and how they move.
+  static Box of_point(const Vec3& at) {
+    const Corner corner(at[0], at[1], at[2], 0.0);
+    return {corner, corner};
+  }
+  void extend(const Box& other) {
+    min = min.min(other.min);
+    max = max.max(other.max);
+  }
+  double length_squared() const {
+    const Corner squares = (max - min).square();
+    return squares[0] + squares[1] + squares[2];
+  }
+  double squared_distance(const Box& other) const {
+    const Corner squares = (min - other.max).max(other.min - max).max(0.0).square();
+    return squares[0] + squares[1] + squares[2];
+  }
+};
+
+/// Where some points are, and how they move; null: they stay.
 struct Bound {
-  Box place, motion;
+  const Box* place;
+  const Box* motion;
+};
 
-  void extend(const Bound& other) {
-    place.extend(other.place);
-    motion.extend(other.motion);
+/// Around each item's points, in the tree's order, and around each group of items.
+struct Boxes {
+  std::vector<Box> own, group;
+
+  Boxes() = default;
+  template <class Corners>
+  Boxes(const ItemTree& tree, const std::vector<Vec3>& values, const Corners& corners)
+      : own(tree.order.size()), group(tree.nodes.size()) {
+    for (std::size_t k = 0; k < own.size(); ++k)
+      for (int point : corners(tree.order[k])) own[k].extend(Box::of_point(values[point]));
+    for (int n = static_cast<int>(tree.nodes.size()) - 1; n >= 0; --n) {
+      const ItemTree::Node& node = tree.nodes[n];
+      if (node.left >= 0)
+        group[n].extend(group[node.left]), group[n].extend(group[node.right]);
+      else
+        for (int k = node.first; k < node.last; ++k) group[n].extend(own[k]);
+    }
   }
 };
 
@@ -35,20 +73,8 @@ class Items {
         points_(&points),
         motions_(motions),
         corners_(std::move(corners)),
-        own_(tree.order.size()),
-        group_(tree.nodes.size()) {
-    for (std::size_t k = 0; k < own_.size(); ++k)
-      for (int point : corners_(tree.order[k])) {
-        own_[k].place.extend(points[point]);
-        own_[k].motion.extend(motion(point));
-      }
-    for (int n = static_cast<int>(tree.nodes.size()) - 1; n >= 0; --n) {
-      const ItemTree::Node& node = tree.nodes[n];
-      if (node.left >= 0)
-        group_[n].extend(group_[node.left]), group_[n].extend(group_[node.right]);
-      else
-        for (int k = node.first; k < node.last; ++k) group_[n].extend(own_[k]);
-    }
+        places_(tree, points, corners_) {
+    if (motions) moves_ = Boxes(tree, *motions, corners_);
   }
 
   const ItemTree& tree() const { return *tree_; }
@@ -56,14 +82,15 @@ class Items {
   const Vec3& at(int point) const { return (*points_)[point]; }
   bool moves() const { return motions_ != nullptr; }
   Vec3 motion(int point) const { return motions_ ? (*motions_)[point] : Vec3::Zero().eval(); }
-  const Bound& own(int place) const { return own_[place]; }  ///< of an item, by its place in the tree's order
-  const Bound& group(int node) const { return group_[node]; }
+  /// Of an item, by its place in the tree's order.
+  Bound own(int place) const { return {&places_.own[place], motions_ ? &moves_.own[place] : nullptr}; }
+  Bound group(int node) const { return {&places_.group[node], motions_ ? &moves_.group[node] : nullptr}; }
 
  private:
   const ItemTree* tree_;
   const std::vector<Vec3>*points_, *motions_;
   Corners corners_;
-  std::vector<Bound> own_, group_;
+  Boxes places_, moves_;
 };
 
 auto points_of(const PlacedSkin& placed) {
@@ -174,28 +201,39 @@ class Search {
 
   /// Whether what is in these bounds is too far apart, or stays so.
   bool are_far(const Bound& one, const Bound& other) const {
-    const double near = moving_ ? reach(one.motion.merged(other.motion).sizes().norm()) : still_reach_;
-    return one.place.squaredExteriorDistance(other.place) >= near * near ||
-           (moving_ && stay_apart(one, other));
+    const double apart_squared = one.place->squared_distance(*other.place);
+    if (!moving_) return apart_squared >= still_reach_ * still_reach_;
+    Box motion = motion_of(one);
+    motion.extend(motion_of(other));
+    if (apart_squared > 0) {
+      const double near = reach(std::sqrt(motion.length_squared()));
+      if (apart_squared >= near * near) return true;
+    }
+    return stay_apart(one, other, 0.5 * (motion.min + motion.max));
   }
 
-  bool stay_apart(const Bound& one, const Bound& other) const {
+  static const Box& motion_of(const Bound& of) {
+    static const Box none = Box::of_point(Vec3::Zero());
+    return of.motion ? *of.motion : none;
+  }
+
+  /// `common`: what both move by beside.
+  bool stay_apart(const Bound& one, const Bound& other, const Box::Corner& common) const {
     if (std::isinf(wanted_.nearer)) return false;
-    const Vec3 common = one.motion.merged(other.motion).center();
     const auto swept = [&](const Bound& of) {
-      return Box(of.place.min() + (of.motion.min() - common).cwiseMin(0),
-                 of.place.max() + (of.motion.max() - common).cwiseMax(0));
+      return Box{of.place->min + (motion_of(of).min - common).min(0.0),
+                 of.place->max + (motion_of(of).max - common).max(0.0)};
     };
     const double near = radii_ + wanted_.nearer;
-    return swept(one).squaredExteriorDistance(swept(other)) >= near * near;
+    return swept(one).squared_distance(swept(other)) >= near * near;
   }
 
   template <class Found>
   void compare(const NodePair& at, const Found& found) const {
     const ItemTree::Node &p = one_.tree().nodes[at.one], &q = other_.tree().nodes[at.other];
-    const Bound& others = other_.group(at.other);
+    const Bound others = other_.group(at.other);
     for (int i = p.first; i < p.last; ++i) {
-      const Bound& own = one_.own(i);
+      const Bound own = one_.own(i);
       if (are_far(own, others)) continue;
       // Most are told apart by their boxes alone, which costs a tenth.
       for (int j = q.first; j < q.last; ++j)
@@ -239,7 +277,7 @@ ItemTree::ItemTree(const std::vector<Vec3>& centres, std::vector<int> items) : o
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     Node node = nodes[n];
     if (node.last - node.first <= few) continue;
-    Box box;
+    Eigen::AlignedBox3d box;
     for (int k = node.first; k < node.last; ++k) box.extend(centres[order[k]]);
     int axis = 0;
     box.sizes().maxCoeff(&axis);

@@ -21,7 +21,7 @@ bool same_for_all_ways(const BlockMatrix& mass) {
 
 NodalMass::NodalMass(const BlockMatrix& mass) : begin_{0} {
   if (!same_for_all_ways(mass)) {
-    whole_ = mass;
+    whole_ = &mass;
     return;
   }
   for (int node = 0; node < mass.nodes(); ++node) {
@@ -35,7 +35,7 @@ NodalMass::NodalMass(const BlockMatrix& mass) : begin_{0} {
 }
 
 VecX NodalMass::multiply(const VecX& x) const {
-  if (whole_) return whole_->multiply(x);
+  if (whole_ != nullptr) return whole_->multiply(x);
   const std::size_t nodes = begin_.size() - 1;
   std::vector<Lanes> from(nodes), to(nodes, Lanes{});
   for (std::size_t i = 0; i < nodes; ++i) from[i] = Lanes{x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};

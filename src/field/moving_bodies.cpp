@@ -23,12 +23,16 @@ const Body& body_of(const Field& field, std::size_t k) {
 }
 
 Result<std::vector<MotionPart>> next_parts(const Field& field) {
-  std::vector<MotionPart> out;
-  for (std::size_t k = 0; k < moving_bodies(field) && field.step_time > 0; ++k) {
+  std::vector<std::optional<Result<MotionPart>>> parts(field.step_time > 0 ? moving_bodies(field) : 0);
+  for_each_chunk(field.workers(), static_cast<int>(parts.size()), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
     const Body& body = body_of(field, k);
-    Result<MotionPart> part = motion_part(body, present_motion(body, state_of(field, k)), 0);
-    if (!part) return part.failure();
-    out.push_back(std::move(part).value());
+    parts[k].emplace(motion_part(body, present_motion(body, state_of(field, k)), 0));
+  });
+  std::vector<MotionPart> out;
+  for (std::optional<Result<MotionPart>>& part : parts) {
+    if (!*part) return part->failure();
+    out.push_back(std::move(*part).value());
   }
   return out;
 }

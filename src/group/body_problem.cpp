@@ -235,19 +235,24 @@ VecX BodyProblem::compliances() const {
 double BodyProblem::unfolding_share(const VecX& step) const {
   const auto move = [&](int node) { return step.segment<3>(3 * Eigen::Index{node}); };
   const std::vector<double>& edges = body_.edge_lengths();
+  const int coarse = body_.coarse_nodes();
   double share = 1.0;
-  const auto limit = [&](double way, double edge) {
+  const auto limit = [&](const Vec3& moved, double edge) {
+    constexpr double surely_less = 0.999;  // of the squares: most need no root
+    const double squared = moved.squaredNorm();
+    if (squared < surely_less * edge * edge) return;
+    const double way = std::sqrt(squared);
     if (way * share > edge) share = edge / way;
   };
   std::vector<char> beside(static_cast<std::size_t>(body_.nodes()), 0);
   for (const std::vector<int>& face : body_.face_nodes())
     for (int node : face) {
-      if (node >= body_.coarse_nodes()) continue;
+      if (node >= coarse) continue;
       beside[static_cast<std::size_t>(node)] = 1;
-      limit((move(node) - move(face.front())).norm(), std::min(edges[node], edges[face.front()]));
+      limit(move(node) - move(face.front()), std::min(edges[node], edges[face.front()]));
     }
   for (int node = 0; node < body_.nodes(); ++node)
-    if (beside[static_cast<std::size_t>(node)] == 0) limit(move(node).norm(), edges[node]);
+    if (beside[static_cast<std::size_t>(node)] == 0) limit(move(node), edges[node]);
   return share;
 }
 

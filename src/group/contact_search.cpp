@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "body/skin_bounds.h"
+
 namespace calot {
 namespace {
 
@@ -95,9 +97,16 @@ std::vector<ContactPair> ContactSearch::pairs(const Body& body, const VecX& x, c
                                               double extra) {
   const std::size_t shapes = loads.shapes.size();
   if (memory_.size() < shapes) memory_.resize(shapes);
+  const double reach = reach_of(loads, margin, extra);
+  const Eigen::AlignedBox3d skin = skin_box(body, x);
+  const double thick = body.thickest();
   std::vector<std::vector<ContactPair>> found(shapes);
-  for_each_chunk(own.workers, static_cast<int>(shapes), [&](int shape) {
-    pairs_with(shape, body, x, loads, reach_of(loads, margin, extra), found[static_cast<std::size_t>(shape)]);
+  for_each_chunk(own.workers, static_cast<int>(shapes), [&](int chunk) {
+    const auto shape = static_cast<std::size_t>(chunk);
+    const Bounds b = bounds(loads.shapes[shape]);
+    // Most are too far from all of the skin.
+    if (skin.exteriorDistance(Eigen::AlignedBox3d(b.lower, b.upper)) > reach + thick) return;
+    pairs_with(chunk, body, x, loads, reach, found[shape]);
   });
   std::vector<ContactPair> out;
   for (const std::vector<ContactPair>& some : found) out.insert(out.end(), some.begin(), some.end());

@@ -221,10 +221,11 @@ void GroupProblem::constraint(const VecX& x, VecX& values, Eigen::MatrixXd& grad
 
 VecX GroupProblem::constraint_values(const VecX& x) const {
   VecX values(constraints_);
-  for (std::size_t k = 0; k < problems_.size(); ++k)
-    if (ranges_[k].constraints > 0)
-      values.segment(ranges_[k].constraint, ranges_[k].constraints) =
-          problems_[k].constraint_values(part_of(k, x));
+  for_each_member([&](std::size_t k) {
+    const Range& range = ranges_[k];
+    if (range.constraints > 0)
+      values.segment(range.constraint, range.constraints) = problems_[k].constraint_values(part_of(k, x));
+  });
   return values;
 }
 

@@ -21,13 +21,14 @@ constexpr double least_edges_reach = 0.35e-3;
 /// what the coarse nodes' motions differ by, and the details' of each level.
 double relative_motion(const Body& body, const VecX& dx, const std::vector<int>& nodes) {
   Eigen::AlignedBox3d coarse;
+  const int coarse_nodes = body.coarse_nodes();
   std::vector<double> of_level(body.levels_used() + 1, 0.0);
   for (int node : nodes) {
     const Vec3 move = dx.segment<3>(Eigen::Index{3} * node);
-    if (node < body.coarse_nodes()) {
+    if (node < coarse_nodes) {
       coarse.extend(move);
     } else {
-      double& largest = of_level[body.level_of_detail(node - body.coarse_nodes())];
+      double& largest = of_level[body.level_of_detail(node - coarse_nodes)];
       largest = std::max(largest, move.norm());
     }
   }
@@ -80,13 +81,22 @@ const SkinNet& SelfContact::net(const Body& body) {
   return *net_;
 }
 
+double SelfContact::since_groups(const Body& body, const VecX& x) {
+  if (aged_x_.size() != x.size() || aged_x_ != x) {
+    aged_x_ = x;
+    aged_ = approach_between(body, groups_x_, x);
+  }
+  return aged_;
+}
+
 void SelfContact::refresh_groups(const Body& body, const VecX& x, double need) {
   // A group is near by its triangles' corners: these come nearer by what moves, and edges lengthen by that.
   constexpr double by_motion = 1.6;
   if (groups_known_ && groups_x_.size() == x.size() && groups_details_ == body.details() &&
-      need + by_motion * approach_between(body, groups_x_, x) <= group_reach)
+      need + by_motion * since_groups(body, x) <= group_reach)
     return;
   groups_x_ = x;
+  aged_x_.resize(0);
   groups_details_ = body.details();
   const std::vector<Vec3> points = body.skin_positions(x);
   groups_ = near_groups(net(body), points, group_reach, workers);

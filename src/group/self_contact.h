@@ -97,6 +97,8 @@ class SelfContact {
   bool add_touches(const Body& body, const VecX& x, const Answer& answer, BlockMatrix& matrix);
   /// safe_share() of a step no longer than groups are remembered.
   double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
+  /// Bound on how much any two skin points have come nearer since groups_x_, m.
+  double since_groups(const Body& body, const VecX& x);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
   void refresh_groups(const Body& body, const VecX& x, double need);
   /// Whether walls are nearer than this (at most close_reach) at x.
@@ -123,6 +125,9 @@ class SelfContact {
   bool groups_known_ = false;
   VecX groups_x_;
   std::vector<int> groups_details_;
+  // since_groups() where it was asked last; empty: not yet.
+  VecX aged_x_;
+  double aged_ = 0;
   std::vector<GroupPair> groups_;
   std::vector<int> rows_, nodes_;
   // Pairs among these that were near at pairs_x_.

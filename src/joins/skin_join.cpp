@@ -52,6 +52,7 @@ void SkinJoin::begin(std::span<const GroupPlace> bodies) const {
     if (side.body == nullptr || side.first != first || side.details != place.body->details()) {
       patches_known_ = pairs_known_ = edges_known_ = false;
       found_ = {};
+      at_x_ = {};
     }
     side.body = place.body;
     side.first = first;
@@ -263,17 +264,42 @@ Eigen::Matrix<double, 12, 12> SkinJoin::touch_matrix(const SkinTouch& touch, con
   return touch_hessian(touch, {corners.data(), static_cast<std::size_t>(touch.part.corners)}, at_gap);
 }
 
+namespace {
+
+/// What a touch does to the points that it depends on, N/m.
+struct PointsStiffness {
+  std::array<StencilPoint, 4> points;
+  Eigen::Matrix<double, 12, 12> matrix;
+};
+
+/// Adds these in their order, threads in columns of their own; whether the pattern holds all that they couple.
+bool add_all(std::span<const PointsStiffness> touches, Workers* workers, BlockMatrix& matrix) {
+  constexpr std::size_t few = 8;
+  constexpr int most = 4;  // as in ContactStiffness::finish()
+  const int shares = workers == nullptr || touches.size() < few ? 1 : most;
+  std::array<char, most> complete;
+  complete.fill(1);
+  for_each_chunk(workers, shares, [&](int share) {
+    for (const PointsStiffness& touch : touches)
+      if (!add_points_hessian(touch.points, touch.matrix, matrix, {share, shares}))
+        complete[static_cast<std::size_t>(share)] = 0;
+  });
+  return std::find(complete.begin(), complete.end(), 0) == complete.end();
+}
+
+}  // namespace
+
 void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
-  lacking_ = false;
+  std::vector<PointsStiffness> all;
   for (const EdgeTouch& touch : crossing(x))
-    lacking_ |= !add_points_hessian(points_of(touch), touch.area * touch.sample.hessian, matrix);
+    all.push_back({points_of(touch), touch.area * touch.sample.hessian});
   const std::vector<SkinTouch>& touches = touching(x);
-  if (touches.empty()) return;
-  const Parts parts = parts_of(x);
-  for (const SkinTouch& touch : touches) {
-    const Eigen::Matrix<double, 12, 12> own = touch_matrix(touch, parts, self_barrier.sample(touch.gap));
-    lacking_ |= !add_points_hessian(points_of(touch), own, matrix);
+  if (!touches.empty()) {
+    const Parts parts = parts_of(x);
+    for (const SkinTouch& touch : touches)
+      all.push_back({points_of(touch), touch_matrix(touch, parts, self_barrier.sample(touch.gap))});
   }
+  lacking_ = !add_all(all, workers_, matrix);
 }
 
 // How the gap curves times the pressure, that is; edges' own curvature stays.
@@ -281,11 +307,13 @@ bool SkinJoin::add_convexity(const VecX& x, BlockMatrix& matrix) const {
   const std::vector<SkinTouch>& touches = touching(x);
   if (touches.empty()) return false;
   const Parts parts = parts_of(x);
+  std::vector<PointsStiffness> all;
   for (const SkinTouch& touch : touches) {
     BarrierSample flat = self_barrier.sample(touch.gap);
     flat.second = 0;
-    add_points_hessian(points_of(touch), -touch_matrix(touch, parts, flat), matrix);
+    all.push_back({points_of(touch), -touch_matrix(touch, parts, flat)});
   }
+  add_all(all, workers_, matrix);
   return true;
 }
 

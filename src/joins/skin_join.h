@@ -93,7 +93,7 @@ class SkinJoin : public Join {
     std::vector<double> areas;
     std::vector<char> counts;  ///< triangles of its skin that are met
     std::vector<int> around;   ///< a triangle at each point
-    // Near the other, at patches_x_:
+    // Near the other at patches_x_, and a few that were before:
     std::vector<int> patches, rows;
     std::optional<ContactSkin> skin;
     std::vector<int> triangles;  ///< of the body's skin, one a simplex
@@ -129,6 +129,7 @@ class SkinJoin : public Join {
   void find_pairs(const Parts& x) const;
   /// Likewise edges_, at most as far as patches are remembered.
   void refresh_edges(const Parts& x, double need) const;
+  void find_edges(const Parts& x, double reach) const;
   /// Pairs that may have gaps below `need` at x, at most close_reach; their points are looked up. Valid until the next
   /// call.
   const std::vector<SkinPair>& pairs_below(const Parts& x, double need) const;
@@ -144,15 +145,19 @@ class SkinJoin : public Join {
   void look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const;
   void look_up(const Parts& x, bool motions, std::span<const EdgesNear> pairs) const;
   void look_up(const Parts& x, bool motions, int skin, std::span<const int> points) const;
+  /// Whether the places of all points near the other body were looked up last, and here.
+  bool all_are_at(const Parts& x) const;
   std::array<PlacedSkin, 2> placed(bool motions) const;
   std::array<PlacedEdges, 2> placed_edges(bool motions) const;
   bool are_surfaces() const { return sides_[0].radius + sides_[1].radius == 0; }
   double gap_of(const SkinPair& pair) const;  ///< where its points were looked up last
   double edge_distance(const EdgesNear& pair) const;
   double safe_part(const Parts& x, const Parts& step) const;
-  double safe_edges(const Parts& x, const Parts& step) const;
+  /// `whole`: moves of a step of which this is a share.
+  double safe_edges(const Parts& x, const Parts& step, const PatchMoves& whole, double share_of_whole) const;
   bool active() const { return sides_[0].body != nullptr; }
   void take_patches(Side& side) const;
+  std::vector<int> keep_patches(Side& side, const std::vector<int>& near) const;
   StencilPoint stencil_point(int skin, int row) const;
   /// As touch_hessian(), of a touch at x.
   Eigen::Matrix<double, 12, 12> touch_matrix(const SkinTouch& touch, const Parts& x,
@@ -171,6 +176,7 @@ class SkinJoin : public Join {
   mutable bool patches_known_ = false, near_ = false;  ///< and whether there are any
   mutable bool pairs_known_ = false, edges_known_ = false, lacking_ = false;
   mutable Parts patches_x_, pairs_x_, edges_x_;
+  mutable Parts at_x_;  ///< see all_are_at(); empty: nowhere
   /// Patches of either that are near each other, by their places among those of their side, and how far apart, m, at
   /// patches_x_.
   struct NearPatches {

@@ -78,6 +78,12 @@ Box around(const std::vector<BoxedPatch>& patches) {
   return out;
 }
 
+std::vector<int> ids_of(const std::vector<BoxedPatch>& patches) {
+  std::vector<int> out;
+  for (const BoxedPatch& patch : patches) out.push_back(patch.patch);
+  return out;
+}
+
 /// Leaves of either those that are nearer than `reach` (m) to any of the other.
 void keep_near(std::array<std::vector<BoxedPatch>, 2>& patches, double reach) {
   const auto near = [&](const Box& a, const Box& b) { return a.squaredExteriorDistance(b) < reach * reach; };
@@ -96,6 +102,22 @@ void keep_near(std::array<std::vector<BoxedPatch>, 2>& patches, double reach) {
 
 }  // namespace
 
+/// Sees to it that the side has these patches; where each of them is among its own. Some that it had before may stay:
+/// what they cost is less than to take patches anew.
+std::vector<int> SkinJoin::keep_patches(Side& side, const std::vector<int>& near) const {
+  const bool held = side.patches.size() <= 2 * near.size() &&
+                    std::includes(side.patches.begin(), side.patches.end(), near.begin(), near.end());
+  if (!held) {
+    side.patches = near;
+    take_patches(side);
+  }
+  std::vector<int> places;
+  for (int patch : near)
+    places.push_back(static_cast<int>(std::lower_bound(side.patches.begin(), side.patches.end(), patch) -
+                                      side.patches.begin()));
+  return places;
+}
+
 /// Patches of either skin that are near any of the other: by the boxes of their nodes, then of their points.
 void SkinJoin::gather_patches(const Parts& x) const {
   std::array<std::vector<BoxedPatch>, 2> patches;
@@ -113,24 +135,19 @@ void SkinJoin::gather_patches(const Parts& x) const {
     return;
   }
   keep_near(patches, patches_reach_);
+  at_x_ = {};
   ++looks_;
   for (int k = 0; k < 2; ++k)
     for (BoxedPatch& patch : patches[k]) patch.box = box_of_points(k, patch.patch, x);
   keep_near(patches, patches_reach_);
   near_ = !patches[0].empty();  // then the other's are not either
   if (!near_) return;
-  for (int k = 0; k < 2; ++k) {
-    Side& side = sides_[k];
-    std::vector<int> ids;
-    for (const BoxedPatch& patch : patches[k]) ids.push_back(patch.patch);
-    if (side.patches == ids) continue;
-    side.patches = std::move(ids);
-    take_patches(side);
-  }
+  std::array<std::vector<int>, 2> places;
+  for (int k = 0; k < 2; ++k) places[k] = keep_patches(sides_[k], ids_of(patches[k]));
   for (std::size_t a = 0; a < patches[0].size(); ++a)
     for (std::size_t b = 0; b < patches[1].size(); ++b)
       if (const double apart = patches[0][a].box.exteriorDistance(patches[1][b].box); apart < patches_reach_)
-        near_patches_.push_back({static_cast<int>(a), static_cast<int>(b), apart});
+        near_patches_.push_back({places[0][a], places[1][b], apart});
 }
 
 Eigen::AlignedBox3d SkinJoin::box_of_points(int k, int patch, const Parts& x) const {
@@ -191,7 +208,13 @@ void SkinJoin::take_patches(Side& side) const {
   side.skin.emplace(body.skin_rest(), std::move(faces), std::move(segments), side.radius, std::move(areas));
 }
 
+bool SkinJoin::all_are_at(const Parts& x) const {
+  return at_x_[0].size() > 0 && at_x_[0] == x[0] && at_x_[1] == x[1];
+}
+
 void SkinJoin::look_up(const Parts& x, bool motions) const {
+  if (!motions && all_are_at(x)) return;
+  if (!motions) at_x_ = x;
   for (int k = 0; k < 2; ++k) {
     Side& side = sides_[k];
     for (int row : side.rows) (motions ? side.way : side.at)[row] = side.body->skin_point(row, x[k]);
@@ -199,6 +222,8 @@ void SkinJoin::look_up(const Parts& x, bool motions) const {
 }
 
 void SkinJoin::look_up(const Parts& x, bool motions, std::span<const SkinPair> pairs) const {
+  if (!motions && all_are_at(x)) return;
+  if (!motions && !pairs.empty()) at_x_ = {};
   ++looks_;
   for (const SkinPair& pair : pairs) {
     look_up(x, motions, pair.skin, {&pair.point, 1});
@@ -207,6 +232,8 @@ void SkinJoin::look_up(const Parts& x, bool motions, std::span<const SkinPair> p
 }
 
 void SkinJoin::look_up(const Parts& x, bool motions, std::span<const EdgesNear> pairs) const {
+  if (!motions && all_are_at(x)) return;
+  if (!motions && !pairs.empty()) at_x_ = {};
   ++looks_;
   for (const EdgesNear& pair : pairs) {
     look_up(x, motions, 0, sides_[0].edges->ends[pair.edge]);
@@ -279,9 +306,12 @@ void SkinJoin::refresh_edges(const Parts& x, double need) const {
   refresh_patches(x, need);
   const auto needed = [&](int /*one*/, int /*other*/) { return need; };
   if (edges_known_ && remembered(x, edges_x_, edges_reach_, needed, need)) return;
-  edges_.clear();
   if (near_) refresh_patches(x, reach);
-  if (!near_) return;
+  if (!near_) return edges_.clear();
+  find_edges(x, reach);
+}
+
+void SkinJoin::find_edges(const Parts& x, double reach) const {
   look_up(x, false);
   const std::array<PlacedEdges, 2> at = placed_edges(false);
   edges_ = near_edges(at[0], sides_[0].edge_tree, at[1], sides_[1].edge_tree, {reach, 1}, workers_);
@@ -367,20 +397,24 @@ double SkinJoin::safe_part(const Parts& x, const Parts& step) const {
   }
   if (!are_surfaces() || share == 0) return share;
   // Where points have stopped a motion already, edges are looked for on what is left of it.
-  return share * safe_edges(x, {share * step[0], share * step[1]});
+  return share * safe_edges(x, {share * step[0], share * step[1]}, moves, share);
 }
 
-double SkinJoin::safe_edges(const Parts& x, const Parts& step) const {
+double SkinJoin::safe_edges(const Parts& x, const Parts& step, const PatchMoves& whole,
+                            double share_of_whole) const {
   // Edges that lie across each other when the motion ends were far apart before, and lost most of that: what counts is
   // how near they come.
   constexpr double most = self_edge_barrier.range, nearest = contact_keep * most, lost = 1.0 - contact_keep;
-  const PatchMoves moves = patch_moves(step);
   const auto need = [&](int one, int other) {
-    const double motion = approach(moves, one, other);
+    const double motion = share_of_whole * approach(whole, one, other);
     return std::min(motion / lost, motion + nearest);
   };
+  const double far = approach(step) / lost;
+  bool known = edges_known_ && remembered(x, edges_x_, edges_reach_, need, far);
+  // As in safe_part().
+  if (!known && (known = remembered(x, x, edge_reach, need, far))) find_edges(x, edge_reach);
   std::vector<EdgesNear> on_way;
-  if (edges_known_ && remembered(x, edges_x_, edges_reach_, need, approach(step) / lost)) {
+  if (known) {
     on_way = choose_edges(x, need);
     look_up(step, true, on_way);
   } else {

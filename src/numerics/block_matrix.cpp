@@ -171,8 +171,8 @@ void BlockMatrix::add(int i, int j, const Mat3& block) {
     for (int r = 0; r < 3; ++r) values_[at + c * step + r] += block(r, c);
 }
 
-void BlockMatrix::add(const std::vector<double>& values) {
-  for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += values[k];
+void BlockMatrix::add(const std::vector<double>& values, double factor) {
+  for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += factor * values[k];
 }
 
 void BlockMatrix::scale(double factor) {
@@ -205,7 +205,9 @@ double BlockMatrix::diagonal_mean() const {
 }
 
 bool BlockMatrix::all_finite() const {
-  return std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); });
+  // What is not finite makes a NaN of zero, and of every sum.
+  const Eigen::Map<const Eigen::ArrayXd> values(values_.data(), static_cast<Eigen::Index>(values_.size()));
+  return (0.0 * values).sum() == 0.0;
 }
 
 VecX BlockMatrix::multiply(const VecX& x) const {

@@ -30,8 +30,8 @@ class BlockMatrix {
   /// Starts from a constant part: `values` as entries() returned them from a matrix of the same pattern.
   void assign(const std::vector<double>& values) { values_ = values; }
 
-  /// Adds values as entries() returned them from a matrix of the same pattern.
-  void add(const std::vector<double>& values);
+  /// Adds values as entries() returned them from a matrix of the same pattern, times a factor.
+  void add(const std::vector<double>& values, double factor = 1);
 
   /// The pattern without values, to be kept: blank() makes a matrix of zeros of it again.
   BlockMatrix pattern_only() const;
