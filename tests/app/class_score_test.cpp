@@ -272,7 +272,7 @@ TEST_F(ScoredClass, TheTableAndItsRowsAsCsvNameEveryRecording) {
       "left.path_length_mm measured,left.path_length_mm reason,empty_grasp points,"))
       << head;
   EXPECT_TRUE(row.starts_with("out/recording.jsonl,demo,")) << row;
-  EXPECT_NE(row.find(",recording,done,true,0.2,5,2,"), std::string::npos) << row;
+  EXPECT_NE(row.find(",recording,done,true,0.2,6,2,"), std::string::npos) << row;
   const auto fields = [](const std::string& line) {
     bool quoted = false;
     return 1 + std::count_if(line.begin(), line.end(), [&](char c) {
