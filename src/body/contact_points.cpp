@@ -95,14 +95,10 @@ Eigen::Matrix<double, 12, 12> ContactStiffness::OfTriangle::by_corners() const {
 }
 
 void ContactStiffness::finish() {
-  constexpr std::size_t few = 8;
-  constexpr int most = 4;  // what each share does for itself is a tenth of the whole
-  const int shares = workers_ == nullptr || sums_.size() < few ? 1 : most;
-  for_each_chunk(workers_, shares, [&](int share) {
-    for (const OfTriangle& one : sums_) {
-      const Triangle& t = skin_.triangles[one.triangle];
-      add_points_hessian(skin_.stencils, {t[0], t[1], t[2], -1}, one.by_corners(), matrix_, {share, shares});
-    }
+  // A triangle's nodes are coupled by its body.
+  add_in_columns(workers_, sums_.size(), [&](std::size_t k, const ColumnShare& share) {
+    const Triangle& t = skin_.triangles[sums_[k].triangle];
+    return add_points_hessian(skin_.stencils, {t[0], t[1], t[2], -1}, sums_[k].by_corners(), matrix_, share);
   });
   sums_.clear();
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/finite.h"
+
 namespace calot {
 namespace {
 
@@ -21,12 +23,9 @@ Vec3 motion_of(const PlacedSkin& skin, int point) {
   return skin.motions ? (*skin.motions)[point] : Vec3::Zero().eval();
 }
 
-bool all_finite(const std::vector<Vec3>* values) {
-  if (values == nullptr || values->empty()) return true;
-  // What is not finite makes a NaN of zero, and of every sum.
-  const Eigen::Map<const Eigen::ArrayXd> all(values->front().data(),
-                                             3 * static_cast<Eigen::Index>(values->size()));
-  return (0.0 * all).sum() == 0.0;
+bool is_finite(const PlacedSkin& skin) {
+  return (skin.points == nullptr || all_finite(*skin.points)) &&
+         (skin.motions == nullptr || all_finite(*skin.motions));
 }
 
 std::vector<Vec3> centres(const ContactSkin& skin, const std::vector<Vec3>& rest) {
@@ -120,7 +119,7 @@ std::vector<SkinTouch> skin_touches(std::span<const PlacedSkin> skins, std::span
 
 double safe_share(std::span<const PlacedSkin> skins, std::span<const SkinPair> pairs, double keep) {
   for (const PlacedSkin& skin : skins)
-    if (!all_finite(skin.points) || !all_finite(skin.motions)) return 0;
+    if (!is_finite(skin)) return 0;
   double share = 1;
   for (const SkinPair& pair : pairs) {
     const PlacedSkin &one = skins[pair.skin], &other = skins[pair.other];

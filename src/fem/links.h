@@ -2,6 +2,10 @@
 // Linear springs between surface points and places: an organ's bed, a grip. Any surface point may be held,
 // through its weights, never a control node.
 
+#include <algorithm>
+#include <array>
+
+#include "base/workers.h"
 #include "geometry/stencil.h"
 #include "numerics/block_matrix.h"
 
@@ -42,5 +46,21 @@ bool add_points_hessian(const std::array<StencilPoint, 4>& points,
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
                         const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
                         const ColumnShare& share = {});
+
+/// Adds `count` Hessians in their order by add(k, share), which says whether the pattern holds all that the k-th one
+/// couples. `workers` take columns of their own, so that the bits are the same. Whether it holds what all of them couple.
+template <class Add>
+bool add_in_columns(Workers* workers, std::size_t count, const Add& add) {
+  constexpr std::size_t few = 8;
+  constexpr int most = 4;  // what each share does for itself is a tenth of the whole
+  const int shares = workers == nullptr || count < few ? 1 : most;
+  std::array<char, most> complete;
+  complete.fill(1);
+  for_each_chunk(workers, shares, [&](int share) {
+    for (std::size_t k = 0; k < count; ++k)
+      if (!add(k, ColumnShare{share, shares})) complete[static_cast<std::size_t>(share)] = 0;
+  });
+  return std::find(complete.begin(), complete.end(), 0) == complete.end();
+}
 
 }  // namespace calot

@@ -272,19 +272,11 @@ struct PointsStiffness {
   Eigen::Matrix<double, 12, 12> matrix;
 };
 
-/// Adds these in their order, threads in columns of their own; whether the pattern holds all that they couple.
+/// Whether the pattern holds all that they couple.
 bool add_all(std::span<const PointsStiffness> touches, Workers* workers, BlockMatrix& matrix) {
-  constexpr std::size_t few = 8;
-  constexpr int most = 4;  // as in ContactStiffness::finish()
-  const int shares = workers == nullptr || touches.size() < few ? 1 : most;
-  std::array<char, most> complete;
-  complete.fill(1);
-  for_each_chunk(workers, shares, [&](int share) {
-    for (const PointsStiffness& touch : touches)
-      if (!add_points_hessian(touch.points, touch.matrix, matrix, {share, shares}))
-        complete[static_cast<std::size_t>(share)] = 0;
+  return add_in_columns(workers, touches.size(), [&](std::size_t k, const ColumnShare& share) {
+    return add_points_hessian(touches[k].points, touches[k].matrix, matrix, share);
   });
-  return std::find(complete.begin(), complete.end(), 0) == complete.end();
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "geometry/finite.h"
+
 namespace calot {
 
 namespace {
@@ -204,11 +206,7 @@ double BlockMatrix::diagonal_mean() const {
   return sum / size();
 }
 
-bool BlockMatrix::all_finite() const {
-  // What is not finite makes a NaN of zero, and of every sum.
-  const Eigen::Map<const Eigen::ArrayXd> values(values_.data(), static_cast<Eigen::Index>(values_.size()));
-  return (0.0 * values).sum() == 0.0;
-}
+bool BlockMatrix::all_finite() const { return calot::all_finite(values_); }
 
 VecX BlockMatrix::multiply(const VecX& x) const {
   using Columns = Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>;

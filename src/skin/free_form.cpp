@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "geometry/finite.h"
 #include "numerics/dense_cholesky.h"
 
 namespace calot {
@@ -49,12 +50,6 @@ void for_each_function(const Reaches& r, const std::array<int, 3>& n, const Use&
         use((Eigen::Index{1} * c * n[1] + b) * n[0] + a, static_cast<std::size_t>(i),
             static_cast<std::size_t>(j), static_cast<std::size_t>(k));
       }
-}
-
-bool all_finite(const std::vector<Vec3>& points) {
-  for (const Vec3& p : points)
-    if (!p.allFinite()) return false;
-  return true;
 }
 
 }  // namespace
