@@ -11,6 +11,7 @@
 #include "field/field_state.h"
 #include "field/field_tissues.h"
 #include "field/grip.h"
+#include "field/leaving.h"
 #include "field/take_hold.h"
 #include "motion/settle_field.h"
 
@@ -99,6 +100,7 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   // What is not in balance tells not what slips.
   if (statistics.balanced) judge_clasps(field, slipped_before, events);
   feel_again(field);
+  pass_leaving(field, field.step_time);
   grow_damage(field);
   tears.judge(field, events);
   return events;

@@ -34,18 +34,16 @@ Failure without_end(const Field& field, ToolIndex instrument, const std::string&
       "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
 }
 
-/// Lets the points that `leaves` picks go. Where masses count they are let go at once, and what they held is balanced now,
-/// or by the motion that comes next; else their springs are weakened step by step, so that what they held moves along
+/// Lets the points that `leaves` picks go. Where masses count they are let go at once; else their springs are weakened step by step, so that what they held moves along
 /// equilibria. Where there are none nothing is solved.
 Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(const GripPoint&)>& leaves,
-                  double weaken, const Budget& budget, SolveStatistics& statistics,
-                  Then then = Then::balance) {
+                  double weaken, const Budget& budget, SolveStatistics& statistics) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's
   const std::string when = "as a grip let it go";
   if (field.step_time > 0) {
     std::size_t left = 0;
     for (Organ& organ : field.organs) left += std::erase_if(organ.grips, leaves);
-    return left == 0 || then == Then::motion ? Result<bool>(true) : settle_in_step(field, when, statistics);
+    return left == 0 ? Result<bool>(true) : settle_in_step(field, when, statistics);
   }
   // What is hard does not unfold: it is let go at once.
   bool hard = false;
@@ -119,10 +117,10 @@ Result<bool> slide(Field& field, ToolIndex instrument, const Demand& demand, dou
 
 }  // namespace
 
-Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics, Then then) {
+Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
   const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const FieldState before = field_state(field);
-  const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics, then);
+  const Result<bool> faded = fade(field, instrument, held_by(instrument), 0.2, budget, statistics);
   if (!faded) restore(field, before);
   return faded;
 }

@@ -9,13 +9,9 @@ namespace calot {
 /// seconds.
 inline constexpr int hold_iterations = 1500;
 
-/// What follows the letting go of skin where masses count: the balance of what it held, or a motion that brings it.
-enum class Then { balance, motion };
-
 /// Opens a grip: its springs weaken step by step, so that the fold unfolds along equilibria, then vanish; where masses count
 /// they vanish at once. On failure (simulation) the grip holds as before.
-Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics,
-                     Then then = Then::balance);
+Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 /// What the held tissue does to a tool along its pads: the held points, and what presses on the jaws, as a squeezed fold
 /// that pushes on the jaws' edges and is held back by their pads pulls on nothing. What presses across the pads is carried

@@ -10,6 +10,7 @@
 #include "acts/hard_hold.h"
 #include "acts/pads.h"
 #include "field/grip.h"
+#include "field/leaving.h"
 #include "field/take_hold.h"
 #include "liquid/perforate.h"
 
@@ -95,9 +96,9 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
     const ToolIndex index(i);
     const std::string organ = between_pads(field, index);
     const bool held = tool.jaw_stopped && instrument_row(tool.definition.type).jaws != JawUse::cut;
+    if (field.step_time > 0) let_leave(field, index);
     if (!held_organ(field, index).empty())
-      if (Result<bool> released = release(field, index, statistics, Then::motion); !released)
-        return released.failure();
+      if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     if (held)
       events.push_back(
           {EventKind::release, 0, tool.definition.name, organ, 0, std::nullopt, EventCause::opening});
@@ -150,6 +151,7 @@ Result<bool> close_jaws(Field& field, ToolIndex instrument, TearWatch& tears, st
     if (Result<bool> cut = close_blades(field, instrument, events, statistics); !cut) return cut.failure();
     tears.look(field);
   }
+  end_leaving(field, instrument);
   take_hold(field, instrument);
   if (fold_fills_jaws(field, instrument)) {
     tool.pressing = tool.lost = tool.beside = false;

@@ -53,6 +53,10 @@ bool fits(const Organ& organ, std::size_t tools) {
          std::all_of(
              organ.grips.begin(), organ.grips.end(),
              [&](const GripPoint& grip) { return is_tool(grip.instrument) && is_point(grip.skin_point); }) &&
+         std::all_of(organ.leaving.begin(), organ.leaving.end(),
+                     [&](const LeavingPoint& point) {
+                       return is_tool(point.instrument) && is_point(point.skin_point);
+                     }) &&
          std::all_of(organ.friction.points.begin(), organ.friction.points.end(),
                      [&](const RubbingPoint& point) { return point.point >= 0 && point.point < contacts; }) &&
          std::all_of(organ.openings.begin(), organ.openings.end(),

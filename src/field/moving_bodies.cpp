@@ -48,6 +48,9 @@ void begin_parts(const std::vector<MotionPart>& parts, double duration, Field& f
 }
 
 bool all_stand_still(const Field& field) {
+  // What is dragged may be slow and far from rest.
+  for (const Organ& organ : field.organs)
+    if (organ.state.motion.duration > 0 && !organ.leaving.empty()) return false;
   for (std::size_t k = 0; k < moving_bodies(field); ++k) {
     const MotionPart& motion = state_of(field, k).motion;
     if (motion.duration > 0 && !stands_still(motion.begin)) return false;

@@ -33,6 +33,16 @@ std::vector<GripPoint> grips_of(const Organ& whole, const BodyCut& cut, int side
   return out;
 }
 
+std::vector<LeavingPoint> leaving_of(const Organ& whole, const BodyCut& cut, int side) {
+  std::vector<LeavingPoint> out;
+  for (LeavingPoint point : whole.leaving) {
+    if (cut.side_of(point.skin_point) != side) continue;
+    point.skin_point = cut.pieces[side].points[point.skin_point];
+    out.push_back(point);
+  }
+  return out;
+}
+
 FrictionLoad friction_of(const Organ& whole, const BodyPiece& piece) {
   FrictionLoad out;
   for (RubbingPoint rubbing : whole.friction.points) {
@@ -95,6 +105,7 @@ Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {
   out.origin = whole.origin;
   out.origin.cuts.push_back({cut.share, side, {}, pinches_of(whole)});
   out.grips = grips_of(whole, cut, side);
+  out.leaving = leaving_of(whole, cut, side);
   out.friction = friction_of(whole, piece);
   out.unfelt = whole.unfelt;
   out.clips = clips_of(whole, cut, side);

@@ -86,7 +86,8 @@ double BodyProblem::value(const VecX& x) const {
   double sum = 0;
   beside_touches(x, [&] { sum = loads_.inertia ? loads_.inertia->value(x) : body_.value(x); });
   if (!std::isfinite(sum)) return sum;
-  sum += loads_.grip.value(body_.skin().stencils, x);
+  for (const GripSprings* springs : {&loads_.grip, &loads_.leaving})
+    sum += springs->value(body_.skin().stencils, x);
   sum += loads_.friction.value(body_.skin(), x);
   if (const Liquid* liquid = body_.liquid()) {
     sum += liquid->weight_value(x);
@@ -112,7 +113,8 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, const Work&.
       body_.add_gradient(x, gradient, largest_internal);
   };
   beside_touches(x, beside..., wall);
-  loads_.grip.add_gradient(body_.skin().stencils, x, gradient);
+  for (const GripSprings* springs : {&loads_.grip, &loads_.leaving})
+    springs->add_gradient(body_.skin().stencils, x, gradient);
   loads_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   if (loads_.load.size() > 0) gradient -= loads_.load;
@@ -161,7 +163,8 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
     matrix.assign(body_.pattern());
     body_.add_hessian(x, matrix, assembly_);
   }
-  loads_.grip.add_hessian(body_.skin().stencils, x, matrix);
+  for (const GripSprings* springs : {&loads_.grip, &loads_.leaving})
+    springs->add_hessian(body_.skin().stencils, x, matrix);
   loads_.friction.add_hessian(body_.skin(), x, matrix, workers());
   if (const LiquidMass* mass = liquid_mass())
     body_.liquid()->add_hessian(x, multipliers[0], mass->weight(multipliers.tail(LiquidMass::constraints)),

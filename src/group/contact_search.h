@@ -44,6 +44,7 @@ struct ContactLoads {
   std::vector<char> broad = {};  ///< one a shape, or none: whether it is felt by few points (broad_points)
   Barrier barrier = contact_barrier;
   GripSprings grip;  ///< rows of the skin's stencils
+  GripSprings leaving = {};  ///< what has been let go and is dragged still
   FrictionLoad friction;
   /// N/m, springs that hold the details at rest, one each; none: all are free.
   std::vector<double> detail_holds = {};

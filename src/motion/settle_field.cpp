@@ -5,6 +5,7 @@
 
 #include "field/field_tissues.h"
 #include "field/grip.h"
+#include "field/leaving.h"
 #include "group/detail_fading.h"
 #include "motion/body_rubbing.h"
 #include "motion/rubbing.h"
@@ -37,6 +38,7 @@ ContactLoads solve_loads(const Field& field, const Organ& organ, const std::vect
   ContactLoads out = contact_loads(field, organ, poses);
   if (organ.state.motion.duration == 0) return out;
   const double retardation = organ.body->turns_as_a_whole() ? 0 : organ.definition.wall.retardation;
+  out.leaving = leaving_springs(organ);
   out.inertia = std::make_shared<const Inertia>(*organ.body, organ.state, retardation);
   return out;
 }

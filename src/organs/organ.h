@@ -31,6 +31,17 @@ void visit_members(auto&& visit, MembersOf<GripPoint> auto& grip) {
   visit(instrument, jaw, skin_point, local, stiffness);
 }
 
+/// A skin point that jaws have let go: it rubs on the opening pads until it is out of them (leaving.h).
+struct LeavingPoint {
+  ToolIndex instrument;
+  int skin_point = 0;
+  double time_left = 0;  ///< s, until it is free
+};
+void visit_members(auto&& visit, MembersOf<LeavingPoint> auto& point) {
+  auto& [instrument, skin_point, time_left] = point;
+  visit(instrument, skin_point, time_left);
+}
+
 /// Where details are active: around a skin point that a shape of the surroundings is near to.
 struct Extension {
   int shape = 0;   ///< -1: none, the laparoscope looks there
@@ -107,6 +118,7 @@ void visit_members(auto&& visit, MembersOf<Burn> auto& burn) {
 struct OrganMotion {
   BodyState state;
   std::vector<GripPoint> grips;       ///< ordered by instrument, jaw, skin_point
+  std::vector<LeavingPoint> leaving;  ///< in the order in which they were let go
   std::vector<Extension> extensions;  ///< ordered by shape
   /// Details that found no rest when they were tried last: not tried again until others are wanted.
   std::optional<std::vector<int>> refused_details;
@@ -123,9 +135,10 @@ struct OrganMotion {
   }
 };
 void visit_members(auto&& visit, MembersOf<OrganMotion> auto& motion) {
-  auto& [state, grips, extensions, refused_details, friction, clips, unfelt, openings, left_in, burns] =
-      motion;
-  visit(state, grips, extensions, refused_details, friction, clips, unfelt, openings, left_in, burns);
+  auto& [state, grips, leaving, extensions, refused_details, friction, clips, unfelt, openings, left_in,
+         burns] = motion;
+  visit(state, grips, leaving, extensions, refused_details, friction, clips, unfelt, openings, left_in,
+        burns);
 }
 
 struct Organ : OrganMotion {

@@ -10,11 +10,11 @@
 namespace calot {
 namespace {
 
-constexpr double radius = 20e-3;  // m
+constexpr double ball_radius = 20e-3;  // m
 
 /// A ball about a place, m; written in millimetres, as most tools do.
 std::string ball_file(const Vec3& middle) {
-  const TriMesh ball = revolve(sphere_profile(radius), 180).value();
+  const TriMesh ball = revolve(sphere_profile(ball_radius), 180).value();
   std::string text;
   for (const Vec3& p : ball.points) {
     const Vec3 at = 1e3 * (p + middle);
@@ -81,7 +81,7 @@ TEST(MeshOrgan, PassesThroughItsPointsWhereThatIsAskedFor) {
   const double control = drawn(ball_file(middle), mesh).volume;
   mesh.through_points = true;
   const double through = drawn(ball_file(middle), mesh).volume;
-  const double ball = 4.0 / 3 * std::numbers::pi * std::pow(radius, 3);
+  const double ball = 4.0 / 3 * std::numbers::pi * std::pow(ball_radius, 3);
   EXPECT_NEAR(through / ball, 1, 0.02);
   EXPECT_LT(control, 0.98 * through) << "control points lie outside of the wall";
 }
@@ -93,7 +93,7 @@ TEST(MeshOrgan, HasItsLandmarksOnItsWall) {
   const Drawn there = drawn(ball_file(0.5 * (organ.neck + organ.fundus)), mesh);
   EXPECT_LT(there.farthest, 1e-6);
   const Vec3 axis = (organ.fundus - organ.neck).normalized();
-  EXPECT_NEAR((there.landmarks.at("ball.fundus") - there.landmarks.at("ball.neck")).dot(axis), 2 * radius,
+  EXPECT_NEAR((there.landmarks.at("ball.fundus") - there.landmarks.at("ball.neck")).dot(axis), 2 * ball_radius,
               3e-3);
 }
 

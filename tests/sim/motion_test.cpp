@@ -267,14 +267,16 @@ TEST(Motion, WhereAGrasperPullsAndWaitsItEndsInTheRestOfStatics) {
   EXPECT_LT((field.organs[0].state.x - ended).lpNorm<Eigen::Infinity>(), 1e-6 * field.organs[0].body->size());
   // Let go, it springs back to where it began.
   path.driver.stay(1);
-  ASSERT_TRUE(path.release() && path.withdraw()) << path.driver.why();
+  ASSERT_TRUE(path.lower() && path.release() && path.withdraw()) << path.driver.why();
   EXPECT_EQ(path.world.report().instruments[0].grip_points, 0);
-  ASSERT_TRUE(path.driver.stay(60)) << path.driver.why();
+  ASSERT_TRUE(path.driver.stay(120)) << path.driver.why();
   const Organ& organ = path.world.field().organs[0];
   EXPECT_TRUE(organ.body->details().empty());
   const World fresh = World::create(moving_scene(1)).value();
+  // It creeps back as it leaves the jaws (field/leaving.h) and stops where forces are balanced to 1e-6 of the largest: a
+  // tenth of that holds the wall where it is softest.
   EXPECT_LT((organ.state.x - fresh.field().organs[0].state.x).lpNorm<Eigen::Infinity>(),
-            1e-6 * organ.body->size());
+            1e-5 * organ.body->size());
 }
 
 TEST(Motion, RestoredWhileItSwingsTheSameStepsHaveTheSameBits) {

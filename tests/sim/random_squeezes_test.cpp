@@ -19,7 +19,7 @@ using units::mm;
 
 constexpr double board = -120 * mm;
 const std::array<Vec3, 2> trocars{Vec3(-120 * mm, 60 * mm, -5 * mm), Vec3(0, 60 * mm, -5 * mm)};
-const Vec3 middle(-60 * mm, 90 * mm, 0);
+const Vec3 squeezed_at(-60 * mm, 90 * mm, 0);
 
 /// A box, a ball or a ring, of 2 to 22 mm, from pumice to lead, that lies on the board beside a peg.
 OrganDefinition random_thing(Rng& rng) {
@@ -34,7 +34,7 @@ OrganDefinition random_thing(Rng& rng) {
     shape.ring = shape.rounding + rng.uniform(1.5 * mm, 8 * mm);
   }
   shape.density = rng.uniform(400, 11000);
-  shape.centre = Vec3(middle.x(), middle.y(), board + height + 0.4 * mm);
+  shape.centre = Vec3(squeezed_at.x(), squeezed_at.y(), board + height + 0.4 * mm);
   OrganDefinition organ;
   organ.name = "thing";
   organ.shape = shape;
@@ -52,7 +52,7 @@ SceneDefinition random_scene(Rng& rng) {
   floor.friction = rng.uniform(0, 0.6);
   peg.name = "peg";
   peg.type = GroundType::capsule;
-  peg.point = Vec3(middle.x() + 28 * mm, middle.y(), board);
+  peg.point = Vec3(squeezed_at.x() + 28 * mm, squeezed_at.y(), board);
   peg.to = peg.point + Vec3(0, 0, 15 * mm);
   peg.radius = 2.5 * mm;
   scene.anatomy.ground = {floor, peg};

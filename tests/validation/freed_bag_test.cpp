@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "field/field_state.h"
+#include "field/leaving.h"
 #include "sim/motion_rig.h"
 #include "sim/triangle_rig.h"
 #include "support/long_run.h"
@@ -134,9 +135,13 @@ TEST(FreedBag, ThrownItFliesByItsWeightAlone) {
   DrawnBag bag;
   bag.divide_all();
   const Vec3 here = bag.world.report().instruments[0].tip;
-  ASSERT_TRUE(bag.driver.go(here + Vec3(30e-3, 0, 0), 0, 8)) << bag.driver.why();
-  ASSERT_TRUE(bag.driver.go(here + Vec3(37e-3, 0, 0), test::open_jaw, 2)) << bag.driver.why();
-  ASSERT_TRUE(bag.driver.go(here + Vec3(37e-3, -10e-3, 10e-3), test::open_jaw, 1)) << bag.driver.why();
+  const auto gone = [&](int steps) -> Vec3 { return here + Vec3(0.25 * steps / bag_rate, 0, 0); };
+  // It leaves the opening jaws while they move on (field/leaving.h).
+  const int leaves = static_cast<int>(std::lround(leaving_time * bag_rate));
+  ASSERT_TRUE(bag.driver.go(gone(8), 0, 8) && bag.driver.go(gone(12), test::open_jaw, 4)) << bag.driver.why();
+  ASSERT_TRUE(bag.driver.go(gone(8 + leaves), test::open_jaw, leaves - 4)) << bag.driver.why();
+  ASSERT_TRUE(bag.driver.go(gone(9 + leaves) + Vec3(0, -10e-3, 10e-3), test::open_jaw, 1))
+      << bag.driver.why();
   EXPECT_GT(bag.momentum().x(), 0.2 * bag.mass()) << "m/s; else it was hardly thrown";
   for (int k = 0; k < 3; ++k) {
     ASSERT_TRUE(bag.untouched()) << k;
