@@ -179,23 +179,23 @@ local function middle_of(strands)
   return times(sum, 1 / #strands)
 end
 
---- The strands that stand, those of them that are under tension and longer than the hook's foot is thick, and of these
---- the one nearest to a place.
+--- The strands that are under tension and longer than the hook's foot is thick, and of these the one nearest to a
+--- place.
 local function open_strands(t, tissue, place)
-  local all, open, nearest, least = t:strands(tissue), {}, nil, math.huge
-  for _, strand in ipairs(all) do
+  local open, nearest, least = {}, nil, math.huge
+  for _, strand in ipairs(t:strands(tissue)) do
     if strand.tension > 10e-3 * N and length(minus(strand.from, strand.to)) > 3.5 * mm then
       open[#open + 1] = strand
       local far = length(minus(strand.middle, place))
       if far < least then nearest, least = strand, far end
     end
   end
-  return all, open, nearest
+  return open, nearest
 end
 
 --- The plane's front nearest to a place: see technique.free. nil: nothing is under tension.
 local function front_of(t, tissue, port, place)
-  local all, open, nearest = open_strands(t, tissue, place)
+  local open, nearest = open_strands(t, tissue, place)
   if not nearest then return nil end
   local near, out, tension = {}, { 0, 0, 0 }, 0
   for _, strand in ipairs(open) do
@@ -207,16 +207,16 @@ local function front_of(t, tissue, port, place)
   end
   local at = middle_of(near)
   out = unit(out)
-  local along = unit(across(minus(at, port), out))
-  local inward = cross(out, along)
-  if dot(inward, minus(middle_of(all), at)) < 0 then inward = times(inward, -1) end
+  local inward = unit(across(t.laparoscope:direction(), out))
+  local along = cross(inward, out)
+  if dot(along, minus(at, port)) < 0 then along = times(along, -1) end
   return { at = at, out = out, along = along, inward = inward, tension = tension, strands = near }
 end
 
 --- Of each 2.5 mm of the front's way the foremost strand's middle, from the near side to the far one: but for those
---- that stand 7 mm behind the very first, as the way to them leads over an organ.
+--- that stand 4 mm behind the very first, as the way to them leads over an organ.
 local function foremost(front)
-  local wide, behind, rows, line, least = 2.5 * mm, 7 * mm, {}, {}, math.huge
+  local wide, behind, rows, line, least = 2.5 * mm, 4 * mm, {}, {}, math.huge
   for _, strand in ipairs(front.strands) do
     local from = minus(strand.middle, front.at)
     local row, deep = math.floor(dot(from, front.along) / wide), dot(from, front.inward)
@@ -264,7 +264,7 @@ local function sweep_to(hook, tissue, how, front, place)
     if on_it and skin > harmless and hook:force("tip") > how.hardest then
       hook:activate(0.12 * s)
     elseif presses(hook, how) or on_it and skin < harmless then
-      if eased == 5 then return false end
+      if eased == 2 then return false end
       eased = eased + 1
       local off = aside > 0 and 0.8 * mm or -0.8 * mm
       place = plus(place, front.out, off)
@@ -284,14 +284,57 @@ local how_to_free = {
   stretch = given.optional(given.called), is_done = given.optional(given.called),
 }
 
---- Takes a tissue off by strokes of the hook along its front, where it stands open under tension. The foot points
---- inward, 2 mm past the foremost strands; it sweeps along them from the near side to the far one, midway between the
---- two organs, and current flows while it lies on strands and no organ is within 0.4 mm. It ends when nothing is under
---- tension, or ten strokes in a row divide nothing. `how`: port, where the shaft comes from; from, the place nearest to
---- which it begins; hardest, the force on the foot at which it stops and burns, or eases off a skin; between, the two
---- organs, first the one that the tissue ends on; stretch(front), if given, called before each stroke to keep the plane
---- under tension; is_done(), if given. `front`: at, its middle; out, from the first organ to the other one; along, its
---- own way, as the shaft points; inward, to the strands behind it; tension, of its tautest strand.
+--- Where the foot's heel goes for its end to be 3 mm past a strand of the front.
+local function heel(front, back, strand)
+  local foot = 5 * mm
+  return plus(strand, front.inward, 3 * mm - foot * length(across(front.inward, back)))
+end
+
+--- Brings the hook beside a place of the front, its foot inward. The angle that it is rolled by then, rad.
+local function come_to(hook, how, front, place, rolled)
+  local start = plus(place, front.along, -4 * mm)
+  local back = unit(minus(how.port, start))
+  local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
+  local turn = math.atan(dot(y, foot), dot(x, foot)) - rolled
+  turn = turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
+  if math.abs(turn) > 10 * deg then
+    hook:rotate(turn, { speed = 400 * deg / s })
+    rolled = rolled + turn
+  end
+  hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
+  hook:move_until(function() return presses(hook, how) end,
+    { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
+  return rolled
+end
+
+--- Sweeps to and fro along the front, first from one of its rows on, until a way divides less than a hundredth of the
+--- tissue or fails twice.
+local function sweep(t, hook, tissue, how, front, back, first)
+  local place = front.at
+  for way = 1, 8 do
+    local torn, line, failed = t:torn(tissue), foremost(front), 0
+    for k = first, #line do
+      local row = line[way % 2 == 1 and k or #line + 1 - k]
+      if not sweep_to(hook, tissue, how, front, heel(front, back, row.middle)) then
+        failed = failed + 1
+        hook:move_by(times(front.inward, -2 * mm), { speed = 60 * mm / s })
+      end
+      if is_done(how) or failed == 2 then return end
+    end
+    first, front = 1, front_of(t, tissue, how.port, place)
+    if not front or t:torn(tissue) - torn < 0.01 then return end
+  end
+end
+
+--- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
+--- sees it. The foot points inward, away from the lens, 3 mm past the foremost strands; it sweeps to and fro along
+--- them, midway between the two organs, and current flows while it lies on strands and no organ is within 0.4 mm. It
+--- ends when nothing is under tension, or ten strokes in a row divide nothing. `how`: port, where the shaft comes from;
+--- from, the place nearest to which it begins; hardest, the force on the foot at which it stops and burns, or eases
+--- off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if given, called before
+--- each stroke to keep the plane under tension; is_done(), if given. `front`: at, its middle; out, from the first organ
+--- to the other one; along, its own way, as the shaft points; inward, to the strands behind it; tension, of its tautest
+--- strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near = 0, 0, how.from
@@ -304,23 +347,11 @@ function technique.free(t, hook, tissue, how)
     if not front then return end
     near = front.at
     local line = foremost(front)
-    local first = 1 + missed % #line -- where a stroke came to nothing the next one begins further on
-    local function heel(place) return plus(place, front.inward, -3 * mm) end
-    local start = plus(heel(line[first].middle), front.along, -4 * mm)
-    local back = unit(minus(how.port, start))
-    local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
-    local turn = math.atan(dot(y, foot), dot(x, foot)) - rolled
-    turn = turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
-    if math.abs(turn) > 10 * deg then
-      hook:rotate(turn, { speed = 400 * deg / s })
-      rolled = rolled + turn
-    end
-    hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
-    hook:move_until(function() return presses(hook, how) end,
-      { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
-    for k = first, #line do
-      if not sweep_to(hook, tissue, how, front, heel(line[k].middle)) then break end
-    end
+    local first = 1 + (#line // 2 + missed) % #line -- the near side is where the two organs lie on each other
+    local strand = line[first].middle
+    local back = unit(minus(how.port, strand))
+    rolled = come_to(hook, how, front, heel(front, back, strand), rolled)
+    sweep(t, hook, tissue, how, front, back, first)
     hook:move_by(times(front.inward, -4 * mm), { speed = 60 * mm / s })
     hook:move_by(times(back, 15 * mm), { speed = 100 * mm / s })
     missed = t:torn(tissue) > torn and 0 or missed + 1

@@ -318,13 +318,18 @@ std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& 
 
 namespace {
 
-/// Points of some of the groups, and triangles around the points that are near them.
+/// A point, and another around which a triangle may be near it.
+struct Meeting {
+  int row = 0, corner = 0;
+};
+
+/// Those of some of the groups.
 void meet(const SkinNet& net, const SkinMotion& skin, std::span<const GroupPair> groups,
-          std::vector<std::pair<int, int>>& found) {
+          std::vector<Meeting>& found) {
   Reaches reaches(net, skin);
   const auto meet = [&](int row, int corner, double distance) {
-    if (distance >= reaches.of_point(row).own + reaches.of_point(corner).corners) return;
-    for (int k = net.begin[corner]; k < net.begin[corner + 1]; ++k) found.emplace_back(row, net.around[k]);
+    if (distance < reaches.of_point(row).own + reaches.of_point(corner).corners)
+      found.push_back({row, corner});
   };
   for (const auto& [a, b] : groups) {
     if (reaches.apart(a, b)) continue;
@@ -340,22 +345,40 @@ void meet(const SkinNet& net, const SkinMotion& skin, std::span<const GroupPair>
   }
 }
 
-/// Those that are looked for.
-void measure(const SkinNet& net, const SkinMotion& skin, std::span<const std::pair<int, int>> found,
+/// The corners that each point meets: of[begin[row]] .. of[begin[row + 1] - 1].
+struct CornersMet {
+  std::vector<int> begin, of;
+
+  CornersMet(std::size_t points, std::span<const Meeting> meetings)
+      : begin(points + 1, 0), of(meetings.size()) {
+    for (const Meeting& met : meetings) ++begin[met.row + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (const Meeting& met : meetings) of[next[met.row]++] = met.corner;
+  }
+};
+
+/// The triangles around the corners that some points meet, as far as they are looked for.
+void measure(const SkinNet& net, const SkinMotion& skin, const CornersMet& met, std::span<const int> rows,
              std::vector<SelfPair>& pairs) {
-  int last_row = -1;
-  double reach = 0;
-  for (const auto& [row, triangle] : found) {
-    if (net.neighbours(row, triangle)) continue;
-    if (skin.motion) {
-      pairs.push_back({row, triangle, 0});
-      continue;
+  std::vector<int> seen_by(net.triangles.size(), -1), triangles;
+  for (int row : rows) {
+    triangles.clear();
+    for (int k = met.begin[row]; k < met.begin[row + 1]; ++k)
+      for (int i = net.begin[met.of[k]]; i < net.begin[met.of[k] + 1]; ++i)
+        if (std::exchange(seen_by[net.around[i]], row) != row) triangles.push_back(net.around[i]);
+    std::sort(triangles.begin(), triangles.end());
+    const double reach = skin.motion ? 0 : reach_of_point(net, skin, row);
+    for (int triangle : triangles) {
+      if (net.neighbours(row, triangle)) continue;
+      SelfPair pair{row, triangle, 0};
+      if (!skin.motion) {
+        const Triangle& t = net.triangles[triangle];
+        const std::array<Vec3, 3> corners{skin.points[t[0]], skin.points[t[1]], skin.points[t[2]]};
+        pair.distance = nearest_point(skin.points[row], corners).distance;
+      }
+      if (skin.motion || pair.distance < reach) pairs.push_back(pair);
     }
-    const Triangle& t = net.triangles[triangle];
-    const std::array<Vec3, 3> corners{skin.points[t[0]], skin.points[t[1]], skin.points[t[2]]};
-    const double distance = nearest_point(skin.points[row], corners).distance;
-    if (std::exchange(last_row, row) != row) reach = reach_of_point(net, skin, row);
-    if (distance < reach) pairs.push_back({row, triangle, distance});
   }
 }
 
@@ -378,15 +401,17 @@ std::vector<Found> in_chunks(std::span<const Item> items, Workers* workers, cons
 
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
                                  std::span<const GroupPair> groups, Workers* workers) {
-  using Met = std::pair<int, int>;
-  std::vector<Met> found = in_chunks<Met>(
-      groups, workers,
-      [&](std::span<const GroupPair> some, std::vector<Met>& out) { meet(net, skin, some, out); });
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  const CornersMet met(
+      net.rest.size(),
+      in_chunks<Meeting>(groups, workers, [&](std::span<const GroupPair> some, std::vector<Meeting>& out) {
+        meet(net, skin, some, out);
+      }));
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(net.rest.size()); ++row)
+    if (met.begin[row] < met.begin[row + 1]) rows.push_back(row);
   return in_chunks<SelfPair>(
-      std::span<const Met>(found), workers,
-      [&](std::span<const Met> some, std::vector<SelfPair>& out) { measure(net, skin, some, out); });
+      std::span<const int>(rows), workers,
+      [&](std::span<const int> some, std::vector<SelfPair>& out) { measure(net, skin, met, some, out); });
 }
 
 namespace {

@@ -253,6 +253,19 @@ class Iteration {
     return descend(step, dmultipliers, safe_share(step));
   }
 
+  /// Of a share of a step, from what bordering says of the whole. Where forces are further from balance than all that acts
+  /// within the bodies, a shifted matrix may set a nearly singular mode against a constraint alone; the multiplier that this
+  /// asks for makes the next matrix worse, and the next multiplier. There it changes by no more than twice what balances the
+  /// residual best (least squares). A compliant constraint's follows x, however long the step is.
+  double multiplier_change(Eigen::Index k, double share, double whole) const {
+    constexpr double far = 10;  // times the largest internal force
+    const double change = share * whole;
+    if (compliances_[k] > 0 || !work_.shifted || state_.worst_residual.value < far) return change;
+    const auto gradient = state_.constraint_gradients.col(k);
+    const double most = 2 * std::abs(gradient.dot(state_.residual)) / gradient.squaredNorm();
+    return std::clamp(change, -most, most);
+  }
+
   bool descend(const VecX& step, const VecX& dmultipliers, double safe) {
     // step' K step, from the bordered equations, without another product with the matrix.
     double curvature = -state_.residual.dot(step);
@@ -274,7 +287,8 @@ class Iteration {
       return balanced();
     }
     x_ = problem_.relaxed(x_ + share * step);
-    multipliers_ += share * dmultipliers;
+    for (Eigen::Index k = 0; k < multipliers_.size(); ++k)
+      multipliers_[k] += multiplier_change(k, share, dmultipliers[k]);
     const double far = force_imbalance(state_);
     evaluate(x_, multipliers_, state_);
     increment_ = increment;

@@ -116,6 +116,65 @@ TEST(Newton, AShiftBeginsWhereTheLastOneEnded) {
   EXPECT_LT(result.shifts, 7 + 3 * result.iterations);
 }
 
+/// A node on a ridge along x that is stiff across it, with x + y kept. It notes where matrices are asked for.
+class Ridge : public ConstrainedEnergy {
+ public:
+  explicit Ridge(double kept) : kept_(kept) {}
+  struct Asked {
+    VecX x;
+    double multiplier;
+  };
+  mutable std::vector<Asked> asked;
+
+  std::vector<Part> parts() const override { return {{{0, 1}, {}, 1}}; }
+  int constraints() const override { return 1; }
+  double value(const VecX& x) const override {
+    return 0.1 * (std::pow(x[0], 4) / 4 - x[0] * x[0] / 2) + 0.03 * x[1] * x[1] + x[2] * x[2] / 2;
+  }
+  void gradient(const VecX& x, VecX& gradient, VecX& largest_internal) const override {
+    gradient = Vec3(0.1 * (std::pow(x[0], 3) - x[0]), 0.06 * x[1], x[2]);
+    largest_internal = VecX::Constant(1, 1e-5);  // all are far from balance
+  }
+  void hessian(const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const override {
+    asked.push_back({x, multipliers[0]});
+    matrix.set_zero();
+    matrix.add(0, 0, Vec3(0.1 * (3 * x[0] * x[0] - 1), 0.06, 1).asDiagonal());
+  }
+  void constraint(const VecX& x, VecX& values, Eigen::MatrixXd& gradients) const override {
+    values = constraint_values(x);
+    gradients = along();
+  }
+  VecX constraint_values(const VecX& x) const override { return VecX::Constant(1, x[0] + x[1] - kept_); }
+  VecX constraint_scales() const override { return VecX::Ones(1); }
+  double safe_share(const VecX&, const VecX&) const override { return 1; }
+
+  /// What balances the forces at a place best, less the multiplier there.
+  double missing(const Asked& there) const {
+    VecX force, largest;
+    gradient(there.x, force, largest);
+    return (force - there.multiplier * along()).dot(along()) / along().squaredNorm();
+  }
+
+ private:
+  static Vec3 along() { return {1, 1, 0}; }
+  double kept_;
+};
+
+TEST(Newton, FarFromBalanceAShiftedMatrixChangesAMultiplierByNoMoreThanForcesAsk) {
+  for (const Vec3& start : {Vec3(0.01, 0.01 / 0.6, 0), Vec3(0.01, 0.3, 0.2), Vec3(0.05, -0.2, 0)}) {
+    const Ridge ridge(start.head<2>().sum());
+    NewtonWorkspace work{BlockMatrix(1, std::vector<std::vector<int>>{{0}})};
+    VecX x = start, multipliers = VecX::Zero(1);
+    const NewtonResult result = solve_equilibrium(ridge, {}, work, x, multipliers);
+    ASSERT_TRUE(result.converged()) << to_text(result.status);
+    EXPECT_GT(result.shifts, 0);
+    EXPECT_NEAR(multipliers[0], 0.06 * x[1], 1e-6);
+    ASSERT_GT(ridge.asked.size(), 1u);
+    const Ridge::Asked &first = ridge.asked[0], &second = ridge.asked[1];
+    EXPECT_LE(std::abs(second.multiplier - first.multiplier), 2 * std::abs(ridge.missing(first)) + 1e-12);
+  }
+}
+
 TEST(Newton, InBalanceToRoundingIsConverged) {
   for (bool constrained : {false, true}) {
     Net net(constrained);
