@@ -34,8 +34,8 @@ Failure without_end(const Field& field, ToolIndex instrument, const std::string&
       "raise the instrument's pinch_force or pad_friction, pull or turn less far, or move in smaller steps");
 }
 
-/// Lets the points that `leaves` picks go. Where masses count they are let go at once; else their springs are weakened step by step, so that what they held moves along
-/// equilibria. Where there are none nothing is solved.
+/// Lets the points that `leaves` picks go. Where masses count they are let go at once; else their springs are weakened
+/// step by step, so that what they held moves along equilibria. Where there are none nothing is solved.
 Result<bool> fade(Field& field, ToolIndex instrument, const std::function<bool(const GripPoint&)>& leaves,
                   double weaken, const Budget& budget, SolveStatistics& statistics) {
   constexpr double last_stiffness = 0.05;  // N/m a point, far below the wall's

@@ -16,23 +16,33 @@ void let_leave(Field& field, ToolIndex instrument) {
   }
 }
 
+namespace {
+
+/// The way in the part of a motion, m, of all that a tool let go, on average and as fast as it began.
+Vec3 mean_way(const Organ& organ, ToolIndex instrument) {
+  const MotionPart& part = organ.state.motion;
+  Vec3 sum = Vec3::Zero();
+  int points = 0;
+  for (const LeavingPoint& point : organ.leaving) {
+    if (point.instrument != instrument) continue;
+    sum += part.duration * organ.body->skin_point(point.skin_point, part.begin.velocity);
+    ++points;
+  }
+  return sum / points;
+}
+
+}  // namespace
+
 GripSprings leaving_springs(const Organ& organ) {
   GripSprings springs;
   const MotionPart& part = organ.state.motion;
   if (part.duration == 0) return springs;
-  const Body& body = *organ.body;
   for (const LeavingPoint& point : organ.leaving) {
-    Vec3 way = Vec3::Zero();
-    int together = 0;
-    for (const LeavingPoint& other : organ.leaving) {
-      if (other.instrument != point.instrument) continue;
-      way += part.duration * body.skin_point(other.skin_point, part.begin.velocity);
-      ++together;
-    }
     const bool out = point.time_left < 0.5 * part.duration;
     const double drag = out ? 0 : leaving_drag * std::exp((point.time_left - leaving_time) / leaving_decay);
     springs.row.push_back(point.skin_point);
-    springs.target.push_back(body.skin_point(point.skin_point, part.begin.x) + way / together);
+    springs.target.push_back(organ.body->skin_point(point.skin_point, part.begin.x) +
+                             mean_way(organ, point.instrument));
     springs.stiffness.push_back(drag / part.duration);
   }
   return springs;
@@ -47,7 +57,8 @@ void pass_leaving(Field& field, double duration) {
   for (Organ& organ : field.organs) {
     for (LeavingPoint& point : organ.leaving) point.time_left -= duration;
     // Nothing drags them in the last step: what crept until then is not at rest.
-    std::erase_if(organ.leaving, [&](const LeavingPoint& point) { return point.time_left < -0.5 * duration; });
+    std::erase_if(organ.leaving,
+                  [&](const LeavingPoint& point) { return point.time_left < -0.5 * duration; });
   }
 }
 

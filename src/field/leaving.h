@@ -1,8 +1,8 @@
 #pragma once
 // What opening jaws let go where masses count. A crumpled fold that is set free at once unfolds within a hundredth of a
 // second, further than one step of the solver can follow. Pads that open rub on it: each point that they let go is
-// dragged, the more the faster it moves against the mean of all that the tool let go, and less and less, until it is out
-// of the jaws. As a whole the fold moves freely, but that its mean is that of the last step.
+// dragged, the more the faster it moves against the mean of all of the organ that the tool let go, and less and less, until
+// it is out of the jaws. As a whole the fold moves freely, but that its mean is that of the last step.
 
 #include "field/field.h"
 
