@@ -20,6 +20,9 @@ using Poses = std::vector<InstrumentPose>;
 constexpr double unknown_stiffness = 2e3;
 /// m, that a hand gives way in a step by such a force: what is hard leaves it after less.
 constexpr double farthest_unknown = 2e-3;
+/// m, that a hand gives way in a step at most, by whatever force, and rad about the shaft: a force that a step out of
+/// balance left may be any.
+constexpr double farthest = 10e-3, farthest_turn = 0.35;
 /// N/m: less is felt where a force falls for another reason than the tip's way.
 constexpr double least_stiffness = 100;
 /// m: a shorter way tells nothing of how a force grows.
@@ -47,7 +50,7 @@ double roll_within_strength(const Tool& tool, const InstrumentState& last, doubl
   if (torque == 0 || (!(tool.roll_stiffness > 0) && torque <= strength)) return command;
   const double away = last.roll_torque > 0 ? 1.0 : -1.0, into = -away * (command - tool.pose.roll);
   const double stiffness = tool.roll_stiffness > 0 ? tool.roll_stiffness : unknown_roll_stiffness;
-  const double allowed = (strength - torque) / stiffness;
+  const double allowed = std::max((strength - torque) / stiffness, -farthest_turn);
   return into <= allowed ? command : tool.pose.roll - away * allowed;
 }
 
@@ -63,7 +66,7 @@ InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, In
   const Vec3 way = tip_position(tool.trocar, reached, tool.geometry) - last.tip;
   const double into = -way.dot(away);
   const double allowed = tool.tissue_stiffness > 0
-                             ? (strength - force) / tool.tissue_stiffness
+                             ? std::max((strength - force) / tool.tissue_stiffness, -farthest)
                              : std::max((strength - force) / unknown_stiffness, -farthest_unknown);
   if (into <= allowed) return command;
   const Vec3 across = share_across(tool, last.at_tip, way) * (way + into * away);

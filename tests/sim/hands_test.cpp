@@ -68,6 +68,22 @@ TEST(Hands, WhatIsHeldIsPulledWithNoMoreThanItsHandHolds) {
   EXPECT_TRUE(tool.tip.allFinite());
 }
 
+TEST(Hands, NoForceOfAStepOutOfBalanceThrowsAToolAside) {
+  const World world = World::create(test::ball_scene()).value();
+  Field field = world.field();
+  Tool& tool = field.tools[0];
+  InstrumentState last = world.report().instruments[0];
+  const Vec3 away = Vec3(1, 2, 2) / 3;
+  last.at_tip = 5e3 * away;
+  last.roll_torque = 40;  // N m
+  tool.tissue_stiffness = 100;
+  tool.roll_stiffness = 1e-3;
+  const InstrumentPose to = bring_tools(field, {tool.pose}, {last})[0];
+  const Vec3 way = tip_position(tool.trocar, to, tool.geometry) - last.tip;
+  EXPECT_NEAR(way.dot(away), 10e-3, 1e-6) << "m, not 50";
+  EXPECT_NEAR(std::abs(to.roll - tool.pose.roll), 0.35, 1e-9) << "rad, not 40000";
+}
+
 TEST(Hands, AFoldIsTwistedWithNoMoreThanItsHandHoldsAboutTheShaft) {
   SceneDefinition scene = test::ball_scene();
   scene.instruments[0].hand_force = 1;  // N: 10 mN m
