@@ -336,17 +336,17 @@ end
 local function tissues(p)
   local divide = 2.5e6 * p.strength -- J/m^2
   local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
-  local function fat(name, from, to, within, strands, more)
-    local out = { name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
-      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide,
-      covered = true }
+  local function with(out, more)
     for key, value in pairs(more or {}) do out[key] = value end
     return out
   end
+  local function fat(name, from, to, within, strands, more)
+    return with({ name = name, from = from, to = to, within = within, strands = count(strands), slack = 0.2,
+      stiffness = 4 * kPa, strength = 12 * kPa * p.strength, break_energy = 200 * p.strength, divide_energy = divide,
+      covered = true }, more)
+  end
   local function plate(made_of)
-    local out = { name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2 }
-    for key, value in pairs(made_of) do out[key] = value end
-    return out
+    return with({ name = "cystic_plate", from = "gallbladder", to = "liver", within = 7 * mm, start = 0.2 }, made_of)
   end
   return {
     p.areolar_plane

@@ -65,9 +65,9 @@ InstrumentPose within_strength(const Tool& tool, const InstrumentState& last, In
   const Vec3 away = last.at_tip / force;
   const Vec3 way = tip_position(tool.trocar, reached, tool.geometry) - last.tip;
   const double into = -way.dot(away);
-  const double allowed = tool.tissue_stiffness > 0
-                             ? std::max((strength - force) / tool.tissue_stiffness, -farthest)
-                             : std::max((strength - force) / unknown_stiffness, -farthest_unknown);
+  const bool known = tool.tissue_stiffness > 0;
+  const double stiffness = known ? tool.tissue_stiffness : unknown_stiffness;
+  const double allowed = std::max((strength - force) / stiffness, known ? -farthest : -farthest_unknown);
   if (into <= allowed) return command;
   const Vec3 across = share_across(tool, last.at_tip, way) * (way + into * away);
   InstrumentPose out = pose_reaching(tool.trocar, last.tip + across - allowed * away, command.roll,

@@ -96,8 +96,9 @@ Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, st
     const ToolIndex index(i);
     const std::string organ = between_pads(field, index);
     const bool held = tool.jaw_stopped && instrument_row(tool.definition.type).jaws != JawUse::cut;
-    if (field.step_time > 0) let_leave(field, index);
-    if (!held_organ(field, index).empty())
+    if (field.step_time > 0)
+      let_leave(field, index);
+    else if (!held_organ(field, index).empty())
       if (Result<bool> released = release(field, index, statistics); !released) return released.failure();
     if (held)
       events.push_back(

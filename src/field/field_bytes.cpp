@@ -49,14 +49,9 @@ bool fits(const Organ& organ, std::size_t tools) {
     return tool.value >= 0 && tool.value < static_cast<int>(tools);
   };
   const auto is_point = [&](int point) { return point >= 0 && point < points; };
-  return fits(organ.state, *organ.body) &&
-         std::all_of(
-             organ.grips.begin(), organ.grips.end(),
-             [&](const GripPoint& grip) { return is_tool(grip.instrument) && is_point(grip.skin_point); }) &&
-         std::all_of(organ.leaving.begin(), organ.leaving.end(),
-                     [&](const LeavingPoint& point) {
-                       return is_tool(point.instrument) && is_point(point.skin_point);
-                     }) &&
+  const auto is_at = [&](const auto& held) { return is_tool(held.instrument) && is_point(held.skin_point); };
+  return fits(organ.state, *organ.body) && std::all_of(organ.grips.begin(), organ.grips.end(), is_at) &&
+         std::all_of(organ.leaving.begin(), organ.leaving.end(), is_at) &&
          std::all_of(organ.friction.points.begin(), organ.friction.points.end(),
                      [&](const RubbingPoint& point) { return point.point >= 0 && point.point < contacts; }) &&
          std::all_of(organ.openings.begin(), organ.openings.end(),

@@ -37,12 +37,15 @@ GripSprings leaving_springs(const Organ& organ) {
   GripSprings springs;
   const MotionPart& part = organ.state.motion;
   if (part.duration == 0) return springs;
+  Vec3 together = Vec3::Zero();
+  const LeavingPoint* last = nullptr;  // those of one tool follow each other
   for (const LeavingPoint& point : organ.leaving) {
+    if (!last || last->instrument != point.instrument) together = mean_way(organ, point.instrument);
+    last = &point;
     const bool out = point.time_left < 0.5 * part.duration;
     const double drag = out ? 0 : leaving_drag * std::exp((point.time_left - leaving_time) / leaving_decay);
     springs.row.push_back(point.skin_point);
-    springs.target.push_back(organ.body->skin_point(point.skin_point, part.begin.x) +
-                             mean_way(organ, point.instrument));
+    springs.target.push_back(organ.body->skin_point(point.skin_point, part.begin.x) + together);
     springs.stiffness.push_back(drag / part.duration);
   }
   return springs;

@@ -23,22 +23,14 @@ BodyState state_on(const BodyState& whole, const BodyPiece& piece) {
   return out;
 }
 
-std::vector<GripPoint> grips_of(const Organ& whole, const BodyCut& cut, int side) {
-  std::vector<GripPoint> out;
-  for (GripPoint grip : whole.grips) {
-    if (cut.side_of(grip.skin_point) != side) continue;
-    grip.skin_point = cut.pieces[side].points[grip.skin_point];
-    out.push_back(grip);
-  }
-  return out;
-}
-
-std::vector<LeavingPoint> leaving_of(const Organ& whole, const BodyCut& cut, int side) {
-  std::vector<LeavingPoint> out;
-  for (LeavingPoint point : whole.leaving) {
-    if (cut.side_of(point.skin_point) != side) continue;
-    point.skin_point = cut.pieces[side].points[point.skin_point];
-    out.push_back(point);
+/// Those at points of one side, by the piece's numbers; `point` is the member that says which.
+template <class Item>
+std::vector<Item> on_side(const std::vector<Item>& whole, int Item::*point, const BodyCut& cut, int side) {
+  std::vector<Item> out;
+  for (Item item : whole) {
+    if (cut.side_of(item.*point) != side) continue;
+    item.*point = cut.pieces[side].points[item.*point];
+    out.push_back(std::move(item));
   }
   return out;
 }
@@ -66,16 +58,10 @@ std::vector<Clip> clips_of(const Organ& whole, const BodyCut& cut, int side) {
 }
 
 std::vector<Opening> openings_of(const Organ& whole, const BodyCut& cut, int side) {
-  const std::vector<int>& points = cut.pieces[side].points;
-  std::vector<Opening> out;
-  for (Opening opening : whole.openings) {
-    if (cut.side_of(opening.point) != side) continue;
-    opening.point = points[opening.point];
-    out.push_back(std::move(opening));
-  }
+  std::vector<Opening> out = on_side(whole.openings, &Opening::point, cut, side);
   if (!cut.open) return out;
   Opening cut_open;
-  cut_open.point = points[cut.point];
+  cut_open.point = cut.pieces[side].points[cut.point];
   out.insert(side == 0 ? out.end() : out.begin(), cut_open);
   return out;
 }
@@ -104,8 +90,8 @@ Organ piece_of(const Organ& whole, const BodyCut& cut, int side) {
   out.landmarks = piece.body->landmarks();
   out.origin = whole.origin;
   out.origin.cuts.push_back({cut.share, side, {}, pinches_of(whole)});
-  out.grips = grips_of(whole, cut, side);
-  out.leaving = leaving_of(whole, cut, side);
+  out.grips = on_side(whole.grips, &GripPoint::skin_point, cut, side);
+  out.leaving = on_side(whole.leaving, &LeavingPoint::skin_point, cut, side);
   out.friction = friction_of(whole, piece);
   out.unfelt = whole.unfelt;
   out.clips = clips_of(whole, cut, side);

@@ -55,10 +55,6 @@ double approach_between(const Body& body, const VecX& before, const VecX& now) {
   return relative_motion(body, moved, all_nodes(body));
 }
 
-std::array<Vec3, 3> corners_of(const Triangle& t, const std::vector<Vec3>& points) {
-  return {points[t[0]], points[t[1]], points[t[2]]};
-}
-
 /// What the pair leaves of a share of the motion. Few of those that are looked at could meet at all.
 double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>& at,
               const std::vector<Vec3>& motion, double keep, double share) {

@@ -243,16 +243,28 @@ class Boxes {
 
 namespace {
 
-/// Which of `items`, each a list of points, are around each point: around[begin[p]] .. around[begin[p + 1] - 1].
+/// Values by their keys, 0 up to `keys`, as they came: of[begin[key]] .. of[begin[key + 1] - 1]. for_each(use) calls
+/// use(key, value) for all of them, and is called twice.
+struct ByKey {
+  std::vector<int> begin, of;
+
+  template <class ForEach>
+  ByKey(std::size_t keys, const ForEach& for_each) : begin(keys + 1, 0) {
+    for_each([&](int key, int) { ++begin[key + 1]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    of.resize(static_cast<std::size_t>(begin.back()));
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for_each([&](int key, int value) { of[next[key]++] = value; });
+  }
+};
+
+/// Which of `items`, each a list of points, are around each point.
 template <class Items>
-void gather_around(const Items& items, std::vector<int>& begin, std::vector<int>& around) {
-  for (const auto& item : items)
-    for (int p : item) ++begin[p + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  around.resize(static_cast<std::size_t>(begin.back()));
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (std::size_t k = 0; k < items.size(); ++k)
-    for (int p : items[k]) around[next[p]++] = static_cast<int>(k);
+ByKey around_points(std::size_t points, const Items& items) {
+  return {points, [&](const auto& use) {
+            for (std::size_t k = 0; k < items.size(); ++k)
+              for (int p : items[k]) use(p, static_cast<int>(k));
+          }};
 }
 
 std::vector<Triangle> sorted(std::vector<Triangle> triangles) {
@@ -265,14 +277,16 @@ std::vector<Triangle> sorted(std::vector<Triangle> triangles) {
 SkinNet::SkinNet(const Body& body)
     : rest(body.skin_rest()),
       triangles(sorted(body.skin().triangles)),
-      begin(rest.size() + 1, 0),
       edges(rest, triangles),
-      edge_begin(rest.size() + 1, 0),
       order(rest.size()) {
   constexpr double one_piece = 6e-3;  // m
   apart = std::max(one_piece, 2 * body.widest_skin_gap());
-  gather_around(triangles, begin, around);
-  gather_around(edges.ends, edge_begin, edges_around);
+  ByKey of_points = around_points(rest.size(), triangles),
+        edges_of_points = around_points(rest.size(), edges.ends);
+  begin = std::move(of_points.begin);
+  around = std::move(of_points.of);
+  edge_begin = std::move(edges_of_points.begin);
+  edges_around = std::move(edges_of_points.of);
   std::iota(order.begin(), order.end(), 0);
   nodes.push_back({0, static_cast<int>(rest.size()), -1, -1, {}});
   for (std::size_t n = 0; n < nodes.size(); ++n) split(static_cast<int>(n));
@@ -345,38 +359,23 @@ void meet(const SkinNet& net, const SkinMotion& skin, std::span<const GroupPair>
   }
 }
 
-/// The corners that each point meets: of[begin[row]] .. of[begin[row + 1] - 1].
-struct CornersMet {
-  std::vector<int> begin, of;
-
-  CornersMet(std::size_t points, std::span<const Meeting> meetings)
-      : begin(points + 1, 0), of(meetings.size()) {
-    for (const Meeting& met : meetings) ++begin[met.row + 1];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    for (const Meeting& met : meetings) of[next[met.row]++] = met.corner;
-  }
-};
-
 /// The triangles around the corners that some points meet, as far as they are looked for.
-void measure(const SkinNet& net, const SkinMotion& skin, const CornersMet& met, std::span<const int> rows,
+void measure(const SkinNet& net, const SkinMotion& skin, const ByKey& corners, std::span<const int> rows,
              std::vector<SelfPair>& pairs) {
   std::vector<int> seen_by(net.triangles.size(), -1), triangles;
   for (int row : rows) {
     triangles.clear();
-    for (int k = met.begin[row]; k < met.begin[row + 1]; ++k)
-      for (int i = net.begin[met.of[k]]; i < net.begin[met.of[k] + 1]; ++i)
+    for (int k = corners.begin[row]; k < corners.begin[row + 1]; ++k)
+      for (int i = net.begin[corners.of[k]]; i < net.begin[corners.of[k] + 1]; ++i)
         if (std::exchange(seen_by[net.around[i]], row) != row) triangles.push_back(net.around[i]);
     std::sort(triangles.begin(), triangles.end());
     const double reach = skin.motion ? 0 : reach_of_point(net, skin, row);
     for (int triangle : triangles) {
       if (net.neighbours(row, triangle)) continue;
       SelfPair pair{row, triangle, 0};
-      if (!skin.motion) {
-        const Triangle& t = net.triangles[triangle];
-        const std::array<Vec3, 3> corners{skin.points[t[0]], skin.points[t[1]], skin.points[t[2]]};
-        pair.distance = nearest_point(skin.points[row], corners).distance;
-      }
+      if (!skin.motion)
+        pair.distance =
+            nearest_point(skin.points[row], corners_of(net.triangles[triangle], skin.points)).distance;
       if (skin.motion || pair.distance < reach) pairs.push_back(pair);
     }
   }
@@ -401,17 +400,18 @@ std::vector<Found> in_chunks(std::span<const Item> items, Workers* workers, cons
 
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
                                  std::span<const GroupPair> groups, Workers* workers) {
-  const CornersMet met(
-      net.rest.size(),
-      in_chunks<Meeting>(groups, workers, [&](std::span<const GroupPair> some, std::vector<Meeting>& out) {
-        meet(net, skin, some, out);
-      }));
+  const std::vector<Meeting> meetings = in_chunks<Meeting>(
+      groups, workers,
+      [&](std::span<const GroupPair> some, std::vector<Meeting>& out) { meet(net, skin, some, out); });
+  const ByKey corners(net.rest.size(), [&](const auto& use) {
+    for (const Meeting& met : meetings) use(met.row, met.corner);
+  });
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(net.rest.size()); ++row)
-    if (met.begin[row] < met.begin[row + 1]) rows.push_back(row);
+    if (corners.begin[row] < corners.begin[row + 1]) rows.push_back(row);
   return in_chunks<SelfPair>(
       std::span<const int>(rows), workers,
-      [&](std::span<const int> some, std::vector<SelfPair>& out) { measure(net, skin, met, some, out); });
+      [&](std::span<const int> some, std::vector<SelfPair>& out) { measure(net, skin, corners, some, out); });
 }
 
 namespace {
@@ -436,26 +436,13 @@ void for_edges_of(const SkinNet& net, const SkinMotion& skin, const SelfPair& pa
   }
 }
 
-/// For each edge those of higher number that it meets at the pairs, most of them several times: of[begin[e]] .. of[begin[e + 1] - 1].
-struct EdgesMet {
-  std::vector<int> begin, of;
-
-  EdgesMet(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin)
-      : begin(net.edges.ends.size() + 1, 0) {
-    for (const SelfPair& pair : pairs)
-      for_edges_of(net, skin, pair, [&](int edge, int) { ++begin[edge + 1]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    of.resize(static_cast<std::size_t>(begin.back()));
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    for (const SelfPair& pair : pairs)
-      for_edges_of(net, skin, pair, [&](int edge, int other) { of[next[edge]++] = other; });
-  }
-};
-
 }  // namespace
 
 std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin) {
-  const EdgesMet met(net, pairs, skin);
+  // For each edge those of higher number that it meets at the pairs, most of them several times.
+  const ByKey met(net.edges.ends.size(), [&](const auto& use) {
+    for (const SelfPair& pair : pairs) for_edges_of(net, skin, pair, use);
+  });
   const PlacedEdges edges{&net.edges, &skin.points};
   const int size = static_cast<int>(net.edges.ends.size());
   std::vector<int> seen_with(net.edges.ends.size(), -1);

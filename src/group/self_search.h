@@ -1,6 +1,7 @@
 #pragma once
 // Which points of an organ's skin may meet which of its triangles, and which edges which.
 
+#include <array>
 #include <span>
 #include <utility>
 
@@ -50,6 +51,11 @@ struct SkinMotion {
   /// motion, those that could lose more than the share `lost` of their distance on the way.
   double reach = 0, edges_reach = 0, lost = 1;
 };
+
+/// Where a triangle's corners are, m.
+inline std::array<Vec3, 3> corners_of(const Triangle& t, const std::vector<Vec3>& points) {
+  return {points[t[0]], points[t[1]], points[t[2]]};
+}
 
 /// A skin point and a triangle of the same skin that are no neighbours.
 struct SelfPair {
