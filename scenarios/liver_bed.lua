@@ -57,7 +57,7 @@ return calot.exercise {
   api = 2,
   id = "liver-bed",
   title = "Off the liver's bed: a fifth of the plane that stands",
-  time_limit = 70 * s,
+  time_limit = 120 * s,
 
   params = {
     demo = {
@@ -98,7 +98,7 @@ return calot.exercise {
     })
     t:wait_until(function() return t.left:holds("gallbladder") and t.left:force("jaws") > 2 * N end)
     t:step("free", "Divide a fifth of the plane with the hook, midway between gallbladder and liver", {
-      limit = 120 * s,
+      limit = 70 * s,
       hint = "sweep the foot along the taut strands and let current flow while it lies on them; let the fundus go, and "
         .. "draw the pouch on as they yield, the less the fewer of them are left",
     })
