@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "goldens/store.h"
+#include "goldens/judge.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "goldens/store.h"
+#include "goldens/judge.h"
 #include "play/play.h"
 #include "render/offscreen.h"
 #include "support/paths.h"
