@@ -25,13 +25,21 @@ class Staging {
   Staging& operator=(const Staging&) = delete;
 
   std::optional<Failure> add(const Frame& frame) {
-    const Result<std::string> written = write_golden(staged() / frame.name, make_golden(frame));
+    const Golden golden = make_golden(frame);
+    const Result<std::string> written = write_golden(staged() / frame.name, golden);
     if (!written) return written.failure();
     names_.push_back(frame.name);
+    sidecars_.push_back(golden.sidecar);
     return std::nullopt;
   }
   const std::vector<std::string>& names() const { return names_; }
-  std::optional<Failure> publish() const {
+  /// What became of the session is written beside each picture before the first is moved.
+  std::optional<Failure> publish(const Course& course) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      sidecars_[i].course = course;
+      const Result<std::string> written = write_sidecar(staged() / names_[i], sidecars_[i]);
+      if (!written) return written.failure();
+    }
     for (const std::string& name : names_) {
       for (const char* extension : {".png", ".json"}) {
         std::error_code error;
@@ -50,6 +58,7 @@ class Staging {
   fs::path staged() const { return folder_ / ".new"; }
   fs::path folder_;
   std::vector<std::string> names_;
+  std::vector<GoldenSidecar> sidecars_;  ///< of these, in their order
   std::error_code ignored_;
 };
 
@@ -90,7 +99,7 @@ std::optional<Failure> accept_scenario(const SelectedGolden& selected, const fs:
     return fail(FailureKind::scenario, fmt::format("{} has no frame {}", selected.name, name),
                 fmt::format("frames that were drawn: {}", fmt::join(played->pictures, ", ")));
   }
-  if (std::optional<Failure> failure = staging.publish()) return failure;
+  if (std::optional<Failure> failure = staging.publish(course_of(played.value()))) return failure;
   count += staging.names().size();
   if (selected.frames.empty()) remove_stale(folder, declared);
   return std::nullopt;

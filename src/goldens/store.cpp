@@ -49,6 +49,7 @@ GoldenSidecar parse_sidecar(const std::string& text, std::vector<std::string>& p
   sidecar.height = fields.integer("height_px", 16, 4096);
   sidecar.time = fields.number("time_s", 0);
   sidecar.tolerance = parse_tolerance(fields.any("tolerance"), problems);
+  sidecar.course = parse_course(fields.any("course"), problems);
   sidecar.renderer = fields.text("renderer");
   sidecar.scenario_hash = fields.hash("scenario_hash");
   sidecar.state_hash = fields.hash("state_hash");
@@ -68,6 +69,7 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
                               {"differing_pixels", tolerance.differing_pixels},
                               {"large_delta", tolerance.large_delta},
                               {"blob_pixels", tolerance.blob_pixels}}},
+                            {"course", course_json(sidecar.course)},
                             {"renderer", sidecar.renderer},
                             {"scenario_hash", hex(sidecar.scenario_hash)},
                             {"state_hash", hex(sidecar.state_hash)},
@@ -111,7 +113,11 @@ Result<std::string> write_golden(const fs::path& stem, const Golden& golden) {
   if (!folder) return folder.failure();
   const Result<std::string> written = write_png(with_extension(stem, ".png").string(), golden.image);
   if (!written) return written.failure();
-  return write_text(with_extension(stem, ".json"), sidecar_text(golden.sidecar));
+  return write_sidecar(stem, golden.sidecar);
+}
+
+Result<std::string> write_sidecar(const fs::path& stem, const GoldenSidecar& sidecar) {
+  return write_text(with_extension(stem, ".json"), sidecar_text(sidecar));
 }
 
 Golden make_golden(const Frame& frame) {

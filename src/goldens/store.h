@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "goldens/course.h"
 #include "play/play.h"
 #include "render/image_compare.h"
 
@@ -23,6 +24,7 @@ struct GoldenSidecar {
   std::string renderer;
   std::uint64_t scenario_hash = 0, state_hash = 0;
   Make make;
+  Course course;  ///< of the session that drew it
 };
 
 struct Golden {
@@ -34,8 +36,10 @@ struct Golden {
 /// wrong, and every key that is.
 Result<Golden> read_golden(const std::filesystem::path& stem);
 Result<std::string> write_golden(const std::filesystem::path& stem, const Golden& golden);
+/// The sidecar alone.
+Result<std::string> write_sidecar(const std::filesystem::path& stem, const GoldenSidecar& sidecar);
 
-/// The golden that this frame would become.
+/// The golden that this frame would become, but for its course, which is known when the session has ended.
 Golden make_golden(const Frame& frame);
 
 }  // namespace calot

@@ -187,6 +187,25 @@ TEST_F(GoldenProject, AnotherStateIsPhysicsChangeUnlessOnlyTheToolchainMadeIt) {
   EXPECT_NE(json["frames"][1]["message"].get<std::string>().find("another compiler"), std::string::npos);
 }
 
+TEST_F(GoldenProject, AcceptStoresWhatBecameOfTheSession) {
+  accept_small();
+  ASSERT_EQ(calot({"run", "--no-render", "-o", "here", "scenarios/small.lua"}).code, 0);
+  const Json report = Json::parse(slurp(folder_ / "here" / "report.json"));
+  const double total = report["score"]["total"].get<double>();
+  EXPECT_GT(total, 0);
+  for (const char* name : {"t000.00s.json", "t000.40s.json"}) {
+    const Json course = Json::parse(slurp(golden(name)))["course"];
+    EXPECT_EQ(course, Json({{"score", total}, {"steps_done", 1}, {"errors", 0}})) << name;
+  }
+  std::string text = small_scenario("t:step('wait', 'Wait', { limit = 0.5 * s }); t:wait(0.6 * s)");
+  const std::size_t score = text.find("  score = "), golden_times = text.find("  golden = ");
+  text.erase(score, golden_times - score);
+  spill(folder_ / "scenarios" / "small.lua", text);
+  ASSERT_EQ(calot({"golden", "accept", "small"}).code, 0);
+  const Json course = Json::parse(slurp(golden("t000.00s.json")))["course"];
+  EXPECT_EQ(course, Json({{"score", nullptr}, {"steps_done", 0}, {"errors", 1}})) << "the step timed out";
+}
+
 TEST_F(GoldenProject, AFrameTheScenarioNoLongerDeclaresIsStale) {
   accept_small();
   std::string text = small_scenario();
@@ -252,6 +271,17 @@ TEST_F(GoldenProject, EverySidecarValueIsCheckedAndNamed) {
       changed["tolerance"][key] = other;
       expect_named(changed, "tolerance." + key, other.dump());
     }
+  }
+  for (const auto& [key, value] : good["course"].items()) {
+    for (const Json& other : bad) {
+      if (key == "score" && (other.is_null() || other == 1.5)) continue;
+      Json changed = good;
+      changed["course"][key] = other;
+      expect_named(changed, "course." + key, other.dump());
+    }
+    Json missing = good;
+    missing["course"].erase(key);
+    expect_named(missing, "course." + key, "missing");
   }
   Json other_size = good;
   other_size["width_px"] = 17;
