@@ -14,54 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads the stored golden; without one the judgement is made.
-void find_golden(GoldenResult& result, const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::exists(folder / (result.frame + ".json"), ignored)) {
-    result.judgement = {Verdict::missing, false, "no golden is stored for this frame", {}};
-    return;
-  }
-  Result<Golden> golden = read_golden(folder / result.frame);
-  if (golden)
-    result.golden = std::move(golden).value();
-  else
-    result.judgement = {Verdict::unreadable, false, to_text(golden.failure()), {}};
-}
-
 /// The frames that a scenario declares, and those stored.
 std::set<std::string> known_frames(const ExerciseDefinition& exercise, const fs::path& folder) {
   std::set<std::string> known;
   for (const std::string& name : stored_frames(folder)) known.insert(name);
   for (const GoldenFrame& frame : golden_frames(exercise)) known.insert(frame.name);
   return known;
-}
-
-GoldenResult drawn_frame(const std::string& scenario, const Frame& frame, const fs::path& folder) {
-  GoldenResult result{scenario, frame.name};
-  result.actual = make_golden(frame);
-  find_golden(result, folder);
-  if (result.golden) result.judgement = judge(*result.golden, *result.actual);
-  return result;
-}
-
-GoldenResult undrawn_frame(const std::string& scenario, const std::string& frame, const fs::path& folder,
-                           const Played& played) {
-  GoldenResult result{scenario, frame};
-  find_golden(result, folder);
-  if (!result.golden) return result;
-  const std::vector<GoldenFrame> declared = golden_frames(played.exercise);
-  if (std::any_of(declared.begin(), declared.end(), [&](const GoldenFrame& f) { return f.name == frame; })) {
-    const std::string why =
-        played.session.end == SessionEnd::failed ? ": " + to_text(played.session.failure) : "";
-    result.judgement = {
-        Verdict::not_played,
-        false,
-        fmt::format("the session ended before this time ({}{})", to_text(played.session.end), why),
-        {}};
-  } else {
-    result.judgement = {Verdict::stale, false, "the scenario declares no frame at this time", {}};
-  }
-  return result;
 }
 
 }  // namespace
@@ -117,16 +75,16 @@ ComparedScenario compare_scenario(const SelectedGolden& selected, const fs::path
   request.threads = threads;
   request.end_frame = false;
   use_stored_size(folder, request);
+  SessionJudge judge(selected.name, folder, std::move(wanted), sink);
   request.on_picture = [&](const Frame& frame) -> std::optional<Failure> {
-    if (wanted.erase(frame.name) == 0) return std::nullopt;
-    sink(drawn_frame(selected.name, frame, folder));
+    judge.see(frame);
     return std::nullopt;
   };
   const Result<Played> played = play(request);
   compared.interrupted = interrupt_flag();
   if (!played) compared.failure = played.failure();
   if (!played || compared.interrupted) return compared;
-  for (const std::string& name : wanted) sink(undrawn_frame(selected.name, name, folder, played.value()));
+  judge.end(played.value());
   return compared;
 }
 

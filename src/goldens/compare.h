@@ -2,12 +2,11 @@
 // Plays scenarios and holds each golden frame against what is drawn, one at a time.
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "goldens/report.h"
 #include "goldens/select.h"
+#include "goldens/session_judge.h"
 
 namespace calot {
 
@@ -20,9 +19,6 @@ std::optional<Failure> check_selected(const std::vector<SelectedGolden>& selecte
 
 /// Draws frames in the size that a scenario's goldens have.
 void use_stored_size(const std::filesystem::path& folder, PlayRequest& request);
-
-/// Receives each frame's comparison once; its pictures are gone afterwards.
-using GoldenSink = std::function<void(const GoldenResult&)>;
 
 struct ComparedScenario {
   std::optional<Failure> failure;  ///< the scenario could not be played

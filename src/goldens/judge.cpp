@@ -28,6 +28,11 @@ std::string pixels_text(const ImageDifference& difference) {
       difference.blob_height, difference.blob_x, difference.blob_y);
 }
 
+std::string end_text(const SessionResult& session) {
+  const std::string why = session.end == SessionEnd::failed ? ": " + to_text(session.failure) : "";
+  return to_text(session.end) + why;
+}
+
 }  // namespace
 
 std::string to_text(Verdict verdict) {
@@ -36,6 +41,8 @@ std::string to_text(Verdict verdict) {
       return "same";
     case Verdict::same_picture:
       return "same picture";
+    case Verdict::drifted:
+      return "drifted";
     case Verdict::physics_changed:
       return "physics changed";
     case Verdict::rendering_changed:
@@ -77,6 +84,9 @@ Judgement judge(const Golden& golden, const Golden& actual) {
   } else if (same_picture && !same_binary) {
     judgement.verdict = Verdict::same_picture;
     judgement.message = "other bits are expected here, and the picture does not differ" + in_brackets;
+  } else if (!same_binary && present.time > 0 && judgement.difference) {
+    judgement.verdict = Verdict::drifted;
+    judgement.message = pixels + edited + in_brackets;
   } else {
     judgement.verdict = Verdict::physics_changed;
     judgement.message =
@@ -86,6 +96,25 @@ Judgement judge(const Golden& golden, const Golden& actual) {
   }
   judgement.passed = judgement.verdict == Verdict::same || judgement.verdict == Verdict::same_picture;
   return judgement;
+}
+
+Judgement judge_undrawn(const Golden& golden, const SessionResult& session) {
+  const bool same_binary = same_bits(golden.sidecar.make, this_make());
+  return {same_binary ? Verdict::not_played : Verdict::drifted,
+          false,
+          fmt::format("the session ended before this time ({})", end_text(session)),
+          {}};
+}
+
+void judge_course(Judgement& drifted, const Course& golden, const Course& here,
+                  const SessionResult& session) {
+  const bool done = session.end == SessionEnd::steps_done;
+  drifted.passed = done && same_course(golden, here);
+  drifted.message =
+      fmt::format("other bits are expected here, {} course ({}here {}; golden {}); {}",
+                  drifted.passed ? "and the session took the golden's" : "but the session took another",
+                  done ? "" : fmt::format("ended as {}; ", end_text(session)), to_text(here), to_text(golden),
+                  drifted.message);
 }
 
 }  // namespace calot

@@ -187,6 +187,38 @@ TEST_F(GoldenProject, AnotherStateIsPhysicsChangeUnlessOnlyTheToolchainMadeIt) {
   EXPECT_NE(json["frames"][1]["message"].get<std::string>().find("another compiler"), std::string::npos);
 }
 
+TEST_F(GoldenProject, OfOtherBitsAnotherPicturePassesByTheCourseOfItsSession) {
+  accept_small();
+  const auto from_elsewhere = [](Json& json) {
+    json["state_hash"] = "0000000000000000";
+    json["instruction_set"] = "another one";
+  };
+  Image image = read_png(golden("t000.40s.png").string()).value();
+  image.rgb.assign(image.rgb.size(), 255);
+  ASSERT_TRUE(write_png(golden("t000.40s.png").string(), image));
+  edit_sidecar("t000.40s.json", from_elsewhere);
+  const Outcome passed = calot({"golden", "test", "--json"});
+  EXPECT_EQ(passed.code, 0) << passed.out;
+  const Json frame = Json::parse(passed.out)["frames"][1];
+  EXPECT_EQ(frame["verdict"], "drifted");
+  EXPECT_TRUE(frame["passed"].get<bool>());
+  ASSERT_EQ(calot({"golden", "report", "-o", "page.html"}).code, 0);
+  EXPECT_THAT(slurp(folder_ / "page.html"), ::testing::HasSubstr("<h2>small/t000.40s: drifted</h2>"));
+
+  edit_sidecar("t000.40s.json", [](Json& json) { json["course"]["steps_done"] = 2; });
+  const Outcome failed = calot({"golden", "test"});
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.out, ::testing::HasSubstr("small/t000.40s: drifted: other bits are expected here, but "
+                                               "the session took another course"));
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "golden" / "small" / "t000.40s.difference.png"));
+
+  edit_sidecar("t000.40s.json", [](Json& json) { json["course"]["steps_done"] = 1; });
+  ASSERT_TRUE(write_png(golden("t000.00s.png").string(), image));
+  edit_sidecar("t000.00s.json", from_elsewhere);
+  const Json at_rest = Json::parse(calot({"golden", "test", "--json"}).out)["frames"][0];
+  EXPECT_EQ(at_rest["verdict"], "physics changed") << "nothing has moved yet";
+}
+
 TEST_F(GoldenProject, AcceptStoresWhatBecameOfTheSession) {
   accept_small();
   ASSERT_EQ(calot({"run", "--no-render", "-o", "here", "scenarios/small.lua"}).code, 0);
