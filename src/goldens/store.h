@@ -17,10 +17,11 @@ namespace calot {
 struct GoldenSidecar {
   int width = 0, height = 0;  ///< px
   double time = 0;            ///< s
-  /// For pictures by another renderer, toolchain or instruction set: other processors move some hundred
-  /// pixels by 1 of 255. What drew the golden must draw it again exactly.
+  /// For pictures by another renderer, toolchain or instruction set. A build for plain x86-64 draws what has not drifted
+  /// with up to 768 other pixels, those more than 2 of 255 off in patches of at most 5: this is half as much again. What drew
+  /// the golden must draw it again exactly.
   CompareTolerance tolerance = {
-      .small_delta = 0, .differing_pixels = 500, .large_delta = 2, .blob_pixels = 4};
+      .small_delta = 0, .differing_pixels = 1200, .large_delta = 2, .blob_pixels = 8};
   std::string renderer;
   std::uint64_t scenario_hash = 0, state_hash = 0;
   Make make;
