@@ -246,8 +246,8 @@ void add_page(Program& program) {
   PageCommand& page = program.page;
   command
       .add_option("recordings", page.recordings,
-                  "recordings, or folders with all recordings (.jsonl) below them: one trainee's attempts, "
-                  "first to last")
+                  "recordings, or folders with all recordings (.jsonl) below them: one trainee's attempts, first "
+                  "to last, or with --class those of different people")
       ->required();
   command.add_flag("--class", page.of_a_class, "they are of different people: no learning curve is drawn");
   command

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "app/commands.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -20,6 +22,7 @@ struct Compared {
   ExitCode code = ExitCode::ok;   ///< ok: every scenario was played
   std::optional<ExitCode> ended;  ///< nothing was to be played: it has been said why, or it was a dry run
   std::size_t frames = 0, failed = 0, unreadable = 0;
+  std::set<std::string> differing;    ///< scenarios of which a frame failed
   std::vector<std::string> unplayed;  ///< scenarios that an interruption left out, wholly or in part
   OrderedJson failures = OrderedJson::array();
 };
@@ -48,7 +51,7 @@ Compared compare_selected(const GoldenCommand& command, const GoldenSink& sink) 
   }
   const GoldenSink counted = [&](const GoldenResult& result) {
     ++compared.frames;
-    if (!result.judgement.passed) ++compared.failed;
+    if (!result.judgement.passed) ++compared.failed, compared.differing.insert(result.scenario);
     if (result.judgement.verdict == Verdict::unreadable) ++compared.unreadable;
     sink(result);
   };
@@ -64,7 +67,9 @@ Compared compare_selected(const GoldenCommand& command, const GoldenSink& sink) 
   if (!stop && command.names.empty())
     for (const GoldenResult& lost : goldens_without_scenario(golden_folder(command))) counted(lost);
   if (compared.frames == 0 && compared.code == ExitCode::ok && !stop) {
-    print_failure(fail(FailureKind::usage, "no frame was selected"), "calot golden test", command.json);
+    print_failure(fail(FailureKind::usage, "no frame was selected",
+                       "pictures are named as in the folder golden, such as exposure/t004.40s"),
+                  "calot golden test", command.json);
     compared.ended = ExitCode::nothing_selected;
   }
   return compared;
@@ -152,7 +157,8 @@ ExitCode golden_test_command(const GoldenCommand& command) {
     return compared.code;
   }
   if (compared.failed == 0) return ExitCode::ok;
-  std::fprintf(stderr, "Next: calot golden report\n");
+  std::fprintf(stderr, "Next: calot golden report %s\n",
+               fmt::format("{}", fmt::join(compared.differing, " ")).c_str());
   return compared.unreadable > 0 ? ExitCode::usage : ExitCode::mismatch;
 }
 

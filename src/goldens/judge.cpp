@@ -72,9 +72,10 @@ Judgement judge(const Golden& golden, const Golden& actual) {
       compare(golden.image, actual.image, make.empty() ? CompareTolerance() : stored.tolerance);
   const bool same_picture = difference && difference->within;
   const std::string pixels = difference ? pixels_text(difference.value()) : to_text(difference.failure());
-  const std::string edited = stored.scenario_hash == present.scenario_hash
-                                 ? ""
-                                 : "; the scenario's text has changed too: look there first";
+  const std::string edited =
+      stored.scenario_hash == present.scenario_hash
+          ? ""
+          : "; the exercise's text has changed since, too, or that of a module that it uses";
   if (difference) judgement.difference = std::move(difference).value();
   if (same_state && same_picture) {
     if (judgement.difference->max_delta > 0) judgement.message = pixels + in_brackets;

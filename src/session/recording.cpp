@@ -213,7 +213,8 @@ class Reader {
 
   Result<Recording> read() {
     if (!in_)
-      return fail(FailureKind::usage, fmt::format("cannot read {}", path_), "give the path of a recording");
+      return fail(FailureKind::usage, fmt::format("cannot read {}", path_),
+                  "give the path of a recording, or of a folder that holds some");
     std::string buffer(longest_line, '\0');
     while (problems_.empty() && next_line(buffer)) {
       std::vector<std::string> problems;

@@ -165,8 +165,9 @@ TEST_F(GoldenProject, AnEditOfTheScenarioIsNamedBesideTheChangedPictures) {
   spill(folder_ / "scenarios" / "small.lua", text);
   const Json json = Json::parse(calot({"golden", "test", "small/t000.00s", "--json"}).out);
   EXPECT_EQ(json["frames"][0]["verdict"], "rendering changed");
-  EXPECT_NE(json["frames"][0]["message"].get<std::string>().find("the scenario's text has changed too"),
-            std::string::npos)
+  EXPECT_NE(
+      json["frames"][0]["message"].get<std::string>().find("the exercise's text has changed since, too"),
+      std::string::npos)
       << json;
 }
 
