@@ -329,6 +329,12 @@ local function surroundings(neck)
     capsule("transverse_colon", "bowel", near(-53, -29, -77), near(-21, -60, -70), 20),
     capsule("omentum", "fat", near(72, -40, -70), near(173, -22, -52), 22),
     capsule("retroperitoneum", "fat", near(-202, 12, -135), near(206, -14, -120), 45),
+    -- What keeps a thing that is laid down from sliding out of the field, to the left and to the feet: the table is
+    -- tilted that way.
+    capsule("stomach", "bowel", near(137, 59, -61), near(222, -1, -51), 32),
+    capsule("descending_colon", "bowel", near(227, 44, -91), near(212, -106, -76), 26),
+    capsule("small_bowel", "bowel", near(-118, -86, -136), near(207, -86, -116), 50),
+    capsule("ileum", "bowel", near(-118, -136, -91), near(207, -136, -81), 35),
   }
 end
 

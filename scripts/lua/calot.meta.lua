@@ -422,6 +422,8 @@
 ---@field young? number Young's modulus; 2 to 20 kPa were measured; default 6 * kPa; 0.5 to 1000 kPa
 ---@field poisson? number Poisson's ratio; beyond 0.45 the elements begin to lock; default 0.45; 0 to 0.47
 ---@field density? number kg/m^3; 1050 to 1060 is usual; 0: without weight and inertia; default 1060; 0 to 2000 kg/m^3
+---@field capsule? number N/m of its capsule by stretch, once that is straight; 0: it has none; default 1800; 0 to 100000
+---@field capsule_slack? number up to which its capsule is slack; default 1.25; 1 to 3
 ---@field sags? boolean true: its weight acts; false: as drawn it is in balance with its weight; default false
 ---@field hold? number of its back, N/m per m^2; default 1e+07; 1 to 1e+10 N/m^3
 
@@ -718,6 +720,10 @@ function Instrument:push(part) end
 ---Force felt at its handle, N.
 ---@return number
 function Instrument:handle_force() end
+
+---The tissue's torque on it about its shaft, N m, above 0 where the tissue would turn it the way that a positive angle of rotate() does.
+---@return number
+function Instrument:torque() end
 
 ---Whether it touches tissue, or the part named does.
 ---@param part? "tip"|"jaws"|"shaft" shaft, jaws (without jaws: what the shaft ends in) or their foremost 5 mm, the tip

@@ -97,20 +97,22 @@ local function draw_out(hook, back)
   hook:move_by(times(back, way + 3 * mm), { speed = 80 * mm / s })
 end
 
---- A mistake: current on the gallbladder's wall beside its neck, until it is open; then the hook leaves.
-function technique.burn_wall(hook)
-  hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
-  hook:activate(1 * s)
-  hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
-end
-
-local function is_done(how) return how.is_done ~= nil and how.is_done() end
-
 --- Whether what the hook, or the part named, presses on most is the tissue.
 local function lies_on(hook, tissue, part)
   local contact = hook:contact(part)
   return contact ~= nil and contact.organ == tissue
 end
+
+--- A mistake: current on the gallbladder's wall at its neck, until it is open; then the hook leaves.
+function technique.burn_wall(hook)
+  hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
+  hook:move_until(function() return lies_on(hook, "gallbladder") end,
+    { towards = "gallbladder.neck", speed = 25 * mm / s, limit = 15 * mm })
+  hook:activate(2 * s)
+  hook:move_by({ 10 * mm, 20 * mm, 60 * mm }, { speed = 100 * mm / s })
+end
+
+local function is_done(how) return how.is_done ~= nil and how.is_done() end
 
 local how_to_take = {
   port = given.three, tries = given.whole, hardest = given.above_zero, wanted = given.optional(given.called),
@@ -214,9 +216,9 @@ local function front_of(t, tissue, port, place)
 end
 
 --- Of each 2.5 mm of the front's way the foremost strand's middle, from the near side to the far one: but for those
---- that stand 4 mm behind the very first, as the way to them leads over an organ.
+--- that stand 9 mm behind the very first, as the way to them leads over an organ.
 local function foremost(front)
-  local wide, behind, rows, line, least = 2.5 * mm, 4 * mm, {}, {}, math.huge
+  local wide, behind, rows, line, least = 2.5 * mm, 9 * mm, {}, {}, math.huge
   for _, strand in ipairs(front.strands) do
     local from = minus(strand.middle, front.at)
     local row, deep = math.floor(dot(from, front.along) / wide), dot(from, front.inward)
@@ -260,6 +262,7 @@ local function sweep_to(hook, tissue, how, front, place)
     local far, on_it = length(way), lies_on(hook, tissue, "tip")
     if far < 0.4 * mm then return true end
     if is_done(how) then return false end
+    if how.ease then how.ease() end
     local skin, aside = between(hook, how)
     if on_it and skin > harmless and hook:force("tip") > how.hardest then
       hook:activate(0.12 * s)
@@ -281,7 +284,7 @@ end
 
 local how_to_free = {
   port = given.three, from = given.three, hardest = given.above_zero, between = given.names,
-  stretch = given.optional(given.called), is_done = given.optional(given.called),
+  stretch = given.optional(given.called), ease = given.optional(given.called), is_done = given.optional(given.called),
 }
 
 --- Where the foot's heel goes for its end to be 3 mm past a strand of the front.
@@ -308,7 +311,7 @@ local function come_to(hook, how, front, place, rolled)
 end
 
 --- Sweeps to and fro along the front, first from one of its rows on, until a way divides less than a hundredth of the
---- tissue or fails twice.
+--- tissue or fails twice. The plane is stretched anew before each way.
 local function sweep(t, hook, tissue, how, front, back, first)
   local place = front.at
   for way = 1, 8 do
@@ -323,6 +326,7 @@ local function sweep(t, hook, tissue, how, front, back, first)
     end
     first, front = 1, front_of(t, tissue, how.port, place)
     if not front or t:torn(tissue) - torn < 0.01 then return end
+    if how.stretch then how.stretch(front) end
   end
 end
 
@@ -332,9 +336,9 @@ end
 --- ends when nothing is under tension, or ten strokes in a row divide nothing. `how`: port, where the shaft comes from;
 --- from, the place nearest to which it begins; hardest, the force on the foot at which it stops and burns, or eases
 --- off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if given, called before
---- each stroke to keep the plane under tension; is_done(), if given. `front`: at, its middle; out, from the first organ
---- to the other one; along, its own way, as the shaft points; inward, to the strands behind it; tension, of its tautest
---- strand.
+--- each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given. `front`: at,
+--- its middle; out, from the first organ to the other one; along, its own way, as the shaft points; inward, to the
+--- strands behind it; tension, of its tautest strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near = 0, 0, how.from

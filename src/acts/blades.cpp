@@ -54,12 +54,11 @@ int cut_strands(const Field& field, const Tool& tool, Tissue& tissue) {
   const std::vector<StrandLine> lines = strand_lines(tissue, field.organs);
   int cut = 0;
   for (std::size_t i = 0; i < tissue.now.opened.size(); ++i) {
-    const StrandLaw& law = tissue.strands->strands()[i].strand.law;
-    if (law.torn(tissue.now.opened[i])) continue;
+    if (tissue.torn(i)) continue;
     const StrandLine& line = lines[i];
     if (!is_passed(tool, line.from, line.by, grip_grid) && !is_passed(tool, line.by, line.to, grip_grid))
       continue;
-    tissue.now.opened[i] = law.peak() + law.tail();
+    tissue.divide(i);
     ++cut;
   }
   return cut;

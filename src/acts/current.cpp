@@ -42,12 +42,10 @@ std::vector<std::vector<Heated>> heated_strands(const Field& field) {
 /// Whether it is divided by what it takes, J.
 bool heat(Tissue& tissue, std::size_t strand, double energy) {
   const PlacedStrand& placed = tissue.strands->strands()[strand];
-  const StrandLaw& law = placed.strand.law;
-  double &heated = tissue.now.heated[strand], &opened = tissue.now.opened[strand];
-  if (law.torn(opened)) return false;  // another instrument has divided it
-  heated += energy;
-  if (heated < tissue.definition.divide_energy * placed.area) return false;
-  opened = std::max(opened, law.peak() + law.tail());
+  if (tissue.torn(strand)) return false;  // another instrument has divided it
+  tissue.now.heated[strand] += energy;
+  if (tissue.now.heated[strand] < tissue.definition.divide_energy * placed.area) return false;
+  tissue.divide(strand);
   return true;
 }
 

@@ -38,9 +38,9 @@ void visit_members(auto&& visit, MembersOf<RigidShape> auto& definition) {
 }
 void visit_members(auto&& visit, MembersOf<LobeShape> auto& definition) {
   auto& [width, depth, thickness, edge, edge_angle, overhang, bed_length, bed_width, bed_depth, young,
-         poisson, density, sags, hold] = definition;
+         poisson, density, capsule, capsule_slack, sags, hold] = definition;
   visit(width, depth, thickness, edge, edge_angle, overhang, bed_length, bed_width, bed_depth, young, poisson,
-        density, sags, hold);
+        density, capsule, capsule_slack, sags, hold);
 }
 void visit_members(auto&& visit, MembersOf<FibreDefinition> auto& definition) {
   auto& [stiffness, stiffening, angle] = definition;

@@ -109,6 +109,9 @@ struct LobeShape {
   double young = 6e3;     ///< Pa; 2 to 6 kPa by elastography, 5 to 20 by indentation (c)
   double poisson = 0.45;  ///< nearly incompressible: beyond, its tetrahedra would lock (d)
   double density = 1060;  ///< kg/m^3; 1050 to 1060 (c)
+  /// N/m of its capsule by stretch, once that is straight, and the stretch up to which it is slack: a capsule tears at a
+  /// stretch of 1.47 (0.18 to 0.76 more than at rest) under 300 N/m (c: Brunon and others 2010; d between them).
+  double capsule = 1.8e3, capsule_slack = 1.25;
   bool sags = false;  ///< false: as drawn it is in balance with its weight, as a liver seen in a patient is
   double hold = 1e7;  ///< N/m per m^2 of its back (d)
   bool operator==(const LobeShape&) const = default;

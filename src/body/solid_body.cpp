@@ -73,6 +73,8 @@ Result<SolidBody> SolidBody::create(const Setup& setup, KeptResults* kept) {
   const VecX shift = Vec3::UnitX().replicate(body.coarse_nodes(), 1);
   body.volume_ = shift.dot(reduced->mass * shift);
   body.skin_ = close_skin(surface.value(), body.rest_, solid_skin_spacing);
+  if (setup.capsule.stiffness > 0)
+    body.capsule_ = CapsuleNet(surface->tessellate(2), body.rest_, setup.capsule);
   body.build_skin();
   body.build_matrices(reduced.value());
   body.setup_.foundation = nullptr;  // what it refers to need not outlive this
@@ -149,12 +151,13 @@ SolidBody SolidBody::with_foundation(
 
 double SolidBody::value(const VecX& x) const {
   const VecX modes = x.tail<inner_modes>();
-  return solid_.value(x) + 0.5 * modes.dot(mode_stiffness_.cwiseProduct(modes)) +
+  return strain_energy(x) + 0.5 * modes.dot(mode_stiffness_.cwiseProduct(modes)) +
          bed_.value(skin_.stencils, x);
 }
 
 void SolidBody::add_gradient(const VecX& x, VecX& gradient, double& largest_internal) const {
   solid_.add_gradient(x, gradient);
+  capsule_.add_gradient(x, gradient);
   gradient.tail<inner_modes>() += mode_stiffness_.cwiseProduct(x.tail<inner_modes>());
   largest_internal = std::max(largest_node(gradient), least_force_);
   if (load_.size() > 0) largest_internal = std::max(largest_internal, largest_node(load_));
@@ -163,6 +166,7 @@ void SolidBody::add_gradient(const VecX& x, VecX& gradient, double& largest_inte
 
 void SolidBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* /*assembly*/) const {
   solid_.add_hessian(x, matrix);
+  capsule_.add_hessian(x, matrix);
 }
 
 double SolidBody::max_stretch(const VecX& x) const {

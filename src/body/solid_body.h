@@ -5,6 +5,7 @@
 
 #include "body/body.h"
 #include "body/loop_skin.h"
+#include "fem/capsule_net.h"
 #include "fem/kept_reduction.h"
 #include "fem/links.h"
 #include "geometry/box_surface.h"
@@ -23,6 +24,7 @@ class SolidBody : public Body {
     TriMesh control;  ///< m; its limit surface is the rest shape
     ElasticSolid material{6e3, 0.45};
     double density = 1060;  ///< kg/m^3; 0: weightless
+    CapsuleMaterial capsule = {};
     Vec3 up = Vec3::UnitZ();
     /// False: as drawn it is in balance with its weight, which then does nothing.
     bool sags = false;
@@ -55,7 +57,7 @@ class SolidBody : public Body {
   void add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* assembly) const override;
   const VecX& kept_load() const override { return load_; }
   const BlockMatrix* mass() const override { return mass_ ? &*mass_ : nullptr; }
-  double strain_energy(const VecX& x) const override { return solid_.value(x); }
+  double strain_energy(const VecX& x) const override { return solid_.value(x) + capsule_.value(x); }
   double max_stretch(const VecX& x) const override;
 
   const Tessellation& skin() const override { return skin_; }
@@ -89,6 +91,7 @@ class SolidBody : public Body {
   std::vector<Vec3> skin_rest_;
   std::vector<std::vector<int>> face_nodes_;
   Tessellation skin_;
+  CapsuleNet capsule_;  ///< of half the control mesh' edges
   Links bed_;
   BlockMatrix constant_{0, {}};
   std::optional<BlockMatrix> mass_;

@@ -62,7 +62,7 @@ bool fits(const Organ& organ, std::size_t tools) {
 bool fits(const Tissue& tissue) {
   const std::size_t strands = tissue.strands->strands().size();
   return fits(tissue.now.state, *tissue.body) && tissue.now.opened.size() == strands &&
-         tissue.now.heated.size() == strands;
+         tissue.now.heated.size() == strands && tissue.now.divided.size() == strands;
 }
 
 /// Whether what was read of a group is of its bodies.

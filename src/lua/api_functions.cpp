@@ -416,6 +416,13 @@ std::vector<ApiFunction> instrument_functions() {
        {part},
        "number"},
       {"Instrument", "handle_force", "Force felt at its handle, N.", {}, "number"},
+      {"Instrument",
+       "torque",
+       "The tissue's torque on it about its shaft, N m, above 0 where the tissue would turn it the way that "
+       "a positive "
+       "angle of rotate() does.",
+       {},
+       "number"},
       {"Instrument", "touching", "Whether it touches tissue, or the part named does.", {part}, "boolean"},
       {"Instrument",
        "waits",

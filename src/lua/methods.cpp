@@ -374,6 +374,11 @@ int handle_force(lua_State* L) {
   return 1;
 }
 
+int torque(lua_State* L) {
+  lua_pushnumber(L, instrument_state(L, "torque").roll_torque);
+  return 1;
+}
+
 int tip(lua_State* L) {
   const HandleTarget target = instrument_target(L, "tip");
   take_nothing(L, *target.session, "tip");
@@ -604,6 +609,7 @@ const Method own_methods[] = {{"Session", "wait", guarded<wait>},
                               {"Instrument", "holds", guarded<holds>},
                               {"Instrument", "force", guarded<force>},
                               {"Instrument", "handle_force", guarded<handle_force>},
+                              {"Instrument", "torque", guarded<torque>},
                               {"Instrument", "touching", guarded<touching>},
                               {"Instrument", "active", guarded<active>},
                               {"Instrument", "waits", guarded<waits>},

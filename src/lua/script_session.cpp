@@ -420,6 +420,7 @@ InstrumentState ScriptSession::stand_in_instrument(int instrument) {
   state.tip = known_tip(instrument).value_or(state.tip);
   state.force = Vec3(0, 0, force_at[level]);
   state.handle_force = state.force;
+  state.roll_torque = 5e-3 * state.force.z();  // N m: on an arm of 5 mm
   state.touching = level > 0;
   const std::size_t grip = static_cast<std::size_t>(2 * level + (guess_ ? 1 : 0));
   state.grip = static_cast<GripState>(grip % grip_state_names().size());

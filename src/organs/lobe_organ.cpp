@@ -66,6 +66,7 @@ Result<RestedOrgan> make_lobe(const OrganDefinition& definition, const OrganSett
   setup.control.points = std::move(fitted).value();
   setup.material = {shape.young, shape.poisson};
   setup.density = shape.density;
+  setup.capsule = {shape.capsule, shape.capsule_slack};
   setup.up = setting.up;
   setup.sags = shape.sags;
   setup.landmarks = places_of(definition);

@@ -67,6 +67,18 @@ int Tissue::torn() const {
   return count;
 }
 
+int Tissue::torn_bluntly() const {
+  int count = 0;
+  for (std::size_t i = 0; i < now.opened.size(); ++i) count += torn(i) && !now.divided[i] ? 1 : 0;
+  return count;
+}
+
+void Tissue::divide(std::size_t strand) {
+  const StrandLaw& law = strands->strands()[strand].strand.law;
+  now.opened[strand] = std::max(now.opened[strand], law.peak() + law.tail());
+  now.divided[strand] = 1;
+}
+
 double Tissue::heated_share(std::size_t strand) const {
   return std::min(1.0, now.heated[strand] / (definition.divide_energy * strands->strands()[strand].area));
 }
@@ -93,9 +105,11 @@ Tissue Tissue::part(std::array<int, 2> bodies, std::vector<PlacedStrand> strands
   out.now.state.motion.begin.velocity = taken(now.state.motion.begin.velocity);
   out.now.opened.clear();
   out.now.heated.clear();
+  out.now.divided.clear();
   for (int strand : which) {
     out.now.opened.push_back(now.opened[strand]);
     out.now.heated.push_back(now.heated[strand]);
+    out.now.divided.push_back(now.divided[strand]);
   }
   return out;
 }
@@ -153,6 +167,7 @@ Result<Tissue> make_tissue(const TissueDefinition& definition, const std::vector
   out.now.state.x = out.body->rest();
   out.now.opened.assign(strands.size(), 0.0);
   out.now.heated.assign(strands.size(), 0.0);
+  out.now.divided.assign(strands.size(), 0);
   out.strands = std::make_shared<StrandJoin>(bodies, std::move(strands));
   out.search.own.active = false;
   return out;

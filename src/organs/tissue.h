@@ -14,11 +14,12 @@ struct TissueMotion {
   std::vector<double>
       opened;  ///< the largest strain of each strand that took it beyond its strength; 0: none did
   std::vector<double> heated;  ///< J that each has taken from instruments' current
+  std::vector<char> divided;   ///< of each: it was torn by current or by blades
   bool tearing = false;        ///< some strand was torn in the last step
 };
 void visit_members(auto&& visit, MembersOf<TissueMotion> auto& motion) {
-  auto& [state, opened, heated, tearing] = motion;
-  visit(state, opened, heated, tearing);
+  auto& [state, opened, heated, divided, tearing] = motion;
+  visit(state, opened, heated, divided, tearing);
 }
 
 struct Tissue {
@@ -33,6 +34,10 @@ struct Tissue {
   bool torn(std::size_t strand) const {
     return strands->strands()[strand].strand.law.torn(now.opened[strand]);
   }
+  /// How many were torn by a pull: neither by current nor by blades.
+  int torn_bluntly() const;
+  /// Current or blades divide a strand.
+  void divide(std::size_t strand);
   /// Of what divides a strand, 0 to 1: the heat that it has taken.
   double heated_share(std::size_t strand) const;
   /// The same between bodies that have other places in the group now.

@@ -317,6 +317,8 @@ const std::vector<MetricRow>& metric_rows() {
        "of the organ at rest, bile included: shaking below a third of it may be treated as static"},
       {"rest_shift_mm", organ, "how far its furthest point came to rest from where it is drawn"},
       {"torn_pct", tissue, "share of its strands that were torn", EventKind::tear},
+      {"blunt_pct", tissue, "of those torn, the share that a pull tore, and neither current nor blades did",
+       EventKind::tear},
       {"mean_difference_pct", compared_organ,
        "mean departure from the motion of the organ it is compared with, when the session ends"},
       {"largest_difference_pct", compared_organ, "the largest such departure"},
@@ -436,8 +438,10 @@ std::map<std::string, double> measure(const SceneDefinition& scene, const Traces
       if (!fresh) known->second = std::max(known->second, value);
     }
   }
-  for (const TissueState& tissue : traces.tissues)
+  for (const TissueState& tissue : traces.tissues) {
     metrics[tissue.name + ".torn_pct"] = 100.0 * tissue.torn / tissue.strands;
+    metrics[tissue.name + ".blunt_pct"] = 100.0 * tissue.blunt / std::max(1, tissue.torn);
+  }
   sum_lost(scene, traces.lost, metrics);
   measure_raw(scene, traces, metrics);
   for (const StepRecord& step : progress.steps()) {

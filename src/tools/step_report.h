@@ -105,10 +105,11 @@ void visit_members(auto&& visit, MembersOf<OrganState> auto& state) {
 struct TissueState {
   std::string name;
   int strands = 0, torn = 0;
+  int blunt = 0;  ///< of those torn: by a pull, neither by current nor by blades
 };
 void visit_members(auto&& visit, MembersOf<TissueState> auto& state) {
-  auto& [name, strands, torn] = state;
-  visit(name, strands, torn);
+  auto& [name, strands, torn, blunt] = state;
+  visit(name, strands, torn, blunt);
 }
 
 /// What has left an organ of the scene and its pieces.

@@ -129,9 +129,10 @@ void report_burnt(const Field& field, StepReport& report) {
   for (const Tissue& tissue : field.tissues) {
     const auto same = [&](const TissueState& state) { return state.name == tissue.definition.name; };
     auto at = std::find_if(out.begin(), out.end(), same);
-    if (at == out.end()) at = out.insert(out.end(), {tissue.definition.name, 0, 0});
+    if (at == out.end()) at = out.insert(out.end(), {tissue.definition.name, 0, 0, 0});
     at->strands += static_cast<int>(tissue.now.opened.size());
     at->torn += tissue.torn();
+    at->blunt += tissue.torn_bluntly();
   }
 }
 

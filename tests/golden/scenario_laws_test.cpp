@@ -45,7 +45,8 @@ struct Shipped {
   bool pulls;                    ///< an instrument exerts traction in it
   bool judges_pictures = false;  ///< small changes of the drawn scene are tried on its frames
   /// How far from balance a step that was cut short may be, of the forces in a body. 0.01 is aimed at; a ring of 7 mN that is
-  /// let go loses its balance for a step or two.
+  /// let go loses its balance for a step or two; where the last strands of the gallbladder's bed part and it is drawn off
+  /// the liver, single steps are.
   double furthest_off = 0.01;
 };
 
@@ -63,7 +64,7 @@ constexpr Shipped shipped[] = {{"grasp_and_traction", true, true},
                                {"clip_and_divide", false},
                                {"exposure", true},
                                {"dissect_to_critical_view", true},
-                               {"liver_bed", true}};
+                               {"liver_bed", true, false, 0.3}};
 
 class Scenario : public ::testing::TestWithParam<Shipped> {};
 INSTANTIATE_TEST_SUITE_P(Shipped, Scenario, ::testing::ValuesIn(shipped));

@@ -288,6 +288,28 @@ TEST(Demo, PressesUntilAForceIsReachedAndStepsSeeWhere) {
   EXPECT_EQ(played.printed[2].substr(0, 5), "true\t") << "the demo asks when the next step begins";
 }
 
+TEST(Demo, TissueThatIsTurnedTurnsBackAndTheHandThatFollowsItTakesItsTorqueOff) {
+  ScenarioText text = with_steps("t:wait(1 * s)");
+  text.demo =
+      "t.left:approach('ball.fundus', { depth = 5 * mm })\n"
+      "t.left:close()\n"
+      "local before = t.left:torque()\n"
+      "t.left:rotate(15 * deg)\n"
+      "local turned = t.left:torque()\n"
+      "t.left:rotate(-15 * deg)\n"
+      "print(turned - before, t.left:torque() - before)";
+  text.scene = electrode_scene;
+  text.scene.replace(text.scene.find(", type = 'bipolar_electrode'"), 28, "");
+  const Played played = play_own(text, 50, 8);
+  ASSERT_FALSE(played.failure) << to_text(*played.failure);
+  ASSERT_EQ(played.printed.size(), 1u);
+  std::istringstream numbers(played.printed[0]);
+  double turned = 0, back = 0;
+  numbers >> turned >> back;
+  EXPECT_LT(turned, -1e-3) << "N m: what holds the fold turns it back";
+  EXPECT_LT(std::abs(back), 0.1 * std::abs(turned));
+}
+
 TEST(Demo, CurrentFlowsInTheStepsThatEndWithinItsTimeAndStepsSeeIt) {
   ScenarioText text = with_steps(
       "t:wait_until(function() return t.left:active() end) print(t:time())\n"

@@ -133,6 +133,7 @@ TEST(Scissors, DivideTheStrandsBetweenTheirBladesAndNoOthers) {
   const TissueState& state = scene.world.report().tissues[0];
   EXPECT_GE(state.torn, between) << "blades push none of them before them";
   EXPECT_LT(state.torn, state.strands);
+  EXPECT_EQ(state.blunt, 0);
   EXPECT_GE(scene.count(EventKind::cut), 1);
   EXPECT_EQ(scene.count(EventKind::tear), 0) << "what is cut is not torn";
   EXPECT_EQ(scene.count(EventKind::empty_cut), 0);

@@ -78,7 +78,7 @@ double least_ahead(const World& world, const Vec3& tip, const Vec3& up) {
 struct DrawnAlong {
   double largest = 0, last = 0;  ///< N
   double least_ahead = 1;        ///< m
-  int torn = 0;
+  int torn = 0, blunt = 0;
   bool followed = false;
   std::string why;
   std::vector<std::uint64_t> hashes;
@@ -104,6 +104,7 @@ DrawnAlong draw_along(const SceneDefinition& scene, double to = -65e-3, int thre
   out.followed = driver.go({to, 90e-3, below}, 0, static_cast<int>(std::lround((to + 95e-3) / 10e-3)));
   out.why = driver.why();
   out.torn = world.report().tissues[0].torn;
+  out.blunt = world.report().tissues[0].blunt;
   out.events = driver.events;
   return out;
 }
@@ -126,6 +127,7 @@ TEST(HookedTissue, PulledPastItsStrengthItTearsAndTheToolComesFreeWithTheSameBit
   const DrawnAlong weak = draw_along(scene, -35e-3);
   EXPECT_TRUE(weak.followed) << weak.why;
   EXPECT_EQ(weak.torn, 3);
+  EXPECT_EQ(weak.blunt, 3);
   EXPECT_GT(weak.largest, 0.1);
   EXPECT_EQ(weak.last, 0);
   EXPECT_EQ(weak.events.back().kind, EventKind::parted);
@@ -245,6 +247,7 @@ TEST(HookedTissue, JawsDivideAllThatTheyCarryAndTheLastStrandPartsTheTissue) {
   ASSERT_FALSE(events.empty());
   EXPECT_EQ(events.back().kind, EventKind::parted);
   EXPECT_EQ(world.report().tissues[0].torn, 3);
+  EXPECT_EQ(world.report().tissues[0].blunt, 0);
 }
 
 }  // namespace
