@@ -118,15 +118,16 @@ local how_to_take = {
   port = given.three, tries = given.whole, hardest = given.above_zero, wanted = given.optional(given.called),
   is_done = given.optional(given.called), keep_off = given.optional(given.by_name),
 }
-local where_to_keep_off = { organ = given.name, place = given.three, clear = given.above_zero }
+local where_to_keep_off = { organ = given.name, place = given.optional(given.three), clear = given.above_zero }
 
 --- Strand by strand: the hook's foot, which points to the patient's right, comes down on the nearest one and draws
 --- back off the walls that it lies on too, as they would be burnt. Current flows until one strand has parted; else the
 --- foot comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and
 --- then on all three nearer to its heel. Before a longer way it is drawn out. `how`: port, where its shaft comes from;
 --- tries, of a tenth of a second; hardest, the force that ends its way down; wanted(strand), if given, those that are
---- taken; is_done(), if given, asked before each strand; keep_off, an organ and a place of it: current flows no nearer
---- to the organ than `clear`, and beside the place the heel comes down first, on the middle, and the foot points away.
+--- taken; is_done(), if given, asked before each strand; keep_off, an organ: current flows no nearer to it than by
+--- `clear`; and a place of it, if given, beside which the heel comes down first, on the middle, and the foot points
+--- away.
 function technique.take(t, hook, tissue, how)
   given.check(how, how_to_take, "technique.take", 2)
   if how.keep_off then given.check(how.keep_off, where_to_keep_off, "keep_off", 2) end
@@ -137,7 +138,7 @@ function technique.take(t, hook, tissue, how)
     local strand = nearest_strand(t, hook, tissue, wanted)
     if not strand then return end
     local off = how.keep_off
-    local beside = off and length(minus(strand.middle, off.place)) < 10 * mm
+    local beside = off and off.place and length(minus(strand.middle, off.place)) < 10 * mm
     local ends = { strand.middle, strand.to, strand.from }
     local at = beside and strand.middle or plus(strand.middle, minus(ends[missed % 3 + 1], strand.middle), 0.5)
     local aim = plus(at, { beside and by_heel[missed % 3 + 1] or reach[missed // 3 + 1], 0, 0 })
