@@ -180,8 +180,10 @@ return calot.exercise {
       minor = { "slip", "dry_activation", "raw_surface" }, major = { "perforation", "overforce" },
     }, weight = 0.1 },
     { calot.score.rule(function(run)
-      local looked = run:times("time_out")
-      return #looked > 0 and 1 or 0, #looked > 0 and "the bed was looked at" or "nobody looked at the bed", looked
+      local looked, parted = run:times("time_out"), run:times("parted", "cystic_plate")
+      if #looked == 0 then return 0, "nobody looked at the bed" end
+      if #parted > 0 and parted[1] < looked[1] then return 0, "it was looked at when nothing held it up", looked end
+      return 1, "the bed was looked at", looked
     end), name = "dry_look", weight = 0.1 },
     { calot.score.benchmark { metric = "liver.raw_mm2", novice = 100, expert = 5 }, weight = 0.1 },
     critical = { "overforce", "perforation" },
