@@ -121,7 +121,7 @@ return calot.exercise {
       },
       ports = ports,
       instruments = {
-        fundus = { port = "right_lateral", force_limit = 5 * N, pinch_force = 12 * N }, -- above 15 N it would harm
+        fundus = { port = "right_lateral", force_limit = 8 * N, pinch_force = 12 * N }, -- above 15 N it would harm
         left = { port = "right_subcostal", force_limit = 8 * N, pinch_force = 12 * N },
         hook = { type = "l_hook", port = "left_upper", force_limit = 3 * N, power = 30 },
       },
