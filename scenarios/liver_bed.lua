@@ -2,9 +2,9 @@
 -- critical view asks for it. The fundus is pushed up over the liver's edge, the pouch is lifted and drawn over it, too,
 -- so that the gallbladder is turned over and the areolar plane behind it stands open under tension: from here on the
 -- pouch carries it alone. The hook sweeps through the plane from the neck on, in its middle, as off it on one side
--- there is bile, and on the other raw liver. Before the last strands the bed is looked at, as bleeding is hard to find
--- once nothing holds the liver up. Then the gallbladder is free, and is laid on the omentum. The mistakes are a
--- parameter, demo = "clumsy": current on the gallbladder until its wall is open.
+-- there is bile, and on the other raw liver. At a half the bed is looked at, as bleeding is hard to find once nothing
+-- holds the liver up, and what is left comes off fast. Then the gallbladder is free, and is laid on the omentum. The
+-- mistakes are a parameter, demo = "clumsy": current on the gallbladder until its wall is open.
 
 local calot = require "calot"
 local anatomy = require "anatomy"
@@ -15,7 +15,7 @@ local ports = {
   scope = { 0, 20 * mm, 10 * mm }, -- from the left one sees between gallbladder and liver
   left_upper = { 80 * mm, 80 * mm, -5 * mm }, -- as where one stands between the legs: below what is turned over
 }
-local last = 0.5 -- of the plane: what stands then is left until the bed has been looked at
+local half = 0.5 -- of the plane: what stands then is left until the bed has been looked at
 local over_the_edge = { -0.15, 0.9, 0.4 }
 
 -- The hand turns its shaft with the pouch as that is turned over: else it turns between the jaws.
@@ -78,7 +78,7 @@ local function expert(t)
     local inward = technique.unit(technique.minus(t.hook:tip(), ports.left_upper))
     t.hook:move_to(technique.plus(ports.left_upper, inward, 30 * mm), { speed = 150 * mm / s })
   end
-  free_until(last, (drawing_hand(t, 3 * N)))
+  free_until(half, (drawing_hand(t, 3 * N)))
   t.laparoscope:look_at("liver.underside", { distance = 60 * mm })
   t:wait(2 * s) -- what bleeds or leaks is seen by then
   t:time_out("the bed is dry")
@@ -137,18 +137,18 @@ return calot.exercise {
       hint = "lift it off the liver, then turn it over: towards the patient's right shoulder; look in from below",
     })
     t:wait_until(function() return t.left:holds("gallbladder") and t.left:force("jaws") > 2 * N end)
-    t:step("free", "Divide the plane midway between gallbladder and liver, but for its last strands", {
+    t:step("free", "Divide half of the plane, midway between gallbladder and liver", {
       limit = 240 * s,
       hint = "sweep the foot along the taut strands and let current flow while it lies on them; let the fundus go, "
         .. "draw the pouch on as they yield, and turn the shaft with it",
     })
-    t:wait_until(function() return t:torn("cystic_plate") >= last end)
-    t:step("look", "Look whether the bed is dry while the last strands hold the liver up, and say so", {
+    t:wait_until(function() return t:torn("cystic_plate") >= half end)
+    t:step("look", "Look whether the bed is dry while the other half holds the liver up, and say so", {
       limit = 20 * s,
       hint = "hook out of the way, then a time-out",
     })
     t:wait_until(function() return t:count("time_out") > 0 end)
-    t:step("last", "Divide the last strands", { limit = 60 * s, hint = "draw less: little holds the liver now" })
+    t:step("last", "Divide the rest of the plane", { limit = 60 * s, hint = "draw less: little holds the liver now" })
     t:wait_until(function() return t:torn("cystic_plate") == 1 end)
     t:step("lay", "Lay the gallbladder on the omentum, on the patient's left, and let it go", {
       limit = 30 * s,

@@ -117,8 +117,9 @@ std::optional<Failure> check_goldens_place(const GoldenCommand& command) {
 }
 
 ExitCode stopped(std::size_t accepted, const std::vector<SelectedGolden>& all, std::size_t from) {
-  std::string names;
-  for (std::size_t i = from; i < all.size(); ++i) names += (i > from ? " " : "") + shell_word(all[i].name);
+  std::vector<std::string> left;
+  for (std::size_t i = from; i < all.size(); ++i) left.push_back(all[i].name);
+  const std::string names = shell_words(left);
   std::fflush(stdout);
   std::fprintf(stderr, "Interrupted: %zu frames were accepted, those named above; nothing of %s.\n", accepted,
                names.c_str());

@@ -113,8 +113,7 @@ void print_result(const GoldenResult& result) {
 
 /// What an interruption leaves to be done.
 ExitCode stopped(const Compared& compared, const std::string& command, const std::string& done) {
-  std::string names;
-  for (const std::string& name : compared.unplayed) names += (names.empty() ? "" : " ") + shell_word(name);
+  const std::string names = shell_words(compared.unplayed);
   std::fprintf(stderr, "Interrupted: %s; not finished: %s.\nNext: calot golden %s %s\n", done.c_str(),
                names.c_str(), command.c_str(), names.c_str());
   return ExitCode::interrupted;
@@ -158,7 +157,7 @@ ExitCode golden_test_command(const GoldenCommand& command) {
   }
   if (compared.failed == 0) return ExitCode::ok;
   std::fprintf(stderr, "Next: calot golden report %s\n",
-               fmt::format("{}", fmt::join(compared.differing, " ")).c_str());
+               shell_words({compared.differing.begin(), compared.differing.end()}).c_str());
   return compared.unreadable > 0 ? ExitCode::usage : ExitCode::mismatch;
 }
 

@@ -8,13 +8,6 @@
 
 namespace calot {
 
-std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  std::vector<double> areas;
-  for (const Triangle& t : triangles)
-    areas.push_back(0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm());
-  return areas;
-}
-
 std::vector<double> lumped(const std::vector<double>& areas, const std::vector<Triangle>& triangles,
                            std::size_t points) {
   std::vector<double> out(points, 0.0);

@@ -12,9 +12,7 @@ Tessellation close_skin(const LoopSurface& surface, const VecX& rest, double spa
 /// Into how many parts each edge is split where each face has so many triangles.
 int parts_of(int triangles_each);
 
-/// m^2, of each triangle.
-std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
-/// Of each point, a third of each of its triangles'.
+/// Of each point, a third of the areas of its triangles.
 std::vector<double> lumped(const std::vector<double>& areas, const std::vector<Triangle>& triangles,
                            std::size_t points);
 

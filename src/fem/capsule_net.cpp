@@ -4,6 +4,7 @@
 #include <map>
 
 #include "fem/links.h"
+#include "geometry/tri_mesh.h"
 
 namespace calot {
 
@@ -26,16 +27,17 @@ double CapsuleMaterial::tangent(double stretch) const {
 CapsuleNet::CapsuleNet(const Tessellation& surface, const VecX& x, const CapsuleMaterial& capsule)
     : material(capsule), table(surface.stencils) {
   const std::vector<Vec3> points = blend_all(table, table.value, x);
-  std::map<std::array<int, 2>, double> areas;  // of an edge's triangles, m^2
-  for (const Triangle& triangle : surface.triangles) {
-    const Vec3 a = points[triangle[1]] - points[triangle[0]], b = points[triangle[2]] - points[triangle[0]];
+  const std::vector<double> areas = areas_of(points, surface.triangles);
+  std::map<std::array<int, 2>, double> around;  // area of an edge's triangles, m^2
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const Triangle& triangle = surface.triangles[t];
     for (int k = 0; k < 3; ++k) {
       std::array<int, 2> edge{triangle[k], triangle[(k + 1) % 3]};
       std::sort(edge.begin(), edge.end());
-      areas[edge] += 0.5 * a.cross(b).norm();
+      around[edge] += areas[t];
     }
   }
-  for (const auto& [edge, area] : areas) {
+  for (const auto& [edge, area] : around) {
     ends.push_back(edge);
     rest.push_back((points[edge[1]] - points[edge[0]]).norm());
     width.push_back(area / rest.back());

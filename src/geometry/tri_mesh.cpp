@@ -286,6 +286,13 @@ double enclosed_volume(const TriMesh& mesh) {
   return sum / 6;
 }
 
+std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<double> areas;
+  for (const Triangle& t : triangles)
+    areas.push_back(0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm());
+  return areas;
+}
+
 std::vector<double> shortest_edges(const TriMesh& mesh) {
   std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity());
   for (const Triangle& t : mesh.triangles) {

@@ -35,6 +35,9 @@ TriMesh without_unused_points(const TriMesh& mesh);
 /// Signed volume of a closed mesh, m^3; positive when triangles face outward.
 double enclosed_volume(const TriMesh& mesh);
 
+/// m^2, of each triangle.
+std::vector<double> areas_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
+
 /// Length of the shortest edge at each point, m; infinite at a point of no triangle.
 std::vector<double> shortest_edges(const TriMesh& mesh);
 

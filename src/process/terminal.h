@@ -46,5 +46,7 @@ double seconds_since_start();
 
 /// Quotes a word for the shell where it needs it: for the commands we suggest.
 std::string shell_word(const std::string& word);
+/// Each so, with blanks between.
+std::string shell_words(const std::vector<std::string>& words);
 
 }  // namespace calot

@@ -20,6 +20,7 @@
 
 #include "base/hash.h"
 #include "support/paths.h"
+#include "support/text_files.h"
 
 namespace calot::test {
 
@@ -78,13 +79,7 @@ inline std::string endless_scenario() {
 
 class ProgramTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "calot-app-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    spill(folder_ / "small.lua", small_scenario());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { spill(folder_ / "small.lua", small_scenario()); }
 
   /// Runs `calot` with these arguments in folder_; `meanwhile` sees the running process.
   Outcome calot(const std::vector<std::string>& arguments,
@@ -127,7 +122,8 @@ class ProgramTest : public ::testing::Test {
     return false;
   }
 
-  fs::path folder_;
+  const Folder home_;
+  fs::path folder_ = home_.path();
 
  private:
   [[noreturn]] void run_child(const std::vector<std::string>& arguments, const fs::path& out,

@@ -73,8 +73,7 @@ TEST(CapsuleNet, ASphereOfItBlownUpHoldsByLaplacesLaw) {
   const double slope = (net.value((stretch + h) * rest) - net.value((stretch - h) * rest)) / (2 * h);
   double area = 0;
   const std::vector<Vec3> points = blend_all(skin.stencils, skin.stencils.value, rest);
-  for (const Triangle& t : skin.triangles)
-    area += 0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
+  for (double of_triangle : areas_of(points, skin.triangles)) area += of_triangle;
   // A membrane of modulus E and Poisson's ratio 1/3 bears E / (1 - 1/3) of a strain alike in all directions: the cords'
   // tension by 3/2. Its work by the stretch is twice that by the area at rest.
   EXPECT_NEAR(slope, 2 * 1.5 * net.material.tension(stretch) * area, 1e-3 * slope);

@@ -6,6 +6,7 @@
 
 #include "goldens/session_judge.h"
 #include "support/paths.h"
+#include "support/text_files.h"
 
 namespace calot {
 namespace {
@@ -103,9 +104,6 @@ TEST(Drift, IsNotWhereBitsAreEqualOrNothingHasMovedOrThePictureHasAnotherSize) {
 class DriftedSession : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "calot-drift-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     played_.exercise.golden.at = {0, 1, 3};
     played_.report.score.parts.resize(1);
     played_.report.score.total = *expert.score;
@@ -114,7 +112,6 @@ class DriftedSession : public ::testing::Test {
     ASSERT_TRUE(event_row(dropped.kind).error);
     played_.session.progress.add_event(dropped);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void store(const std::string& name, const Golden& golden) {
     ASSERT_TRUE(write_golden(folder_ / name, golden));
@@ -132,7 +129,8 @@ class DriftedSession : public ::testing::Test {
     judge.end(played_);
   }
 
-  fs::path folder_;
+  const test::Folder home_;
+  const fs::path folder_ = home_.path();
   Played played_;
   std::vector<GoldenResult> results_;
   std::size_t judged_before_the_end_ = 0;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include "base/units.h"
 #include "input/registration.h"
 #include "session/session_for_tests.h"
+#include "support/text_files.h"
 
 namespace calot {
 namespace {
@@ -24,9 +24,7 @@ constexpr int moments = 40;
 class ForeignFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "calot-foreign-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    path_ = (fs::path(name) / "motion").string();
+    path_ = (folder_.path() / "motion").string();
     registration_.exercise = "small";
     registration_.unit = mm;
     // Theirs is turned by 90 degrees about the patient's z, and then about its x.
@@ -39,7 +37,6 @@ class ForeignFile : public ::testing::Test {
     tool_.jaw_closed = 100;
     tool_.jaw_open = 300;
   }
-  void TearDown() override { fs::remove_all(fs::path(path_).parent_path()); }
 
   /// A smooth motion, one pose each 20 ms.
   static InstrumentPose pose(int k) {
@@ -143,6 +140,7 @@ class ForeignFile : public ::testing::Test {
   const InstrumentGeometry geometry_ = instrument_geometry(InstrumentType::atraumatic_grasper);
   Registration registration_;
   ForeignInstrument tool_;
+  const test::Folder folder_;
   std::string path_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <limits>
 
 #include "base/rng.h"
+#include "support/text_files.h"
 
 namespace calot {
 namespace {
@@ -19,13 +19,7 @@ namespace fs = std::filesystem;
 
 class RecordingFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "calot-recording-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    path_ = (folder_ / "recording.jsonl").string();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { path_ = (folder_ / "recording.jsonl").string(); }
 
   static RecordingHeader header() {
     RecordingHeader header;
@@ -58,7 +52,8 @@ class RecordingFile : public ::testing::Test {
     return recording ? "" : to_text(recording.failure());
   }
 
-  fs::path folder_;
+  const test::Folder home_;
+  const fs::path folder_ = home_.path();
   std::string path_;
 };
 

@@ -1,7 +1,6 @@
 #include "session/runner.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -381,19 +380,18 @@ TEST(Report, TextThatIsNotUtf8IsReplacedNotRefused) {
 }
 
 TEST(StepTable, HasOneColumnCountThroughoutAndARowAState) {
-  std::string folder = (fs::temp_directory_path() / "calot-table-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const test::Folder folder;
   test::TimedScript script(0.1);
-  Result<StepTable> table = StepTable::create(folder + "/steps.csv", script.definition().scene);
+  Result<StepTable> table =
+      StepTable::create((folder.path() / "steps.csv").string(), script.definition().scene);
   ASSERT_TRUE(table);
   SessionOptions options;
   options.table = &table.value();
   played(script, script.demo(), options);
-  std::ifstream in(folder + "/steps.csv");
+  std::ifstream in(folder.path() / "steps.csv");
   std::string line;
   std::vector<std::ptrdiff_t> commas;
   while (std::getline(in, line)) commas.push_back(std::count(line.begin(), line.end(), ','));
-  fs::remove_all(folder);
   EXPECT_EQ(commas, std::vector<std::ptrdiff_t>(7, 12));  // header, rest, 5 steps; 13 columns
 }
 
