@@ -235,7 +235,7 @@ void FramedSolid::look(Seen& seen) const {
   }
 }
 
-FramedSolid::Seen FramedSolid::see(const VecX& x) const {
+FramedSolid::Seen FramedSolid::look_at(const VecX& x) const {
   Seen out;
   out.energy = std::numeric_limits<double>::infinity();
   out.placed = placed_at(x);
@@ -249,10 +249,23 @@ FramedSolid::Seen FramedSolid::see(const VecX& x) const {
   return out;
 }
 
-double FramedSolid::value(const VecX& x) const { return see(x).energy; }
+std::shared_ptr<const FramedSolid::Seen> FramedSolid::see(const VecX& x) const {
+  {
+    const std::lock_guard lock(memory_->mutex);
+    if (memory_->seen && memory_->x == x) return memory_->seen;
+  }
+  const auto seen = std::make_shared<const Seen>(look_at(x));
+  const std::lock_guard lock(memory_->mutex);
+  memory_->x = x;
+  memory_->seen = seen;
+  return seen;
+}
+
+double FramedSolid::value(const VecX& x) const { return see(x)->energy; }
 
 void FramedSolid::add_gradient(const VecX& x, VecX& gradient) const {
-  const Seen seen = see(x);
+  const std::shared_ptr<const Seen> shared = see(x);
+  const Seen& seen = *shared;
   for (std::size_t p = 0; p < parts_.pieces.size(); ++p)
     for (Eigen::Index a = 0; a < count(p); ++a) {
       auto own = gradient.segment<3>(Eigen::Index{3} * parts_.pieces[p].nodes[static_cast<std::size_t>(a)]);
@@ -348,7 +361,8 @@ void FramedSolid::add_half_turning(const Seen& seen, Eigen::MatrixXd& half) cons
 }
 
 void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
-  const Seen seen = see(x);
+  const std::shared_ptr<const Seen> shared = see(x);
+  const Seen& seen = *shared;
   if (!seen.admissible) return matrix.add(nodes_[0], nodes_[0], Mat3::Constant(seen.energy));
   const TurnSlopes slopes = turn_slopes(seen);
   // The frames follow to where the energy is least: by that the nodes' stiffness is less than with frames held.
@@ -367,6 +381,6 @@ void FramedSolid::add_hessian(const VecX& x, BlockMatrix& matrix) const {
 
 std::vector<std::vector<int>> FramedSolid::cliques() const { return {nodes_}; }
 
-std::vector<Mat3> FramedSolid::frames(const VecX& x) const { return see(x).frames; }
+std::vector<Mat3> FramedSolid::frames(const VecX& x) const { return see(x)->frames; }
 
 }  // namespace calot

@@ -12,6 +12,8 @@
 // gradient is the one at fixed frames, forces have no net torque, and the Hessian is exact in closed form. It is not
 // projected: it may be indefinite where the solid is squeezed.
 
+#include <memory>
+#include <mutex>
 #include <span>
 
 #include "geometry/stencil.h"
@@ -84,7 +86,15 @@ class FramedSolid {
   bool fit(const Placed& placed, std::vector<Mat3>& frames) const;
   /// Energy and forces in the frames.
   void look(Seen& seen) const;
-  Seen see(const VecX& x) const;
+  Seen look_at(const VecX& x) const;
+  /// look_at(), remembered: a solve asks for value, gradient and Hessian at one x.
+  std::shared_ptr<const Seen> see(const VecX& x) const;
+  /// What was seen last. It follows from x alone, so copies share it, and so may threads.
+  struct Memory {
+    std::mutex mutex;
+    VecX x;
+    std::shared_ptr<const Seen> seen;
+  };
   /// How forces and energy change with turns of the frames about their own axes: three columns a piece.
   struct TurnSlopes {
     /// N a rad, on the pieces' nodes (three rows a node of each piece), seen in the pieces' frames.
@@ -118,6 +128,7 @@ class FramedSolid {
     std::array<std::array<Eigen::MatrixXd, 3>, 3> blocks;
   };
   std::vector<ByWays> by_ways_;  ///< as Parts::stiffness
+  std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();
 };
 
 }  // namespace calot

@@ -31,10 +31,14 @@ void add_point_hessian(const StencilTable& table, int r, const Mat3& h, BlockMat
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
                         const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
                         const ColumnShare& share) {
+  return add_points_hessian(points_of(table, rows), hessian, matrix, share);
+}
+
+std::array<StencilPoint, 4> points_of(const StencilTable& table, const std::array<int, 4>& rows) {
   std::array<StencilPoint, 4> points;
-  for (int k = 0; k < 4; ++k)
+  for (std::size_t k = 0; k < 4; ++k)
     if (rows[k] >= 0) points[k] = {&table, rows[k], 0};
-  return add_points_hessian(points, hessian, matrix, share);
+  return points;
 }
 
 namespace {
@@ -94,6 +98,12 @@ bool add_points_hessian(const std::array<StencilPoint, 4>& points,
     }
   }
   return complete;
+}
+
+bool add_all(std::span<const PointsStiffness> all, Workers* workers, BlockMatrix& matrix) {
+  return add_in_columns(workers, all.size(), [&](std::size_t k, const ColumnShare& share) {
+    return add_points_hessian(all[k].points, all[k].matrix, matrix, share);
+  });
 }
 
 }  // namespace calot

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "base/workers.h"
 #include "geometry/stencil.h"
@@ -46,6 +47,8 @@ bool add_points_hessian(const std::array<StencilPoint, 4>& points,
 bool add_points_hessian(const StencilTable& table, const std::array<int, 4>& rows,
                         const Eigen::Matrix<double, 12, 12>& hessian, BlockMatrix& matrix,
                         const ColumnShare& share = {});
+/// Rows of one table (unused ones negative) as points.
+std::array<StencilPoint, 4> points_of(const StencilTable& table, const std::array<int, 4>& rows);
 
 /// Adds `count` Hessians in their order by add(k, share), which says whether the pattern holds all that the k-th one
 /// couples. `workers` take columns of their own, so that the bits are the same. Whether it holds what all of them couple.
@@ -62,5 +65,13 @@ bool add_in_columns(Workers* workers, std::size_t count, const Add& add) {
   });
   return std::find(complete.begin(), complete.end(), 0) == complete.end();
 }
+
+/// A Hessian by up to four points, N/m.
+struct PointsStiffness {
+  std::array<StencilPoint, 4> points;
+  Eigen::Matrix<double, 12, 12> matrix;
+};
+/// Adds them all in their order; whether the pattern holds what they couple.
+bool add_all(std::span<const PointsStiffness> all, Workers* workers, BlockMatrix& matrix);
 
 }  // namespace calot

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "fem/links.h"
 #include "geometry/turn.h"
 
 namespace calot {
@@ -233,8 +232,9 @@ void SelfContact::add_gradient(const Body& body, const VecX& x, VecX& gradient) 
 }
 
 template <class Answer>
-bool SelfContact::add_touches(const Body& body, const VecX& x, const Answer& answer, BlockMatrix& matrix) {
-  bool complete = true;
+std::vector<PointsStiffness> SelfContact::touches_stiffness(const Body& body, const VecX& x,
+                                                            const Answer& answer) {
+  std::vector<PointsStiffness> out;
   for (const SelfTouch& touch : touching(body, x)) {
     const BarrierSample b = answer(touch.sample.distance);
     std::array<Vec3, 3> corners;
@@ -247,19 +247,18 @@ bool SelfContact::add_touches(const Body& body, const VecX& x, const Answer& ans
     }
     const std::span<const Vec3> used(corners.data(), touch.part.corners);
     const Eigen::Matrix<double, 12, 12> bend = flat_hessian(used, touch.sample);
-    complete &=
-        add_points_hessian(body.skin().stencils, rows,
-                           touch.area * (b.second * slope * slope.transpose() + b.derivative * bend), matrix);
+    out.push_back({points_of(body.skin().stencils, rows),
+                   touch.area * (b.second * slope * slope.transpose() + b.derivative * bend)});
   }
-  return complete;
+  return out;
 }
 
 void SelfContact::add_hessian(const Body& body, const VecX& x, BlockMatrix& matrix) {
-  lacking_ = !add_touches(
-      body, x, [](double distance) { return self_barrier.sample(distance); }, matrix);
+  std::vector<PointsStiffness> all =
+      touches_stiffness(body, x, [](double distance) { return self_barrier.sample(distance); });
   for (const EdgeTouch& touch : crossing(body, x))
-    lacking_ |=
-        !add_points_hessian(body.skin().stencils, touch.ends, touch.area * touch.sample.hessian, matrix);
+    all.push_back({points_of(body.skin().stencils, touch.ends), touch.area * touch.sample.hessian});
+  lacking_ = !add_all(all, workers, matrix);
 }
 
 bool SelfContact::add_convexity(const Body& body, const VecX& x, BlockMatrix& matrix) {
@@ -267,7 +266,7 @@ bool SelfContact::add_convexity(const Body& body, const VecX& x, BlockMatrix& ma
   const auto against = [](double distance) {
     return BarrierSample{0, -self_barrier.sample(distance).derivative, 0};
   };
-  add_touches(body, x, against, matrix);
+  add_all(touches_stiffness(body, x, against), workers, matrix);
   return true;
 }
 

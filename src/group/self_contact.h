@@ -18,6 +18,7 @@
 #include "collision/simplex_distance.h"
 #include "collision/skin_edges.h"
 #include "collision/surface_parts.h"
+#include "fem/links.h"
 #include "group/self_search.h"
 
 namespace calot {
@@ -91,10 +92,9 @@ class SelfContact {
   void forget_pairs() { near_.clear(), edges_near_.clear(); }
   /// Half of the longest edge at rest, stretched by a quarter: how far a point may be beside edges that meet, m.
   double beside_edges(const Body& body) { return 0.625 * net(body).edges.longest; }
-  /// Adds, for each touch, second * slope slope' + derivative * the distance's Hessian of what `answer` says at its
-  /// distance. Whether the pattern holds them all.
+  /// Of each touch second * slope slope' + derivative * the distance's Hessian of what `answer` says at its distance.
   template <class Answer>
-  bool add_touches(const Body& body, const VecX& x, const Answer& answer, BlockMatrix& matrix);
+  std::vector<PointsStiffness> touches_stiffness(const Body& body, const VecX& x, const Answer& answer);
   /// safe_share() of a step no longer than groups are remembered.
   double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
   /// Bound on how much any two skin points have come nearer since groups_x_, m.

@@ -264,23 +264,6 @@ Eigen::Matrix<double, 12, 12> SkinJoin::touch_matrix(const SkinTouch& touch, con
   return touch_hessian(touch, {corners.data(), static_cast<std::size_t>(touch.part.corners)}, at_gap);
 }
 
-namespace {
-
-/// What a touch does to the points that it depends on, N/m.
-struct PointsStiffness {
-  std::array<StencilPoint, 4> points;
-  Eigen::Matrix<double, 12, 12> matrix;
-};
-
-/// Whether the pattern holds all that they couple.
-bool add_all(std::span<const PointsStiffness> touches, Workers* workers, BlockMatrix& matrix) {
-  return add_in_columns(workers, touches.size(), [&](std::size_t k, const ColumnShare& share) {
-    return add_points_hessian(touches[k].points, touches[k].matrix, matrix, share);
-  });
-}
-
-}  // namespace
-
 void SkinJoin::add_hessian(const VecX& x, BlockMatrix& matrix) const {
   std::vector<PointsStiffness> all;
   for (const EdgeTouch& touch : crossing(x))
