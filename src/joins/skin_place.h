@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "body/body.h"
 #include "joins/carried_place.h"
 
 namespace calot {
