@@ -22,8 +22,16 @@ BarrierSample Barrier::sample(double distance) const {
   }
   const double scale = -stiffness / range;
   const double gap = distance - range, log_ratio = std::log(distance / range), share = gap / distance;
-  return {scale * gap * gap * log_ratio, scale * gap * (2 * log_ratio + share),
-          scale * (2 * log_ratio + 4 * share - share * share)};
+  BarrierSample out{scale * gap * gap * log_ratio, scale * gap * (2 * log_ratio + share),
+                    scale * (2 * log_ratio + 4 * share - share * share)};
+  if (distance < core) {
+    const BarrierSample of_core =
+        Barrier{.range = core, .stiffness = core_stiffness, .steep = true}.sample(distance);
+    out.energy += of_core.energy;
+    out.derivative += of_core.derivative;
+    out.second += of_core.second;
+  }
+  return out;
 }
 
 // The shapes are convex, so the distance never falls below its tangent: Newton steps from the safe side.

@@ -21,6 +21,8 @@ struct Barrier {
   double soft_share = 0;
   /// Pressure grows as 1 / distance^2 near 0, not as 1 / distance.
   bool steep = false;
+  /// m, Pa: below this distance a steep barrier of that range and stiffness acts as well; 0: none does.
+  double core = 0, core_stiffness = 0;
   bool operator==(const Barrier&) const = default;
   /// b(d) = -stiffness / range * (d - range)^2 ln(d / range): the pressure at d = range/2 is 1.2 stiffness.
   /// Steep: b(d) = 0.6 stiffness / range * (range - d)^3 / d, of the same pressure there.

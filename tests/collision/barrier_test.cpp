@@ -9,12 +9,18 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-class EachBarrier : public testing::TestWithParam<bool> {
+class EachBarrier : public testing::TestWithParam<Barrier> {
  protected:
-  const Barrier barrier{.steep = GetParam()};
+  const Barrier barrier = GetParam();
 };
-INSTANTIATE_TEST_SUITE_P(Barrier, EachBarrier, testing::Bool(),
-                         [](const auto& param) { return param.param ? "Steep" : "Logarithmic"; });
+INSTANTIATE_TEST_SUITE_P(Barrier, EachBarrier,
+                         testing::Values(Barrier{}, Barrier{.steep = true},
+                                         Barrier{.core = 52.5e-6, .core_stiffness = 400e3}),
+                         [](const auto& param) {
+                           return param.param.steep      ? "Steep"
+                                  : param.param.core > 0 ? "WithACore"
+                                                         : "Logarithmic";
+                         });
 
 TEST_P(EachBarrier, DerivativesMatchFiniteDifferences) {
   for (double share = 0.02; share < 0.99; share += 0.01) {
@@ -42,6 +48,19 @@ TEST(Barrier, ASteepOneHasAsMuchPressureThere) {
   EXPECT_NEAR(-steep.sample(steep.range / 2).derivative, 1.2 * steep.stiffness, 1e-9);
   const double near = 1e-4 * steep.range;
   EXPECT_NEAR(-steep.sample(near).derivative / (0.6e8 * steep.stiffness), 1, 1e-3);
+}
+
+TEST(Barrier, ACoreAddsASteepOneBelowItAndNothingAbove) {
+  const Barrier plain, cored{.core = 5e-6, .core_stiffness = 4e6},
+      core{.range = cored.core, .stiffness = cored.core_stiffness, .steep = true};
+  for (const double d : {5e-6, 8e-6, 0.4e-3}) EXPECT_EQ(cored.sample(d).second, plain.sample(d).second);
+  for (const double d : {4.9e-6, 2e-6, 1e-9}) {
+    EXPECT_DOUBLE_EQ(cored.sample(d).energy, plain.sample(d).energy + core.sample(d).energy);
+    EXPECT_DOUBLE_EQ(cored.sample(d).derivative, plain.sample(d).derivative + core.sample(d).derivative);
+    EXPECT_DOUBLE_EQ(cored.sample(d).second, plain.sample(d).second + core.sample(d).second);
+  }
+  EXPECT_GT(cored.sample(1e-9).energy, 100 * plain.sample(1e-9).energy)
+      << "the logarithm alone resists no step";
 }
 
 TEST_P(EachBarrier, JoinsZeroSmoothlyToTheSecondDerivative) {
