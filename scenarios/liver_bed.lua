@@ -113,11 +113,11 @@ return calot.exercise {
       anatomy = anatomy.standard {
         assistant = false,
         areolar_plane = true,
-        prepared = { cystic_plate = 1 / 3 }, -- its lower third: else there was no critical view
-        without = {
-          "cystic_node", "hilar_fat", "triangle_fat", "artery_fat", "cystic_artery", "cystic_duct",
-          "right_hepatic_artery",
+        prepared = {
+          cystic_plate = 1 / 3, -- its lower third: else there was no critical view
+          cystic_duct = 0.4, cystic_artery = { 0.5, 1 }, -- divided: what stays with the patient
         },
+        without = { "cystic_node", "hilar_fat", "triangle_fat", "artery_fat" },
       },
       ports = ports,
       instruments = {
@@ -132,6 +132,10 @@ return calot.exercise {
 
   steps = function(t)
     technique.lift_step(t)
+    for _, share in ipairs { 0.1, 0.3 } do
+      t:clip("cystic_duct", share)
+      t:clip("cystic_artery", 1 - share)
+    end
     t:step("open", "Take the pouch and draw it over the liver's edge, until the plane behind is under tension", {
       limit = 20 * s,
       hint = "lift it off the liver, then turn it over: towards the patient's right shoulder; look in from below",
@@ -193,7 +197,7 @@ return calot.exercise {
 
   golden = {
     at = {
-      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 80 * s, 94 * s, 110 * s, 120 * s, 134 * s, 136 * s,
+      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 66 * s, 76 * s, 86 * s, 94 * s, 100 * s, 104.6 * s,
     },
   },
 }

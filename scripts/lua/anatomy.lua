@@ -19,7 +19,8 @@
 --   without {}: names of organs and tissues that are gone already, in a field that is prepared for a later step
 --   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on:
 --     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } }
---     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it
+--     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it. Of a tube it leaves a
+--     stump, joined to nothing where it ends: { cystic_duct = 0.4 } was divided and its upper part is gone
 --   strength 1: how many times as strong tissue is, and as hard to divide: some 25 in a scarred triangle
 --   areolar_plane false: with true the cystic plate is the loose plane in which a healthy gallbladder is taken off its
 --     bed: five times as many strands, which tear at 0.4 of its stress, as fat does in the triangle, and at two thirds
@@ -280,32 +281,69 @@ local function take_out(field, name, level)
   field.joints = keep(field.joints, function(one) return not on(one.from) and not on(one.to) end)
 end
 
---- Clears a tissue from one of its ends on: its way becomes shorter and its strands fewer, each for as much as before.
-local function clear(tissue, gone, level)
+--- From which share of its way to which a tissue or a tube is gone.
+local function range_of(name, gone, level)
   local range = type(gone) == "table" and gone or { 0, gone }
   local from, to = tonumber(range[1]), tonumber(range[2])
   if not from or not to or not (from >= 0 and to <= 1 and from < to) or (from > 0 and to < 1) then
-    error('what is gone of "' .. tissue.name .. '" is a share of its way, 0 to 1, or a range up to one of its ends, '
+    error('what is gone of "' .. name .. '" is a share of its way, 0 to 1, or a range up to one of its ends, '
       .. "such as { 0.5, 1 }", level + 1)
   end
+  return from, to
+end
+
+--- Clears a tissue from one of its ends on: its way becomes shorter and its strands fewer, each for as much as before.
+local function clear(tissue, from, to)
   local start, way = tissue.start or 0, (tissue.stop or 1) - (tissue.start or 0)
   if from == 0 then tissue.start = start + to * way end
   if to == 1 then tissue.stop = start + from * way end
   tissue.strands = math.floor(tissue.strands * (1 - (to - from)) + 0.5)
 end
 
---- Takes out what is gone of tissues in a field that is prepared.
+--- Leaves a stump of a tube, which nothing holds where it ends now.
+local function leave_stump(field, organ, from, to)
+  local shape, points = organ.shape, {}
+  local first, last = from == 0 and to or 0, to == 1 and from or 1
+  for k = 0, 4 do points[k + 1] = anatomy.along(shape.points, first + k / 4 * (last - first)) end
+  local begins, ends = anatomy.radius_along(shape, first), anatomy.radius_along(shape, last)
+  shape.points, shape.radii, shape.radius, shape.end_radius = points, nil, begins, ends
+  shape.nodes = math.max(5, math.floor(shape.nodes * (last - first) + 0.5))
+  local free = organ.name .. (from == 0 and ".start" or ".end")
+  local joints = {}
+  for _, one in ipairs(field.joints) do
+    if one.from ~= free and one.to ~= free then joints[#joints + 1] = one end
+  end
+  field.joints = joints
+end
+
+local function named(list, name)
+  for _, one in ipairs(list) do
+    if one.name == name then return one end
+  end
+end
+
+--- Takes out what is gone of tissues and tubes in a field that is prepared.
 local function prepare(field, gone_of, level)
   local names = {}
   for name in pairs(gone_of) do names[#names + 1] = name end
   table.sort(names)
   for _, name in ipairs(names) do
-    local gone, found = gone_of[name], nil
-    for _, tissue in ipairs(field.tissue) do
-      if tissue.name == name then found = tissue end
+    local gone, tissue, organ = gone_of[name], named(field.tissue, name), named(field.organs, name)
+    if organ and organ.shape.type ~= "tube" then
+      error('"' .. name .. '" is no tissue and no tube: of these a part can be gone', level + 1)
     end
-    if found and gone ~= 0 then clear(found, gone, level + 1) end
-    if not found or found.strands < 1 then take_out(field, name, level + 1) end
+    if not tissue and not organ then take_out(field, name, level + 1) end -- which says that there is none
+    if gone ~= 0 then
+      local from, to = range_of(name, gone, level + 1)
+      if tissue then clear(tissue, from, to) end
+      if from == 0 and to == 1 or tissue and tissue.strands < 1 then
+        take_out(field, name, level + 1)
+      elseif organ then
+        leave_stump(field, organ, from, to)
+      end
+    elseif tissue and tissue.strands < 1 then
+      take_out(field, name, level + 1)
+    end
   end
 end
 

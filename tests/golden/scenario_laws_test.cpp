@@ -64,7 +64,7 @@ constexpr Shipped shipped[] = {{"grasp_and_traction", true, true},
                                {"clip_and_divide", false},
                                {"exposure", true},
                                {"dissect_to_critical_view", true},
-                               {"liver_bed", true, false, 0.3}};
+                               {"liver_bed", true, false, 0.1}};
 
 class Scenario : public ::testing::TestWithParam<Shipped> {};
 INSTANTIATE_TEST_SUITE_P(Shipped, Scenario, ::testing::ValuesIn(shipped));

@@ -211,9 +211,44 @@ TEST(Anatomy, ATissueThatIsPreparedEndsWhereItIsClearedToWithFewerStrandsOfTheSa
   EXPECT_EQ(tissue_called(scene, "hilar_fat")->strands, 14) << "nothing of it is";
 }
 
+TEST(Anatomy, OfATubeThatWasDividedAStumpIsLeftThatNothingHoldsAtItsEnd) {
+  const auto called = [](const SceneDefinition& scene, const std::string& name) {
+    const auto found = std::find_if(scene.anatomy.organs.begin(), scene.anatomy.organs.end(),
+                                    [&](const OrganDefinition& organ) { return organ.name == name; });
+    return found == scene.anatomy.organs.end() ? nullptr : &*found;
+  };
+  const std::string rest = "without = { 'artery_fat', 'triangle_fat' } }";
+  const SceneDefinition whole = scene_of("anatomy.standard { " + rest),
+                        divided = scene_of(
+                            "anatomy.standard { prepared = { cystic_duct = 0.4, "
+                            "cystic_artery = { 0.5, 1 }, right_hepatic_artery = 0 }, " +
+                            rest);
+  const auto long_is = [&](const SceneDefinition& scene, const char* name) {
+    const std::vector<Vec3>& points = std::get<TubeShape>(called(scene, name)->shape).points;
+    double sum = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) sum += (points[k] - points[k - 1]).norm();
+    return sum;
+  };
+  EXPECT_NEAR(long_is(divided, "cystic_duct") / long_is(whole, "cystic_duct"), 0.6, 0.02);
+  EXPECT_NEAR(long_is(divided, "cystic_artery") / long_is(whole, "cystic_artery"), 0.5, 0.02);
+  EXPECT_EQ(long_is(divided, "right_hepatic_artery"), long_is(whole, "right_hepatic_artery"));
+  const auto joined = [](const SceneDefinition& scene, const std::string& landmark) {
+    return std::any_of(
+        scene.anatomy.joints.begin(), scene.anatomy.joints.end(),
+        [&](const JointDefinition& joint) { return joint.from == landmark || joint.to == landmark; });
+  };
+  for (const char* end : {"cystic_duct.start", "cystic_artery.end"}) {
+    EXPECT_TRUE(joined(whole, end));
+    EXPECT_FALSE(joined(divided, end)) << end;
+  }
+  for (const char* end : {"cystic_duct.end", "cystic_artery.start"}) EXPECT_TRUE(joined(divided, end)) << end;
+}
+
 TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
   for (const auto& [wrong, what] :
-       {std::pair{"{ prepared = { triangel_fat = 1 } }", "no \"triangel_fat\" to leave out"},
+       {std::pair{"{ prepared = { gallbladder = 0.5 } }", "is no tissue and no tube"},
+        std::pair{"{ prepared = { cystic_duct = 2 } }", "a share of its way"},
+        std::pair{"{ prepared = { triangel_fat = 1 } }", "no \"triangel_fat\" to leave out"},
         std::pair{"{ prepared = { triangle_fat = { 0.3, 0.6 } } }", "up to one of its ends"},
         std::pair{"{ prepared = { triangle_fat = 1.5 } }", "a share of its way"}}) {
     const Folder folder;
