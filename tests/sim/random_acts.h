@@ -255,4 +255,24 @@ class RandomActs {
   int carried_ = 0, dropped_ = 0;
 };
 
+/// `most` of them may not be followed: a tenth in steps of 40 ms and longer, in which tools go further.
+inline void perform(const SceneDefinition& scene, std::uint64_t seed, int acts, double most = 0.05) {
+  Result<World> world = World::create(scene);
+  ASSERT_TRUE(world) << to_text(world.failure());
+  RandomActs hands(std::move(world).value(), seed);
+  for (int k = 0; k < acts && !testing::Test::HasFailure(); ++k) {
+    if (k % 25 == 0 && k > 0) hands.again();
+    hands.act();
+  }
+  fmt::print("{} acts in {} steps and {} Newton iterations:", hands.acts, hands.steps, hands.iterations);
+  for (const auto& [kind, count] : hands.events) fmt::print(" {} {},", count, kind);
+  int failed = 0;
+  for (const auto& [why, count] : hands.failures) {
+    fmt::print("\n  {} x {}", count, why);
+    failed += count;
+  }
+  fmt::print("\n");
+  EXPECT_LE(failed, most * acts) << "acts that could not be followed";
+}
+
 }  // namespace calot::test

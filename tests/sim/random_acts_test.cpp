@@ -61,30 +61,10 @@ SceneDefinition bag_on_its_bed() {
   return scene;
 }
 
-/// `most` of them may not be followed: a tenth in steps of 40 ms and longer, in which tools go further.
-void perform(const SceneDefinition& scene, std::uint64_t seed, int acts, double most = 0.05) {
-  Result<World> world = World::create(scene);
-  ASSERT_TRUE(world) << to_text(world.failure());
-  test::RandomActs hands(std::move(world).value(), seed);
-  for (int k = 0; k < acts && !testing::Test::HasFailure(); ++k) {
-    if (k % 25 == 0 && k > 0) hands.again();
-    hands.act();
-  }
-  fmt::print("{} acts in {} steps and {} Newton iterations:", hands.acts, hands.steps, hands.iterations);
-  for (const auto& [kind, count] : hands.events) fmt::print(" {} {},", count, kind);
-  int failed = 0;
-  for (const auto& [why, count] : hands.failures) {
-    fmt::print("\n  {} x {}", count, why);
-    failed += count;
-  }
-  fmt::print("\n");
-  EXPECT_LE(failed, most * acts) << "acts that could not be followed";
-}
-
 // Two seconds an act: hundreds are left to scripts/test --long.
 TEST(BedActs, AreFollowedWhateverHandsDoToTheBagAndItsPlane) {
   CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
-  perform(bag_on_its_bed(), 7, test::cases(10, 1000), test::long_run() ? 0.1 : 0);
+  test::perform(bag_on_its_bed(), 7, test::cases(10, 1000), test::long_run() ? 0.1 : 0);
 }
 
 TEST(BedActs, ThatAreDoneAgainHaveTheSameBits) {
@@ -104,13 +84,13 @@ constexpr int of_a_long_run = 300;
 
 TEST(RandomActs, LoseNothingAndEndOrSayWhy) {
   CALOT_SLOW_WHEN_SANITIZED("hundreds of steps");
-  perform(field_of_all_kinds(false), 1, test::cases(10, of_a_long_run));
+  test::perform(field_of_all_kinds(false), 1, test::cases(10, of_a_long_run));
 }
 
 TEST(RandomActs, LoseNothingBesideALobeAndInLongSteps) {
   if (!test::long_run() || test::sanitized) GTEST_SKIP() << "left to scripts/test --long";
-  perform(field_of_all_kinds(true), 2, of_a_long_run);
-  perform(field_of_all_kinds(false, 20), 3, of_a_long_run, 0.1);
+  test::perform(field_of_all_kinds(true), 2, of_a_long_run);
+  test::perform(field_of_all_kinds(false, 20), 3, of_a_long_run, 0.1);
 }
 
 }  // namespace
