@@ -11,6 +11,7 @@
 #include "lua/mistakes.h"
 #include "script/binding.h"
 #include "script/lua_headers.h"
+#include "session/metrics.h"
 #include "tools/events.h"
 
 namespace calot {

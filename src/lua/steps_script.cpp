@@ -9,6 +9,7 @@
 #include "base/suggest.h"
 #include "field/divide_body.h"
 #include "script/lua_headers.h"
+#include "session/metrics.h"
 
 namespace calot {
 namespace {
