@@ -44,6 +44,7 @@ class Script {
   std::filesystem::path add_file(const std::string& name, const std::string& text) {
     return folder_.write(name, text);
   }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
   Folder folder_;
@@ -453,7 +454,11 @@ void hang(const std::string& code) {
   SandboxOptions options;
   options.limits.call_seconds = 0.2;
   Script script(code, options, "hang.lua");
-  script.sandbox().watchdog().set_flush([] { std::fputs("flushed\n", stderr); });
+  // The process ends there: no destructor removes the folder.
+  script.sandbox().watchdog().set_flush([&] {
+    std::fputs("flushed\n", stderr);
+    std::filesystem::remove_all(script.folder());
+  });
   (void)script.call();
   std::fputs("it came back\n", stderr);
 }
