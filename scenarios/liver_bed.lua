@@ -131,11 +131,11 @@ return calot.exercise {
   end,
 
   steps = function(t)
-    technique.lift_step(t)
     for _, share in ipairs { 0.1, 0.3 } do
       t:clip("cystic_duct", share)
       t:clip("cystic_artery", 1 - share)
     end
+    technique.lift_step(t)
     t:step("open", "Take the pouch and draw it over the liver's edge, until the plane behind is under tension", {
       limit = 20 * s,
       hint = "lift it off the liver, then turn it over: towards the patient's right shoulder; look in from below",

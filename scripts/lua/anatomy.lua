@@ -336,13 +336,11 @@ local function prepare(field, gone_of, level)
     if gone ~= 0 then
       local from, to = range_of(name, gone, level + 1)
       if tissue then clear(tissue, from, to) end
-      if from == 0 and to == 1 or tissue and tissue.strands < 1 then
+      if to - from == 1 or tissue and tissue.strands < 1 then
         take_out(field, name, level + 1)
       elseif organ then
         leave_stump(field, organ, from, to)
       end
-    elseif tissue and tissue.strands < 1 then
-      take_out(field, name, level + 1)
     end
   end
 end
