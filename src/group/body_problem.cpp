@@ -268,10 +268,12 @@ double BodyProblem::margin_share(double gone, double way, double share) const {
   return margin - gone < 0.5 * margin ? 0.0 : std::min(share, (margin - gone) / way);
 }
 
-double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
+double BodyProblem::longest_share(const VecX& x, const VecX& step) const {
+  return margin_share(moved(x), body_.largest_motion(step), unfolding_share(step));
+}
+
+double BodyProblem::share_beside_shapes(const VecX& x, const VecX& step, double share) const {
   const double depth = body_.core_depth(), gone = moved(x), longest = body_.largest_motion(step);
-  double share = margin_share(gone, longest, unfolding_share(step));
-  if (share == 0) return 0;
   ContactPlaces places(body_.skin(), x, body_.core_radii()), moves(body_.skin(), step);
   for (const ContactPair& pair : pairs()) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance + depth - gone)) continue;
@@ -288,7 +290,16 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
       share *= calot::safe_share(at, motion, radius > 0 ? offset(shape, radius) : shape, contact_keep);
     }
   }
+  return share;
+}
+
+double BodyProblem::share_beside_itself(const VecX& x, const VecX& step, double share) const {
   return search_ ? search_->own.safe_share(body_, x, step, contact_keep, share) : share;
+}
+
+double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
+  const double longest = longest_share(x, step);
+  return longest > 0 ? share_beside_itself(x, step, share_beside_shapes(x, step, longest)) : 0;
 }
 
 std::vector<ContactForce> contact_forces(const std::vector<Touch>& touches) {

@@ -392,13 +392,35 @@ VecX GroupProblem::relaxed(VecX x) const {
   return x;
 }
 
-double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
-  std::vector<double> shares(problems_.size());
-  for_each_member(
-      [&](std::size_t k) { shares[k] = problems_[k].safe_share(part_of(k, x), part_of(k, step)); });
+double GroupProblem::longest_share(const VecX& x, const VecX& step) const {
   double share = 1;
-  for (double own : shares) share = std::min(share, own);
-  return calot::safe_share(joins_at(x, &step), x, step, share, workers());
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    share = std::min(share, problems_[k].longest_share(part_of(k, x), part_of(k, step)));
+  return share;
+}
+
+double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
+  const double longest = longest_share(x, step);
+  if (longest == 0) return 0;
+  std::vector<double> shares(problems_.size());
+  for_each_member([&](std::size_t k) {
+    shares[k] = problems_[k].share_beside_shapes(part_of(k, x), part_of(k, step), longest);
+  });
+  // Skins are looked at last, as that takes longest: on what the others have left of the way.
+  const double left = *std::min_element(shares.begin(), shares.end());
+  const VecX way = left * step;
+  const std::vector<const Join*> joins = joins_at(x, &way);
+  shares.resize(joins.size() + problems_.size());
+  for_each_chunk(workers(), static_cast<int>(shares.size()), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    if (k < joins.size()) {
+      shares[k] = joins[k]->safe_share(x, step, left);
+    } else {
+      const std::size_t member = by_size_[k - joins.size()];
+      shares[k] = problems_[member].share_beside_itself(part_of(member, x), part_of(member, step), left);
+    }
+  });
+  return *std::min_element(shares.begin(), shares.end());
 }
 
 }  // namespace calot

@@ -68,6 +68,7 @@ class GroupProblem : public ConstrainedEnergy {
   void prepare(NewtonWorkspace& work) const override;
   VecX curved(const VecX& x, VecX step) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
+  double longest_share(const VecX& x, const VecX& step) const override;
   VecX relaxed(VecX x) const override;
   Workers* workers() const override;
 

@@ -64,8 +64,4 @@ class Join {
 
 using JoinPointer = std::shared_ptr<const Join>;
 
-/// The largest part of `share` of the step that all of these find safe; threads ask several at a time.
-double safe_share(std::span<const Join* const> joins, const VecX& x, const VecX& step, double share,
-                  Workers* workers);
-
 }  // namespace calot

@@ -169,35 +169,34 @@ std::optional<Failure> answer_load(Field& field, const std::vector<ContactLoads>
   return std::nullopt;
 }
 
-/// Limits a prediction to what keeps skins and tools apart.
+/// Limits a prediction to what keeps skins and tools apart. Skins are looked at last, as that takes longest: on what tools
+/// have left of the way.
 void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
                 const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
                 Prediction& out) {
   const BodyParts parts(field);
-  Workers* workers = field.workers();
-  std::vector<double> own(field.organs.size(), out.share);
-  for_each_chunk(workers, static_cast<int>(own.size()), [&](int chunk) {
-    const auto k = static_cast<std::size_t>(chunk);
-    const Organ& organ = field.organs[k];
-    own[k] = organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k, std::as_const(out.dx)),
-                                         contact_keep, own[k]);
-  });
-  for (double share : own) out.share = std::min(out.share, share);
-  // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
-  if (out.loaded && !field.group.joins.empty()) {
-    std::vector<const Join*> joins;
-    for (const JoinPointer& join : field.group.joins) joins.push_back(join.get());
-    out.share = safe_share(joins, parts.present(field), out.dx, out.share, workers);
-  }
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Poses partly = interpolate(from, to, out.share);
     out.share *= share_kept_apart(field, field.organs[k], loads[k], pairs[k],
                                   out.share * parts.of(k, std::as_const(out.dx)), from, partly);
   }
-  if (field.tissues.empty()) return;
   const VecX x = parts.present(field);
   for (const Tissue& tissue : field.tissues)
     out.share = share_kept_apart(field, tissue, x, out.dx, from, to, out.share);
+  // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
+  const std::size_t joins = out.loaded ? field.group.joins.size() : 0;
+  std::vector<double> shares(joins + field.organs.size());
+  for_each_chunk(field.workers(), static_cast<int>(shares.size()), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    if (k < joins) {
+      shares[k] = field.group.joins[k]->safe_share(x, out.dx, out.share);
+      return;
+    }
+    const Organ& organ = field.organs[k - joins];
+    shares[k] = organ.search.own.safe_share(
+        *organ.body, organ.state.x, parts.of(k - joins, std::as_const(out.dx)), contact_keep, out.share);
+  });
+  if (!shares.empty()) out.share = *std::min_element(shares.begin(), shares.end());
 }
 
 }  // namespace

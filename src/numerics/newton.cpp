@@ -162,9 +162,17 @@ class Iteration {
     return out;
   }
 
-  double safe_share(const VecX& step) {
+  /// What of `most` of a step is safe.
+  double safe_share(const VecX& step, double most) {
     const Timed timed(result_.safety_s);
-    return problem_.safe_share(x_, step);
+    return most > 0 ? most * problem_.safe_share(x_, most * step) : 0;
+  }
+
+  /// Of a step that serves whole or not at all: the share that is safe, or more where it is less than 1.
+  double share_if_whole(const VecX& step) {
+    const Timed timed(result_.safety_s);
+    const double longest = problem_.longest_share(x_, step);
+    return longest < 1 ? longest : problem_.safe_share(x_, step);
   }
 
   /// Bordered step with the factor at hand, for the residual and constraints at x.
@@ -222,7 +230,7 @@ class Iteration {
     VecX step = bordered_step(dmultipliers);
     seen_.correct(step, dmultipliers);
     correct_constraints(step, dmultipliers);
-    if (!step.allFinite() || safe_share(step) < 1.0 || !leap(step, dmultipliers, worth)) return false;
+    if (!step.allFinite() || share_if_whole(step) < 1.0 || !leap(step, dmultipliers, worth)) return false;
     ++result_.chords;
     return true;
   }
@@ -241,16 +249,20 @@ class Iteration {
       result_.status = NewtonStatus::not_finite;
       return false;
     }
+    double most = 1;
     if (definiteness_.shift == 0) {
       constexpr double worth = 0.5;  // a search along the step costs two more evaluations
       VecX whole = step, with = dmultipliers;
       correct_constraints(whole, with);
-      if (safe_share(whole) == 1.0 && leap(whole, with, worth)) {
+      const double safe = share_if_whole(whole);
+      if (safe == 1.0 && leap(whole, with, worth)) {
         definiteness_.convex = 0;  // so near to balance the next matrix may well be definite as it is
         return true;
       }
+      // The step itself, which is nearly the same, is looked at as far as that: a longer way takes longer to look at.
+      most = safe;
     }
-    return descend(step, dmultipliers, safe_share(step));
+    return descend(step, dmultipliers, safe_share(step, most));
   }
 
   /// Of a share of a step, from what bordering says of the whole. Where forces are further from balance than all that acts
