@@ -1,17 +1,18 @@
 -- Calot's triangle is dissected to the critical view of safety: the tissue between cystic duct and cystic artery is
 -- taken with the hook until the liver is seen behind them, and the gallbladder's lower part comes off the cystic plate,
--- so that two structures and no more are seen to enter the gallbladder. The field is prepared: fat at the hilum and
--- most of that beside the common duct is gone. The mistakes are a parameter, demo = "clumsy": current in the air, and
--- an end before the view is there. In field = "frozen" the tissue is a scar that current and traction hardly divide:
--- the view cannot be reached there, and who tries on fails; who bails out (demo = "bail_out") after tissue that does
--- not yield passes.
+-- so that two structures and no more are seen to enter the gallbladder. With flip = true the pouch is turned over then,
+-- and what is left of the lower part comes off from the patient's right: all six points of the view. The field is
+-- prepared: fat at the hilum and most of that beside the common duct is gone. The mistakes are a parameter, demo =
+-- "clumsy": current in the air, and an end before the view is there. In field = "frozen" the tissue is a scar that
+-- current and traction hardly divide: the view cannot be reached there, and who tries on fails; who bails out (demo =
+-- "bail_out") after tissue that does not yield passes.
 
 local calot = require "calot"
 local anatomy = require "anatomy"
 local technique = require "technique"
 local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
 
-local hook_port = { -10 * mm, 120 * mm, -5 * mm }
+local hook_port, side_port = { -10 * mm, 120 * mm, -5 * mm }, { -140 * mm, 10 * mm, 0 } -- epigastric, right_lateral
 local lower_part = 0.4 -- of the gallbladder's way: its lower third in this field, from where its bed begins
 
 -- Calot's own triangle, whose upper side is the cystic artery: there is the tissue.
@@ -34,21 +35,32 @@ local function judge_bail_out(run)
   return right, felt .. (right and ": it does not yield" or ": it yields, or was not tried"), run:times("bail_out")
 end
 
--- The view, or the way out where it cannot be had.
+-- The view, or the way out where it cannot be had. Five points of six satisfy who does not turn the pouch over.
 local function judge_view(run)
   if run:count("bail_out") > 0 then
     local right, felt, away = judge_bail_out(run)
     return right and 1 or 0, felt, away
   end
-  local points = run.notes.critical_view or 0
-  return math.min(1, points / 5), string.format("%d of 6 points, of which 5 are satisfactory", points)
+  local points, wanted = run.notes.critical_view or 0, run.params.flip and 6 or 5
+  return math.min(1, points / wanted), string.format("%d of 6 points, of which %d are asked for", points, wanted)
+end
+
+-- The left hand swings the pouch over to the patient's left and up, until the plate's right side is under tension.
+local function turn_over(t)
+  t:together(function()
+    t.left:move_by({ 34 * mm, 12 * mm, 20 * mm }, { speed = 20 * mm / s })
+  end, function()
+    t.laparoscope:look_at("gallbladder.infundibulum", { distance = 75 * mm })
+  end)
+  t.left:move_until(function() return t.left:force("jaws") > 3.6 * N end,
+    { along = { 0.6, 0.4, 0.6 }, speed = 15 * mm / s, limit = 15 * mm })
 end
 
 return calot.exercise {
   api = 2,
   id = "dissect-to-critical-view",
   title = "Dissect to the critical view of safety",
-  time_limit = 120 * s,
+  time_limit = 170 * s,
 
   params = {
     demo = {
@@ -63,6 +75,11 @@ return calot.exercise {
       choices = { "standard", "frozen" },
       title = "the patient's triangle: fat, or the scar of many inflammations",
     },
+    flip = {
+      type = "boolean",
+      default = false,
+      title = "whether the pouch is turned over as well, and the plate's right side taken: all six points",
+    },
   },
 
   scene = function(p)
@@ -74,17 +91,18 @@ return calot.exercise {
         without = { "cystic_node", "hilar_fat" },
         prepared = { triangle_fat = 0.75 },
       },
-      ports = { scope = { -40 * mm, 20 * mm, 10 * mm } },
+      ports = { scope = p.flip and { -110 * mm, 20 * mm, 10 * mm } or { -40 * mm, 20 * mm, 10 * mm } },
       instruments = {
         left = { port = "right_subcostal", force_limit = 5 * N },
         hook = { type = "l_hook", port = "epigastric", force_limit = 3 * N, power = 40 },
+        side_hook = p.flip and { type = "l_hook", port = "right_lateral", force_limit = 3 * N, power = 40 } or nil,
       },
       laparoscope = { port = "scope", angle = 30 * deg, look_at = "cystic_duct.middle", distance = 75 * mm },
       solver = { motion = "dynamic", rate = 25 }, -- as critical_view.lua
     }
   end,
 
-  steps = function(t)
+  steps = function(t, p)
     t:step("expose", "Draw the pouch to the side and down", {
       limit = 15 * s,
       hint = "Hartmann's pouch to the patient's right and down opens the triangle between duct and artery",
@@ -102,6 +120,13 @@ return calot.exercise {
       hint = "where the lowest lobules of fat join gallbladder and liver, from the triangle's side",
     })
     t:wait_until(function() return view(t).plate.points > 0 end)
+    if p.flip then
+      t:step("flip", "Turn the pouch over and take the plate's right side", {
+        limit = 50 * s,
+        hint = "swing the pouch to the patient's left and up; a hook by the right port reaches what is left below",
+      })
+      t:wait_until(function() return view(t).plate.points > 1 end)
+    end
     t:wait(0.8 * s)
     note(t, "")
   end,
@@ -133,6 +158,14 @@ return calot.exercise {
       is_done = function() return view(t).plate.points > 0 end,
     })
     t.hook:move_by({ 10 * mm, 0, 40 * mm }, { speed = 100 * mm / s })
+    if not p.flip then return end
+    turn_over(t)
+    technique.hook(t, t.side_hook, "cystic_plate", {
+      port = side_port, hardest = 0.8 * N, between = { "liver", "gallbladder" },
+      wanted = function(strand) return strand.share <= lower_part end,
+      is_done = function() return view(t).plate.points > 1 end,
+    })
+    t.side_hook:move_to({ -120 * mm, 60 * mm, -30 * mm }, { speed = 100 * mm / s })
   end,
 
   score = calot.score.weighted {

@@ -279,6 +279,7 @@ local function take_out(field, name, level)
   end
   field.organs, field.tissue = organs, tissue
   field.joints = keep(field.joints, function(one) return not on(one.from) and not on(one.to) end)
+  field.leaves = keep(field.leaves, function(one) return one.from ~= name and one.to ~= name end)
 end
 
 --- From which share of its way to which a tissue or a tube is gone.
@@ -542,6 +543,8 @@ local function field_with(owner, variant, overrides, level)
   local field = {
     organs = organs,
     joints = joints,
+    -- Over duct and artery in their ligament, below where the cystic duct enters.
+    leaves = { { from = "common_duct", to = "right_hepatic_artery", start = p.union + 0.06, goes_on = 14 * mm } },
     tissue = tissues(p),
     ground = surroundings(neck),
   }

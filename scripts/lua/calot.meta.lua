@@ -169,6 +169,7 @@
 ---@field organs? calot.organ[] the organs; with a base, the first overrides the base's first, and so on
 ---@field joints? calot.joint[] what ties organs to each other: where a duct grows out of a gallbladder
 ---@field tissue? calot.tissue[] connective tissue between organs, which may be dissected: the cystic plate
+---@field leaves? calot.leaf[] peritoneum that is only seen: over the hepatoduodenal ligament
 ---@field ground? calot.ground[] shapes that stay and are touched
 ---@field support? calot.support a plane that carries the organs
 ---@field friction? number coefficient of friction of the organs on each other; 0 to 0.3 for wet tissue, uncalibrated; default 0; 0 to 1
@@ -209,6 +210,15 @@
 ---@field divide_energy? number of an instrument's current that divides it, J/m^2; 1 mm of water takes 2.5e6 to boil away; uncalibrated; default 2.5e+06; 1000 to 1e+08
 ---@field covered? boolean true: a leaf of peritoneum covers it towards the front, to be seen, and opens where it is torn; default false
 ---@field looks? "fat"|"areolar" how its strands are drawn: as yellow lobules of fat, or as the loose tissue of a plane, whose fine fibres whiten as they are stretched; default "fat"
+
+---A leaf of peritoneum over two tubes and what is between them, towards the front. It is seen, and carries nothing.
+---@class calot.leaf
+---@field from string the tube along which it lies
+---@field to string the tube that it reaches over to
+---@field start? number where it begins, as a share of the first tube's length; default 0; 0 to 1
+---@field stop? number where it ends; default 1; 0 to 1
+---@field free_edge? number how far it goes on past the first tube; default 2 * mm; 0 to 40 mm
+---@field goes_on? number how far it goes on past the second tube; default 0 * mm; 0 to 40 mm
 
 ---A shape that stays and is touched. Instruments stop at it.
 ---@class calot.ground

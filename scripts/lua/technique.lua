@@ -294,17 +294,22 @@ local function heel(front, back, strand)
   return plus(strand, front.inward, 3 * mm - foot * length(across(front.inward, back)))
 end
 
+--- Turns a shaft that is rolled by an angle to another one, the shorter way round; by less than 10 degrees not at all.
+--- How it is rolled then, rad.
+local function roll_to(hook, to, rolled)
+  local turn = to - rolled
+  turn = turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
+  if math.abs(turn) <= 10 * deg then return rolled end
+  hook:rotate(turn, { speed = 400 * deg / s })
+  return rolled + turn
+end
+
 --- Brings the hook beside a place of the front, its foot inward. The angle that it is rolled by then, rad.
 local function come_to(hook, how, front, place, rolled)
   local start = plus(place, front.along, -4 * mm)
   local back = unit(minus(how.port, start))
   local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
-  local turn = math.atan(dot(y, foot), dot(x, foot)) - rolled
-  turn = turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
-  if math.abs(turn) > 10 * deg then
-    hook:rotate(turn, { speed = 400 * deg / s })
-    rolled = rolled + turn
-  end
+  rolled = roll_to(hook, math.atan(dot(y, foot), dot(x, foot)), rolled)
   hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
   hook:move_until(function() return presses(hook, how) end,
     { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
@@ -360,6 +365,88 @@ function technique.free(t, hook, tissue, how)
     hook:move_by(times(front.inward, -4 * mm), { speed = 60 * mm / s })
     hook:move_by(times(back, 15 * mm), { speed = 100 * mm / s })
     missed = t:torn(tissue) > torn and 0 or missed + 1
+  end
+end
+
+-- ---- a strand hooked from behind
+
+--- For one strand: `at`, its middle, moved `aside` towards the organ that it begins at; `out`, its way from the other
+--- organ to that one; `deep`, the shaft's way; `foot`, where the hook's foot points, across the strand, towards the
+--- side on which more of the others stand; and `turn`, how far the shaft is turned then, rad.
+local function grip_on(t, tissue, port, strand, aside)
+  local out = unit(minus(strand.from, strand.to))
+  local at = plus(strand.middle, out, aside)
+  local turn, x, y = technique.roll_across(port, at, out), frame_of(port, at)
+  local foot, ahead = plus(times(x, math.cos(turn)), y, math.sin(turn)), 0
+  for _, other in ipairs(t:strands(tissue)) do
+    local far = minus(other.middle, at)
+    if length(far) < 10 * mm then ahead = ahead + dot(far, foot) end
+  end
+  if ahead < 0 then
+    turn, foot = turn + math.pi, times(foot, -1)
+  end
+  return { at = at, out = out, deep = unit(minus(at, port)), foot = foot, turn = turn }
+end
+
+--- Draws the hook back until the strand lies on its foot, midway between the two organs.
+local function draw_on(hook, tissue, how, grip)
+  local back, most = times(unit(across(grip.deep, grip.out)), -1), 0.5 * mm
+  local function hangs() return lies_on(hook, tissue, "tip") and hook:force("tip") > 0.08 * N end
+  for _ = 1, 10 do
+    if hangs() then return end
+    local _, aside = between(hook, how)
+    local way = plus(times(back, most), grip.out, math.max(-most, math.min(most, aside)))
+    hook:move_until(hangs, { along = way, speed = 5 * mm / s, limit = length(way) })
+  end
+end
+
+local how_to_hook = {
+  port = given.three, hardest = given.above_zero, between = given.names, wanted = given.optional(given.called),
+  is_done = given.optional(given.called),
+}
+
+--- Strand by strand, from whichever side the shaft comes: beside a strand, on the side where fewer others stand, the
+--- hook goes 1.5 mm deeper than its middle, its foot slides behind it and draws back until the strand hangs on it, off
+--- both organs' walls. Then current flows, if no wall is within 0.3 mm, until one strand has parted. Where none does
+--- the hook tries again, nearer to the middle between the walls and less or more deep, up to nine times in a row.
+--- `how`: port, where the shaft comes from; hardest, the force on its foot that ends a way; between, the two organs,
+--- first the one that the tissue ends on; wanted(strand), if given, those that are taken; is_done(), if given, asked
+--- before each.
+function technique.hook(t, hook, tissue, how)
+  given.check(how, how_to_hook, "technique.hook", 2)
+  local wanted = how.wanted or function() return true end
+  local beside, before, deeper, rolled = -7.5 * mm, -12 * mm, { 0, 1.5 * mm, 3 * mm, -1.5 * mm }, 0
+  local missed, aside = 0, 0
+  while missed < 9 and not is_done(how) do
+    local strand = nearest_strand(t, hook, tissue, wanted)
+    if not strand then return end
+    local grip = grip_on(t, tissue, how.port, strand, aside)
+    local behind = 1.5 * mm + deeper[missed % 4 + 1]
+    local function go(along, down, speed)
+      local way = minus(plus(plus(grip.at, grip.foot, along), grip.deep, down), hook:tip())
+      hook:move_until(function() return presses(hook, how) end,
+        { along = way, speed = speed, limit = length(way) })
+    end
+    rolled = roll_to(hook, grip.turn, rolled)
+    go(beside, before, 100 * mm / s)
+    go(beside, behind, 40 * mm / s)
+    go(-2 * mm, behind, 20 * mm / s)
+    local _, off = between(hook, how)
+    draw_on(hook, tissue, how, grip)
+    local standing = #t:strands(tissue)
+    for _ = 1, 30 do
+      if #t:strands(tissue) < standing or not lies_on(hook, tissue, "tip") or between(hook, how) < 0.3 * mm then
+        break
+      end
+      hook:activate(0.1 * s)
+    end
+    if #t:strands(tissue) < standing then
+      missed, aside = 0, 0
+    else
+      missed, aside = missed + 1, aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
+    end
+    go(beside, behind, 20 * mm / s)
+    go(beside, before, 60 * mm / s)
   end
 end
 
@@ -461,7 +548,8 @@ for name, takes in pairs {
   burn_wall = { tool },
   draw_slack = { t, tool, { "slack", given.above_zero } },
   take = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
-  free = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
+  free = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
+  hook = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
   roll_across = { { "port", given.three }, { "at", given.three }, { "along", given.way } },
   hand = { t, { "name", given.name }, { "port", given.three } }, judge_stump = { { "run", given.run }, tube },
 } do technique[name] = given.checked("technique." .. name, takes, technique[name]) end

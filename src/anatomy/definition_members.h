@@ -92,6 +92,10 @@ void visit_members(auto&& visit, MembersOf<TissueDefinition> auto& definition) {
   visit(name, from, to, within, start, stop, strands, slack, stiffness, stiffening, strength, break_energy,
         density, radius, divide_energy, covered, looks);
 }
+void visit_members(auto&& visit, MembersOf<LeafDefinition> auto& definition) {
+  auto& [from, to, start, stop, free_edge, goes_on] = definition;
+  visit(from, to, start, stop, free_edge, goes_on);
+}
 void visit_members(auto&& visit, MembersOf<GroundDefinition> auto& definition) {
   auto& [name, type, point, normal, to, size, radius, friction, looks, injury, thrust_limit] = definition;
   visit(name, type, point, normal, to, size, radius, friction, looks, injury, thrust_limit);
@@ -101,9 +105,9 @@ void visit_members(auto&& visit, MembersOf<SupportDefinition> auto& definition) 
   visit(point, normal, friction);
 }
 void visit_members(auto&& visit, MembersOf<AnatomyDefinition> auto& definition) {
-  auto& [organs, joints, tissue, ground, support, friction, rest_within, heart_rate, table_head_up,
+  auto& [organs, joints, tissue, leaves, ground, support, friction, rest_within, heart_rate, table_head_up,
          table_left_down] = definition;
-  visit(organs, joints, tissue, ground, support, friction, rest_within, heart_rate, table_head_up,
+  visit(organs, joints, tissue, leaves, ground, support, friction, rest_within, heart_rate, table_head_up,
         table_left_down);
 }
 void visit_members(auto&& visit, MembersOf<PortDefinition> auto& definition) {

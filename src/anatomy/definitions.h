@@ -267,6 +267,15 @@ struct TissueDefinition {
   TissueLooks looks = TissueLooks::fat;
 };
 
+/// A leaf of peritoneum over two tubes and what is between them, towards the front, that goes with them: how it looks, no
+/// more. It is gone where one of them is.
+struct LeafDefinition {
+  std::string from, to;
+  double start = 0, stop = 1;  ///< of the length of `from`
+  double free_edge = 2e-3;     ///< m, how far it goes on past `from` (d)
+  double goes_on = 0;          ///< m, and past `to` (d)
+};
+
 enum class GroundType { plane, capsule, box };
 
 /// How ground is drawn. Usual: beside a lobe of the liver as peritoneum, as planes always; else as the liver. Board and
@@ -308,6 +317,7 @@ struct AnatomyDefinition {
   std::vector<OrganDefinition> organs;
   std::vector<JointDefinition> joints;
   std::vector<TissueDefinition> tissue;
+  std::vector<LeafDefinition> leaves;
   std::vector<GroundDefinition> ground;
   std::optional<SupportDefinition> support;
   double friction = 0;  ///< Coulomb's, of the organs on each other (d); the rest state is found without

@@ -50,6 +50,7 @@ std::vector<KeyTable> field_tables() {
            list("joints", "joint", "what ties organs to each other: where a duct grows out of a gallbladder"),
            list("tissue", "tissue",
                 "connective tissue between organs, which may be dissected: the cystic plate"),
+           list("leaves", "leaf", "peritoneum that is only seen: over the hepatoduodenal ligament"),
            list("ground", "ground", "shapes that stay and are touched"),
            table("support", &Anatomy::support, "support", "a plane that carries the organs"),
            number(
@@ -123,6 +124,20 @@ std::vector<KeyTable> field_tables() {
                   "how its strands are drawn: as yellow lobules of fat, or as the loose tissue of a plane, "
                   "whose "
                   "fine fibres whiten as they are stretched")}),
+      keys_of<LeafDefinition>(
+          "leaf",
+          "A leaf of peritoneum over two tubes and what is between them, towards the front. It is seen, and "
+          "carries "
+          "nothing.",
+          {required(text("from", &LeafDefinition::from, "the tube along which it lies")),
+           required(text("to", &LeafDefinition::to, "the tube that it reaches over to")),
+           number("start", &LeafDefinition::start, quantity::number, 0, 1, "a share of a way",
+                  "where it begins, as a share of the first tube's length"),
+           number("stop", &LeafDefinition::stop, quantity::number, 0, 1, "a share of a way", "where it ends"),
+           number("free_edge", &LeafDefinition::free_edge, quantity::length, 0, 40 * mm, "a width",
+                  "how far it goes on past the first tube"),
+           number("goes_on", &LeafDefinition::goes_on, quantity::length, 0, 40 * mm, "a width",
+                  "how far it goes on past the second tube")}),
       keys_of<GroundDefinition>(
           "ground", "A shape that stays and is touched. Instruments stop at it.",
           {text("name", &GroundDefinition::name, "its name, unique"),

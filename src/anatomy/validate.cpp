@@ -359,6 +359,13 @@ void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
   }
 }
 
+/// Where what lies along an organ begins and ends on it.
+void check_part(FieldCheck& check, const std::string& at, const auto& lies) {
+  if (lies.start >= lies.stop && check.is_fine(at + ".start") && check.is_fine(at + ".stop"))
+    check.problem(at + ".stop", fmt::format("it ends at {:.3g}, before it begins", lies.stop),
+                  fmt::format("give more than its start, {:.3g}", lies.start));
+}
+
 /// `organs`: that there are.
 void check_one_tissue(FieldCheck& check, const std::string& at, const TissueDefinition& tissue,
                       const std::vector<std::string>& organs) {
@@ -370,9 +377,7 @@ void check_one_tissue(FieldCheck& check, const std::string& at, const TissueDefi
   check_limits(check, at, "tissue", tissue);
   if (known && tissue.from == tissue.to)
     check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");
-  if (tissue.start >= tissue.stop && check.is_fine(at + ".start") && check.is_fine(at + ".stop"))
-    check.problem(at + ".stop", fmt::format("it ends at {:.3g}, before it begins", tissue.stop),
-                  fmt::format("give more than its start, {:.3g}", tissue.start));
+  check_part(check, at, tissue);
 }
 
 void check_tissue(FieldCheck& check, const AnatomyDefinition& anatomy) {
@@ -390,6 +395,22 @@ void check_tissue(FieldCheck& check, const AnatomyDefinition& anatomy) {
   if (strands > most_strands && anatomy.tissue.size() > 1)
     check.problem("scene.anatomy.tissue", fmt::format("the tissues have {} strands together", strands),
                   fmt::format("give them at most {}", most_strands));
+}
+
+void check_leaves(FieldCheck& check, const AnatomyDefinition& anatomy) {
+  std::vector<std::string> tubes;
+  for (const OrganDefinition& organ : anatomy.organs)
+    if (std::holds_alternative<TubeShape>(organ.shape)) tubes.push_back(organ.name);
+  for (std::size_t i = 0; i < anatomy.leaves.size(); ++i) {
+    const LeafDefinition& leaf = anatomy.leaves[i];
+    const std::string at = fmt::format("scene.anatomy.leaves[{}]", i + 1);
+    const bool from_known = check.known(at + ".from", leaf.from, tubes, "tube");
+    const bool known = check.known(at + ".to", leaf.to, tubes, "tube") && from_known;
+    check_limits(check, at, "leaf", leaf);
+    if (known && leaf.from == leaf.to)
+      check.problem(at + ".to", "the leaf is between a tube and itself", "name another tube");
+    check_part(check, at, leaf);
+  }
 }
 
 void check_ground(FieldCheck& check, const AnatomyDefinition& anatomy) {
@@ -436,6 +457,7 @@ void check_anatomy(FieldCheck& check, const AnatomyDefinition& anatomy) {
   }
   check_joints(check, anatomy);
   check_tissue(check, anatomy);
+  check_leaves(check, anatomy);
   check_ground(check, anatomy);
   if (anatomy.support)
     check.unit_direction(path + ".support.normal", anatomy.support->normal, "a unit normal");

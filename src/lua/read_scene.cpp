@@ -76,6 +76,7 @@ class SceneReader {
       }
     }
     read_list(reader, "joints", "joint", anatomy.joints);
+    read_list(reader, "leaves", "leaf", anatomy.leaves);
     read_list(reader, "tissue", "tissue", anatomy.tissue);
     read_list(reader, "ground", "ground", anatomy.ground);
     return anatomy;

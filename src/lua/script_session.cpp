@@ -202,7 +202,8 @@ std::vector<ScriptSession::PresentStrand> ScriptSession::strands(lua_State* L, c
   if (checking()) {
     stand_in();
     const Vec3 at = landmark(L, scene().laparoscope.look_at);
-    if (next_guess()) out.push_back({{at, at, at}});
+    const Vec3 half(0, 0, 3e-3);  // m: it has a length, as every one has
+    if (next_guess()) out.push_back({{at - half, at, at + half}});
     return out;
   }
   const Field& field = world(L).field();

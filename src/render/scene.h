@@ -25,7 +25,7 @@ enum class Material {
   hydrops,  ///< a gallbladder full of mucus: pale, its vessels pressed empty; rest frame as the gallbladder's
   bile,     ///< film and drops: golden where thin, green where deep; rest positions: (0, 0, its depth, m)
   blood,    ///< likewise, red and dark red
-  leaf,  ///< a thin leaf of peritoneum with fine vessels; rest positions: along, across, and 1 mm where it is whole
+  leaf,  ///< of peritoneum, with fine vessels; rest positions: along, across, 1 mm where it is whole, 2 full of fat
   board,    ///< a training box's floor and walls: grey, matt
   plastic,  ///< what lies and stands on it: blue, smooth, dry
   areolar,  ///< fibres of a loose plane; rest positions: along, beside others, and how taut, 1 mm: white; -1 mm: fat

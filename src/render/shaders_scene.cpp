@@ -168,7 +168,7 @@ vec3 hidden_share(vec3 p) { return 1.0 - exp(-ABSORBS * max(p.z, 0.0)); }
 )";
 
 // A leaf of peritoneum: a whitish veil that is denser seen along it, with fine vessels and, where fat lies below it, a
-// yellow tinge. p is along, across and 1 where it is whole.
+// yellow tinge. p is along, across and 1 where it is whole, 2 where it is full of fat.
 const char* const leaf_material = R"(
 #define SHINE smoothstep(0.0, 0.6, rest.z)
 float vessel_share(vec3 p) {
@@ -189,6 +189,7 @@ Surface surface_at(vec3 p) {
 vec3 hidden_share(vec3 p) {
   float along_it = 1.0 - abs(dot(normalize(normal), normalize(place)));
   float veil = 0.22 + 0.30 * yellow_share(p) + 0.35 * along_it * along_it + 0.45 * vessel_share(p);
+  veil += (0.15 + 0.35 * yellow_share(p)) * clamp(p.z - 1.0, 0.0, 1.0);
   return vec3(clamp(veil, 0.0, 0.9) * smoothstep(0.05, 0.9, p.z));
 }
 )";

@@ -106,14 +106,30 @@ Vec3 front_of(const std::vector<Fibre>& at) {
   return out.dot(Vec3(0, -0.4, 1)) < 0 ? Vec3(-out) : out;
 }
 
+/// What a leaf lies on, and what it is like.
+struct Laid {
+  std::array<double, 2> radii{};   ///< m, of the two tubes
+  std::array<double, 2> beyond{};  ///< m, how far it goes on past either
+  double dense = 1;                ///< 1: a veil; 2: full of fat
+};
+
 /// Across a fibre, from beyond the crest of one tube, over it and the fat between, to beyond that of the other; v is 0 to 1.
-Vec3 across(const Fibre& fibre, const std::array<double, 2>& radii, const Vec3& front, double v) {
+Vec3 across(const Fibre& fibre, const Laid& laid, const Vec3& front, double v) {
+  constexpr double past = 0.15,
+                   back = 0.6;  // of v, where it goes on past a tube; of that way, as far as it falls back
+  const std::array<double, 2>& radii = laid.radii;
   const Vec3 way = (fibre.to - fibre.from).normalized();
   const Vec3 up = (front - way * way.dot(front)).normalized();
   constexpr double over_tube = 0.22;  // of v, at either end
   const auto on_tube = [&](const Vec3& middle, double radius, double angle) -> Vec3 {
     return middle + (radius + above_tubes) * (std::cos(angle) * up + std::sin(angle) * way);
   };
+  const std::array<double, 2> free{laid.beyond[0] > 0 ? past : 0, laid.beyond[1] > 0 ? past : 0};
+  if (v < free[0])
+    return on_tube(fibre.from, radii[0], -wrapped) - laid.beyond[0] * (1 - v / past) * (way + back * up);
+  if (v > 1 - free[1])
+    return on_tube(fibre.to, radii[1], wrapped) + laid.beyond[1] * (1 - (1 - v) / past) * (way - back * up);
+  v = (v - free[0]) / (1 - free[0] - free[1]);
   if (v < over_tube) return on_tube(fibre.from, radii[0], -wrapped * (1 - v / over_tube));
   if (v > 1 - over_tube) return on_tube(fibre.to, radii[1], wrapped * (1 - (1 - v) / over_tube));
   const double t = (v - over_tube) / (1 - 2 * over_tube);
@@ -139,7 +155,7 @@ void face(SceneMesh& mesh, const Vec3& front) {
 }
 
 /// Along and across, and how much of it is there: it thins out at its rim and towards what is torn.
-void lay_out(SceneMesh& mesh, const std::vector<Fibre>& at, double width) {
+void lay_out(SceneMesh& mesh, const std::vector<Fibre>& at, double width, double dense) {
   const std::size_t columns = at.size() - 1;
   for (std::size_t p = 0; p < mesh.positions.size(); ++p) {
     const Fibre& fibre = at[p % at.size()];
@@ -147,28 +163,54 @@ void lay_out(SceneMesh& mesh, const std::vector<Fibre>& at, double width) {
                  v = static_cast<double>(p / at.size()) / leaf_rows;
     const double rim = smooth_step(0, 0.15, std::min(u, 1 - u)) * smooth_step(0, 0.2, std::min(v, 1 - v));
     mesh.rest_positions[p] = {fibre.at - at.front().at, v * width,
-                              thickness * rim * smooth_step(0.35, 0.75, fibre.whole)};
+                              thickness * dense * rim * smooth_step(0.35, 0.75, fibre.whole)};
   }
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return std::all_of(t.begin(), t.end(), [&](int p) { return mesh.rest_positions[p].z() == 0; });
   });
 }
 
-void add_leaf(const Tissue& tissue, const std::vector<Organ>& organs, SceneMesh& out) {
-  const std::vector<Fibre> fibres = fibres_of(tissue, organs);
+/// Over tubes, or other organs, between which the fibres run.
+void add_leaf(const std::vector<Fibre>& fibres, const Organ& one, const Organ& other, SceneMesh& out,
+              Laid laid = {}) {
   if (fibres.size() < 3 || !(fibres.front().at < fibres.back().at)) return;
-  const Organ &one = organs[tissue.strands->bodies()[0]], &other = organs[tissue.strands->bodies()[1]];
-  const std::array<double, 2> radii{one.body->thickest(), other.body->thickest()};
+  laid.radii = {one.body->thickest(), other.body->thickest()};
   const std::vector<Fibre> at = evened(fibres, one, other);
   const Vec3 front = front_of(at);
   const int columns = static_cast<int>(at.size()) - 1;
   SceneMesh mesh = sheet(Material::leaf, columns, leaf_rows, [&](double u, double v) {
-    return across(at[static_cast<std::size_t>(std::lround(u * columns))], radii, front, v);
+    return across(at[static_cast<std::size_t>(std::lround(u * columns))], laid, front, v);
   });
   face(mesh, front);
   const Fibre& middle = at[at.size() / 2];
-  lay_out(mesh, at, (middle.to - middle.from).norm() + radii[0] + radii[1]);
+  const double width = (middle.to - middle.from).norm() + laid.radii[0] + laid.radii[1];
+  lay_out(mesh, at, width + laid.beyond[0] + laid.beyond[1], laid.dense);
   append(out, mesh);
+}
+
+/// Of a leaf that lies over two tubes: from each point of the first one's part to the nearest place of the other.
+std::vector<Fibre> fibres_between(const Organ& one, const Organ& other, const LeafDefinition& leaf) {
+  constexpr double fat = 1e-3;  // m, as thick as under it (d)
+  const std::vector<Vec3>& rest = one.body->skin_rest();
+  const std::vector<Vec3> line = one.body->skin_positions(one.state.x);
+  std::vector<double> way{0};
+  for (std::size_t k = 1; k < rest.size(); ++k) way.push_back(way.back() + (rest[k] - rest[k - 1]).norm());
+  const TubeMiddle of_other(other);
+  std::vector<Fibre> out;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (way[k] < leaf.start * way.back() || way[k] > leaf.stop * way.back()) continue;
+    const Vec3 to = of_other.nearest(line[k]);
+    out.push_back({way[k], line[k], 0.5 * (line[k] + to), to, 1, fat});
+  }
+  return out;
+}
+
+/// The organ of that name as a tube; null: it is gone, or was divided.
+const Organ* tube_of(const std::vector<Organ>& organs, const std::string& name) {
+  const auto found = std::find_if(organs.begin(), organs.end(), [&](const Organ& organ) {
+    return organ.definition.name == name && organ.body->is_line();
+  });
+  return found == organs.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -177,8 +219,17 @@ SceneMesh leaf_mesh(const World& world) {
   SceneMesh out;
   out.material = Material::leaf;
   const Field& field = world.field();
-  for (const Tissue& tissue : field.tissues)
-    if (tissue.definition.covered) add_leaf(tissue, field.organs, out);
+  for (const Tissue& tissue : field.tissues) {
+    const std::array<int, 2> bodies = tissue.strands->bodies();
+    if (tissue.definition.covered)
+      add_leaf(fibres_of(tissue, field.organs), field.organs[bodies[0]], field.organs[bodies[1]], out);
+  }
+  for (const LeafDefinition& leaf : world.scene().anatomy.leaves) {
+    const Organ *one = tube_of(field.organs, leaf.from), *other = tube_of(field.organs, leaf.to);
+    if (one != nullptr && other != nullptr)
+      add_leaf(fibres_between(*one, *other, leaf), *one, *other, out,
+               {.beyond = {leaf.free_edge, leaf.goes_on}, .dense = 2});
+  }
   return out;
 }
 

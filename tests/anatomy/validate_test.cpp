@@ -25,6 +25,13 @@ OrganDefinition& with_duct(SceneDefinition& scene) {
   return scene.anatomy.organs.emplace_back(duct({Vec3::Zero(), Vec3(30e-3, 0, 0)}));
 }
 
+/// A leaf over a duct and another one.
+LeafDefinition& leaf_in(SceneDefinition& scene) {
+  with_duct(scene);
+  with_duct(scene).name = "other";
+  return scene.anatomy.leaves.emplace_back(LeafDefinition{.from = "duct", .to = "other"});
+}
+
 /// Another one between the gallbladder and a duct.
 TissueDefinition& tissue_in(SceneDefinition& scene) {
   if (scene.anatomy.organs.size() < 2) with_duct(scene);
@@ -356,6 +363,14 @@ const std::vector<Refusal>& refusals() {
       {"TissueThatEndsBeforeItBegins",
        [](auto& s) { tissue_in(s).start = 0.8, s.anatomy.tissue[0].stop = 0.2; },
        "scene.anatomy.tissue[1].stop", "before it begins", "more than its start"},
+      {"LeafOverWhatIsNoTube", [](auto& s) { leaf_in(s).from = "gallbladder"; },
+       "scene.anatomy.leaves[1].from", "unknown tube \"gallbladder\"", "duct"},
+      {"LeafOverOneTube", [](auto& s) { leaf_in(s).to = "duct"; }, "scene.anatomy.leaves[1].to",
+       "a tube and itself", "another tube"},
+      {"LeafThatEndsBeforeItBegins", [](auto& s) { leaf_in(s).stop = 0; }, "scene.anatomy.leaves[1].stop",
+       "before it begins", "more than its start"},
+      {"LeafOfNegativeWidth", [](auto& s) { leaf_in(s).goes_on = -1e-3; }, "scene.anatomy.leaves[1].goes_on",
+       "not a width", "mm"},
       {"TissuesOfTooManyStrands",
        [](auto& s) {
          tissue_in(s).strands = 1000;

@@ -186,6 +186,15 @@ TEST(OperationErrors, TheExpertsHandDoesNotReachTheCriticalViewInAFrozenTriangle
   EXPECT_FALSE(stubborn.played->report.score.passed());
 }
 
+TEST(OperationErrors, WhoTurnsThePouchOverReachesAllSixPointsOfTheCriticalView) {
+  if (!test::long_run()) GTEST_SKIP() << "dissects for most of a minute";
+  const Playback turned("dissect_to_critical_view.lua", {{"flip", "true"}});
+  ASSERT_TRUE(turned.played) << turned.failure;
+  EXPECT_EQ(turned.played->session.metrics.at("note.critical_view"), 6);
+  EXPECT_EQ(turned.count(EventKind::perforation), 0);
+  EXPECT_GT(turned.played->report.score.total, 95);
+}
+
 TEST(OperationErrors, WhoBailsOutOfTissueThatGivesWayDoesNotPass) {
   if (!test::long_run()) GTEST_SKIP() << "dissects for a quarter of a minute";
   const Playback timid("dissect_to_critical_view.lua", {{"demo", "bail_out"}});

@@ -70,5 +70,65 @@ TEST(BedField, AGallbladderThatIsLetGoWhereItIsPressedOnTheGroundComesFree) {
   EXPECT_EQ(in_a_row, 0) << "it is in balance in the end";
 }
 
+/// The assistant's grasper swings the fundus to the patient's left and right, lets it go, takes it again and swings it to the
+/// left. Noted each time is the mean tension, mN, of the plane's strands on either side of its middle.
+test::ScenarioText swung() {
+  test::ScenarioText text;
+  text.head =
+      "local anatomy = require 'anatomy'\n"
+      "local function note(t, when)\n"
+      "  local strands, middle, sides = t:strands('cystic_plate'), 0, { left = { 0, 0 }, right = { 0, 0 } }\n"
+      "  for _, strand in ipairs(strands) do middle = middle + strand.to[1] / #strands end\n"
+      "  for _, strand in ipairs(strands) do\n"
+      "    local side = strand.to[1] > middle and sides.left or sides.right\n"
+      "    side[1], side[2] = side[1] + 1e3 * strand.tension, side[2] + 1\n"
+      "  end\n"
+      "  for name, side in pairs(sides) do t:note(when .. '_' .. name, side[1] / math.max(1, side[2])) end\n"
+      "end\n";
+  text.scene =
+      "return { anatomy = anatomy.standard { assistant = false, areolar_plane = true,\n"
+      "   prepared = { cystic_plate = 0.5, cystic_duct = 0.4, cystic_artery = { 0.5, 1 } },\n"
+      "   without = { 'cystic_node', 'hilar_fat', 'triangle_fat', 'artery_fat' } },\n"
+      " instruments = { fundus = { port = 'right_lateral', force_limit = 8 * N, pinch_force = 12 * N } },\n"
+      " laparoscope = { look_at = 'gallbladder.fundus' }, solver = { motion = 'dynamic', rate = 25 } }";
+  text.steps =
+      "local function held() return t.fundus:holds('gallbladder') end\n"
+      "t:step('swing', 'Swing the fundus')\n"
+      "t:wait_until(held) t:wait(1.7 * s) note(t, 'left')\n"
+      "t:wait(2 * s) note(t, 'right')\n"
+      "t:wait_until(function() return not held() end)\n"
+      "t:wait_until(held) t:wait(1.3 * s) note(t, 'again')";
+  text.demo =
+      "local f, fast, slow = t.fundus, { speed = 80 * mm / s }, { speed = 25 * mm / s }\n"
+      "f:approach('gallbladder.fundus', { speed = 60 * mm / s, depth = 6 * mm }) f:close()\n"
+      "f:move_by({ 0, 8 * mm, 15 * mm }, slow) f:move_by({ 20 * mm, 0, 0 }, slow) f:wait(0.4 * s)\n"
+      "f:move_by({ -40 * mm, 0, 0 }, slow) f:wait(0.4 * s)\n"
+      "f:open() f:move_by({ -15 * mm, -15 * mm, 20 * mm }, fast) f:wait(0.5 * s)\n"
+      "f:approach('gallbladder.fundus', { speed = 60 * mm / s, depth = 6 * mm }) f:close()\n"
+      "f:move_by({ 20 * mm, 8 * mm, 15 * mm }, slow) f:wait(0.4 * s)";
+  return text;
+}
+
+TEST(BedField, AFundusThatIsSwungTensesThePlaneOnItsOtherSide) {
+  if (!test::long_run() || test::sanitized) GTEST_SKIP() << "left to scripts/test --long: half a minute";
+  const test::Folder folder;
+  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, swung().text());
+  ASSERT_TRUE(script) << to_text(script.failure());
+  Result<World> world = World::create(script.value()->definition().scene);
+  ASSERT_TRUE(world) << to_text(world.failure());
+  const SessionResult result = run_session(world.value(), *script.value(), script.value()->demo(), {});
+  ASSERT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
+  const auto noted = [&](const std::string& name) { return result.metrics.at("note." + name); };
+  const auto right_share = [&](const std::string& when) {
+    return noted(when + "_right") / noted(when + "_left");
+  };
+  EXPECT_GT(right_share("left"), 1.5 * right_share("right"));
+  EXPECT_GT(noted("right_left"), 1.5 * noted("left_left")) << "the left side opens on a swing to the right";
+  EXPECT_NEAR(right_share("again"), right_share("left"), 0.2 * right_share("left"))
+      << "taken anew it does so again";
+  EXPECT_GT(noted("left_right"), 5) << "mN: the strands are taut";
+  EXPECT_EQ(world.value().report().tissues.at(0).torn, 0) << "a swing alone divides nothing";
+}
+
 }  // namespace
 }  // namespace calot

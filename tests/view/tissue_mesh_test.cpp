@@ -172,5 +172,40 @@ TEST(LeafMesh, LiesOnlyOnTissueThatIsSaidToBeCovered) {
   EXPECT_TRUE(leaf_mesh(world).triangles.empty());
 }
 
+/// Two tubes, and a leaf over the second half of the first one.
+SceneDefinition two_tubes_in_a_leaf(double goes_on) {
+  SceneDefinition scene = sheet_between_tubes();
+  scene.anatomy.tissue.clear();
+  scene.anatomy.leaves = {{.from = "duct", .to = "other", .start = 0.5, .goes_on = goes_on}};
+  return scene;
+}
+
+TEST(LeafMesh, OverTwoTubesLiesOnThePartOfThemThatItIsGiven) {
+  for (const double goes_on : {0.0, 10e-3}) {
+    const World world = World::create(two_tubes_in_a_leaf(goes_on)).value();
+    const Organ& duct = world.field().organs[0];
+    const Vec3 start = duct.body->skin_positions(duct.state.x).front(),
+               end = duct.body->skin_positions(duct.state.x).back();
+    const Eigen::AlignedBox3d box = [&] {
+      Eigen::AlignedBox3d out;
+      for (const Vec3& p : leaf_mesh(world).positions) out.extend(p);
+      return out;
+    }();
+    const double middle = 0.5 * (start.y() + end.y()), spacing = 2e-3;
+    EXPECT_NEAR(end.y() > middle ? box.min().y() : box.max().y(), middle, spacing);
+    EXPECT_NEAR(end.y() > middle ? box.max().y() : box.min().y(), end.y(), spacing);
+    const double before = std::min(0.0, box.min().x()), past = box.max().x() - 16e-3;
+    EXPECT_LT(before, -2e-3) << "its free edge";
+    EXPECT_NEAR(past - goes_on, 2e-3, 1e-3) << "it reaches around the other one, and on";
+  }
+}
+
+TEST(LeafMesh, OverTwoTubesIsGoneWhereOneOfThemIs) {
+  World world = World::create(two_tubes_in_a_leaf(0)).value();
+  ASSERT_FALSE(leaf_mesh(world).triangles.empty());
+  ASSERT_TRUE(world.remove("other", "to see what is left"));
+  EXPECT_TRUE(leaf_mesh(world).triangles.empty());
+}
+
 }  // namespace
 }  // namespace calot
