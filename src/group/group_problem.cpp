@@ -240,19 +240,24 @@ void GroupProblem::gradient_and_constraint(const VecX& x, VecX& of_energy, VecX&
   largest_internal.resize(static_cast<Eigen::Index>(problems_.size()));
   values.resize(constraints_);
   of_constraints.setZero(size_, constraints_);
+  // A solve begins with tissues put in balance between bodies that stay: of these nothing is asked twice.
+  last_.resize(problems_.size());
   const auto own_part = [&](std::size_t k) {
-    VecX own, internal, own_values;
-    Eigen::MatrixXd own_constraints;
     const Range& range = ranges_[k];
-    if (range.constraints == 0) {
-      problems_[k].gradient(part_of(k, x), own, internal);
-    } else {
-      problems_[k].gradient_and_constraint(part_of(k, x), own, internal, own_values, own_constraints);
-      values.segment(range.constraint, range.constraints) = own_values;
-      of_constraints.block(range.first, range.constraint, range.size, range.constraints) = own_constraints;
+    OwnSlopes& own = last_[k];
+    const VecX at = part_of(k, x);
+    if (own.x.size() != at.size() || own.x != at) {
+      if (range.constraints == 0)
+        problems_[k].gradient(at, own.gradient, own.internal);
+      else
+        problems_[k].gradient_and_constraint(at, own.gradient, own.internal, own.values, own.of_constraints);
+      own.x = at;
     }
-    of_energy.segment(range.first, range.size) = own;
-    largest_internal[static_cast<Eigen::Index>(k)] = internal[0];
+    of_energy.segment(range.first, range.size) = own.gradient;
+    largest_internal[static_cast<Eigen::Index>(k)] = own.internal[0];
+    if (range.constraints == 0) return;
+    values.segment(range.constraint, range.constraints) = own.values;
+    of_constraints.block(range.first, range.constraint, range.size, range.constraints) = own.of_constraints;
   };
   for_each_member(own_part, joins, &x);
   add_joins(joins, x, of_energy, largest_internal);

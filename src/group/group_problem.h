@@ -107,9 +107,15 @@ class GroupProblem : public ConstrainedEnergy {
   std::vector<BodyProblem> problems_;
   std::vector<Range> ranges_;
   std::vector<Eigen::Index> volumes_;  ///< of each member: place of its volume's constraint; -1: it has none
-  std::vector<std::size_t> by_size_;   ///< members, the largest last
-  std::size_t small_ = 0;              ///< the first of these are not worth sharing
-  Eigen::Index size_ = 0;              ///< coordinates
+  /// What gradient_and_constraint() found last of each member.
+  struct OwnSlopes {
+    VecX x, gradient, internal, values;
+    Eigen::MatrixXd of_constraints;
+  };
+  mutable std::vector<OwnSlopes> last_;
+  std::vector<std::size_t> by_size_;  ///< members, the largest last
+  std::size_t small_ = 0;             ///< the first of these are not worth sharing
+  Eigen::Index size_ = 0;             ///< coordinates
   int constraints_ = 0;
 };
 

@@ -8,8 +8,9 @@ namespace calot {
 NewtonResult factorise_tangent(const ConstrainedEnergy& problem, NewtonWorkspace& work, const VecX& x,
                                const VecX& multipliers, bool fresh) {
   NewtonResult result;
+  // The factor at hand serves whatever has come near since: an answer is of first order.
+  if (!fresh && work.matrix.size() == x.size() && serves(work, problem)) return result;
   problem.prepare(work);
-  if (!fresh && serves(work, problem)) return result;
   VecX values;
   work.border.gradients.resize(x.size(), 0);
   if (problem.constraints() > 0) problem.constraint(x, values, work.border.gradients);
