@@ -424,6 +424,7 @@ function technique.hook(t, hook, tissue, how)
     local behind = 1.5 * mm + deeper[missed % 4 + 1]
     local function go(along, down, speed)
       local way = minus(plus(plus(grip.at, grip.foot, along), grip.deep, down), hook:tip())
+      if length(way) < 0.2 * mm then return end -- it is there
       hook:move_until(function() return presses(hook, how) end,
         { along = way, speed = speed, limit = length(way) })
     end
