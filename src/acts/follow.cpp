@@ -136,7 +136,7 @@ class Following {
   /// The budget is spent: bodies that were only brought along find their balance with the tools as far as they came.
   Result<bool> end_here() {
     statistics_.cut_short = true;
-    if (!is_one_step()) return false;
+    if (!is_one_step()) return by_parts_ ? pass_the_rest() : Result<bool>(false);
     field_.rough = false;
     if (done_ == 0)
       if (std::optional<Failure> failure = begin()) return *failure;
@@ -144,6 +144,17 @@ class Following {
     if (!settle_in_step(field_, "with the tools as far as they came", statistics_)) restore(field_, before);
     note_unasked(field_, statistics_);
     return false;
+  }
+
+  /// What is left of the time of a step that went on by parts passes with the tools as far as they came: what falls would
+  /// hang in the air for as long. Where that finds no end it is left out.
+  Result<bool> pass_the_rest() {
+    const Poses here = present_poses(field_);
+    if (std::optional<Failure> failure = begin()) return *failure;
+    const Result<Prediction> answer = predict(field_, here, here, false, statistics_);
+    if (!answer) return false;
+    const Result<bool> stayed = stay(answer.value());
+    return stayed ? stayed : Result<bool>(false);
   }
 
   /// What the tools press leaves them no room yet: the rest of the time passes with them where they are, in which it gives
