@@ -75,12 +75,13 @@ end
 
 -- ---- the hook
 
-local function nearest_strand(t, hook, tissue, wanted)
-  local tip, best = hook:tip(), nil
+--- Of the strands that are wanted (nil: all) the one nearest to a place; nil: there is none.
+local function nearest_strand(t, place, tissue, wanted)
+  local best, least = nil, math.huge
   for _, strand in ipairs(t:strands(tissue)) do
-    local far = length(minus(strand.middle, tip))
-    if wanted(strand) and (not best or far < best.far) then
-      best = { far = far, middle = strand.middle, from = strand.from, to = strand.to }
+    local far = length(minus(strand.middle, place))
+    if far < least and (not wanted or wanted(strand)) then
+      best, least = strand, far
     end
   end
   return best
@@ -132,10 +133,9 @@ function technique.take(t, hook, tissue, how)
   given.check(how, how_to_take, "technique.take", 2)
   if how.keep_off then given.check(how.keep_off, where_to_keep_off, "keep_off", 2) end
   local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
-  local wanted = how.wanted or function() return true end
   local missed = 0
   while missed < 9 and not is_done(how) do
-    local strand = nearest_strand(t, hook, tissue, wanted)
+    local strand = nearest_strand(t, hook:tip(), tissue, how.wanted)
     if not strand then return end
     local off = how.keep_off
     local beside = off and off.place and length(minus(strand.middle, off.place)) < 10 * mm
@@ -283,17 +283,6 @@ local function sweep_to(hook, tissue, how, front, place)
   return false
 end
 
-local how_to_free = {
-  port = given.three, from = given.three, hardest = given.above_zero, between = given.names,
-  stretch = given.optional(given.called), ease = given.optional(given.called), is_done = given.optional(given.called),
-}
-
---- Where the foot's heel goes for its end to be 3 mm past a strand of the front.
-local function heel(front, back, strand)
-  local foot = 5 * mm
-  return plus(strand, front.inward, 3 * mm - foot * length(across(front.inward, back)))
-end
-
 --- Turns a shaft that is rolled by an angle to another one, the shorter way round; by less than 10 degrees not at all.
 --- How it is rolled then, rad.
 local function roll_to(hook, to, rolled)
@@ -302,70 +291,6 @@ local function roll_to(hook, to, rolled)
   if math.abs(turn) <= 10 * deg then return rolled end
   hook:rotate(turn, { speed = 400 * deg / s })
   return rolled + turn
-end
-
---- Brings the hook beside a place of the front, its foot inward. The angle that it is rolled by then, rad.
-local function come_to(hook, how, front, place, rolled)
-  local start = plus(place, front.along, -4 * mm)
-  local back = unit(minus(how.port, start))
-  local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
-  rolled = roll_to(hook, math.atan(dot(y, foot), dot(x, foot)), rolled)
-  hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
-  hook:move_until(function() return presses(hook, how) end,
-    { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
-  return rolled
-end
-
---- Sweeps to and fro along the front, first from one of its rows on, until a way divides less than a hundredth of the
---- tissue or fails twice. The plane is stretched anew before each way.
-local function sweep(t, hook, tissue, how, front, back, first)
-  local place = front.at
-  for way = 1, 8 do
-    local torn, line, failed = t:torn(tissue), foremost(front), 0
-    for k = first, #line do
-      local row = line[way % 2 == 1 and k or #line + 1 - k]
-      if not sweep_to(hook, tissue, how, front, heel(front, back, row.middle)) then
-        failed = failed + 1
-        hook:move_by(times(front.inward, -2 * mm), { speed = 60 * mm / s })
-      end
-      if is_done(how) or failed == 2 then return end
-    end
-    first, front = 1, front_of(t, tissue, how.port, place)
-    if not front or t:torn(tissue) - torn < 0.01 then return end
-    if how.stretch then how.stretch(front) end
-  end
-end
-
---- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
---- sees it. The foot points inward, away from the lens, 3 mm past the foremost strands; it sweeps to and fro along
---- them, midway between the two organs, and current flows while it lies on strands and no organ is within 0.4 mm. It
---- ends when nothing is under tension, or ten strokes in a row divide nothing. `how`: port, where the shaft comes from;
---- from, the place nearest to which it begins; hardest, the force on the foot at which it stops and burns, or eases
---- off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if given, called before
---- each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given. `front`: at,
---- its middle; out, from the first organ to the other one; along, its own way, as the shaft points; inward, to the
---- strands behind it; tension, of its tautest strand.
-function technique.free(t, hook, tissue, how)
-  given.check(how, how_to_free, "technique.free", 2)
-  local missed, rolled, near = 0, 0, how.from
-  while missed < 10 and not is_done(how) do
-    local torn, front = t:torn(tissue), front_of(t, tissue, how.port, near)
-    if front and how.stretch then
-      how.stretch(front)
-      front = front_of(t, tissue, how.port, near)
-    end
-    if not front then return end
-    near = front.at
-    local line = foremost(front)
-    local first = 1 + (#line // 2 + missed) % #line -- the near side is where the two organs lie on each other
-    local strand = line[first].middle
-    local back = unit(minus(how.port, strand))
-    rolled = come_to(hook, how, front, heel(front, back, strand), rolled)
-    sweep(t, hook, tissue, how, front, back, first)
-    hook:move_by(times(front.inward, -4 * mm), { speed = 60 * mm / s })
-    hook:move_by(times(back, 15 * mm), { speed = 100 * mm / s })
-    missed = t:torn(tissue) > torn and 0 or missed + 1
-  end
 end
 
 -- ---- a strand hooked from behind
@@ -405,6 +330,39 @@ local how_to_hook = {
   is_done = given.optional(given.called),
 }
 
+--- Tries one strand; `try`: how the shaft is rolled, how many tries in a row divided nothing, and how far aside of the
+--- strand's middle the foot goes; renewed.
+local function hook_strand(t, hook, tissue, how, strand, try)
+  local beside, before, deeper = -7.5 * mm, -12 * mm, { 0, 1.5 * mm, 3 * mm, -1.5 * mm }
+  local grip = grip_on(t, tissue, how.port, strand, try.aside)
+  local behind = 1.5 * mm + deeper[try.missed % 4 + 1]
+  local function go(along, down, speed)
+    local way = minus(plus(plus(grip.at, grip.foot, along), grip.deep, down), hook:tip())
+    if length(way) < 0.2 * mm then return end -- it is there
+    hook:move_until(function() return presses(hook, how) end, { along = way, speed = speed, limit = length(way) })
+  end
+  try.rolled = roll_to(hook, grip.turn, try.rolled)
+  go(beside, before, 100 * mm / s)
+  go(beside, behind, 40 * mm / s)
+  go(-2 * mm, behind, 20 * mm / s)
+  local _, off = between(hook, how)
+  draw_on(hook, tissue, how, grip)
+  local standing = #t:strands(tissue)
+  for _ = 1, 30 do
+    if #t:strands(tissue) < standing or not lies_on(hook, tissue, "tip") or between(hook, how) < 0.3 * mm then
+      break
+    end
+    hook:activate(0.1 * s)
+  end
+  if #t:strands(tissue) < standing then
+    try.missed, try.aside = 0, 0
+  else
+    try.missed, try.aside = try.missed + 1, try.aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
+  end
+  go(beside, behind, 20 * mm / s)
+  go(beside, before, 60 * mm / s)
+end
+
 --- Strand by strand, from whichever side the shaft comes: beside a strand, on the side where fewer others stand, the
 --- hook goes 1.5 mm deeper than its middle, its foot slides behind it and draws back until the strand hangs on it, off
 --- both organs' walls. Then current flows, if no wall is within 0.3 mm, until one strand has parted. Where none does
@@ -414,40 +372,95 @@ local how_to_hook = {
 --- before each.
 function technique.hook(t, hook, tissue, how)
   given.check(how, how_to_hook, "technique.hook", 2)
-  local wanted = how.wanted or function() return true end
-  local beside, before, deeper, rolled = -7.5 * mm, -12 * mm, { 0, 1.5 * mm, 3 * mm, -1.5 * mm }, 0
-  local missed, aside = 0, 0
-  while missed < 9 and not is_done(how) do
-    local strand = nearest_strand(t, hook, tissue, wanted)
+  local try = { rolled = 0, missed = 0, aside = 0 }
+  while try.missed < 9 and not is_done(how) do
+    local strand = nearest_strand(t, hook:tip(), tissue, how.wanted)
     if not strand then return end
-    local grip = grip_on(t, tissue, how.port, strand, aside)
-    local behind = 1.5 * mm + deeper[missed % 4 + 1]
-    local function go(along, down, speed)
-      local way = minus(plus(plus(grip.at, grip.foot, along), grip.deep, down), hook:tip())
-      if length(way) < 0.2 * mm then return end -- it is there
-      hook:move_until(function() return presses(hook, how) end,
-        { along = way, speed = speed, limit = length(way) })
-    end
-    rolled = roll_to(hook, grip.turn, rolled)
-    go(beside, before, 100 * mm / s)
-    go(beside, behind, 40 * mm / s)
-    go(-2 * mm, behind, 20 * mm / s)
-    local _, off = between(hook, how)
-    draw_on(hook, tissue, how, grip)
-    local standing = #t:strands(tissue)
-    for _ = 1, 30 do
-      if #t:strands(tissue) < standing or not lies_on(hook, tissue, "tip") or between(hook, how) < 0.3 * mm then
-        break
+    hook_strand(t, hook, tissue, how, strand, try)
+  end
+end
+
+-- ---- the plane, by strokes
+
+local how_to_free = {
+  port = given.three, from = given.three, hardest = given.above_zero, between = given.names,
+  stretch = given.optional(given.called), ease = given.optional(given.called), is_done = given.optional(given.called),
+}
+
+--- Where the foot's heel goes for its end to be 3 mm past a strand of the front.
+local function heel(front, back, strand)
+  local foot = 5 * mm
+  return plus(strand, front.inward, 3 * mm - foot * length(across(front.inward, back)))
+end
+
+--- Brings the hook beside a place of the front, its foot inward. The angle that it is rolled by then, rad.
+local function come_to(hook, how, front, place, rolled)
+  local start = plus(place, front.along, -4 * mm)
+  local back = unit(minus(how.port, start))
+  local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
+  rolled = roll_to(hook, math.atan(dot(y, foot), dot(x, foot)), rolled)
+  hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
+  hook:move_until(function() return presses(hook, how) end,
+    { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
+  return rolled
+end
+
+--- Sweeps to and fro along the front, first from one of its rows on, until a way divides less than a hundredth of the
+--- tissue or fails twice. The plane is stretched anew before each way.
+local function sweep(t, hook, tissue, how, front, back, first)
+  local place = front.at
+  for way = 1, 8 do
+    local torn, line, failed = t:torn(tissue), foremost(front), 0
+    for k = first, #line do
+      local row = line[way % 2 == 1 and k or #line + 1 - k]
+      if not sweep_to(hook, tissue, how, front, heel(front, back, row.middle)) then
+        failed = failed + 1
+        hook:move_by(times(front.inward, -2 * mm), { speed = 60 * mm / s })
       end
-      hook:activate(0.1 * s)
+      if is_done(how) or failed == 2 then return end
     end
-    if #t:strands(tissue) < standing then
-      missed, aside = 0, 0
-    else
-      missed, aside = missed + 1, aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
+    first, front = 1, front_of(t, tissue, how.port, place)
+    if not front or t:torn(tissue) - torn < 0.01 then return end
+    if how.stretch then how.stretch(front) end
+  end
+end
+
+--- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
+--- sees it. The foot points inward, away from the lens, 3 mm past the foremost strands; it sweeps to and fro along
+--- them, midway between the two organs, and current flows while it lies on strands and no organ is within 0.4 mm. It
+--- ends when nothing is under tension, or ten strokes in a row divide nothing; after two of these it tries one strand
+--- alone as well, from behind. `how`: port, where the shaft comes from;
+--- from, the place nearest to which it begins; hardest, the force on the foot at which it stops and burns, or eases
+--- off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if given, called before
+--- each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given. `front`: at,
+--- its middle; out, from the first organ to the other one; along, its own way, as the shaft points; inward, to the
+--- strands behind it; tension, of its tautest strand.
+function technique.free(t, hook, tissue, how)
+  given.check(how, how_to_free, "technique.free", 2)
+  local missed, rolled, near, try = 0, 0, how.from, { missed = 0, aside = 0 }
+  while missed < 10 and not is_done(how) do
+    local torn, front = t:torn(tissue), front_of(t, tissue, how.port, near)
+    if front and how.stretch then
+      how.stretch(front)
+      front = front_of(t, tissue, how.port, near)
     end
-    go(beside, behind, 20 * mm / s)
-    go(beside, before, 60 * mm / s)
+    if not front then return end
+    near = front.at
+    local line = foremost(front)
+    local first = 1 + (#line // 2 + missed) % #line -- the near side is where the two organs lie on each other
+    local strand = line[first].middle
+    local back = unit(minus(how.port, strand))
+    rolled = come_to(hook, how, front, heel(front, back, strand), rolled)
+    sweep(t, hook, tissue, how, front, back, first)
+    hook:move_by(times(front.inward, -4 * mm), { speed = 60 * mm / s })
+    hook:move_by(times(back, 15 * mm), { speed = 100 * mm / s })
+    local alone = missed > 0 and t:torn(tissue) == torn and nearest_strand(t, strand, tissue)
+    if alone and not is_done(how) then
+      try.rolled = rolled
+      hook_strand(t, hook, tissue, how, alone, try)
+      rolled = try.rolled
+    end
+    missed = t:torn(tissue) > torn and 0 or missed + 1
   end
 end
 
