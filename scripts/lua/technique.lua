@@ -104,6 +104,17 @@ local function lies_on(hook, tissue, part)
   return contact ~= nil and contact.organ == tissue
 end
 
+--- Current, a tenth of a second at a time, while it may flow and until a strand has parted, so many times at most.
+--- Whether one has.
+local function burn_strand(t, hook, tissue, tries, may_burn)
+  local standing = #t:strands(tissue)
+  for _ = 1, tries do
+    if not may_burn() or #t:strands(tissue) < standing then break end
+    hook:activate(0.1 * s)
+  end
+  return #t:strands(tissue) < standing
+end
+
 --- A mistake: current on the gallbladder's wall at its neck, until it is open; then the hook leaves.
 function technique.burn_wall(hook)
   hook:approach("gallbladder.neck", { speed = 60 * mm / s, depth = 2 * mm, offset = { -8 * mm, -2 * mm, 3 * mm } })
@@ -154,12 +165,7 @@ function technique.take(t, hook, tissue, how)
       local contact = hook:contact()
       return contact == nil or contact.organ == tissue
     end, { along = back, speed = 5 * mm / s, limit = 2 * mm })
-    local standing = #t:strands(tissue)
-    for _ = 1, how.tries do
-      if not may_burn() or #t:strands(tissue) < standing then break end
-      hook:activate(0.1 * s)
-    end
-    missed = #t:strands(tissue) < standing and 0 or missed + 1
+    missed = burn_strand(t, hook, tissue, how.tries, may_burn) and 0 or missed + 1
     hook:move_by(times(back, 5 * mm), { speed = 80 * mm / s })
   end
 end
@@ -347,14 +353,8 @@ local function hook_strand(t, hook, tissue, how, strand, try)
   go(-2 * mm, behind, 20 * mm / s)
   local _, off = between(hook, how)
   draw_on(hook, tissue, how, grip)
-  local standing = #t:strands(tissue)
-  for _ = 1, 30 do
-    if #t:strands(tissue) < standing or not lies_on(hook, tissue, "tip") or between(hook, how) < 0.3 * mm then
-      break
-    end
-    hook:activate(0.1 * s)
-  end
-  if #t:strands(tissue) < standing then
+  local function may_burn() return lies_on(hook, tissue, "tip") and between(hook, how) >= 0.3 * mm end
+  if burn_strand(t, hook, tissue, 30, may_burn) then
     try.missed, try.aside = 0, 0
   else
     try.missed, try.aside = try.missed + 1, try.aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))

@@ -346,14 +346,21 @@ int nodes_of(const OrganDefinition& organ) {
   return std::holds_alternative<MeshFile>(organ.shape) || organ.nodes > most_nodes ? 0 : organ.nodes;
 }
 
+/// Checks what is called by its kind and lies between two of `known`, each `what`: that both are there, and its limits.
+bool both_known(FieldCheck& check, const std::string& at, const std::string& kind, const auto& lies,
+                const std::vector<std::string>& known, const std::string& what) {
+  const bool from = check.known(at + ".from", lies.from, known, what);
+  const bool both = check.known(at + ".to", lies.to, known, what) && from;
+  check_limits(check, at, kind, lies);
+  return both;
+}
+
 void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
   const std::vector<std::string> places = landmark_names(anatomy.organs);
   for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
     const JointDefinition& joint = anatomy.joints[i];
     const std::string at = fmt::format("scene.anatomy.joints[{}]", i + 1);
-    const bool from_known = check.known(at + ".from", joint.from, places, "place on an organ");
-    const bool known = check.known(at + ".to", joint.to, places, "place on an organ") && from_known;
-    check_limits(check, at, "joint", joint);
+    const bool known = both_known(check, at, "joint", joint, places, "place on an organ");
     if (known && joint.from.substr(0, joint.from.find('.')) == joint.to.substr(0, joint.to.find('.')))
       check.problem(at + ".to", "an organ is tied to itself", "name a place on another organ");
   }
@@ -372,9 +379,7 @@ void check_one_tissue(FieldCheck& check, const std::string& at, const TissueDefi
   if (std::find(organs.begin(), organs.end(), tissue.name) != organs.end())
     check.problem(at + ".name", fmt::format("an organ is called \"{}\" too", tissue.name),
                   "give the tissue another name");
-  const bool from_known = check.known(at + ".from", tissue.from, organs, "organ");
-  const bool known = check.known(at + ".to", tissue.to, organs, "organ") && from_known;
-  check_limits(check, at, "tissue", tissue);
+  const bool known = both_known(check, at, "tissue", tissue, organs, "organ");
   if (known && tissue.from == tissue.to)
     check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");
   check_part(check, at, tissue);
@@ -404,9 +409,7 @@ void check_leaves(FieldCheck& check, const AnatomyDefinition& anatomy) {
   for (std::size_t i = 0; i < anatomy.leaves.size(); ++i) {
     const LeafDefinition& leaf = anatomy.leaves[i];
     const std::string at = fmt::format("scene.anatomy.leaves[{}]", i + 1);
-    const bool from_known = check.known(at + ".from", leaf.from, tubes, "tube");
-    const bool known = check.known(at + ".to", leaf.to, tubes, "tube") && from_known;
-    check_limits(check, at, "leaf", leaf);
+    const bool known = both_known(check, at, "leaf", leaf, tubes, "tube");
     if (known && leaf.from == leaf.to)
       check.problem(at + ".to", "the leaf is between a tube and itself", "name another tube");
     check_part(check, at, leaf);

@@ -53,7 +53,8 @@ class BodyProblem : public ConstrainedEnergy {
   /// The pattern that the body's matrix needs beside `present`, which it has; none: that serves.
   std::optional<BlockMatrix> new_pattern(const BlockMatrix& present) const;
   double safe_share(const VecX& x, const VecX& step) const override;
-  double longest_share(const VecX& x, const VecX& step) const override;
+  /// What safe_share() is no more than: as far as no two bodies nor their parts need be compared.
+  double longest_share(const VecX& x, const VecX& step) const;
   /// The part of `share` of a step that is safe beside the shapes, and beside the skin itself.
   double share_beside_shapes(const VecX& x, const VecX& step, double share) const;
   double share_beside_itself(const VecX& x, const VecX& step, double share) const;

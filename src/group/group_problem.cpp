@@ -405,27 +405,29 @@ double GroupProblem::longest_share(const VecX& x, const VecX& step) const {
 }
 
 double GroupProblem::safe_share(const VecX& x, const VecX& step) const {
+  return safe_part(x, step, longest_share(x, step));
+}
+
+double GroupProblem::share_if_whole(const VecX& x, const VecX& step) const {
   const double longest = longest_share(x, step);
-  if (longest == 0) return 0;
+  return longest < 1 ? longest : safe_part(x, step, longest);
+}
+
+double GroupProblem::safe_part(const VecX& x, const VecX& step, double share) const {
+  if (share == 0) return 0;
   std::vector<double> shares(problems_.size());
   for_each_member([&](std::size_t k) {
-    shares[k] = problems_[k].share_beside_shapes(part_of(k, x), part_of(k, step), longest);
+    shares[k] = problems_[k].share_beside_shapes(part_of(k, x), part_of(k, step), share);
   });
   // Skins are looked at last, as that takes longest: on what the others have left of the way.
   const double left = *std::min_element(shares.begin(), shares.end());
   const VecX way = left * step;
   const std::vector<const Join*> joins = joins_at(x, &way);
-  shares.resize(joins.size() + problems_.size());
-  for_each_chunk(workers(), static_cast<int>(shares.size()), [&](int chunk) {
-    const auto k = static_cast<std::size_t>(chunk);
-    if (k < joins.size()) {
-      shares[k] = joins[k]->safe_share(x, step, left);
-    } else {
-      const std::size_t member = by_size_[k - joins.size()];
-      shares[k] = problems_[member].share_beside_itself(part_of(member, x), part_of(member, step), left);
-    }
+  return least_safe(workers(), joins.size() + problems_.size(), left, [&](std::size_t k) {
+    if (k < joins.size()) return joins[k]->safe_share(x, step, left);
+    const std::size_t member = by_size_[k - joins.size()];
+    return problems_[member].share_beside_itself(part_of(member, x), part_of(member, step), left);
   });
-  return *std::min_element(shares.begin(), shares.end());
 }
 
 }  // namespace calot

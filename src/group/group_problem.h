@@ -68,7 +68,9 @@ class GroupProblem : public ConstrainedEnergy {
   void prepare(NewtonWorkspace& work) const override;
   VecX curved(const VecX& x, VecX step) const override;
   double safe_share(const VecX& x, const VecX& step) const override;
-  double longest_share(const VecX& x, const VecX& step) const override;
+  double share_if_whole(const VecX& x, const VecX& step) const override;
+  /// The least of the bodies'.
+  double longest_share(const VecX& x, const VecX& step) const;
   VecX relaxed(VecX x) const override;
   Workers* workers() const override;
 
@@ -96,6 +98,8 @@ class GroupProblem : public ConstrainedEnergy {
   /// One a node: what is not kept is condensed. Of a body whose nodes are all coupled with each other, such as a solid,
   /// those that no join meets are condensed too: kept, they would stand in the way of all that comes after them.
   std::vector<char> kept_nodes() const;
+  /// The part of `share` of a step that is safe.
+  double safe_part(const VecX& x, const VecX& step, double share) const;
   void add_own_hessian(std::size_t member, const VecX& x, const VecX& multipliers, BlockMatrix& matrix) const;
   /// Adds what these joins, found at x, do to the bodies; residuals are judged beside these forces, too.
   void add_joins(std::span<const Join* const> joins, const VecX& x, VecX& gradient,

@@ -1,16 +1,17 @@
 #pragma once
 // What joins bodies that are solved together (group_problem.h).
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "base/workers.h"
 #include "body/body.h"
 #include "body/skin_bounds.h"
 
 namespace calot {
 
-class Workers;
 class SkinJoin;
 
 /// Where a body stands in a group.
@@ -63,5 +64,15 @@ class Join {
 };
 
 using JoinPointer = std::shared_ptr<const Join>;
+
+/// The least of share_of(0) .. share_of(count - 1), which threads ask for several at a time, and of `most`.
+template <class ShareOf>
+double least_safe(Workers* workers, std::size_t count, double most, const ShareOf& share_of) {
+  std::vector<double> shares(count, most);
+  for_each_chunk(workers, static_cast<int>(count),
+                 [&](int k) { shares[static_cast<std::size_t>(k)] = share_of(static_cast<std::size_t>(k)); });
+  for (double share : shares) most = std::min(most, share);
+  return most;
+}
 
 }  // namespace calot

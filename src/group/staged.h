@@ -26,8 +26,8 @@ class PartProblem : public ConstrainedEnergy {
   VecX constraint_scales() const override { return whole_.constraint_scales(); }
   void prepare(NewtonWorkspace& work) const override { whole_.prepare(work); }
   double safe_share(const VecX& x, const VecX& step) const override { return whole_.safe_share(x, step); }
-  double longest_share(const VecX& x, const VecX& step) const override {
-    return whole_.longest_share(x, step);
+  double share_if_whole(const VecX& x, const VecX& step) const override {
+    return whole_.share_if_whole(x, step);
   }
 
  private:

@@ -185,18 +185,12 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
     out.share = share_kept_apart(field, tissue, x, out.dx, from, to, out.share);
   // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
   const std::size_t joins = out.loaded ? field.group.joins.size() : 0;
-  std::vector<double> shares(joins + field.organs.size());
-  for_each_chunk(field.workers(), static_cast<int>(shares.size()), [&](int chunk) {
-    const auto k = static_cast<std::size_t>(chunk);
-    if (k < joins) {
-      shares[k] = field.group.joins[k]->safe_share(x, out.dx, out.share);
-      return;
-    }
+  out.share = least_safe(field.workers(), joins + field.organs.size(), out.share, [&](std::size_t k) {
+    if (k < joins) return field.group.joins[k]->safe_share(x, out.dx, out.share);
     const Organ& organ = field.organs[k - joins];
-    shares[k] = organ.search.own.safe_share(
-        *organ.body, organ.state.x, parts.of(k - joins, std::as_const(out.dx)), contact_keep, out.share);
+    return organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k - joins, std::as_const(out.dx)),
+                                       contact_keep, out.share);
   });
-  if (!shares.empty()) out.share = *std::min_element(shares.begin(), shares.end());
 }
 
 }  // namespace

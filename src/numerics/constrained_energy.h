@@ -53,8 +53,9 @@ class ConstrainedEnergy {
   virtual VecX curved(const VecX& /*x*/, VecX step) const { return step; }
   /// Largest share (0 to 1] of the step that is safe to take (nothing crosses).
   virtual double safe_share(const VecX& x, const VecX& step) const = 0;
-  /// What safe_share() is no more than, at little cost: as far as no two bodies nor their parts need be compared.
-  virtual double longest_share(const VecX& /*x*/, const VecX& /*step*/) const { return 1; }
+  /// Of a step that serves whole or not at all: that share where it is 1, else a share below 1 that is no less, which may
+  /// cost less.
+  virtual double share_if_whole(const VecX& x, const VecX& step) const { return safe_share(x, step); }
   /// x, but those nodes that can be brought into balance one by one, while all others stay, are: energy does not rise, and nothing is crossed.
   /// Each place that a solve goes on from, or tries, is such a one.
   virtual VecX relaxed(VecX x) const { return x; }

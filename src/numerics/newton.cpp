@@ -168,11 +168,10 @@ class Iteration {
     return most > 0 ? most * problem_.safe_share(x_, most * step) : 0;
   }
 
-  /// Of a step that serves whole or not at all: the share that is safe, or more where it is less than 1.
+  /// See ConstrainedEnergy's.
   double share_if_whole(const VecX& step) {
     const Timed timed(result_.safety_s);
-    const double longest = problem_.longest_share(x_, step);
-    return longest < 1 ? longest : problem_.safe_share(x_, step);
+    return problem_.share_if_whole(x_, step);
   }
 
   /// Bordered step with the factor at hand, for the residual and constraints at x.

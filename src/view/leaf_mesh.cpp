@@ -115,8 +115,8 @@ struct Laid {
 
 /// Across a fibre, from beyond the crest of one tube, over it and the fat between, to beyond that of the other; v is 0 to 1.
 Vec3 across(const Fibre& fibre, const Laid& laid, const Vec3& front, double v) {
-  constexpr double past = 0.15,
-                   back = 0.6;  // of v, where it goes on past a tube; of that way, as far as it falls back
+  constexpr double past = 0.15;  // of v, where it goes on past a tube
+  constexpr double back = 0.6;   // of that way, as far as it falls back
   const std::array<double, 2>& radii = laid.radii;
   const Vec3 way = (fibre.to - fibre.from).normalized();
   const Vec3 up = (front - way * way.dot(front)).normalized();
@@ -205,12 +205,14 @@ std::vector<Fibre> fibres_between(const Organ& one, const Organ& other, const Le
   return out;
 }
 
-/// The organ of that name as a tube; null: it is gone, or was divided.
-const Organ* tube_of(const std::vector<Organ>& organs, const std::string& name) {
-  const auto found = std::find_if(organs.begin(), organs.end(), [&](const Organ& organ) {
-    return organ.definition.name == name && organ.body->is_line();
-  });
-  return found == organs.end() ? nullptr : &*found;
+/// Nothing where one of the tubes is gone or was divided.
+void add_leaf(const LeafDefinition& leaf, const Field& field, SceneMesh& out) {
+  const std::optional<OrganIndex> from = organ_called(field, leaf.from), to = organ_called(field, leaf.to);
+  if (!from || !to) return;
+  const Organ &one = field.organ(*from), &other = field.organ(*to);
+  if (one.body->is_line() && other.body->is_line())
+    add_leaf(fibres_between(one, other, leaf), one, other, out,
+             {.beyond = {leaf.free_edge, leaf.goes_on}, .dense = 2});
 }
 
 }  // namespace
@@ -224,12 +226,7 @@ SceneMesh leaf_mesh(const World& world) {
     if (tissue.definition.covered)
       add_leaf(fibres_of(tissue, field.organs), field.organs[bodies[0]], field.organs[bodies[1]], out);
   }
-  for (const LeafDefinition& leaf : world.scene().anatomy.leaves) {
-    const Organ *one = tube_of(field.organs, leaf.from), *other = tube_of(field.organs, leaf.to);
-    if (one != nullptr && other != nullptr)
-      add_leaf(fibres_between(*one, *other, leaf), *one, *other, out,
-               {.beyond = {leaf.free_edge, leaf.goes_on}, .dense = 2});
-  }
+  for (const LeafDefinition& leaf : world.scene().anatomy.leaves) add_leaf(leaf, field, out);
   return out;
 }
 

@@ -21,6 +21,22 @@ TEST(BedField, ActsOfWhateverHandsAreFollowedOrSayWhy) {
   test::perform(loaded.value()->definition().scene, 11, test::cases(15, 700), 0.1);
 }
 
+/// A scenario that is played by its demo to its end, and the tissues that it leaves.
+struct Played {
+  SessionResult result;
+  std::vector<TissueState> tissues;
+};
+void play(const test::ScenarioText& text, Played& out, const SessionOptions& options = {}) {
+  const test::Folder folder;
+  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, text.text());
+  ASSERT_TRUE(script) << to_text(script.failure());
+  Result<World> world = World::create(script.value()->definition().scene);
+  ASSERT_TRUE(world) << to_text(world.failure());
+  out.result = run_session(world.value(), *script.value(), script.value()->demo(), options);
+  ASSERT_EQ(out.result.end, SessionEnd::steps_done) << to_text(out.result.failure);
+  out.tissues = world.value().report().tissues;
+}
+
 /// A grasper takes a gallbladder's pouch, the assistant lets its fundus go, and nothing else holds it: the hand presses it
 /// on the fat and the left lobe, and opens.
 test::ScenarioText pressed_on_the_ground() {
@@ -51,16 +67,11 @@ test::ScenarioText pressed_on_the_ground() {
 // Without the core of self_barrier the field stands still for good, 1,000 off balance.
 TEST(BedField, AGallbladderThatIsLetGoWhereItIsPressedOnTheGroundComesFree) {
   if (!test::long_run() || test::sanitized) GTEST_SKIP() << "left to scripts/test --long: most of a minute";
-  const test::Folder folder;
-  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, pressed_on_the_ground().text());
-  ASSERT_TRUE(script) << to_text(script.failure());
-  Result<World> world = World::create(script.value()->definition().scene);
-  ASSERT_TRUE(world) << to_text(world.failure());
   std::vector<ProfiledStep> profile;
   SessionOptions options;
   options.profile = &profile;
-  const SessionResult result = run_session(world.value(), *script.value(), script.value()->demo(), options);
-  ASSERT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
+  Played played;
+  ASSERT_NO_FATAL_FAILURE(play(pressed_on_the_ground(), played, options));
   int in_a_row = 0, longest = 0;
   for (const ProfiledStep& step : profile) {
     in_a_row = step.statistics.balanced ? 0 : in_a_row + 1;
@@ -111,14 +122,9 @@ test::ScenarioText swung() {
 
 TEST(BedField, AFundusThatIsSwungTensesThePlaneOnItsOtherSide) {
   if (!test::long_run() || test::sanitized) GTEST_SKIP() << "left to scripts/test --long: half a minute";
-  const test::Folder folder;
-  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, swung().text());
-  ASSERT_TRUE(script) << to_text(script.failure());
-  Result<World> world = World::create(script.value()->definition().scene);
-  ASSERT_TRUE(world) << to_text(world.failure());
-  const SessionResult result = run_session(world.value(), *script.value(), script.value()->demo(), {});
-  ASSERT_EQ(result.end, SessionEnd::steps_done) << to_text(result.failure);
-  const auto noted = [&](const std::string& name) { return result.metrics.at("note." + name); };
+  Played played;
+  ASSERT_NO_FATAL_FAILURE(play(swung(), played));
+  const auto noted = [&](const std::string& name) { return played.result.metrics.at("note." + name); };
   const auto right_share = [&](const std::string& when) {
     return noted(when + "_right") / noted(when + "_left");
   };
@@ -127,7 +133,7 @@ TEST(BedField, AFundusThatIsSwungTensesThePlaneOnItsOtherSide) {
   EXPECT_NEAR(right_share("again"), right_share("left"), 0.2 * right_share("left"))
       << "taken anew it does so again";
   EXPECT_GT(noted("left_right"), 5) << "mN: the strands are taut";
-  EXPECT_EQ(world.value().report().tissues.at(0).torn, 0) << "a swing alone divides nothing";
+  EXPECT_EQ(played.tissues.at(0).torn, 0) << "a swing alone divides nothing";
 }
 
 }  // namespace
