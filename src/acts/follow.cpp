@@ -150,11 +150,11 @@ class Following {
   /// hang in the air for as long. Where that finds no end it is left out.
   Result<bool> pass_the_rest() {
     const Poses here = present_poses(field_);
+    const GroupSnapshot before = snapshot(field_);
     if (std::optional<Failure> failure = begin()) return *failure;
     const Result<Prediction> answer = predict(field_, here, here, false, statistics_);
-    if (!answer) return false;
-    const Result<bool> stayed = stay(answer.value());
-    return stayed ? stayed : Result<bool>(false);
+    if (!answer || !stay(answer.value())) restore(field_, before);
+    return false;
   }
 
   /// What the tools press leaves them no room yet: the rest of the time passes with them where they are, in which it gives

@@ -347,8 +347,8 @@ int nodes_of(const OrganDefinition& organ) {
 }
 
 /// Checks what is called by its kind and lies between two of `known`, each `what`: that both are there, and its limits.
-bool both_known(FieldCheck& check, const std::string& at, const std::string& kind, const auto& lies,
-                const std::vector<std::string>& known, const std::string& what) {
+bool check_between(FieldCheck& check, const std::string& at, const std::string& kind, const auto& lies,
+                   const std::vector<std::string>& known, const std::string& what) {
   const bool from = check.known(at + ".from", lies.from, known, what);
   const bool both = check.known(at + ".to", lies.to, known, what) && from;
   check_limits(check, at, kind, lies);
@@ -360,7 +360,7 @@ void check_joints(FieldCheck& check, const AnatomyDefinition& anatomy) {
   for (std::size_t i = 0; i < anatomy.joints.size(); ++i) {
     const JointDefinition& joint = anatomy.joints[i];
     const std::string at = fmt::format("scene.anatomy.joints[{}]", i + 1);
-    const bool known = both_known(check, at, "joint", joint, places, "place on an organ");
+    const bool known = check_between(check, at, "joint", joint, places, "place on an organ");
     if (known && joint.from.substr(0, joint.from.find('.')) == joint.to.substr(0, joint.to.find('.')))
       check.problem(at + ".to", "an organ is tied to itself", "name a place on another organ");
   }
@@ -379,7 +379,7 @@ void check_one_tissue(FieldCheck& check, const std::string& at, const TissueDefi
   if (std::find(organs.begin(), organs.end(), tissue.name) != organs.end())
     check.problem(at + ".name", fmt::format("an organ is called \"{}\" too", tissue.name),
                   "give the tissue another name");
-  const bool known = both_known(check, at, "tissue", tissue, organs, "organ");
+  const bool known = check_between(check, at, "tissue", tissue, organs, "organ");
   if (known && tissue.from == tissue.to)
     check.problem(at + ".to", "the tissue is between an organ and itself", "name another organ");
   check_part(check, at, tissue);
@@ -409,7 +409,7 @@ void check_leaves(FieldCheck& check, const AnatomyDefinition& anatomy) {
   for (std::size_t i = 0; i < anatomy.leaves.size(); ++i) {
     const LeafDefinition& leaf = anatomy.leaves[i];
     const std::string at = fmt::format("scene.anatomy.leaves[{}]", i + 1);
-    const bool known = both_known(check, at, "leaf", leaf, tubes, "tube");
+    const bool known = check_between(check, at, "leaf", leaf, tubes, "tube");
     if (known && leaf.from == leaf.to)
       check.problem(at + ".to", "the leaf is between a tube and itself", "name another tube");
     check_part(check, at, leaf);

@@ -389,11 +389,13 @@ LooseNodes GroupProblem::loose_nodes(std::size_t k, const VecX& x) const {
 }
 
 VecX GroupProblem::relaxed(VecX x) const {
-  for (std::size_t k = 0; k < members_.size(); ++k) {
-    if (!members_[k].body.has_loose_nodes()) continue;
+  // No strand ends on another tissue's nodes: members may be relaxed at once.
+  for_each_chunk(workers(), static_cast<int>(members_.size()), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    if (!members_[k].body.has_loose_nodes()) return;
     const LooseNodes nodes = loose_nodes(k, part_of(k, x));
     for (const JoinPointer& join : joins_) join->relax(nodes, x);
-  }
+  });
   return x;
 }
 
@@ -420,7 +422,8 @@ double GroupProblem::safe_part(const VecX& x, const VecX& step, double share) co
     shares[k] = problems_[k].share_beside_shapes(part_of(k, x), part_of(k, step), share);
   });
   // Skins are looked at last, as that takes longest: on what the others have left of the way.
-  const double left = *std::min_element(shares.begin(), shares.end());
+  double left = share;
+  for (double own : shares) left = std::min(left, own);
   const VecX way = left * step;
   const std::vector<const Join*> joins = joins_at(x, &way);
   return least_safe(workers(), joins.size() + problems_.size(), left, [&](std::size_t k) {

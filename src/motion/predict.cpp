@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -169,11 +170,25 @@ std::optional<Failure> answer_load(Field& field, const std::vector<ContactLoads>
   return std::nullopt;
 }
 
+using OrganPairs = std::vector<std::vector<ContactPair>>;  // one list an organ
+
+/// The organs' pairs that a motion may bring together: the tools go `travel`, m, and each organ own(its number), m.
+OrganPairs find_pairs(Field& field, const std::vector<ContactLoads>& loads, double travel,
+                      const std::function<double(std::size_t)>& own) {
+  OrganPairs out(field.organs.size());
+  for_each_chunk(field.workers(), static_cast<int>(out.size()), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    Organ& organ = field.organs[k];
+    out[k] = organ.search.pairs(*organ.body, organ.state.x, loads[k], travel + own(k));
+  });
+  return out;
+}
+double none(std::size_t /*organ*/) { return 0; }
+
 /// Limits a prediction to what keeps skins and tools apart. Skins are looked at last, as that takes longest: on what tools
 /// have left of the way.
-void keep_apart(const Field& field, const std::vector<ContactLoads>& loads,
-                const std::vector<std::vector<ContactPair>>& pairs, const Poses& from, const Poses& to,
-                Prediction& out) {
+void keep_apart(const Field& field, const std::vector<ContactLoads>& loads, const OrganPairs& pairs,
+                const Poses& from, const Poses& to, Prediction& out) {
   const BodyParts parts(field);
   for (std::size_t k = 0; k < field.organs.size(); ++k) {
     const Poses partly = interpolate(from, to, out.share);
@@ -203,16 +218,14 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   if (from == to && !moving) return out;
   out.travel = largest_travel(field, to);
   const std::vector<ContactLoads> loads = solve_loads(field, from);
-  std::vector<std::vector<ContactPair>> pairs;
-  VecX load = VecX::Zero(parts.total());
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    Organ& organ = field.organs[k];
-    {
-      const Timed timed(statistics.contact_s);
-      pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel));
-    }
-    parts.of(k, load) = motion_load(field, organ, loads[k], pairs[k], from, to, out.loaded);
+  OrganPairs pairs;
+  {
+    const Timed timed(statistics.contact_s);
+    pairs = find_pairs(field, loads, out.travel, none);
   }
+  VecX load = VecX::Zero(parts.total());
+  for (std::size_t k = 0; k < field.organs.size(); ++k)
+    parts.of(k, load) = motion_load(field, field.organs[k], loads[k], pairs[k], from, to, out.loaded);
   const std::vector<JoinPointer> all = all_joins(field, from);
   add_strand_load(field, place_strands(field), from, to, load, out.loaded);
   out.loaded |= moving;
@@ -221,11 +234,10 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
       return *failure;
   const Timed timed(statistics.contact_s);
   // What moves by itself may meet shapes that no tool brings near.
-  for (std::size_t k = 0; moving && k < field.organs.size(); ++k) {
-    Organ& organ = field.organs[k];
-    const double own = organ.body->largest_motion(parts.of(k, std::as_const(out.dx)));
-    pairs[k] = organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel + own);
-  }
+  if (moving)
+    pairs = find_pairs(field, loads, out.travel, [&](std::size_t k) {
+      return field.organs[k].body->largest_motion(parts.of(k, std::as_const(out.dx)));
+    });
   keep_apart(field, loads, pairs, from, to, out);
   return out;
 }
@@ -234,13 +246,8 @@ Prediction of_tools_alone(Field& field, const Poses& from, const Poses& to, Solv
   Prediction out = no_answer(field);
   out.travel = largest_travel(field, to);
   const std::vector<ContactLoads> loads = solve_loads(field, from);
-  std::vector<std::vector<ContactPair>> pairs;
   const Timed timed(statistics.contact_s);
-  for (std::size_t k = 0; k < field.organs.size(); ++k) {
-    Organ& organ = field.organs[k];
-    pairs.push_back(organ.search.pairs(*organ.body, organ.state.x, loads[k], out.travel));
-  }
-  keep_apart(field, loads, pairs, from, to, out);
+  keep_apart(field, loads, find_pairs(field, loads, out.travel, none), from, to, out);
   return out;
 }
 

@@ -143,8 +143,9 @@ FactorStatus Cholesky::Impl::factorise_sparse(const BlockMatrix& matrix) {
 VecX Cholesky::solve(const VecX& right) const { return solve_columns(right); }
 Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right, Workers* workers) const {
   if (!impl_->condensation) return solve_columns(right);  // CHOLMOD's workspaces serve one thread
-  // Fewer columns read the factor more often, more could not be shared.
-  constexpr Eigen::Index together = 16;
+  // Chunks of less columns read the factor more often, of more could not be shared. Eigen's kernels take four at a time.
+  constexpr Eigen::Index least = 4, most = 16;
+  const Eigen::Index half = (right.cols() + 1) / 2, together = std::clamp((half + 3) / 4 * 4, least, most);
   const auto chunks = static_cast<int>((right.cols() + together - 1) / together);
   Eigen::MatrixXd out(right.rows(), right.cols());
   for_each_chunk(workers, chunks, [&](int chunk) {

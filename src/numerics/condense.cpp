@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 
@@ -38,6 +39,9 @@ class Sets {
  private:
   std::vector<int> leader_;
 };
+
+/// Pieces that are eliminated at once: more products would not stay in the processor's cache.
+constexpr int pieces_at_once = 32;
 
 void sort_once(std::vector<int>& nodes) {
   std::sort(nodes.begin(), nodes.end());
@@ -104,18 +108,22 @@ void Condensation::find_pieces(const BlockMatrix& pattern, const std::vector<int
 }
 
 void Condensation::lay_out(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout) {
-  const auto room = [&](Eigen::Index size) {
-    const Eigen::Index at = layout.size;
-    layout.size += (size + 3) / 4 * 4;  // the next one is aligned too
+  const auto room = [](Eigen::Index size, Eigen::Index& end) {
+    const Eigen::Index at = end;
+    end += (size + 3) / 4 * 4;  // the next one is aligned too
     return at;
   };
+  Eigen::Index products = 0;
   std::vector<int> piece_of(number.size(), -1);
   for (std::size_t p = 0; p < layout.pieces.size(); ++p) {
     Piece& piece = layout.pieces[p];
     for (int node : piece.inner) piece_of[node] = static_cast<int>(p);
-    piece.factor = room(piece.rows() * (piece.single ? 3 : piece.rows()));
-    piece.coupling = room(piece.rows() * piece.meets());
-    layout.widest = std::max(layout.widest, piece.meets());
+    piece.factor = room(piece.rows() * (piece.single ? 3 : piece.rows()), layout.size);
+    piece.coupling = room(piece.rows() * piece.meets(), layout.size);
+    piece.size = layout.size - piece.factor;
+    if (p % pieces_at_once == 0) products = 0;
+    piece.product = room(piece.meets() * piece.meets(), products);
+    layout.products = std::max(layout.products, products);
   }
   for_blocks(pattern, [&](int row, int column, int from) {
     const int stride = pattern.stride(column);
@@ -124,13 +132,13 @@ void Condensation::lay_out(const BlockMatrix& pattern, const std::vector<int>& n
       return;
     }
     const bool row_is_inner = number[row] < 0;
-    const Piece& piece = layout.pieces[piece_of[row_is_inner ? row : column]];
+    Piece& piece = layout.pieces[piece_of[row_is_inner ? row : column]];
     const Eigen::Index inner = place_of(row_is_inner ? row : column, piece.inner), rows = piece.rows();
     if (row_is_inner && number[column] < 0) {
       if (piece.single)
-        layout.moves.push_back({from, stride, piece.factor + 3 * inner, 1, 3});
+        piece.moves.push_back({from, stride, piece.factor + 3 * inner, 1, 3});
       else
-        layout.moves.push_back(
+        piece.moves.push_back(
             {from, stride, piece.factor + inner + place_of(column, piece.inner) * rows, 1, rows});
       return;
     }
@@ -138,7 +146,7 @@ void Condensation::lay_out(const BlockMatrix& pattern, const std::vector<int>& n
     // Steps of a condensed unknown and of a kept one.
     const Eigen::Index by_inner = piece.single ? piece.meets() : 1, by_outer = piece.single ? 1 : rows;
     const Eigen::Index to = piece.coupling + inner * by_inner + outer * by_outer;
-    layout.moves.push_back(
+    piece.moves.push_back(
         {from, stride, to, row_is_inner ? by_inner : by_outer, row_is_inner ? by_outer : by_inner});
   });
 }
@@ -158,9 +166,9 @@ std::vector<std::vector<int>> Condensation::kept_couplings() const {
   return out;
 }
 
-void Condensation::gather(const BlockMatrix& matrix) {
-  values_.setZero(layout_->size);
-  for (const Move& move : layout_->moves)
+void Condensation::gather(const Piece& piece, const BlockMatrix& matrix) {
+  values_.segment(piece.factor, piece.size).setZero();
+  for (const Move& move : piece.moves)
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r)
         values_[move.to + r * move.by_row + c * move.by_column] =
@@ -168,33 +176,55 @@ void Condensation::gather(const BlockMatrix& matrix) {
 }
 
 FactorStatus Condensation::eliminate(const BlockMatrix& matrix, EnvelopeFactor& kept, Workers* workers) {
-  gather(matrix);
-  product_.resize(layout_->widest * layout_->widest);
+  values_.resize(layout_->size);
+  products_.resize(layout_->products);
   kept.clear(workers);
-  for (const KeptBlock& block : layout_->kept_blocks)
-    kept.set(block.i, block.j, matrix.entries().data() + block.from, block.stride);
-  for (const Piece& piece : layout_->pieces) {
-    if (!(piece.single ? eliminate_single(piece) : eliminate(piece)))
+  constexpr int shares = 4;
+  for_each_chunk(workers, shares, [&](int k) {
+    const Chunk blocks = chunk_of(static_cast<int>(layout_->kept_blocks.size()), shares, k);
+    for (int b = blocks.begin; b < blocks.end; ++b) {
+      const KeptBlock& block = layout_->kept_blocks[static_cast<std::size_t>(b)];
+      kept.set(block.i, block.j, matrix.entries().data() + block.from, block.stride);
+    }
+  });
+  for (int first = 0; first < pieces(); first += pieces_at_once) {
+    const int count = std::min(pieces_at_once, pieces() - first);
+    const auto piece = [&](int k) -> const Piece& {
+      return layout_->pieces[static_cast<std::size_t>(first + k)];
+    };
+    std::array<char, pieces_at_once> done{};
+    for_each_chunk(workers, count, [&](int k) {
+      gather(piece(k), matrix);
+      done[k] = eliminate(piece(k), products_.data() + piece(k).product) ? 1 : 0;
+    });
+    if (std::find(done.begin(), done.begin() + count, 0) != done.begin() + count)
       return FactorStatus::not_positive_definite;
-    if (!piece.outer.empty()) kept.subtract(piece.outer, product_.data());
+    for_each_chunk(workers, shares, [&](int share) {
+      for (int k = 0; k < count; ++k)
+        kept.subtract(piece(k).outer, products_.data() + piece(k).product, share, shares);
+    });
   }
   return FactorStatus::ok;
 }
 
-bool Condensation::eliminate(const Piece& piece) {
+bool Condensation::eliminate(const Piece& piece, double* product) {
+  return piece.single ? eliminate_single(piece, product) : eliminate_coupled(piece, product);
+}
+
+bool Condensation::eliminate_coupled(const Piece& piece, double* to) {
   Block factor(values_.data() + piece.factor, piece.rows(), piece.rows());
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(factor);
   if (in_place.info() != Eigen::Success) return false;
   if (piece.outer.empty()) return true;
   Block coupling(values_.data() + piece.coupling, piece.rows(), piece.meets());
   in_place.matrixL().solveInPlace(coupling);
-  Block product(product_.data(), piece.meets(), piece.meets());
+  Block product(to, piece.meets(), piece.meets());
   product.setZero();
   product.selfadjointView<Eigen::Lower>().rankUpdate(coupling.transpose());
   return true;
 }
 
-bool Condensation::eliminate_single(const Piece& piece) {
+bool Condensation::eliminate_single(const Piece& piece, double* to) {
   Block coupling(values_.data() + piece.coupling, piece.meets(), piece.rows());
   for (Eigen::Index i = 0; i < piece.rows(); i += 3) {
     Eigen::Map<Mat3> factor(values_.data() + piece.factor + 3 * i);
@@ -207,7 +237,7 @@ bool Condensation::eliminate_single(const Piece& piece) {
     coupling.col(i + 2) =
         (coupling.col(i + 2) - l(2, 0) * coupling.col(i) - l(2, 1) * coupling.col(i + 1)) / l(2, 2);
   }
-  Block product(product_.data(), piece.meets(), piece.meets());
+  Block product(to, piece.meets(), piece.meets());
   product.setZero();
   product.selfadjointView<Eigen::Lower>().rankUpdate(coupling);
   return true;

@@ -41,6 +41,11 @@ class Condensation {
   double smallest_pivot() const, largest_pivot() const;
 
  private:
+  /// A block of the matrix from entry `from` on, whose entry (r, c) goes to values_[to + r * by_row + c * by_column].
+  struct Move {
+    int from, stride;
+    Eigen::Index to, by_row, by_column;
+  };
   /// Nodes that are eliminated at once. Most often they are coupled with each other; single ones that meet the same
   /// kept nodes (strands between the same two faces) share their product too, but each has a 3 x 3 factor of its own.
   struct Piece {
@@ -48,16 +53,13 @@ class Condensation {
     std::vector<int> inner,
         outer;  ///< increasing: condensed nodes, and the kept ones they meet, in their numbers
     /// Offsets in values_. Factor: inner x inner, lower; single: 3 x inner, a block each. Coupling: inner x outer,
-    /// after elimination L^-1 times it; single: its transpose.
-    Eigen::Index factor = 0, coupling = 0;
+    /// after elimination L^-1 times it; single: its transpose. `size` of both.
+    Eigen::Index factor = 0, coupling = 0, size = 0;
+    Eigen::Index product = 0;  ///< offset in products_
+    std::vector<Move> moves;   ///< where its values come from
 
     Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(inner.size()); }
     Eigen::Index meets() const { return 3 * static_cast<Eigen::Index>(outer.size()); }
-  };
-  /// A block of the matrix from entry `from` on, whose entry (r, c) goes to values_[to + r * by_row + c * by_column].
-  struct Move {
-    int from, stride;
-    Eigen::Index to, by_row, by_column;
   };
   /// A block between kept nodes i and j in their numbers.
   struct KeptBlock {
@@ -67,17 +69,18 @@ class Condensation {
   struct Layout {
     std::vector<int> kept;  ///< nodes, increasing
     std::vector<Piece> pieces;
-    std::vector<Move> moves;
     std::vector<KeptBlock> kept_blocks;
-    Eigen::Index size = 0;    ///< of values_
-    Eigen::Index widest = 0;  ///< most unknowns that a piece meets
+    Eigen::Index size = 0, products = 0;  ///< of values_ and products_
   };
   explicit Condensation(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {}
   static void find_pieces(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout);
   static void lay_out(const BlockMatrix& pattern, const std::vector<int>& number, Layout& layout);
-  void gather(const BlockMatrix& matrix);
-  bool eliminate(const Piece& piece);
-  bool eliminate_single(const Piece& piece);
+  void gather(const Piece& piece, const BlockMatrix& matrix);
+  /// Its factor and coupling of what was gathered, and `product`, what it takes from the kept ones; false: it is not
+  /// positive definite.
+  bool eliminate(const Piece& piece, double* product);
+  bool eliminate_coupled(const Piece& piece, double* product);
+  bool eliminate_single(const Piece& piece, double* product);
   /// x := L^-1 x, L'^-1 x.
   template <class Columns>
   void solve_lower(const Piece& piece, Columns& x) const;
@@ -86,8 +89,8 @@ class Condensation {
   double pivot(const Piece& piece, Eigen::Index i) const;
 
   std::shared_ptr<const Layout> layout_;
-  VecX values_;   ///< of the pieces; at the bounds that Eigen's sums go by
-  VecX product_;  ///< workspace of one piece: what it takes from the kept ones
+  VecX values_;    ///< of the pieces; at the bounds that Eigen's sums go by
+  VecX products_;  ///< workspace of pieces that are eliminated at once
 };
 
 }  // namespace calot

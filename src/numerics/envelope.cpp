@@ -96,10 +96,12 @@ void EnvelopeFactor::set(int i, int j, const double* block, int stride) {
     l_.block<3, 3>(column, row) = values.transpose();
 }
 
-void EnvelopeFactor::subtract(std::span<const int> nodes, const double* product) {
+void EnvelopeFactor::subtract(std::span<const int> nodes, const double* product, int k, int shares) {
   const auto stride = 3 * static_cast<Eigen::Index>(nodes.size());
   for (std::size_t b = 0; b < nodes.size(); ++b)
     for (std::size_t a = b; a < nodes.size(); ++a) {
+      const int first = std::min(place_[3 * nodes[a]], place_[3 * nodes[b]]);
+      if (first / 3 % shares != k) continue;
       const Eigen::Map<const Mat3, 0, Eigen::OuterStride<>> values(
           product + 3 * static_cast<Eigen::Index>(a) + 3 * static_cast<Eigen::Index>(b) * stride,
           Eigen::OuterStride<>(stride));

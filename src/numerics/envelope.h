@@ -31,8 +31,9 @@ class EnvelopeFactor {
   /// entry (r, c) at block[c * stride + r], of a diagonal one the lower half is read.
   void clear(Workers* workers = nullptr);
   void set(int i, int j, const double* block, int stride);
-  /// Takes the lower triangle of `product`, 3 x 3 blocks of all pairs of `nodes`, by columns, off what is loaded.
-  void subtract(std::span<const int> nodes, const double* product);
+  /// Takes the lower triangle of `product`, 3 x 3 blocks of all pairs of `nodes`, by columns, off what is loaded. Of
+  /// `shares` each writes to columns of its own: all of them have to be called, and may be at once; k is a share's number.
+  void subtract(std::span<const int> nodes, const double* product, int k = 0, int shares = 1);
   /// False when the matrix that was loaded is not positive definite.
   bool factorise(Workers* workers = nullptr);
   /// With the last factor, which must have succeeded.

@@ -184,14 +184,14 @@ CriticalView critical_view(const Field& field, const HepatocysticTriangle& trian
   std::vector<Standing> fat;
   std::copy_if(standing.begin(), standing.end(), std::back_inserter(fat),
                [](const Standing& strand) { return !strand.of_plate; });
-  out.front = seen_side(front.within(corners), corners, fat);
-  out.back = seen_side(back.within(corners), corners, fat);
+  do_at_once(
+      field.workers(), [&] { out.front = seen_side(front.within(corners), corners, fat); },
+      [&] { out.back = seen_side(back.within(corners), corners, fat); },
+      [&] { judge_structures(field, question, standing, front, back, out); });
   out.triangle_points = points_for(std::min(out.front.cleared, out.back.cleared), question);
 
   out.plate = lower == 0 ? 1.0 : static_cast<double>(lower_torn) / lower;
   out.plate_points = points_for(out.plate, question);
-
-  judge_structures(field, question, standing, front, back, out);
   return out;
 }
 

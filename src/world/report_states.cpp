@@ -84,7 +84,7 @@ InstrumentState instrument_state(const Field& field, std::size_t index, const To
   return state;
 }
 
-OrganState organ_state(const Organ& organ) {
+OrganState organ_state(const Organ& organ, Workers* workers) {
   OrganState state;
   state.name = organ.definition.name;
   state.record = organ.record;
@@ -96,8 +96,9 @@ OrganState organ_state(const Organ& organ) {
   if (const RodBody* rod = organ.body->as_tube())
     for (const Clip& clip : organ.clips)
       state.clips.push_back({clip.size, rod->share_at(clip.at), clip.opening});
-  state.energy = organ.body->strain_energy(x);
-  state.max_stretch = organ.body->max_stretch(x);
+  do_at_once(
+      workers, [&] { state.energy = organ.body->strain_energy(x); },
+      [&] { state.max_stretch = organ.body->max_stretch(x); });
   state.extensions = static_cast<int>(organ.extensions.size());
   state.details = static_cast<int>(organ.body->details().size());
   return state;
@@ -115,7 +116,7 @@ void report_states(const Field& field, StepReport& report) {
   report.organs.resize(field.organs.size());
   for_each_chunk(field.workers(), static_cast<int>(field.organs.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
-    report.organs[k] = organ_state(field.organs[k]);
+    report.organs[k] = organ_state(field.organs[k], field.workers());
   });
   report_burnt(field, report);
   report.lost = field.spill.lost;

@@ -22,13 +22,16 @@ void Sight::Drawn::find_boxes() {
 }
 
 Sight::Sight(const Field& field, const Vec3& eye) : eye_(eye) {
-  for (const Organ& organ : field.organs) {
-    Drawn& drawn = organs_.emplace_back();
+  organs_.resize(field.organs.size());
+  for_each_chunk(field.workers(), static_cast<int>(organs_.size()), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    const Organ& organ = field.organs[k];
+    Drawn& drawn = organs_[k];
     drawn.organ = organ.definition.name;
     drawn.places = organ.body->drawn_positions(organ.state.x);
     drawn.triangles = organ.body->drawn_triangles();
     drawn.find_boxes();
-  }
+  });
   for (const Tool& tool : field.tools)
     for (const Shape& shape : shapes_in_field(tool, tool.pose)) tools_.push_back(shape);
   for (const Ground& ground : field.ground) ground_.push_back(ground.shape);

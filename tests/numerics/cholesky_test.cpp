@@ -65,6 +65,7 @@ TEST_P(CholeskyOf, SharedWorkGivesTheSameBits) {
     ASSERT_EQ(shared.factorise(matrix, &workers), FactorStatus::ok);
     ASSERT_EQ(shared.solve(right, &workers), x) << round;
   }
+  EXPECT_EQ(alone.solve(Eigen::MatrixXd(matrix.size(), 0)).cols(), 0);
   for (Eigen::Index k = 0; k < right.cols(); ++k)
     EXPECT_LT((matrix.multiply(x.col(k)) - right.col(k)).norm(), 1e-13 * right.col(k).norm()) << k;
 }

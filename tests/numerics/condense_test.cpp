@@ -78,6 +78,24 @@ TEST(Condensation, AnyNodesMayBeKeptAndThePiecesBeMany) {
   EXPECT_GT(most, 5);
 }
 
+TEST(Condensation, HundredsOfPiecesGiveTheSameBitsAtAnyNumberOfThreads) {
+  Rng rng(9);
+  Workers workers(3);
+  const Pieces given = random_pieces(rng, 250, 0.3);
+  ASSERT_GT(Condensation(given.matrix, given.kept).pieces(), 32) << "more than are eliminated at once";
+  Cholesky whole(given.matrix, given.kept, FactorKind::dense),
+      alone(given.matrix, given.kept, FactorKind::condensed),
+      shared(given.matrix, given.kept, FactorKind::condensed);
+  ASSERT_EQ(whole.factorise(given.matrix), FactorStatus::ok);
+  ASSERT_EQ(alone.factorise(given.matrix), FactorStatus::ok);
+  const VecX right = test::random_coordinates(rng, given.matrix.size(), 1.0), x = whole.solve(right);
+  EXPECT_LT((alone.solve(right) - x).norm(), 1e-13 * x.norm());  // rounding
+  for (int round = 0; round < 20; ++round) {
+    ASSERT_EQ(shared.factorise(given.matrix, &workers), FactorStatus::ok);
+    ASSERT_EQ(shared.solve(right), alone.solve(right)) << round;
+  }
+}
+
 TEST(Condensation, KeptUnknownsAnswerTheirLoadsAsInTheWholeSystem) {
   Rng rng(2);
   const BlockMatrix matrix = test::random_positive(rng, 20);

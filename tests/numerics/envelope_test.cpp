@@ -111,10 +111,15 @@ TEST(EnvelopeFactor, WhatIsTakenOffCountsAsIfItHadNeverBeenThere) {
   EnvelopeFactor taken_off = wide, never_there = wide;
   load(more, taken_off);
   taken_off.subtract(nodes, product.data());
+  EnvelopeFactor by_shares = wide;
+  load(more, by_shares);
+  for (int k : {2, 0, 1}) by_shares.subtract(nodes, product.data(), k, 3);
   load(matrix, never_there);
   ASSERT_TRUE(taken_off.factorise() && never_there.factorise());
   const VecX right = test::random_coordinates(rng, matrix.size(), 1.0), x = never_there.solve(right);
   EXPECT_LT((taken_off.solve(right) - x).norm(), 1e-14 * x.norm());  // rounding
+  ASSERT_TRUE(by_shares.factorise());
+  EXPECT_EQ(by_shares.solve(right), taken_off.solve(right));
   EXPECT_LT((matrix.multiply(x) - right).norm(), 1e-13 * right.norm());
 }
 

@@ -15,11 +15,13 @@ using test::GroupRig;
 
 constexpr double radius = 20e-3, gap = 1.5e-3;
 
-/// Two balls with a gap between them, a shape that only the second one meets, and a skin that meets itself.
+/// Two balls with a gap between them, and a shape that only the second one meets. The first one is `flat` times as thick.
 struct TwoBalls {
   GroupRig rig{{test::soft_ball(Vec3::Zero()), test::soft_ball(Vec3(2 * radius + gap, 0, 0))}};
   std::vector<Member> members;
-  TwoBalls() {
+  explicit TwoBalls(double flat) {
+    VecX& x = rig.bodies[0].state.x;
+    for (Eigen::Index i = 0; i < x.size(); i += 3) x[i] *= flat;
     rig.bodies[1].loads.shapes = {Capsule{Vec3(2 * radius + gap, 0, radius + gap + 5e-3),
                                           Vec3(2 * radius + gap, 5e-3, radius + gap + 5e-3), 5e-3}};
     rig.bodies[0].search.own.active = true;
@@ -41,11 +43,17 @@ VecX step_of(const TwoBalls& balls, const Vec3& of_second, double squeeze) {
 }
 
 TEST(GroupSafeShare, IsTheLeastOfBodiesAndJoins) {
-  int by_join = 0, by_shape = 0, whole = 0;
-  for (const Vec3& way : {Vec3(-2.4e-3, 0, 0), Vec3(-1e-3, 0, 0), Vec3(0, 0, 2.4e-3), Vec3(0, 2e-3, 0)}) {
-    TwoBalls balls;
+  int by_join = 0, by_shape = 0, by_itself = 0, whole = 0;
+  struct Case {
+    Vec3 way;
+    double flat, squeeze;
+  };
+  for (const auto& [way, flat, squeeze] :
+       {Case{Vec3(-2.4e-3, 0, 0), 1, 0.02}, Case{Vec3(-1e-3, 0, 0), 1, 0.02},
+        Case{Vec3(0, 0, 2.4e-3), 1, 0.02}, Case{Vec3(0, 2e-3, 0), 1, 0.02}, Case{Vec3::Zero(), 0.05, 0.97}}) {
+    TwoBalls balls(flat);
     const GroupProblem problem = balls.problem();
-    const VecX x = balls.rig.x(), step = step_of(balls, way, 0.02);
+    const VecX x = balls.rig.x(), step = step_of(balls, way, squeeze);
     const double share = problem.safe_share(x, step), longest = problem.longest_share(x, step);
     EXPECT_LE(share, longest);
     double alone = longest;
@@ -55,15 +63,19 @@ TEST(GroupSafeShare, IsTheLeastOfBodiesAndJoins) {
       const Eigen::Index begin = &member == &balls.members[0] ? 0 : balls.members[0].state.x.size();
       const BodyProblem body(member.body, member.loads, member.search, member.state, false);
       const double own = body.safe_share(member.state.x, step.segment(begin, member.state.x.size()));
-      by_shape += own < longest && begin > 0 ? 1 : 0;
+      (begin > 0 ? by_shape : by_itself) += own < longest ? 1 : 0;
       alone = std::min(alone, own);
     }
     whole += alone == 1 ? 1 : 0;
     // A way that is cut first and looked at then is cut where it would have been, to what the search resolves.
     EXPECT_NEAR(share, alone, 1e-3 * alone) << way.transpose();
+    const double if_whole = problem.share_if_whole(x, step);
+    EXPECT_EQ(if_whole == 1, share == 1);
+    EXPECT_GE(if_whole, share);
   }
   EXPECT_GT(by_join, 0);
   EXPECT_GT(by_shape, 0);
+  EXPECT_GT(by_itself, 0);
   EXPECT_GT(whole, 0);
 }
 

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "sim/rig.h"
+#include "sim/triangle_rig.h"
 #include "support/long_run.h"
+#include "world/critical_view.h"
+#include "world/sight.h"
 
 namespace calot {
 namespace {
@@ -40,6 +43,45 @@ TEST(Threads, SameBitsOfAGroupOfBodiesLargeAndSmall) {
   }
   const std::vector<std::uint64_t> one = hashes(scene, 1);
   EXPECT_EQ(hashes(scene, 2), one);
+}
+
+/// Steps of a grasp in a field with strands and a lobe, and what is seen of its triangle then.
+std::vector<StepReport> grasped(int threads, CriticalView& seen) {
+  SceneDefinition scene = test::triangle_scene();
+  scene.anatomy.organs[1] = test::lobe_behind();
+  scene.solver.motion = SolverMotion::dynamics;
+  test::FundusPath path(scene, threads);
+  std::vector<StepReport> out;
+  path.driver.watch = [&](const StepReport& report) { out.push_back(report); };
+  EXPECT_TRUE(path.grasp(3) && path.lift(3)) << path.driver.why();
+  seen = critical_view(
+      path.world.field(),
+      {test::beside_neck(2, 0, -3), test::beside_neck(37, 0, -19), test::beside_neck(37, 0, -3)},
+      Sight(path.world.field(), test::beside_neck(22, -100, 0)), {});
+  return out;
+}
+
+TEST(Threads, SameBitsAndReportsOfAFieldWithStrandsAndALobe) {
+  CALOT_SLOW_WHEN_SANITIZED("a field at three numbers of threads");
+  CriticalView by_one, by_more;
+  const std::vector<StepReport> one = grasped(1, by_one);
+  ASSERT_GT(one.size(), 5u);
+  EXPECT_GT(by_one.front.open, 0);
+  for (int threads : {2, 3}) {
+    const std::vector<StepReport> more = grasped(threads, by_more);
+    ASSERT_EQ(more.size(), one.size());
+    for (std::size_t k = 0; k < one.size(); ++k) {
+      EXPECT_EQ(more[k].state_hash, one[k].state_hash);
+      for (std::size_t organ = 0; organ < one[k].organs.size(); ++organ) {
+        EXPECT_EQ(more[k].organs[organ].energy, one[k].organs[organ].energy);
+        EXPECT_EQ(more[k].organs[organ].max_stretch, one[k].organs[organ].max_stretch);
+      }
+    }
+    EXPECT_EQ(by_more.front.open, by_one.front.open);
+    EXPECT_EQ(by_more.front.cleared, by_one.front.cleared);
+    EXPECT_EQ(by_more.back.cleared, by_one.back.cleared);
+    EXPECT_EQ(by_more.points(), by_one.points());
+  }
 }
 
 }  // namespace
