@@ -20,7 +20,8 @@
 --   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on:
 --     { triangle_fat = 0.8 } of its way from its start (the gallbladder's side), 0 to 1; { cystic_plate = { 0.5, 1 } }
 --     of its way from 0.5 to 1: up to one of its ends. What stands comes to rest without it. Of a tube it leaves a
---     stump, joined to nothing where it ends: { cystic_duct = 0.4 } was divided and its upper part is gone
+--     stump, joined to nothing and not held where it ends: { cystic_duct = 0.4 } was divided and its upper part is
+--     gone; tissue that begins on it is in without
 --   strength 1: how many times as strong tissue is, and as hard to divide: some 25 in a scarred triangle
 --   areolar_plane false: with true the cystic plate is the loose plane in which a healthy gallbladder is taken off its
 --     bed: five times as many strands, which tear at 0.4 of its stress, as fat does in the triangle, and at two thirds
@@ -249,25 +250,30 @@ end
 function anatomy.joint(from, to, radius) return { from = from, to = to, radius = radius } end
 local joint = anatomy.joint
 
+--- Those of a list that stay, and whether any does not.
+local function keep(list, stays)
+  local out = {}
+  for _, one in ipairs(list) do
+    if stays(one) then out[#out + 1] = one end
+  end
+  return out, #out < #list
+end
+
 --- Takes an organ with what ends on it, or a tissue, out of a field.
 local function take_out(field, name, level)
-  local names = {}
-  local function keep(list, stays)
-    local out = {}
-    for _, one in ipairs(list) do
-      if one.name then names[#names + 1] = one.name end
-      if stays(one) then out[#out + 1] = one end
-    end
-    return out, #out < #list
-  end
   local function on(landmark) return landmark:match("^[^.]*") == name end
   local organs, was_organ = keep(field.organs, function(organ) return organ.name ~= name end)
   local tissue, was_tissue = keep(field.tissue, function(one)
     return one.name ~= name and one.from ~= name and one.to ~= name
   end)
   if not was_organ and not was_tissue then
-    local known = {}
-    for _, one in ipairs(names) do known[one] = true end
+    local names, known = {}, {}
+    for _, list in ipairs { field.organs, field.tissue } do
+      for _, one in ipairs(list) do
+        names[#names + 1] = one.name
+        known[one.name] = true
+      end
+    end
     error('the field has no "' .. tostring(name) .. '" to leave out' .. given.suggestion(name, known) .. ": there are "
       .. table.concat(names, ", "), level + 1)
   end
@@ -301,20 +307,25 @@ local function clear(tissue, from, to)
   tissue.strands = math.floor(tissue.strands * (1 - (to - from)) + 0.5)
 end
 
---- Leaves a stump of a tube, which nothing holds where it ends now.
-local function leave_stump(field, organ, from, to)
+--- Leaves a stump of a tube, which nothing holds where it ends now. Tissue that begins on it has to be gone.
+local function leave_stump(field, organ, from, to, level)
+  for _, one in ipairs(field.tissue) do
+    if one.from == organ.name then
+      error('"' .. one.name .. '" begins on "' .. organ.name .. '", of which only a stump is left: name it in without',
+        level + 1)
+    end
+  end
   local shape, points = organ.shape, {}
   local first, last = from == 0 and to or 0, to == 1 and from or 1
   for k = 0, 4 do points[k + 1] = anatomy.along(shape.points, first + k / 4 * (last - first)) end
   local begins, ends = anatomy.radius_along(shape, first), anatomy.radius_along(shape, last)
   shape.points, shape.radii, shape.radius, shape.end_radius = points, nil, begins, ends
   shape.nodes = math.max(5, math.floor(shape.nodes * (last - first) + 0.5))
-  local free = organ.name .. (from == 0 and ".start" or ".end")
-  local joints = {}
-  for _, one in ipairs(field.joints) do
-    if one.from ~= free and one.to ~= free then joints[#joints + 1] = one end
-  end
-  field.joints = joints
+  local free = from == 0 and "start" or "end"
+  local cut_end = organ.name .. "." .. free
+  field.joints = keep(field.joints, function(one) return one.from ~= cut_end and one.to ~= cut_end end)
+  field.leaves = keep(field.leaves, function(one) return one.from ~= organ.name end)
+  organ.held = keep(organ.held or {}, function(one) return one.landmark ~= free end)
 end
 
 local function named(list, name)
@@ -340,7 +351,7 @@ local function prepare(field, gone_of, level)
       if to - from == 1 or tissue and tissue.strands < 1 then
         take_out(field, name, level + 1)
       elseif organ then
-        leave_stump(field, organ, from, to)
+        leave_stump(field, organ, from, to, level + 1)
       end
     end
   end
@@ -544,15 +555,17 @@ local function field_with(owner, variant, overrides, level)
     organs = organs,
     joints = joints,
     -- Over duct and artery in their ligament, below where the cystic duct enters.
-    leaves = { { from = "common_duct", to = "right_hepatic_artery", start = p.union + 0.06, goes_on = 14 * mm } },
+    leaves = {
+      { from = "common_duct", to = "right_hepatic_artery", start = math.min(p.union + 0.06, 0.95), goes_on = 14 * mm },
+    },
     tissue = tissues(p),
     ground = surroundings(neck),
   }
   for _, name in ipairs(p.without) do
     if p.prepared[name] ~= nil then error('"' .. name .. '" is in prepared and in without', level + 1) end
   end
-  prepare(field, p.prepared, level + 1)
   for _, name in ipairs(p.without) do take_out(field, name, level + 1) end
+  prepare(field, p.prepared, level + 1)
   return field
 end
 

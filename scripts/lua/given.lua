@@ -57,6 +57,9 @@ given.name = { is = "a name in quotes", fits = is_a "string" }
 given.names = {
   is = 'a list of names { "..." }', fits = function(value) return all_pass(value, nil, is_a "string") end,
 }
+given.two_names = {
+  is = 'two names { "...", "..." }', fits = function(value) return all_pass(value, 2, is_a "string") end,
+}
 given.list = { is = "a list { ... }", fits = function(value)
   return all_pass(value, nil, function() return true end)
 end }

@@ -299,6 +299,11 @@ local function roll_to(hook, to, rolled)
   return rolled + turn
 end
 
+--- Turns a shaft that is rolled by an angle back to where it was.
+local function unroll(hook, rolled)
+  if rolled ~= 0 then hook:rotate(-rolled, { speed = 400 * deg / s }) end
+end
+
 -- ---- a strand hooked from behind
 
 --- For one strand: `at`, its middle, moved `aside` towards the organ that it begins at; `out`, its way from the other
@@ -332,7 +337,7 @@ local function draw_on(hook, tissue, how, grip)
 end
 
 local how_to_hook = {
-  port = given.three, hardest = given.above_zero, between = given.names, wanted = given.optional(given.called),
+  port = given.three, hardest = given.above_zero, between = given.two_names, wanted = given.optional(given.called),
   is_done = given.optional(given.called),
 }
 
@@ -357,33 +362,36 @@ local function hook_strand(t, hook, tissue, how, strand, try)
   if burn_strand(t, hook, tissue, 30, may_burn) then
     try.missed, try.aside = 0, 0
   else
-    try.missed, try.aside = try.missed + 1, try.aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
+    local most = 0.5 * length(minus(strand.from, strand.to))
+    local aside = try.aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
+    try.missed, try.aside = try.missed + 1, math.max(-most, math.min(most, aside))
   end
   go(beside, behind, 20 * mm / s)
   go(beside, before, 60 * mm / s)
 end
 
---- Strand by strand, from whichever side the shaft comes: beside a strand, on the side where fewer others stand, the
---- hook goes 1.5 mm deeper than its middle, its foot slides behind it and draws back until the strand hangs on it, off
---- both organs' walls. Then current flows, if no wall is within 0.3 mm, until one strand has parted. Where none does
---- the hook tries again, nearer to the middle between the walls and less or more deep, up to nine times in a row.
---- `how`: port, where the shaft comes from; hardest, the force on its foot that ends a way; between, the two organs,
---- first the one that the tissue ends on; wanted(strand), if given, those that are taken; is_done(), if given, asked
---- before each.
+--- Strand by strand, from whichever side the shaft comes, which is not turned and is turned back at the end: beside a
+--- strand, on the side where fewer others stand, the hook goes 1.5 mm deeper than its middle, its foot slides behind it
+--- and draws back until the strand hangs on it, off both organs' walls. Then current flows, if no wall is within 0.3
+--- mm, until one strand has parted. Where none does the hook tries again, nearer to the middle between the walls and
+--- less or more deep, up to nine times in a row. `how`: port, where the shaft comes from; hardest, the force on its
+--- foot that ends a way; between, the two organs, first the one that the tissue ends on; wanted(strand), if given,
+--- those that are taken; is_done(), if given, asked before each.
 function technique.hook(t, hook, tissue, how)
   given.check(how, how_to_hook, "technique.hook", 2)
   local try = { rolled = 0, missed = 0, aside = 0 }
   while try.missed < 9 and not is_done(how) do
     local strand = nearest_strand(t, hook:tip(), tissue, how.wanted)
-    if not strand then return end
+    if not strand then break end
     hook_strand(t, hook, tissue, how, strand, try)
   end
+  unroll(hook, try.rolled)
 end
 
 -- ---- the plane, by strokes
 
 local how_to_free = {
-  port = given.three, from = given.three, hardest = given.above_zero, between = given.names,
+  port = given.three, from = given.three, hardest = given.above_zero, between = given.two_names,
   stretch = given.optional(given.called), ease = given.optional(given.called), is_done = given.optional(given.called),
 }
 
@@ -426,15 +434,15 @@ local function sweep(t, hook, tissue, how, front, back, first)
 end
 
 --- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
---- sees it. The foot points inward, away from the lens, 3 mm past the foremost strands; it sweeps to and fro along
---- them, midway between the two organs, and current flows while it lies on strands and no organ is within 0.4 mm. It
---- ends when nothing is under tension, or ten strokes in a row divide nothing; after two of these it tries one strand
---- alone as well, from behind. `how`: port, where the shaft comes from;
---- from, the place nearest to which it begins; hardest, the force on the foot at which it stops and burns, or eases
---- off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if given, called before
---- each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given. `front`: at,
---- its middle; out, from the first organ to the other one; along, its own way, as the shaft points; inward, to the
---- strands behind it; tension, of its tautest strand.
+--- sees it. The shaft is not turned at first, and is turned back at the end. The foot points inward, away from the
+--- lens, 3 mm past the foremost strands; it sweeps to and fro along them, midway between the two organs, and current
+--- flows while it lies on strands and no organ is within 0.4 mm. It ends when nothing is under tension, or ten strokes
+--- in a row divide nothing; after two of these it tries one strand alone as well, from behind. `how`: port, where the
+--- shaft comes from; from, the place nearest to which it begins; hardest, the force on the foot at which it stops and
+--- burns, or eases off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if
+--- given, called before each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if
+--- given. `front`: at, its middle; out, from the first organ to the other one; along, its own way, as the shaft points;
+--- inward, to the strands behind it; tension, of its tautest strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near, try = 0, 0, how.from, { missed = 0, aside = 0 }
@@ -444,7 +452,7 @@ function technique.free(t, hook, tissue, how)
       how.stretch(front)
       front = front_of(t, tissue, how.port, near)
     end
-    if not front then return end
+    if not front then break end
     near = front.at
     local line = foremost(front)
     local first = 1 + (#line // 2 + missed) % #line -- the near side is where the two organs lie on each other
@@ -462,6 +470,7 @@ function technique.free(t, hook, tissue, how)
     end
     missed = t:torn(tissue) > torn and 0 or missed + 1
   end
+  unroll(hook, rolled)
 end
 
 -- ---- clips and scissors

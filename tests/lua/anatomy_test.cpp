@@ -244,13 +244,30 @@ TEST(Anatomy, OfATubeThatWasDividedAStumpIsLeftThatNothingHoldsAtItsEnd) {
   for (const char* end : {"cystic_duct.end", "cystic_artery.start"}) EXPECT_TRUE(joined(divided, end)) << end;
 }
 
+TEST(Anatomy, AStumpIsNotHeldWhereItWasDivided) {
+  const SceneDefinition divided = scene_of(
+      "anatomy.standard { prepared = { right_hepatic_artery = { 0.5, 1 } }, "
+      "without = { 'hilar_fat' } }");
+  const auto artery =
+      std::find_if(divided.anatomy.organs.begin(), divided.anatomy.organs.end(),
+                   [](const OrganDefinition& organ) { return organ.name == "right_hepatic_artery"; });
+  ASSERT_NE(artery, divided.anatomy.organs.end());
+  const auto is_held_at = [&](const std::string& end) {
+    return std::any_of(artery->held.begin(), artery->held.end(),
+                       [&](const HeldRegion& held) { return held.landmark == end; });
+  };
+  EXPECT_TRUE(is_held_at("start"));
+  EXPECT_FALSE(is_held_at("end"));
+}
+
 TEST(Anatomy, AParameterThatItDoesNotHaveIsNamed) {
   for (const auto& [wrong, what] :
        {std::pair{"{ prepared = { gallbladder = 0.5 } }", "is no tissue and no tube"},
         std::pair{"{ prepared = { cystic_duct = 2 } }", "a share of its way"},
         std::pair{"{ prepared = { triangel_fat = 1 } }", "no \"triangel_fat\" to leave out"},
         std::pair{"{ prepared = { triangle_fat = { 0.3, 0.6 } } }", "up to one of its ends"},
-        std::pair{"{ prepared = { triangle_fat = 1.5 } }", "a share of its way"}}) {
+        std::pair{"{ prepared = { triangle_fat = 1.5 } }", "a share of its way"},
+        std::pair{"{ prepared = { cystic_duct = 0.4 } }", "\"triangle_fat\" begins on \"cystic_duct\""}}) {
     const Folder folder;
     const auto loaded = load_text(folder, field(std::string("anatomy.standard ") + wrong));
     ASSERT_FALSE(loaded);
