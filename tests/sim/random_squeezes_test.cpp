@@ -104,8 +104,9 @@ class Squeeze {
     const std::vector<InstrumentState>& tools = world_.report().instruments;
     const bool on_tool =
         std::any_of(tools.begin(), tools.end(), [](const InstrumentState& tool) { return tool.touching; });
-    if (!failed_ && !on_tool)  // a ring may hang on a jaw
+    if (!failed_ && !on_tool) {  // a ring may hang on a jaw
       EXPECT_LT(world_.landmark("thing.centre").z(), board + largest_ + 16 * mm) << "it hangs in the air";
+    }
     EXPECT_LE(world_.landmark("thing.centre").z(), left_at.z() + 0.1 * mm) << "it rises with no hand on it";
   }
 
