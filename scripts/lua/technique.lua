@@ -188,12 +188,13 @@ local function middle_of(strands)
   return times(sum, 1 / #strands)
 end
 
---- The strands that are under tension and longer than the hook's foot is thick, and of these the one nearest to a
---- place.
-local function open_strands(t, tissue, place)
+--- The strands that are wanted (nil: all), under tension and longer than the hook's foot is thick, and of these the
+--- one nearest to a place.
+local function open_strands(t, tissue, place, wanted)
   local open, nearest, least = {}, nil, math.huge
   for _, strand in ipairs(t:strands(tissue)) do
-    if strand.tension > 10e-3 * N and length(minus(strand.from, strand.to)) > 3.5 * mm then
+    if strand.tension > 10e-3 * N and length(minus(strand.from, strand.to)) > 3.5 * mm
+      and (not wanted or wanted(strand)) then
       open[#open + 1] = strand
       local far = length(minus(strand.middle, place))
       if far < least then nearest, least = strand, far end
@@ -203,8 +204,8 @@ local function open_strands(t, tissue, place)
 end
 
 --- The plane's front nearest to a place: see technique.free. nil: nothing is under tension.
-local function front_of(t, tissue, port, place)
-  local open, nearest = open_strands(t, tissue, place)
+local function front_of(t, tissue, how, place)
+  local open, nearest = open_strands(t, tissue, place, how.wanted)
   if not nearest then return nil end
   local near, out, tension = {}, { 0, 0, 0 }, 0
   for _, strand in ipairs(open) do
@@ -218,7 +219,7 @@ local function front_of(t, tissue, port, place)
   out = unit(out)
   local inward = unit(across(t.laparoscope:direction(), out))
   local along = cross(inward, out)
-  if dot(along, minus(at, port)) < 0 then along = times(along, -1) end
+  if dot(along, minus(at, how.port)) < 0 then along = times(along, -1) end
   return { at = at, out = out, along = along, inward = inward, tension = tension, strands = near }
 end
 
@@ -392,7 +393,8 @@ end
 
 local how_to_free = {
   port = given.three, from = given.three, hardest = given.above_zero, between = given.two_names,
-  stretch = given.optional(given.called), ease = given.optional(given.called), is_done = given.optional(given.called),
+  wanted = given.optional(given.called), stretch = given.optional(given.called), ease = given.optional(given.called),
+  is_done = given.optional(given.called),
 }
 
 --- Where the foot's heel goes for its end to be 3 mm past a strand of the front.
@@ -427,7 +429,7 @@ local function sweep(t, hook, tissue, how, front, back, first)
       end
       if is_done(how) or failed == 2 then return end
     end
-    first, front = 1, front_of(t, tissue, how.port, place)
+    first, front = 1, front_of(t, tissue, how, place)
     if not front or t:torn(tissue) - torn < 0.01 then return end
     if how.stretch then how.stretch(front) end
   end
@@ -439,18 +441,19 @@ end
 --- flows while it lies on strands and no organ is within 0.4 mm. It ends when nothing is under tension, or ten strokes
 --- in a row divide nothing; after two of these it tries one strand alone as well, from behind. `how`: port, where the
 --- shaft comes from; from, the place nearest to which it begins; hardest, the force on the foot at which it stops and
---- burns, or eases off a skin; between, the two organs, first the one that the tissue ends on; stretch(front), if
---- given, called before each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if
---- given. `front`: at, its middle; out, from the first organ to the other one; along, its own way, as the shaft points;
+--- burns, or eases off a skin; between, the two organs, first the one that the tissue ends on; wanted(strand), if
+--- given, those that make up the front, such as those that the laparoscope sees; stretch(front), if given, called
+--- before each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given.
+--- `front`: at, its middle; out, from the first organ to the other one; along, its own way, as the shaft points;
 --- inward, to the strands behind it; tension, of its tautest strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near, try = 0, 0, how.from, { missed = 0, aside = 0 }
   while missed < 10 and not is_done(how) do
-    local torn, front = t:torn(tissue), front_of(t, tissue, how.port, near)
+    local torn, front = t:torn(tissue), front_of(t, tissue, how, near)
     if front and how.stretch then
       how.stretch(front)
-      front = front_of(t, tissue, how.port, near)
+      front = front_of(t, tissue, how, near)
     end
     if not front then break end
     near = front.at
@@ -462,7 +465,7 @@ function technique.free(t, hook, tissue, how)
     sweep(t, hook, tissue, how, front, back, first)
     hook:move_by(times(front.inward, -4 * mm), { speed = 60 * mm / s })
     hook:move_by(times(back, 15 * mm), { speed = 100 * mm / s })
-    local alone = missed > 0 and t:torn(tissue) == torn and nearest_strand(t, strand, tissue)
+    local alone = missed > 0 and t:torn(tissue) == torn and nearest_strand(t, strand, tissue, how.wanted)
     if alone and not is_done(how) then
       try.rolled = rolled
       hook_strand(t, hook, tissue, how, alone, try)

@@ -168,6 +168,17 @@ TEST(OperationErrors, AnArteryThatIsCutUnclippedBleedsAndIsSeenToDoSo) {
   EXPECT_FALSE(clumsy.played->report.score.passed());
 }
 
+TEST(OperationErrors, WhoBeginsAtTheFundusFreesHalfOfThePlaneWhileDuctAndArteryStand) {
+  if (!test::long_run()) GTEST_SKIP() << "dissects for two minutes";
+  const Playback fundus_first("fundus_first.lua", {});
+  ASSERT_TRUE(fundus_first.played) << fundus_first.failure;
+  EXPECT_GE(fundus_first.played->session.metrics.at("cystic_plate.torn_pct"), 50);
+  EXPECT_EQ(fundus_first.played->session.metrics.at("triangle_fat.torn_pct"), 0);
+  for (EventKind kind : {EventKind::perforation, EventKind::cut, EventKind::injury, EventKind::overforce})
+    EXPECT_EQ(fundus_first.count(kind), 0) << static_cast<int>(kind);
+  EXPECT_GT(fundus_first.played->report.score.total, 95);
+}
+
 TEST(OperationErrors, WhoBailsOutOfAFrozenTrianglePasses) {
   if (!test::long_run()) GTEST_SKIP() << "tries for a quarter of a minute";
   const Playback wise("dissect_to_critical_view.lua", {{"field", "frozen"}, {"demo", "bail_out"}});

@@ -1,0 +1,131 @@
+-- The gallbladder comes off its bed from the fundus on, while cystic duct and artery stand: the way out where Calot's
+-- triangle cannot be dissected safely. The whole plane stands at first, and nobody touches the triangle. The fundus is
+-- taken and swung to the patient's right and down, so that the plane's left side stands open under tension. The
+-- laparoscope looks along it from the left and above, the hook comes from the left. It sweeps through what the
+-- laparoscope sees at fundus and body first. Then the fundus is drawn to the feet, and the hook goes on towards the
+-- neck. At a half the operator says that duct and artery stand. The fundus' right border holds on then. The mistakes
+-- are a parameter, demo = "clumsy": current on the gallbladder until its wall is open.
+
+local calot = require "calot"
+local anatomy = require "anatomy"
+local technique = require "technique"
+local mm, s, N, deg = calot.units.mm, calot.units.s, calot.units.N, calot.units.deg
+
+local ports = {
+  scope = { 10 * mm, 120 * mm, 0 }, -- left of the epigastric one: from there one sees along the plane
+  left_lower = { 80 * mm, 34 * mm, -5 * mm }, -- off what is swung to the right
+}
+local third, half = 0.36, 0.5 -- of the plane
+local aside = { -0.85, 0.17, -0.5 } -- to the patient's right and down into the flank
+local to_the_feet = { -0.3, -0.9, -0.3 } -- once the fundus and the body are off on the left
+
+-- A hand that draws the fundus aside before each way of the hook until it resists: more firmly where the last way has
+-- divided nothing. The camera looks at the front meanwhile.
+local function drawing_hand(t, along, firmly)
+  local torn = -1
+  return function(front)
+    if t:torn("cystic_plate") == torn then firmly = math.min(6 * N, firmly + 0.4 * N) end
+    torn = t:torn("cystic_plate")
+    t:together(function()
+      t.fundus:move_until(function() return t.fundus:force("jaws") > firmly end,
+        { along = along, speed = 25 * mm / s, limit = 10 * mm })
+    end, function()
+      t.laparoscope:look_at(front.at, { distance = 60 * mm })
+    end)
+  end
+end
+
+local function expert(t)
+  t.fundus:move_until(function() return t.fundus:force("jaws") > 3 * N end,
+    { along = aside, speed = 25 * mm / s, limit = 60 * mm })
+  t.laparoscope:look_at("gallbladder.bed", { distance = 60 * mm })
+  -- Takes what is seen of the plane beyond a share of the way from neck to fundus, until so much of all is torn.
+  local function free_until(torn, from, beyond, draw)
+    technique.free(t, t.hook, "cystic_plate", {
+      port = ports.left_lower, from = t:place(from), hardest = 0.6 * N,
+      between = { "liver", "gallbladder" }, stretch = draw,
+      wanted = function(strand) return strand.share > beyond and t:sees(strand.middle) end,
+      is_done = function() return t:torn("cystic_plate") >= torn end,
+    })
+  end
+  free_until(third, "gallbladder.fundus", 0.45, drawing_hand(t, aside, 3 * N)) -- at the fundus and the body
+  t.fundus:move_by({ 8 * mm, -40 * mm, -4 * mm }, { speed = 25 * mm / s })
+  free_until(half, "gallbladder.bed", 0.3, drawing_hand(t, to_the_feet, 3.4 * N)) -- and on towards the neck
+  local inward = technique.unit(technique.minus(t.hook:tip(), ports.left_lower))
+  t.hook:move_to(technique.plus(ports.left_lower, inward, 30 * mm), { speed = 150 * mm / s })
+  t.laparoscope:look_at("gallbladder.bed", { distance = 70 * mm })
+  t:wait(1 * s)
+  t:time_out("half of the plane is divided; duct and artery stand")
+end
+
+return calot.exercise {
+  api = 2,
+  id = "fundus-first",
+  title = "Fundus first: half of the plane divided while duct and artery stand",
+  time_limit = 240 * s,
+
+  params = {
+    demo = {
+      type = "choice",
+      default = "expert",
+      choices = { "expert", "clumsy" },
+      title = "how the demo goes about it: in the plane, where it is under tension; or on the gallbladder's wall",
+    },
+  },
+
+  scene = function()
+    return {
+      anatomy = anatomy.standard { assistant = false, areolar_plane = true },
+      ports = ports,
+      instruments = {
+        fundus = { port = "right_subcostal", force_limit = 8 * N, pinch_force = 12 * N }, -- above 15 N it would harm
+        hook = { type = "l_hook", port = "left_lower", force_limit = 3 * N, power = 30 },
+      },
+      laparoscope = { port = "scope", angle = 30 * deg, look_at = "gallbladder.fundus", distance = 80 * mm },
+      solver = { motion = "dynamic", rate = 25 }, -- as critical_view.lua
+    }
+  end,
+
+  steps = function(t)
+    t:step("open", "Take the fundus and swing it to the patient's right, until the plane's left side is taut", {
+      limit = 20 * s,
+      hint = "close the jaws on a fold of the fundus; draw it to the right and down into the flank, off the liver",
+    })
+    t:wait_until(function() return t.fundus:holds("gallbladder") and t.fundus:force("jaws") > 2 * N end)
+    t:step("free", "Divide half of the plane from the fundus on, midway between gallbladder and liver", {
+      limit = 150 * s,
+      hint = "sweep the foot along the taut strands that you see, and let current flow while it lies on them; draw the "
+        .. "fundus on as they yield; keep off the triangle",
+    })
+    t:wait_until(function() return t:torn("cystic_plate") >= half end)
+    t:step("look", "Say that duct and artery stand", { limit = 20 * s, hint = "hook out of the way, then a time-out" })
+    t:wait_until(function() return t:count("time_out") > 0 end)
+  end,
+
+  demo = function(t, p)
+    t.fundus:approach("gallbladder.fundus", { speed = 60 * mm / s, depth = 6 * mm })
+    t.fundus:close()
+    if p.demo == "expert" then expert(t) else technique.burn_wall(t.hook) end
+  end,
+
+  score = calot.score.weighted {
+    { calot.score.rule(function(run)
+      local torn = run.metrics["cystic_plate.torn_pct"] / 100
+      return math.min(1, torn / half), string.format("%.0f %% of the plane divided", 100 * torn),
+        run:times("divided", "cystic_plate")
+    end), name = "plane", weight = 0.4 },
+    { calot.score.rule(function(run)
+      local hurt = run:count("cut") + run:count("injury") + run:count("tear", "triangle_fat")
+      return hurt == 0 and 1 or 0, hurt == 0 and "duct, artery and triangle are whole" or "the triangle was entered"
+    end), name = "triangle", weight = 0.2 },
+    { calot.score.benchmark { metric = "total.bile_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
+    { calot.score.benchmark { metric = "hook.activation_time_s", novice = 60, expert = 20 }, weight = 0.1 },
+    { calot.score.procedure {
+      minor = { "slip", "dry_activation", "raw_surface" }, major = { "perforation", "overforce" },
+    }, weight = 0.1 },
+    { calot.score.benchmark { metric = "liver.raw_mm2", novice = 100, expert = 5 }, weight = 0.1 },
+    critical = { "overforce", "perforation" },
+    cap = 40,
+    pass = 80,
+  },
+}
