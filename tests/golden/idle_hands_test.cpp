@@ -50,7 +50,8 @@ INSTANTIATE_TEST_SUITE_P(Shipped, IdleHands,
                                            Idle{"peg_transfer"}, Idle{"clip_and_divide"}, Idle{"exposure"},
                                            Idle{"clip_and_divide", {{"structure", "cystic_artery"}}, true},
                                            Idle{"dissect_to_critical_view", {}, true},
-                                           Idle{"critical_view", {}, true}, Idle{"liver_bed", {}, true}));
+                                           Idle{"critical_view", {}, true}, Idle{"liver_bed", {}, true},
+                                           Idle{"fundus_first", {}, true}));
 
 void expect_nothing(const Idle& idle, double angle) {
   PlayRequest request;
