@@ -110,7 +110,7 @@ return calot.exercise {
 
   score = calot.score.weighted {
     { calot.score.rule(function(run)
-      local torn = run.metrics["cystic_plate.torn_pct"] / 100
+      local torn = (run.metrics["cystic_plate.torn_pct"] or 0) / 100
       return math.min(1, torn / half), string.format("%.0f %% of the plane divided", 100 * torn),
         run:times("divided", "cystic_plate")
     end), name = "plane", weight = 0.4 },
