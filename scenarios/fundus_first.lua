@@ -15,7 +15,7 @@ local ports = {
   scope = { 10 * mm, 120 * mm, 0 }, -- left of the epigastric one: from there one sees along the plane
   left_lower = { 80 * mm, 34 * mm, -5 * mm }, -- off what is swung to the right
 }
-local third, half = 0.36, 0.5 -- of the plane
+local upper, half = 0.36, 0.5 -- of the plane: what is divided at fundus and body, and in all
 local aside = { -0.85, 0.17, -0.5 } -- to the patient's right and down into the flank
 local to_the_feet = { -0.3, -0.9, -0.3 } -- once the fundus and the body are off on the left
 
@@ -48,11 +48,10 @@ local function expert(t)
       is_done = function() return t:torn("cystic_plate") >= torn end,
     })
   end
-  free_until(third, "gallbladder.fundus", 0.45, drawing_hand(t, aside, 3 * N)) -- at the fundus and the body
+  free_until(upper, "gallbladder.fundus", 0.45, drawing_hand(t, aside, 3 * N)) -- at the fundus and the body
   t.fundus:move_by({ 8 * mm, -40 * mm, -4 * mm }, { speed = 25 * mm / s })
   free_until(half, "gallbladder.bed", 0.3, drawing_hand(t, to_the_feet, 3.4 * N)) -- and on towards the neck
-  local inward = technique.unit(technique.minus(t.hook:tip(), ports.left_lower))
-  t.hook:move_to(technique.plus(ports.left_lower, inward, 30 * mm), { speed = 150 * mm / s })
+  technique.withdraw(t.hook, ports.left_lower)
   t.laparoscope:look_at("gallbladder.bed", { distance = 70 * mm })
   t:wait(1 * s)
   t:time_out("half of the plane is divided; duct and artery stand")
@@ -109,11 +108,8 @@ return calot.exercise {
   end,
 
   score = calot.score.weighted {
-    { calot.score.rule(function(run)
-      local torn = (run.metrics["cystic_plate.torn_pct"] or 0) / 100
-      return math.min(1, torn / half), string.format("%.0f %% of the plane divided", 100 * torn),
-        run:times("divided", "cystic_plate")
-    end), name = "plane", weight = 0.4 },
+    { calot.score.rule(function(run) return technique.judge_plane(run, "cystic_plate", half) end), name = "plane",
+      weight = 0.4 },
     { calot.score.rule(function(run)
       local hurt = run:count("cut") + run:count("injury") + run:count("tear", "triangle_fat")
       return hurt == 0 and 1 or 0, hurt == 0 and "duct, artery and triangle are whole" or "the triangle was entered"

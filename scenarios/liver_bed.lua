@@ -75,8 +75,7 @@ local function expert(t)
       between = { "liver", "gallbladder" }, stretch = draw, ease = ease,
       is_done = function() return t:torn("cystic_plate") >= torn end,
     })
-    local inward = technique.unit(technique.minus(t.hook:tip(), ports.left_upper))
-    t.hook:move_to(technique.plus(ports.left_upper, inward, 30 * mm), { speed = 150 * mm / s })
+    technique.withdraw(t.hook, ports.left_upper)
   end
   free_until(half, (drawing_hand(t, 3 * N)))
   t.laparoscope:look_at("liver.underside", { distance = 60 * mm })
@@ -172,11 +171,8 @@ return calot.exercise {
   end,
 
   score = calot.score.weighted {
-    { calot.score.rule(function(run)
-      local torn = (run.metrics["cystic_plate.torn_pct"] or 0) / 100
-      return torn, string.format("%.0f %% of the plane divided", 100 * torn),
-        run:times("divided", "cystic_plate")
-    end), name = "plane", weight = 0.4 },
+    { calot.score.rule(function(run) return technique.judge_plane(run, "cystic_plate", 1) end), name = "plane",
+      weight = 0.4 },
     { calot.score.benchmark { metric = "total.bile_lost_mL", novice = 1, expert = 0 }, weight = 0.1 },
     { calot.score.benchmark { metric = "hook.activation_time_s", novice = 60, expert = 20 }, weight = 0.1 },
     { calot.score.benchmark { metric = "hook.path_length_mm", novice = 3000, expert = 1200 }, weight = 0.1 },

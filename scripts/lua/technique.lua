@@ -170,6 +170,12 @@ function technique.take(t, hook, tissue, how)
   end
 end
 
+--- Draws an instrument back along its shaft, until its tip is 30 mm before its port, a place.
+function technique.withdraw(tool, port)
+  local inward = unit(minus(tool:tip(), port))
+  tool:move_to(plus(port, inward, 30 * mm), { speed = 150 * mm / s })
+end
+
 -- ---- the plane between two organs
 
 local function across(a, normal) return plus(a, normal, -dot(a, normal)) end
@@ -544,6 +550,13 @@ function technique.hand(t, name, port)
   return self
 end
 
+--- A rule: how much of a plane, a tissue, was divided, beside the share of it that is asked for.
+function technique.judge_plane(run, tissue, asked)
+  local torn = (run.metrics[tissue .. ".torn_pct"] or 0) / 100
+  return math.min(1, torn / asked), string.format("%.0f %% of the plane divided", 100 * torn),
+    run:times("divided", tissue)
+end
+
 --- A rule: a clip slides off a stump that is too short: how far a tube was cut from the nearest clip, on either side.
 function technique.judge_stump(run, tube)
   local cuts = run:times("cut", tube)
@@ -577,7 +590,9 @@ for name, takes in pairs {
   free = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
   hook = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
   roll_across = { { "port", given.three }, { "at", given.three }, { "along", given.way } },
-  hand = { t, { "name", given.name }, { "port", given.three } }, judge_stump = { { "run", given.run }, tube },
+  hand = { t, { "name", given.name }, { "port", given.three } }, withdraw = { tool, { "port", given.three } },
+  judge_plane = { { "run", given.run }, { "tissue", given.name }, { "asked", given.above_zero } },
+  judge_stump = { { "run", given.run }, tube },
 } do technique[name] = given.checked("technique." .. name, takes, technique[name]) end
 
 return technique

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -172,18 +171,17 @@ std::optional<Failure> answer_load(Field& field, const std::vector<ContactLoads>
 
 using OrganPairs = std::vector<std::vector<ContactPair>>;  // one list an organ
 
-/// The organs' pairs that a motion may bring together: the tools go `travel`, m, and each organ own(its number), m.
-OrganPairs find_pairs(Field& field, const std::vector<ContactLoads>& loads, double travel,
-                      const std::function<double(std::size_t)>& own) {
+/// The organs' pairs that a motion may bring together: tools and each organ go so far in all, m.
+OrganPairs find_pairs(Field& field, const std::vector<ContactLoads>& loads,
+                      const std::vector<double>& travels) {
   OrganPairs out(field.organs.size());
   for_each_chunk(field.workers(), static_cast<int>(out.size()), [&](int chunk) {
     const auto k = static_cast<std::size_t>(chunk);
     Organ& organ = field.organs[k];
-    out[k] = organ.search.pairs(*organ.body, organ.state.x, loads[k], travel + own(k));
+    out[k] = organ.search.pairs(*organ.body, organ.state.x, loads[k], travels[k]);
   });
   return out;
 }
-double none(std::size_t /*organ*/) { return 0; }
 
 /// Limits a prediction to what keeps skins and tools apart. Skins are looked at last, as that takes longest: on what tools
 /// have left of the way.
@@ -218,10 +216,11 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
   if (from == to && !moving) return out;
   out.travel = largest_travel(field, to);
   const std::vector<ContactLoads> loads = solve_loads(field, from);
+  std::vector<double> travels(field.organs.size(), out.travel);
   OrganPairs pairs;
   {
     const Timed timed(statistics.contact_s);
-    pairs = find_pairs(field, loads, out.travel, none);
+    pairs = find_pairs(field, loads, travels);
   }
   VecX load = VecX::Zero(parts.total());
   for (std::size_t k = 0; k < field.organs.size(); ++k)
@@ -234,10 +233,11 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
       return *failure;
   const Timed timed(statistics.contact_s);
   // What moves by itself may meet shapes that no tool brings near.
-  if (moving)
-    pairs = find_pairs(field, loads, out.travel, [&](std::size_t k) {
-      return field.organs[k].body->largest_motion(parts.of(k, std::as_const(out.dx)));
-    });
+  if (moving) {
+    for (std::size_t k = 0; k < travels.size(); ++k)
+      travels[k] += field.organs[k].body->largest_motion(parts.of(k, std::as_const(out.dx)));
+    pairs = find_pairs(field, loads, travels);
+  }
   keep_apart(field, loads, pairs, from, to, out);
   return out;
 }
@@ -247,7 +247,8 @@ Prediction of_tools_alone(Field& field, const Poses& from, const Poses& to, Solv
   out.travel = largest_travel(field, to);
   const std::vector<ContactLoads> loads = solve_loads(field, from);
   const Timed timed(statistics.contact_s);
-  keep_apart(field, loads, find_pairs(field, loads, out.travel, none), from, to, out);
+  const std::vector<double> travels(field.organs.size(), out.travel);
+  keep_apart(field, loads, find_pairs(field, loads, travels), from, to, out);
   return out;
 }
 
