@@ -56,14 +56,14 @@ local function expert(t)
   for _ = 1, 4 do -- what the foot does not reach is drawn out of its hiding
     technique.take(t, t.hook, "artery_fat", {
       port = ports.epigastric, tries = 6, hardest = 0.4 * N,
-      keep_off = { organ = "common_duct", place = t:place("cystic_duct.end"), clear = 3.5 * mm },
+      keep_off = { { organ = "common_duct", place = t:place("cystic_duct.end"), clear = 3.5 * mm } },
     })
     if t:torn("artery_fat") == 1 then break end
     t.left:move_by({ -2 * mm, -2 * mm, 1 * mm }, { speed = 8 * mm / s })
   end
   technique.take(t, t.hook, "cystic_plate", {
     port = ports.epigastric, tries = 30, hardest = 1 * N,
-    keep_off = { organ = "gallbladder", clear = 0.35 * mm }, -- nearer by current is a hole
+    keep_off = { { organ = "gallbladder", clear = 0.35 * mm } }, -- nearer by current is a hole
     wanted = function(strand) return strand.share <= lower_part end,
     is_done = function() return view(t).plate.points > 0 end,
   })

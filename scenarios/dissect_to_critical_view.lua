@@ -60,7 +60,7 @@ return calot.exercise {
   api = 2,
   id = "dissect-to-critical-view",
   title = "Dissect to the critical view of safety",
-  time_limit = 170 * s,
+  time_limit = 220 * s,
 
   params = {
     demo = {
@@ -111,7 +111,7 @@ return calot.exercise {
     t:wait(1.5 * s)
     note(t, "_before")
     t:step("triangle", "Clear the triangle between duct and artery with the hook", {
-      limit = 30 * s,
+      limit = 90 * s,
       hint = "lay the hook on a strand, let current flow until it parts, and go to the next; keep off the duct",
     })
     t:wait_until(function() return t:torn("artery_fat") == 1 end)
@@ -146,14 +146,18 @@ return calot.exercise {
     t.left:wait(0.3 * s)
     if p.demo == "clumsy" then t.hook:activate(0.5 * s) end
     technique.take(t, t.hook, "artery_fat", {
-      port = hook_port, tries = 6, hardest = 0.4 * N,
-      keep_off = { organ = "common_duct", place = t:place("cystic_duct.end"), clear = 3.5 * mm },
+      port = hook_port, tries = 4, hardest = 0.4 * N,
+      keep_off = {
+        { organ = "common_duct", place = t:place("cystic_duct.end"), clear = 3.5 * mm },
+        { organ = "gallbladder", clear = 0.1 * mm }, -- on the wall current is a hole
+      },
       is_done = function() return p.demo == "clumsy" and t:torn("artery_fat") > 0.2 or gives_up() end,
     })
     if p.demo == "clumsy" then return end
     if p.demo == "bail_out" then return t:bail_out("subtotal cholecystectomy: the triangle does not open") end
-    technique.take(t, t.hook, "cystic_plate", {
-      port = hook_port, tries = 30, hardest = 1 * N,
+    t.hook:rotate(-180 * deg, { speed = 400 * deg / s })
+    technique.hook(t, t.hook, "cystic_plate", {
+      port = hook_port, hardest = 0.8 * N, between = { "liver", "gallbladder" },
       wanted = function(strand) return strand.share <= lower_part end,
       is_done = function() return view(t).plate.points > 0 end,
     })

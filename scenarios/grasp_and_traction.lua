@@ -25,7 +25,7 @@ return calot.exercise {
   scene = function(p)
     return {
       anatomy = calot.anatomy(p.anatomy),
-      solver = { rate = 50, tolerance = 1e-6, extensions = { levels = 1 } },
+      solver = { motion = "dynamic", rate = 50, tolerance = 1e-6, extensions = { levels = 1 } },
       laparoscope = { port = "umbilical", angle = 30 * deg, look_at = "gallbladder.fundus" },
       instruments = {
         left = { type = "atraumatic_grasper", port = "right_subcostal", force_limit = 5 * N },

@@ -128,7 +128,7 @@ local function is_done(how) return how.is_done ~= nil and how.is_done() end
 
 local how_to_take = {
   port = given.three, tries = given.whole, hardest = given.above_zero, wanted = given.optional(given.called),
-  is_done = given.optional(given.called), keep_off = given.optional(given.by_name),
+  is_done = given.optional(given.called), keep_off = given.optional(given.list),
 }
 local where_to_keep_off = { organ = given.name, place = given.optional(given.three), clear = given.above_zero }
 
@@ -137,19 +137,22 @@ local where_to_keep_off = { organ = given.name, place = given.optional(given.thr
 --- foot comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and
 --- then on all three nearer to its heel. Before a longer way it is drawn out. `how`: port, where its shaft comes from;
 --- tries, of a tenth of a second; hardest, the force that ends its way down; wanted(strand), if given, those that are
---- taken; is_done(), if given, asked before each strand; keep_off, an organ: current flows no nearer to it than by
---- `clear`; and a place of it, if given, beside which the heel comes down first, on the middle, and the foot points
---- away.
+--- taken; is_done(), if given, asked before each strand; keep_off, a list of organs: current flows no nearer to one
+--- than by its `clear`; and a place of one, if given, beside which the heel comes down first, on the middle, and the
+--- foot points away.
 function technique.take(t, hook, tissue, how)
   given.check(how, how_to_take, "technique.take", 2)
-  if how.keep_off then given.check(how.keep_off, where_to_keep_off, "keep_off", 2) end
+  local organs = how.keep_off or {}
+  for _, off in ipairs(organs) do given.check(off, where_to_keep_off, "keep_off", 2) end
   local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
   local missed = 0
   while missed < 9 and not is_done(how) do
     local strand = nearest_strand(t, hook:tip(), tissue, how.wanted)
     if not strand then return end
-    local off = how.keep_off
-    local beside = off and off.place and length(minus(strand.middle, off.place)) < 10 * mm
+    local beside = false
+    for _, off in ipairs(organs) do
+      beside = beside or off.place and length(minus(strand.middle, off.place)) < 10 * mm
+    end
     local ends = { strand.middle, strand.to, strand.from }
     local at = beside and strand.middle or plus(strand.middle, minus(ends[missed % 3 + 1], strand.middle), 0.5)
     local aim = plus(at, { beside and by_heel[missed % 3 + 1] or reach[missed // 3 + 1], 0, 0 })
@@ -158,7 +161,10 @@ function technique.take(t, hook, tissue, how)
     hook:move_to(plus(aim, back, 5 * mm), { speed = 80 * mm / s })
     local function lies_on_it() return lies_on(hook, tissue) or hook:force() > how.hardest end
     local function may_burn()
-      return hook:touching() and not (off and hook:clearance(off.organ) < off.clear)
+      for _, off in ipairs(organs) do
+        if hook:clearance(off.organ) < off.clear then return false end
+      end
+      return hook:touching()
     end
     hook:move_until(lies_on_it, { along = times(back, -1), speed = 25 * mm / s, limit = 8 * mm })
     hook:move_until(function()

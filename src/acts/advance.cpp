@@ -8,6 +8,7 @@
 #include "acts/follow.h"
 #include "acts/hard_hold.h"
 #include "acts/jaw_acts.h"
+#include "field/between_jaws.h"
 #include "field/field_state.h"
 #include "field/field_tissues.h"
 #include "field/grip.h"
@@ -27,6 +28,17 @@ Poses reachable(const Field& field, const Poses& targets) {
     if (field.tools[i].jaws_rest() && poses[i].jaw < field.tools[i].pose.jaw)
       poses[i].jaw = field.tools[i].pose.jaw;
   return poses;
+}
+
+/// Jaw angles at which a tool halts, rad. Blades and appliers halt at each, as they divide and flatten what is between
+/// them there, and so do jaws that close on clips: metal stops them.
+double grid_of(const Field& field, ToolIndex instrument, bool each_alone) {
+  if (each_alone || instrument_row(field.tool(instrument).definition.type).jaws != JawUse::hold)
+    return grip_grid;
+  const bool on_clips = std::any_of(field.organs.begin(), field.organs.end(), [&](const Organ& organ) {
+    return !clips_between(field, instrument, organ).empty();
+  });
+  return on_clips ? grip_grid : grip_grid_on_the_way;
 }
 
 /// Where the tools' motion halts: wherever one may take hold, and at its end.
@@ -59,13 +71,13 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
   const Poses to = reachable(field, targets), start = present_poses(field);
   std::vector<char> rested;
   for (const Tool& tool : field.tools) rested.push_back(tool.jaws_rest());
-  std::vector<std::vector<double>> holding_stops;
-  for (std::size_t i = 0; i < to.size(); ++i)
-    holding_stops.push_back(closing_stops(start[i], to[i], grip_grid));
   const RoughWay way(field);
   // Without masses each stop is an equilibrium of its own. What is hard slides before jaws, and is turned by them, unless
   // its balance and friction are asked at each stop: there each is a step of its own, too.
   const bool each_alone = field.step_time == 0 || may_touch_hard(field, largest_travel(field, to));
+  std::vector<std::vector<double>> holding_stops;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    holding_stops.push_back(closing_stops(start[i], to[i], grid_of(field, ToolIndex(i), each_alone)));
   bool first = true;
   double reached = 0;
   for (double stop : all_stops(holding_stops)) {

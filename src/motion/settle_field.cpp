@@ -193,7 +193,7 @@ NewtonResult settle_group(Field& field, const std::vector<InstrumentPose>& poses
 
 NewtonResult bring_along(Field& field, const std::vector<InstrumentPose>& poses,
                          SolveStatistics& statistics) {
-  constexpr double taken_along = 50e-6;  // m
+  constexpr double taken_along = 200e-6;  // m
   NewtonSettings settings = solver_settings(field, left_to_begin(field, statistics));
   settings.max_iterations = 1;
   Solved solved(field, poses);

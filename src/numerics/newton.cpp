@@ -222,7 +222,7 @@ class Iteration {
 
   /// A step with the last factor.
   bool chord() {
-    constexpr double worth = 0.25;  // slower than this, a factorisation pays
+    constexpr double worth = 0.4;  // slower than this, a factorisation pays
     // The next step gets no further than the last one, and a step that is not kept costs a whole evaluation.
     if (left_of_last_ > worth || !serves(work_, problem_)) return false;
     VecX dmultipliers;

@@ -101,7 +101,7 @@ TEST(ModuleErrors, ALimitReachedInsideAModuleNamesTheLoopThatCallsIt) {
 TEST(ModuleErrors, OfATechniquesParametersAreAllSaidAtTheExercisesLine) {
   ScenarioText text = with_modules(
       "technique.take(t, t.left, 'fat', { port = { 0, 0, 0 / 0 }, tires = 3, hardest = -1,\n"
-      "  wanted = true, keep_off = { organ = 'duct' } })");
+      "  wanted = true, keep_off = { { organ = 'duct' } } })");
   Failure failure = failure_of(text.text());
   const std::string said = to_text(failure);
   EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.take")) << said;
@@ -111,7 +111,7 @@ TEST(ModuleErrors, OfATechniquesParametersAreAllSaidAtTheExercisesLine) {
     EXPECT_THAT(said, ::testing::HasSubstr(what));
   text = with_modules(
       "technique.take(t, t.left, 'fat', { port = { 0, 0, 0 }, tries = 3, hardest = 1,\n"
-      "  keep_off = { organ = 'duct' } })");
+      "  keep_off = { { organ = 'duct' } } })");
   failure = failure_of(text.text());
   EXPECT_EQ(failure.problems[0].place.line, line_of(text.text(), "technique.take")) << to_text(failure);
   EXPECT_THAT(to_text(failure), ::testing::HasSubstr("keep_off needs clear"));

@@ -81,7 +81,7 @@ TEST(StepBudget, AStepThatWasSolvedRoughlyOnTheWayEndsInBalance) {
   InstrumentPose to = path.world.report().instruments[0].pose;
   int several = 0;
   while (to.jaw > 0) {
-    to.jaw = std::max(0.0, to.jaw - 0.1);
+    to.jaw = std::max(0.0, to.jaw - 0.2);
     const VecX before = closing.field.organs[0].state.x;
     closing.step(to);
     const MotionPart& part = closing.field.organs[0].state.motion;

@@ -103,7 +103,7 @@ TEST(World, UnfilledOrganKeepsItsUnstressedVolume) {
 
 TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   CALOT_SLOW_WHEN_SANITIZED("a motion that is tried over and over");
-  // A coarse ball, grown on by three quarters, that closed jaws are sent through at 4 m/s.
+  // A coarse ball, grown on by three quarters, that closed jaws are sent through at 6 m/s.
   OrganDefinition ball = test::bedded_ball();
   ball.nodes = 20;
   ball.held[0].radius = 30e-3;
@@ -118,7 +118,7 @@ TEST(World, FailedStepSaysWhereWhenAndWhatToDoAndLaterStepsFailAlike) {
   test::Driver driver(world);
   const Vec3 top = world.landmark("ball.fundus"), out = (driver.trocar() - top).normalized();
   ASSERT_TRUE(driver.go(top + 2e-3 * out, 0.0, 2));
-  driver.go(top - 90e-3 * out, 0.0, 1);
+  driver.go(top - 120e-3 * out, 0.0, 1);
   ASSERT_TRUE(driver.failure) << "the tool went through";
   const Failure failure = *driver.failure;
   EXPECT_EQ(failure.kind, FailureKind::simulation);
