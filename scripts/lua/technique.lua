@@ -250,10 +250,21 @@ local harmless = 0.4 * mm -- from an organ's skin, beyond which current spares i
 
 local function presses(hook, how) return hook:force("tip") > how.hardest or hook:force() > 2.5 * N end
 
+local function within(value, most) return math.max(-most, math.min(most, value)) end
+
 --- How far the foot is from the organ that is nearer, and how far it would move off the first one to lie midway.
 local function between(hook, how)
   local below, above = hook:clearance(how.between[1]), hook:clearance(how.between[2])
   return math.min(below, above), 0.5 * (above - below)
+end
+
+--- Moves the foot along `out` until it is midway between the two organs, or 0.8 mm off both.
+local function centre(hook, how, out)
+  for _ = 1, 4 do
+    local skin, aside = between(hook, how)
+    if skin > 0.8 * mm or math.abs(aside) < 0.3 * mm then return end
+    hook:move_by(times(out, within(aside, 1 * mm)), { speed = 30 * mm / s })
+  end
 end
 
 --- One piece of a sweep, of 3 mm at most: with current, if the foot lies on the tissue, until it no longer does.
@@ -264,7 +275,7 @@ local function sweep_on(hook, tissue, how, step, burns)
     if is_done(how) or presses(hook, how) then return true end
     if burns then return since > 3 or between(hook, how) < harmless end
     return since == 0
-  end, { along = step, speed = (burns and 15 or 30) * mm / s, limit = length(step), active = burns })
+  end, { along = step, speed = (burns and 20 or 40) * mm / s, limit = length(step), active = burns })
 end
 
 --- Moves the hook to a place, with current while its foot lies on the tissue, and off the nearer organ where it presses
@@ -281,13 +292,13 @@ local function sweep_to(hook, tissue, how, front, place)
     if on_it and skin > harmless and hook:force("tip") > how.hardest then
       hook:activate(0.12 * s)
     elseif presses(hook, how) or on_it and skin < harmless then
-      if eased == 2 then return false end
+      if eased == 4 then return false end
       eased = eased + 1
-      local off = aside > 0 and 0.8 * mm or -0.8 * mm
+      local off = within(aside, 0.8 * mm)
       place = plus(place, front.out, off)
       hook:move_by(plus(times(front.inward, -0.5 * mm), front.out, off), { speed = 30 * mm / s })
     else
-      aside = skin < 1 * mm and math.max(-1 * mm, math.min(1 * mm, aside)) or 0
+      aside = skin < 1 * mm and within(aside, 1 * mm) or 0
       place = plus(place, front.out, aside)
       local step = plus(times(way, math.min(1, 3 * mm / far)), front.out, aside)
       sweep_on(hook, tissue, how, step, on_it)
@@ -338,7 +349,7 @@ local function draw_on(hook, tissue, how, grip)
   for _ = 1, 10 do
     if hangs() then return end
     local _, aside = between(hook, how)
-    local way = plus(times(back, most), grip.out, math.max(-most, math.min(most, aside)))
+    local way = plus(times(back, most), grip.out, within(aside, most))
     hook:move_until(hangs, { along = way, speed = 5 * mm / s, limit = length(way) })
   end
 end
@@ -370,8 +381,7 @@ local function hook_strand(t, hook, tissue, how, strand, try)
     try.missed, try.aside = 0, 0
   else
     local most = 0.5 * length(minus(strand.from, strand.to))
-    local aside = try.aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
-    try.missed, try.aside = try.missed + 1, math.max(-most, math.min(most, aside))
+    try.missed, try.aside = try.missed + 1, within(try.aside + within(off, 0.8 * mm), most)
   end
   go(beside, behind, 20 * mm / s)
   go(beside, before, 60 * mm / s)
@@ -409,15 +419,17 @@ local function heel(front, back, strand)
   return plus(strand, front.inward, 3 * mm - foot * length(across(front.inward, back)))
 end
 
---- Brings the hook beside a place of the front, its foot inward. The angle that it is rolled by then, rad.
+--- Brings the hook 5 mm before a place of the front, where the organs stand further apart, its foot inward, and midway
+--- between them. The angle that it is rolled by then, rad.
 local function come_to(hook, how, front, place, rolled)
-  local start = plus(place, front.along, -4 * mm)
+  local start = plus(place, front.inward, -5 * mm)
   local back = unit(minus(how.port, start))
   local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
   rolled = roll_to(hook, math.atan(dot(y, foot), dot(x, foot)), rolled)
   hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
   hook:move_until(function() return presses(hook, how) end,
     { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
+  centre(hook, how, front.out)
   return rolled
 end
 
