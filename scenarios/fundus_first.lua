@@ -28,20 +28,31 @@ local function at_fundus(t)
   return count
 end
 
--- A hand that draws the fundus that way before each way of the hook until it resists: more firmly where the last way
--- has divided less than a hundredth of the plane. The camera looks at the front meanwhile.
+-- A hand that draws the fundus that way before each way of the hook until it resists: more firmly, up to 6 N, where
+-- the last way has divided less than a hundredth of the plane. The camera looks at the front meanwhile. ease(): it
+-- eases where the plane has given way to the pull, or that would run on by itself.
 local function drawing_hand(t, along, firmly)
-  local torn = t:torn("cystic_plate")
-  return function(front)
-    if t:torn("cystic_plate") - torn < 0.01 then firmly = math.min(6.5 * N, firmly + 0.4 * N) end
+  local torn, held = t:torn("cystic_plate"), 0 * N
+  local function taut() return t.fundus:force("jaws") > firmly end
+  local function draw(front)
+    if t:torn("cystic_plate") - torn < 0.01 then firmly = math.min(6 * N, firmly + 0.4 * N) end
     torn = t:torn("cystic_plate")
     t:together(function()
-      t.fundus:move_until(function() return t.fundus:force("jaws") > firmly end,
-        { along = along, speed = 25 * mm / s, limit = 25 * mm })
+      t.fundus:move_until(taut, { along = along, speed = 25 * mm / s, limit = 25 * mm })
+      held = t.fundus:force("jaws")
     end, function()
       t.laparoscope:look_at(front.at, { distance = 60 * mm })
     end)
   end
+  local function ease()
+    local force = t.fundus:force("jaws")
+    if force > 0.85 * held then return end
+    firmly = math.max(3 * N, 0.8 * force)
+    t.fundus:move_until(function() return not taut() end,
+      { along = technique.minus({ 0, 0, 0 }, along), speed = 25 * mm / s, limit = 15 * mm })
+    held = t.fundus:force("jaws")
+  end
+  return draw, ease
 end
 
 local function expert(t)
@@ -52,19 +63,21 @@ local function expert(t)
     t.laparoscope:look_at("gallbladder.bed", { distance = 60 * mm })
   end
   -- Takes what is seen of the plane beyond a share of the way from neck to fundus.
-  local function free_until(is_done, from, beyond, draw)
+  local function free_until(is_done, from, beyond, draw, ease)
     technique.free(t, t.hook, "cystic_plate", {
       port = ports.left_lower, from = t:place(from), hardest = 0.6 * N,
-      between = { "liver", "gallbladder" }, stretch = draw,
+      between = { "liver", "gallbladder" }, stretch = draw, ease = ease,
       wanted = function(strand) return strand.share > beyond and t:sees(strand.middle) end,
       is_done = is_done,
     })
   end
   swing(aside, 4 * N)
-  free_until(function() return t:torn("cystic_plate") >= 0.25 end, "gallbladder.fundus", 0.55, drawing_hand(t, aside, 4 * N))
+  free_until(function() return t:torn("cystic_plate") >= 0.25 end, "gallbladder.fundus", 0.55,
+    drawing_hand(t, aside, 4 * N))
   swing(rolled, 4.5 * N)
-  free_until(function() return t:torn("cystic_plate") >= half and at_fundus(t) <= left end, "gallbladder.bed", 0.38,
-    drawing_hand(t, rolled, 4.5 * N))
+  free_until(function() return t:torn("cystic_plate") >= 0.52 end, "gallbladder.bed", 0.38,
+    drawing_hand(t, rolled, 4.5 * N)) -- the body's left side too: else it would carry the pull
+  free_until(function() return at_fundus(t) <= left end, "gallbladder.fundus", 0.6, drawing_hand(t, rolled, 5 * N))
   technique.withdraw(t.hook, ports.left_lower)
   t.laparoscope:look_at("gallbladder.bed", { distance = 70 * mm })
   t:wait(1 * s)
