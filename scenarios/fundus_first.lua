@@ -2,9 +2,10 @@
 -- triangle cannot be dissected safely. The whole plane stands at first, and nobody touches the triangle. The fundus is
 -- taken and swung to the patient's right and down, so that the plane's left side stands open under tension. The
 -- laparoscope looks along it from the left and above, the hook comes from the left. It sweeps through what the
--- laparoscope sees at fundus and body first. Then the fundus is drawn to the feet, and the hook goes on towards the
--- neck. At a half the operator says that duct and artery stand. The fundus' right border holds on then. The mistakes
--- are a parameter, demo = "clumsy": current on the gallbladder until its wall is open.
+-- laparoscope sees at fundus and body. Then the fundus is rolled on beneath the liver's right side: the bed turns to
+-- the front, and the hook takes the body's left side, and the fundus up to its right border. When the fundus is free
+-- the operator says that duct and artery stand. The mistakes are a parameter, demo = "clumsy": current on the
+-- gallbladder until its wall is open.
 
 local calot = require "calot"
 local anatomy = require "anatomy"
@@ -28,31 +29,10 @@ local function at_fundus(t)
   return count
 end
 
--- A hand that draws the fundus that way before each way of the hook until it resists: more firmly, up to 6 N, where
--- the last way has divided less than a hundredth of the plane. The camera looks at the front meanwhile. ease(): it
--- eases where the plane has given way to the pull, or that would run on by itself.
+-- The hand that draws the fundus that way while the hook divides the plane.
 local function drawing_hand(t, along, firmly)
-  local torn, held = t:torn("cystic_plate"), 0 * N
-  local function taut() return t.fundus:force("jaws") > firmly end
-  local function draw(front)
-    if t:torn("cystic_plate") - torn < 0.01 then firmly = math.min(6 * N, firmly + 0.4 * N) end
-    torn = t:torn("cystic_plate")
-    t:together(function()
-      t.fundus:move_until(taut, { along = along, speed = 25 * mm / s, limit = 25 * mm })
-      held = t.fundus:force("jaws")
-    end, function()
-      t.laparoscope:look_at(front.at, { distance = 60 * mm })
-    end)
-  end
-  local function ease()
-    local force = t.fundus:force("jaws")
-    if force > 0.85 * held then return end
-    firmly = math.max(3 * N, 0.8 * force)
-    t.fundus:move_until(function() return not taut() end,
-      { along = technique.minus({ 0, 0, 0 }, along), speed = 25 * mm / s, limit = 15 * mm })
-    held = t.fundus:force("jaws")
-  end
-  return draw, ease
+  return technique.drawing_hand(t, t.fundus, "cystic_plate",
+    { along = along, firmly = firmly, least = 3 * N, most = 6 * N, distance = 60 * mm })
 end
 
 local function expert(t)
@@ -73,11 +53,11 @@ local function expert(t)
   end
   swing(aside, 4 * N)
   free_until(function() return t:torn("cystic_plate") >= 0.25 end, "gallbladder.fundus", 0.55,
-    drawing_hand(t, aside, 4 * N))
+    drawing_hand(t, aside, 4.4 * N))
   swing(rolled, 4.5 * N)
   free_until(function() return t:torn("cystic_plate") >= 0.52 end, "gallbladder.bed", 0.38,
-    drawing_hand(t, rolled, 4.5 * N)) -- the body's left side too: else it would carry the pull
-  free_until(function() return at_fundus(t) <= left end, "gallbladder.fundus", 0.6, drawing_hand(t, rolled, 5 * N))
+    drawing_hand(t, rolled, 4.9 * N)) -- the body's left side too: else it would carry the pull
+  free_until(function() return at_fundus(t) <= left end, "gallbladder.fundus", 0.6, drawing_hand(t, rolled, 5.4 * N))
   technique.withdraw(t.hook, ports.left_lower)
   t.laparoscope:look_at("gallbladder.bed", { distance = 70 * mm })
   t:wait(1 * s)
@@ -94,7 +74,7 @@ end
 return calot.exercise {
   api = 2,
   id = "fundus-first",
-  title = "Fundus first: half of the plane divided while duct and artery stand",
+  title = "Fundus first: the fundus comes off the liver while duct and artery stand",
   time_limit = 300 * s,
 
   params = {

@@ -454,16 +454,16 @@ local function sweep(t, hook, tissue, how, front, back, first)
 end
 
 --- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
---- sees it. The shaft is not turned at first, and is turned back at the end. The foot points inward, away from the
---- lens, 3 mm past the foremost strands; it sweeps to and fro along them, midway between the two organs, and current
---- flows while it lies on strands and no organ is within 0.4 mm. It ends when nothing is under tension, or ten strokes
---- in a row divide nothing; after two of these it tries one strand alone as well, from behind. `how`: port, where the
---- shaft comes from; from, the place nearest to which it begins; hardest, the force on the foot at which it stops and
---- burns, or eases off a skin; between, the two organs, first the one that the tissue ends on; wanted(strand), if
---- given, those that make up the front, such as those that the laparoscope sees; stretch(front), if given, called
---- before each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given.
---- `front`: at, its middle; out, from the first organ to the other one; along, its own way, as the shaft points;
---- inward, to the strands behind it; tension, of its tautest strand.
+--- sees it. The shaft is not turned at first, and is turned back at the end. The hook comes to the front from its open
+--- side, midway between the two organs, its foot inward, away from the lens, and 3 mm past the foremost strands. It
+--- sweeps to and fro along them, and current flows while it lies on strands and no organ is within 0.4 mm. It ends when
+--- nothing is under tension, or ten strokes in a row divide nothing; after two of these it tries one strand alone as
+--- well, from behind. `how`: port, where the shaft comes from; from, the place nearest to which it begins; hardest, the
+--- force on the foot at which it stops and burns, or eases off a skin; between, the two organs, first the one that the
+--- tissue ends on; wanted(strand), if given, those that make up the front, such as those that the laparoscope sees;
+--- stretch(front), if given, called before each way to keep the plane under tension; ease(), if given, every 3 mm of a
+--- way; is_done(), if given. `front`: at, its middle; out, from the first organ to the other one; along, its own way,
+--- as the shaft points; inward, to the strands behind it; tension, of its tautest strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near, try = 0, 0, how.from, { missed = 0, aside = 0 }
@@ -492,6 +492,44 @@ function technique.free(t, hook, tissue, how)
     missed = t:torn(tissue) > torn and 0 or missed + 1
   end
   unroll(hook, rolled)
+end
+
+local how_to_draw = {
+  along = given.way, firmly = given.above_zero, least = given.above_zero, most = given.above_zero,
+  distance = given.above_zero, follow = given.optional(given.called),
+}
+
+--- A hand that keeps a plane open while the hook divides it: two functions, for technique.free's stretch and ease.
+--- The first draws that way until the hand feels the force, by 15 mm at most: 0.4 N more where the last way of the hook
+--- has divided less than a hundredth of the tissue. The laparoscope looks at the front meanwhile. The second goes back
+--- to 0.8 of what is left of the force where the plane has given way to the pull, or that would run on by itself: where
+--- two hundredths of it are divided and 0.15 of the force is gone. `how`: along, the way; firmly, the force; least and
+--- most, between which it stays; distance, of the laparoscope from the front; follow(), if given, called after each
+--- draw, such as to turn the hand's shaft.
+function technique.drawing_hand(t, hand, tissue, how)
+  given.check(how, how_to_draw, "technique.drawing_hand", 2)
+  local firmly, torn, held = how.firmly, -1, 0
+  local function taut() return hand:force("jaws") > firmly end
+  local function draw(front)
+    if t:torn(tissue) - torn < 0.01 then firmly = math.min(how.most, firmly + 0.4 * N) end
+    torn = t:torn(tissue)
+    t:together(function()
+      hand:move_until(taut, { along = how.along, speed = 25 * mm / s, limit = 15 * mm })
+      if how.follow then how.follow() end
+      held = hand:force("jaws")
+    end, function()
+      t.laparoscope:look_at(front.at, { distance = how.distance })
+    end)
+  end
+  local function ease()
+    local force = hand:force("jaws")
+    if force > 0.85 * held or t:torn(tissue) - torn < 0.02 then return end
+    firmly = math.max(how.least, 0.8 * force)
+    hand:move_until(function() return not taut() end,
+      { along = times(how.along, -1), speed = 25 * mm / s, limit = 15 * mm })
+    held = hand:force("jaws")
+  end
+  return draw, ease
 end
 
 -- ---- clips and scissors
@@ -600,6 +638,7 @@ for name, takes in pairs {
   draw_slack = { t, tool, { "slack", given.above_zero } },
   take = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
   free = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
+  drawing_hand = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
   hook = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
   roll_across = { { "port", given.three }, { "at", given.three }, { "along", given.way } },
   hand = { t, { "name", given.name }, { "port", given.three } }, withdraw = { tool, { "port", given.three } },
