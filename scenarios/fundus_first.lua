@@ -101,10 +101,13 @@ return calot.exercise {
 
   steps = function(t)
     local stood, noted = at_fundus(t), -1
-    local function note_fundus()
+    -- The share of the fundus that is free; noted from tenth to tenth, and when it is what is asked for.
+    local function free_share()
       local share = (stood - at_fundus(t)) / math.max(1, stood)
-      if share ~= noted then t:note("fundus_free_pct", 100 * share, "%") end
-      noted = share
+      if share - noted >= 0.1 or noted < asked and share >= asked then
+        t:note("fundus_free_pct", 100 * share, "%")
+        noted = share
+      end
       return share
     end
     t:step("open", "Take the fundus and swing it to the patient's right, until the plane's left side is taut", {
@@ -117,7 +120,7 @@ return calot.exercise {
       hint = "sweep the foot along the taut strands that you see, and let current flow while it lies on them; draw the "
         .. "fundus on as they yield, then roll it under the liver's right side; keep off the triangle",
     })
-    t:wait_until(function() return note_fundus() >= asked and t:torn("cystic_plate") >= half end)
+    t:wait_until(function() return free_share() >= asked and t:torn("cystic_plate") >= half end)
     t:step("look", "Say that duct and artery stand", { limit = 20 * s, hint = "hook out of the way, then a time-out" })
     t:wait_until(function() return t:count("time_out") > 0 end)
   end,
