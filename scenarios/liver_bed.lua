@@ -27,32 +27,12 @@ local function turn_with_it(hand)
   end
 end
 
--- A hand that draws the pouch over the liver's edge before each way of the hook until it resists: more firmly where
--- the last way has divided nothing. The camera looks at the front meanwhile. ease(): it eases where the plane has given
--- way to the pull, or that would run on by itself.
+-- The hand that draws the pouch over the liver's edge while the hook divides the plane.
 local function drawing_hand(t, firmly)
-  local torn, held = -1, 0 * N
-  local function taut() return t.left:force("jaws") > firmly end
-  local function draw(front)
-    if t:torn("cystic_plate") == torn then firmly = firmly + 0.4 * N end
-    torn = t:torn("cystic_plate")
-    t:together(function()
-      t.left:move_until(taut, { along = over_the_edge, speed = 25 * mm / s, limit = 15 * mm })
-      turn_with_it(t.left)
-      held = t.left:force("jaws")
-    end, function()
-      t.laparoscope:look_at(front.at, { distance = 75 * mm })
-    end)
-  end
-  local function ease()
-    local force = t.left:force("jaws")
-    if force > 0.85 * held then return end
-    firmly = math.max(1.6 * N, 0.8 * force)
-    t.left:move_until(function() return not taut() end,
-      { along = technique.minus({ 0, 0, 0 }, over_the_edge), speed = 25 * mm / s, limit = 15 * mm })
-    held = t.left:force("jaws")
-  end
-  return draw, ease
+  return technique.drawing_hand(t, t.left, "cystic_plate", {
+    along = over_the_edge, firmly = firmly, least = 1.6 * N, most = 5 * N, distance = 75 * mm,
+    follow = function() turn_with_it(t.left) end,
+  })
 end
 
 -- Lets go and draws back out of the way.
@@ -81,7 +61,7 @@ local function expert(t)
   t.laparoscope:look_at("liver.underside", { distance = 60 * mm })
   t:wait(2 * s) -- what bleeds or leaks is seen by then
   t:time_out("the bed is dry")
-  free_until(1, drawing_hand(t, 2 * N))
+  free_until(1, drawing_hand(t, math.max(2 * N, t.left:force("jaws"))))
   t:together(function()
     t.left:move_to({ -60 * mm, 120 * mm, 0 }, { speed = 60 * mm / s }) -- across before the liver
     t.left:move_to({ 70 * mm, 138 * mm, -30 * mm }, { speed = 60 * mm / s })
@@ -193,7 +173,7 @@ return calot.exercise {
 
   golden = {
     at = {
-      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 66 * s, 76 * s, 84 * s, 96 * s, 112 * s, 117.4 * s,
+      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 66 * s, 76 * s, 84 * s, 96 * s, 112 * s, 123.3 * s,
     },
   },
 }

@@ -256,10 +256,21 @@ local harmless = 0.4 * mm -- from an organ's skin, beyond which current spares i
 
 local function presses(hook, how) return hook:force("tip") > how.hardest or hook:force() > 2.5 * N end
 
+local function within(value, most) return math.max(-most, math.min(most, value)) end
+
 --- How far the foot is from the organ that is nearer, and how far it would move off the first one to lie midway.
 local function between(hook, how)
   local below, above = hook:clearance(how.between[1]), hook:clearance(how.between[2])
   return math.min(below, above), 0.5 * (above - below)
+end
+
+--- Moves the foot along `out` until it is midway between the two organs, or 0.8 mm off both.
+local function centre(hook, how, out)
+  for _ = 1, 4 do
+    local skin, aside = between(hook, how)
+    if skin > 0.8 * mm or math.abs(aside) < 0.3 * mm then return end
+    hook:move_by(times(out, within(aside, 1 * mm)), { speed = 30 * mm / s })
+  end
 end
 
 --- One piece of a sweep, of 3 mm at most: with current, if the foot lies on the tissue, until it no longer does.
@@ -270,7 +281,7 @@ local function sweep_on(hook, tissue, how, step, burns)
     if is_done(how) or presses(hook, how) then return true end
     if burns then return since > 3 or between(hook, how) < harmless end
     return since == 0
-  end, { along = step, speed = (burns and 15 or 30) * mm / s, limit = length(step), active = burns })
+  end, { along = step, speed = (burns and 20 or 40) * mm / s, limit = length(step), active = burns })
 end
 
 --- Moves the hook to a place, with current while its foot lies on the tissue, and off the nearer organ where it presses
@@ -287,13 +298,13 @@ local function sweep_to(hook, tissue, how, front, place)
     if on_it and skin > harmless and hook:force("tip") > how.hardest then
       hook:activate(0.12 * s)
     elseif presses(hook, how) or on_it and skin < harmless then
-      if eased == 2 then return false end
+      if eased == 4 then return false end
       eased = eased + 1
-      local off = aside > 0 and 0.8 * mm or -0.8 * mm
+      local off = within(aside, 0.8 * mm)
       place = plus(place, front.out, off)
       hook:move_by(plus(times(front.inward, -0.5 * mm), front.out, off), { speed = 30 * mm / s })
     else
-      aside = skin < 1 * mm and math.max(-1 * mm, math.min(1 * mm, aside)) or 0
+      aside = skin < 1 * mm and within(aside, 1 * mm) or 0
       place = plus(place, front.out, aside)
       local step = plus(times(way, math.min(1, 3 * mm / far)), front.out, aside)
       sweep_on(hook, tissue, how, step, on_it)
@@ -344,7 +355,7 @@ local function draw_on(hook, tissue, how, grip)
   for _ = 1, 10 do
     if hangs() then return end
     local _, aside = between(hook, how)
-    local way = plus(times(back, most), grip.out, math.max(-most, math.min(most, aside)))
+    local way = plus(times(back, most), grip.out, within(aside, most))
     hook:move_until(hangs, { along = way, speed = 5 * mm / s, limit = length(way) })
   end
 end
@@ -376,8 +387,7 @@ local function hook_strand(t, hook, tissue, how, strand, try)
     try.missed, try.aside = 0, 0
   else
     local most = 0.5 * length(minus(strand.from, strand.to))
-    local aside = try.aside + math.max(-0.8 * mm, math.min(0.8 * mm, off))
-    try.missed, try.aside = try.missed + 1, math.max(-most, math.min(most, aside))
+    try.missed, try.aside = try.missed + 1, within(try.aside + within(off, 0.8 * mm), most)
   end
   go(beside, behind, 20 * mm / s)
   go(beside, before, 60 * mm / s)
@@ -415,15 +425,17 @@ local function heel(front, back, strand)
   return plus(strand, front.inward, 3 * mm - foot * length(across(front.inward, back)))
 end
 
---- Brings the hook beside a place of the front, its foot inward. The angle that it is rolled by then, rad.
+--- Brings the hook 5 mm before a place of the front, where the organs stand further apart, its foot inward, and midway
+--- between them. The angle that it is rolled by then, rad.
 local function come_to(hook, how, front, place, rolled)
-  local start = plus(place, front.along, -4 * mm)
+  local start = plus(place, front.inward, -5 * mm)
   local back = unit(minus(how.port, start))
   local foot, x, y = unit(across(front.inward, back)), frame_of(how.port, start)
   rolled = roll_to(hook, math.atan(dot(y, foot), dot(x, foot)), rolled)
   hook:move_to(plus(start, back, 12 * mm), { speed = 100 * mm / s })
   hook:move_until(function() return presses(hook, how) end,
     { along = times(back, -1), speed = 60 * mm / s, limit = 12 * mm })
+  centre(hook, how, front.out)
   return rolled
 end
 
@@ -448,16 +460,16 @@ local function sweep(t, hook, tissue, how, front, back, first)
 end
 
 --- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
---- sees it. The shaft is not turned at first, and is turned back at the end. The foot points inward, away from the
---- lens, 3 mm past the foremost strands; it sweeps to and fro along them, midway between the two organs, and current
---- flows while it lies on strands and no organ is within 0.4 mm. It ends when nothing is under tension, or ten strokes
---- in a row divide nothing; after two of these it tries one strand alone as well, from behind. `how`: port, where the
---- shaft comes from; from, the place nearest to which it begins; hardest, the force on the foot at which it stops and
---- burns, or eases off a skin; between, the two organs, first the one that the tissue ends on; wanted(strand), if
---- given, those that make up the front, such as those that the laparoscope sees; stretch(front), if given, called
---- before each way to keep the plane under tension; ease(), if given, every 3 mm of a way; is_done(), if given.
---- `front`: at, its middle; out, from the first organ to the other one; along, its own way, as the shaft points;
---- inward, to the strands behind it; tension, of its tautest strand.
+--- sees it. The shaft is not turned at first, and is turned back at the end. The hook comes to the front from its open
+--- side, midway between the two organs, its foot inward, away from the lens, and 3 mm past the foremost strands. It
+--- sweeps to and fro along them, and current flows while it lies on strands and no organ is within 0.4 mm. It ends when
+--- nothing is under tension, or ten strokes in a row divide nothing; after two of these it tries one strand alone as
+--- well, from behind. `how`: port, where the shaft comes from; from, the place nearest to which it begins; hardest, the
+--- force on the foot at which it stops and burns, or eases off a skin; between, the two organs, first the one that the
+--- tissue ends on; wanted(strand), if given, those that make up the front, such as those that the laparoscope sees;
+--- stretch(front), if given, called before each way to keep the plane under tension; ease(), if given, every 3 mm of a
+--- way; is_done(), if given. `front`: at, its middle; out, from the first organ to the other one; along, its own way,
+--- as the shaft points; inward, to the strands behind it; tension, of its tautest strand.
 function technique.free(t, hook, tissue, how)
   given.check(how, how_to_free, "technique.free", 2)
   local missed, rolled, near, try = 0, 0, how.from, { missed = 0, aside = 0 }
@@ -486,6 +498,44 @@ function technique.free(t, hook, tissue, how)
     missed = t:torn(tissue) > torn and 0 or missed + 1
   end
   unroll(hook, rolled)
+end
+
+local how_to_draw = {
+  along = given.way, firmly = given.above_zero, least = given.above_zero, most = given.above_zero,
+  distance = given.above_zero, follow = given.optional(given.called),
+}
+
+--- A hand that keeps a plane open while the hook divides it: two functions, for technique.free's stretch and ease.
+--- The first draws that way until the hand feels the force, by 15 mm at most: 0.4 N more where the last way of the hook
+--- has divided less than a hundredth of the tissue. The laparoscope looks at the front meanwhile. The second goes back
+--- to 0.8 of what is left of the force where the plane has given way to the pull, or that would run on by itself: where
+--- two hundredths of it are divided and 0.15 of the force is gone. `how`: along, the way; firmly, the force; least and
+--- most, between which it stays; distance, of the laparoscope from the front; follow(), if given, called after each
+--- draw, such as to turn the hand's shaft.
+function technique.drawing_hand(t, hand, tissue, how)
+  given.check(how, how_to_draw, "technique.drawing_hand", 2)
+  local firmly, torn, held = how.firmly, -1, 0
+  local function taut() return hand:force("jaws") > firmly end
+  local function draw(front)
+    if t:torn(tissue) - torn < 0.01 then firmly = math.min(how.most, firmly + 0.4 * N) end
+    torn = t:torn(tissue)
+    t:together(function()
+      hand:move_until(taut, { along = how.along, speed = 25 * mm / s, limit = 15 * mm })
+      if how.follow then how.follow() end
+      held = hand:force("jaws")
+    end, function()
+      t.laparoscope:look_at(front.at, { distance = how.distance })
+    end)
+  end
+  local function ease()
+    local force = hand:force("jaws")
+    if force > 0.85 * held or t:torn(tissue) - torn < 0.02 then return end
+    firmly = math.max(how.least, 0.8 * force)
+    hand:move_until(function() return not taut() end,
+      { along = times(how.along, -1), speed = 25 * mm / s, limit = 15 * mm })
+    held = hand:force("jaws")
+  end
+  return draw, ease
 end
 
 -- ---- clips and scissors
@@ -594,6 +644,7 @@ for name, takes in pairs {
   draw_slack = { t, tool, { "slack", given.above_zero } },
   take = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
   free = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
+  drawing_hand = { t, tool, { "tissue", given.name }, { "how", given.by_name } },
   hook = { t, tool, { "tissue", given.name }, { "how", given.by_name } }, shut = { t, tube },
   roll_across = { { "port", given.three }, { "at", given.three }, { "along", given.way } },
   hand = { t, { "name", given.name }, { "port", given.three } }, withdraw = { tool, { "port", given.three } },
