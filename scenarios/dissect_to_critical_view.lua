@@ -182,5 +182,5 @@ return calot.exercise {
     pass = 80,
   },
 
-  golden = { at = { 4.8 * s, 13.2 * s, 40.24 * s, 43.24 * s } },
+  golden = { at = { 4.8 * s, 13.2 * s, 63.2 * s, 75.8 * s } },
 }

@@ -94,7 +94,10 @@ return calot.exercise {
         fundus = { port = "right_subcostal", force_limit = 8 * N, pinch_force = 12 * N }, -- above 15 N it would harm
         hook = { type = "l_hook", port = "left_lower", force_limit = 3 * N, power = 30 },
       },
-      laparoscope = { port = "scope", angle = 30 * deg, look_at = "gallbladder.fundus", distance = 80 * mm },
+      laparoscope = {
+        port = "scope", angle = 30 * deg, look_at = "gallbladder.fundus", distance = 80 * mm,
+        exposure = 2.5, -- what is far behind is dark
+      },
       solver = { motion = "dynamic", rate = 25 }, -- as critical_view.lua
     }
   end,

@@ -65,7 +65,7 @@ void visit_members(auto&& visit, MembersOf<Wound> auto& wound) {
 
 /// Newton iterations of a step where masses count.
 struct StepBudget {
-  int begin = 8;     ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
+  int begin = 14;    ///< having taken these it begins nothing more: no part, no other angle of jaws, no slip
   int balance = 20;  ///< that the balance where it ends may take beyond
 };
 

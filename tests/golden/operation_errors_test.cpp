@@ -168,10 +168,11 @@ TEST(OperationErrors, AnArteryThatIsCutUnclippedBleedsAndIsSeenToDoSo) {
   EXPECT_FALSE(clumsy.played->report.score.passed());
 }
 
-TEST(OperationErrors, WhoBeginsAtTheFundusFreesHalfOfThePlaneWhileDuctAndArteryStand) {
-  if (!test::long_run()) GTEST_SKIP() << "dissects for two minutes";
+TEST(OperationErrors, WhoBeginsAtTheFundusFreesItWhileDuctAndArteryStand) {
+  if (!test::long_run()) GTEST_SKIP() << "dissects for three minutes";
   const Playback fundus_first("fundus_first.lua", {});
   ASSERT_TRUE(fundus_first.played) << fundus_first.failure;
+  EXPECT_GE(fundus_first.played->session.metrics.at("note.fundus_free_pct"), 95);
   EXPECT_GE(fundus_first.played->session.metrics.at("cystic_plate.torn_pct"), 50);
   EXPECT_EQ(fundus_first.played->session.metrics.at("triangle_fat.torn_pct"), 0);
   for (EventKind kind : {EventKind::perforation, EventKind::cut, EventKind::injury, EventKind::overforce})

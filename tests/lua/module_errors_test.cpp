@@ -52,6 +52,12 @@ TEST(ModuleErrors, SayWhichArgumentIsWrongAndWhatItIsToBe) {
            {"technique.shut('duct')",
             "t is the exercise's t, not \"duct\"; tube is a name in quotes, not nil"},
            {"technique.take(t, 'hook', 'fat', {})", "tool is an instrument, such as t.left, not \"hook\""},
+           {"technique.hook(t, t.left, 'fat', { port = { 0, 0, 1 }, hardest = 1, between = { 'liver' } })",
+            "between is two names { \"...\", \"...\" }, not this table"},
+           {"technique.drawing_hand(t, t.left, 'fat', { along = { 0, 0, 0 }, firmly = 1, least = 1, most = 2 "
+            "})",
+            "along is three numbers { x, y, z }, not all 0, not this table; technique.drawing_hand needs "
+            "distance"},
            {"technique.hnad(t)", "technique has no hnad (did you mean \"hand\"?)"},
            {"anatomy.place({ 4, -20, 0 })", "x is a number, not this table; y is a number, not nil"},
            {"anatomy.along('cystic_duct', 0.5)", "points is a list of two places or more"},
