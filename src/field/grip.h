@@ -16,8 +16,8 @@ inline constexpr double pad_reach = 0.5e-3;
 
 /// Jaw angles (rad) at which closing jaws may take hold.
 inline constexpr double grip_grid = 0.0174532925199432957;  // 1 deg
-/// The same of jaws that hold where bodies are only brought along on the way: a pad's end moves by 0.5 mm from one to the next, which is how
-/// far its teeth reach.
+/// The same of jaws that hold where bodies are only brought along on the way: a pad's end moves by 0.5 mm from one to the
+/// next, which is how far its teeth reach.
 inline constexpr double grip_grid_on_the_way = 3 * grip_grid;
 
 /// True when both jaws hold skin and the pads are as near as the folded wall allows.
