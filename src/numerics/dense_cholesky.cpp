@@ -24,48 +24,49 @@ struct Panel {
   }
 };
 
-/// Takes the product of `under` with itself off the lower triangle of `rest`, a block of columns at a time.
-template <class Under, class Rest>
-void take_product_off(const Under& under, Rest rest, Workers* workers) {
-  constexpr Eigen::Index columns = 2 * cholesky_block;  // narrower ones read the rows more often
-  const auto chunks = static_cast<int>((rest.cols() + columns - 1) / columns);
-  for_each_chunk(workers, chunks, [&](int chunk) {
-    // Chunks are taken from the last on, which is the smallest: the longest columns shall come first.
-    const Eigen::Index k = (chunks - 1 - chunk) * columns, size = std::min(columns, rest.cols() - k),
-                       below = rest.cols() - k - size;
-    const auto here = under.middleRows(k, size);
-    rest.block(k, k, size, size).template selfadjointView<Eigen::Lower>().rankUpdate(here, -1);
-    if (below > 0)
-      rest.block(k + size, k, below, size).noalias() -= under.bottomRows(below) * here.transpose();
-  });
+/// The factor of a panel's corner, and what is under it times the inverse of its transpose. False when the corner is not
+/// positive definite.
+bool finish(Eigen::MatrixXd& a, const Panel& panel) {
+  const auto [k, size, below] = panel;
+  auto corner = a.block(k, k, size, size);
+  const Eigen::LLT<Eigen::MatrixXd> factor(corner);
+  if (factor.info() != Eigen::Success) return false;
+  corner.triangularView<Eigen::Lower>() = factor.matrixLLT();
+  if (below == 0) return true;
+  auto under = a.block(k + size, k, below, size);
+  factor.matrixU().solveInPlace<Eigen::OnTheRight>(under);
+  return true;
 }
 
-/// Under a corner of a factor: what is there, times the inverse of its transpose.
-template <class Corner, class Under>
-void solve_under(const Corner& corner, Under under, Workers* workers) {
-  constexpr Eigen::Index rows = 96;  // twice as many as the corner has: less is not worth to be shared
-  const auto chunks = static_cast<int>((under.rows() + rows - 1) / rows);
-  for_each_chunk(workers, chunks, [&](int chunk) {
-    auto part = under.middleRows(chunk * rows, std::min(rows, under.rows() - chunk * rows));
-    corner.matrixU().template solveInPlace<Eigen::OnTheRight>(part);
-  });
+/// Takes the product of a finished panel with itself off `size` later columns from `first` on.
+void take_product_off(Eigen::MatrixXd& a, const Panel& panel, Eigen::Index first, Eigen::Index size) {
+  const auto left = a.middleCols(panel.k, panel.size);
+  const auto here = left.middleRows(first, size);
+  const Eigen::Index next = first + size, below = panel.k + panel.size + panel.below - next;
+  a.block(first, first, size, size).selfadjointView<Eigen::Lower>().rankUpdate(here, -1);
+  if (below > 0)
+    a.block(next, first, below, size).noalias() -= left.middleRows(next, below) * here.transpose();
 }
 
 }  // namespace
 
-// Block by block. As Eigen::LLT, which copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
+// Panel by panel. As Eigen::LLT, which copies the matrix and sums up its norm besides: a third of the time for 97 nodes.
 bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends, Workers* workers) {
-  for (Eigen::Index first = 0; first < a.rows(); first += cholesky_block) {
-    const auto [k, size, below] = Panel(a, ends, first);
-    const Eigen::LLT<Eigen::MatrixXd> corner(a.block(k, k, size, size));
-    if (corner.info() != Eigen::Success) return false;
-    a.block(k, k, size, size).triangularView<Eigen::Lower>() = corner.matrixLLT();
-    if (below == 0) continue;
-    auto under = a.block(k + size, k, below, size);
-    solve_under(corner, under, workers);
-    take_product_off(under, a.block(k + size, k + size, below, below), workers);
+  if (a.rows() == 0) return true;
+  bool definite = finish(a, Panel(a, ends, 0));
+  for (Eigen::Index first = 0; definite && first + cholesky_block < a.rows(); first += cholesky_block) {
+    const Panel panel(a, ends, first);
+    const Eigen::Index next = panel.k + panel.size, end = next + panel.below;
+    // Whoever takes the product off the next panel finishes it, while others take it off those after. That is begun first,
+    // as it takes longest: the last chunk is.
+    const auto chunks = std::max(1, static_cast<int>((panel.below + cholesky_block - 1) / cholesky_block));
+    for_each_chunk(workers, chunks, [&](int chunk) {
+      const Eigen::Index column = next + (chunks - 1 - chunk) * cholesky_block;
+      if (column < end) take_product_off(a, panel, column, std::min(cholesky_block, end - column));
+      if (column == next) definite = finish(a, Panel(a, ends, next));
+    });
   }
-  return true;
+  return definite;
 }
 
 namespace {
