@@ -50,7 +50,8 @@ struct Script {
 
 class Loader {
  public:
-  Loader(const fs::path& path, const LoadOptions& options) : path_(path), options_(options) {}
+  Loader(const fs::path& path, const LoadOptions& options, ScriptTexts texts = {})
+      : path_(path), options_(options), texts_(std::move(texts)) {}
 
   /// Twice the same: once to check it, running steps and demo dry; and once, in a fresh state that no dry run
   /// has touched, to play it.
@@ -82,6 +83,7 @@ class Loader {
 
   fs::path path_;
   LoadOptions options_;
+  ScriptTexts texts_;  ///< as they were read before
   std::string text_;
   SourceMap map_;
   std::vector<Problem> problems_;
@@ -106,18 +108,20 @@ bool is_exercise(const Value& root) {
   return kind != nullptr && kind->text == "exercise";
 }
 
-/// Holds nothing but where the rules are: they are read again whenever they are asked.
+/// The rules as they were read: whoever writes on while an exercise is played changes nothing of its score.
 class LuaRules final : public ScoreRules {
  public:
-  LuaRules(fs::path path, LoadOptions options) : path_(std::move(path)), options_(std::move(options)) {}
+  LuaRules(fs::path path, LoadOptions options, ScriptTexts texts)
+      : path_(std::move(path)), options_(std::move(options)), texts_(std::move(texts)) {}
   Result<RuleAnswers> judge(const ExerciseDefinition& exercise, const std::map<std::string, double>& metrics,
                             const Progress& progress) const override {
-    return Loader(path_, options_).judge(exercise, metrics, progress);
+    return Loader(path_, options_, texts_).judge(exercise, metrics, progress);
   }
 
  private:
   fs::path path_;
   LoadOptions options_;
+  ScriptTexts texts_;
 };
 
 class LuaExercise final : public ExerciseScript {
@@ -175,6 +179,7 @@ Result<std::unique_ptr<Sandbox>> Loader::make_sandbox() const {
   options.modules = options_.modules;
   options.seed = options_.seed;
   options.limits = options_.limits;
+  options.texts = texts_;
   return Sandbox::create(options);
 }
 
@@ -380,24 +385,19 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   if (score.bail_out != 0 || std::any_of(score.parts.begin(), score.parts.end(), [](const ScorePart& part) {
         return part.kind == ScorePartKind::rule;
       }))
-    definition.score.rules = std::make_shared<LuaRules>(path_, options_);
+    definition.score.rules = std::make_shared<LuaRules>(path_, options_, script->sandbox->texts());
   return std::unique_ptr<ExerciseScript>(
       std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition), std::move(map_)));
 }
 
 Result<RuleAnswers> Loader::judge(const ExerciseDefinition& exercise,
                                   const std::map<std::string, double>& metrics, const Progress& progress) {
-  Result<std::string> text = Sandbox::read_text(path_);
-  if (!text) return text.failure();
-  text_ = std::move(text).value();
+  text_ = texts_.at(path_);
   FieldCheck check;
   Result<Script> script = open(true, check);
   if (!script) return script.failure();
   if (std::optional<Failure> failure = call_scene(script.value())) return *failure;
   if (std::optional<Failure> failure = call_score(script.value(), check)) return *failure;
-  if (script->sandbox->source_hash() != exercise.source_hash)
-    return fail(FailureKind::usage, "the scenario has changed since it was read: its rules are not asked",
-                "play or score it again", {path_.string(), 0, {}});
   const RuleRun run{exercise, metrics, progress, script->table.parameters, nullptr};
   RuleAnswers answers;
   for (const ScorePart& part : script->table.definition.score.parts) {

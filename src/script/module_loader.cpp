@@ -47,6 +47,7 @@ fs::path find_module(const SandboxOptions& options, const std::string& name) {
   std::string sought;
   for (const fs::path& folder : {options.script.parent_path(), options.modules}) {
     if (folder.empty() && folder != options.script.parent_path()) continue;
+    if (options.texts.contains(folder / file)) return folder / file;
     const fs::path base = folder.empty() ? fs::path(".") : folder;
     if (fs::is_regular_file(base / file)) {
       if (!is_inside(base / file, base)) {

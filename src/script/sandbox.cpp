@@ -272,12 +272,15 @@ Result<std::string> Sandbox::read_text(const std::filesystem::path& path) {
 }
 
 void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path) {
+  if (const auto known = options_.texts.find(path); known != options_.texts.end())
+    return push_chunk(L, path, known->second);
   const Result<std::string> text = read_text(path);
   if (!text) throw std::runtime_error(to_text(text.failure()));
   push_chunk(L, path, text.value());
 }
 
 void Sandbox::push_chunk(lua_State* L, const std::filesystem::path& path, const std::string& text) {
+  texts_[path] = text;
   source_hash_.add(std::uint64_t{text.size()});
   source_hash_.add(std::string_view(text));
   const std::string name = fmt::format("@{}", path.string());

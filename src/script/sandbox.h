@@ -24,11 +24,15 @@ struct lua_Debug;
 
 namespace calot {
 
+/// Texts of script and modules by their paths, as they were read.
+using ScriptTexts = std::map<std::filesystem::path, std::string>;
+
 struct SandboxOptions {
   std::filesystem::path script;   ///< the scenario; its folder is the first that `require` looks into
   std::filesystem::path modules;  ///< the second; may be empty
   std::uint64_t seed = 1;         ///< of math.random
   ScriptLimits limits;
+  ScriptTexts texts;  ///< taken from here, whatever has become of their files since; others are read
 };
 
 /// Which line of the author's is to mend what went wrong, and how the script came there: lines of text, each begins
@@ -83,7 +87,8 @@ class Sandbox {
   /// protected.
   void push_chunk(lua_State* L, const std::filesystem::path& path);
   void push_chunk(lua_State* L, const std::filesystem::path& path, const std::string& text);
-  /// Hash of all the text loaded so far, in the order of loading.
+  /// All the text loaded so far, and its hash in the order of loading.
+  const ScriptTexts& texts() const { return texts_; }
   std::uint64_t source_hash() const { return source_hash_.value(); }
 
   /// Takes instructions off the budget for work done in C++; raises the budget's error when it is used up.
@@ -148,6 +153,7 @@ class Sandbox {
   std::vector<Place> trace_;                  ///< of the last error, innermost first
   std::map<std::string, std::string> files_;  ///< Lua's short names of chunks to paths
   std::vector<lua_State*> threads_;
+  ScriptTexts texts_;
   Hash source_hash_;
   Watchdog watchdog_;
 };

@@ -130,8 +130,8 @@ struct RuleAnswers {
 class ScoreRules {
  public:
   virtual ~ScoreRules() = default;
-  /// The same however often it is asked. Fails (scenario, at the author's line; resource) where an answer cannot be had;
-  /// usage where the scenario has changed since it was read.
+  /// The same however often it is asked, by the exercise as it was read. Fails (scenario, at the author's line; resource)
+  /// where an answer cannot be had.
   virtual Result<RuleAnswers> judge(const ExerciseDefinition& exercise,
                                     const std::map<std::string, double>& metrics,
                                     const Progress& progress) const = 0;

@@ -80,14 +80,15 @@ TEST(ScoreRules, GiveTheShareTheReasonAndTheTimesBehindIt) {
 
 TEST(ScoreRules, SeeEventsStepsMetricsNotesAndParameters) {
   EXPECT_EQ(
-      answered("local e = run.events[1]\n"
-               "assert(e.event == 'cut' and e.time == 2 and e.instrument == 'blades' and e.value == 0.5)\n"
-               "assert(e.place[2] == 2 and e.cause == 'scissors' and e.step == 'look' and e.text == nil)\n"
-               "assert(run:count('cut', 'gallbladder') == 1 and run:count('clip', 'gallbladder.specimen') == 0)\n"
-               "assert(run.steps[1].name == 'look' and run.steps[1].outcome == 'done')\n"
-               "assert(run.metrics['total.time_s'] == 5 and run.metrics['left.grasps'] == nil)\n"
-               "assert(run.notes.views == 3 and run.params.hard == true)\n"
-               "return 1, 'all of it'"),
+      answered(
+          "local e = run.events[1]\n"
+          "assert(e.event == 'cut' and e.time == 2 and e.instrument == 'blades' and e.value == 0.5)\n"
+          "assert(e.place[2] == 2 and e.cause == 'scissors' and e.step == 'look' and e.text == nil)\n"
+          "assert(run:count('cut', 'gallbladder') == 1 and run:count('clip', 'gallbladder.specimen') == 0)\n"
+          "assert(run.steps[1].name == 'look' and run.steps[1].outcome == 'done')\n"
+          "assert(run.metrics['total.time_s'] == 5 and run.metrics['left.grasps'] == nil)\n"
+          "assert(run.notes.views == 3 and run.params.hard == true)\n"
+          "return 1, 'all of it'"),
       "1 all of it");
 }
 
@@ -151,13 +152,22 @@ TEST(ScoreRules, ALoopWithoutEndIsAResourceFailureAtItsLine) {
   EXPECT_EQ(score.failure().problems.at(0).place.line, line_of(text.text(), "while true"));
 }
 
-TEST(ScoreRules, OfAScenarioThatHasChangedSinceAreNotAsked) {
-  const Ruled exercise(ruled("return 1, 'x'"));
-  exercise.folder.write("test.lua", ruled("return 0, 'y'").text());
-  const Result<Score> score = exercise.judged();
-  ASSERT_FALSE(score);
-  EXPECT_EQ(score.failure().kind, FailureKind::usage);
-  EXPECT_THAT(score.failure().problems.at(0).message, HasSubstr("has changed"));
+// Authors write on while a demo plays.
+TEST(ScoreRules, AreThoseThatWereReadWhateverBecomesOfTheirFiles) {
+  Folder folder;
+  const std::filesystem::path module = folder.write("share.lua", "return 0.25");
+  const std::string text = ruled("return share, 'as it was'", "local share = require 'share'").text();
+  const Result<std::unique_ptr<ExerciseScript>> loaded = test::load_text(folder, text);
+  ASSERT_TRUE(loaded) << to_text(loaded.failure());
+  folder.write("test.lua", ruled("return 1, 'y'").text());
+  std::filesystem::remove(module);
+  const Progress progress = cut_then_clip();
+  std::map<std::string, double> metrics = progress.metrics();
+  metrics["total.time_s"] = 5;
+  const Result<Score> judged = score(loaded.value()->definition(), metrics, progress);
+  ASSERT_TRUE(judged) << to_text(judged.failure());
+  EXPECT_EQ(judged->total, 25);
+  EXPECT_EQ(judged->parts.at(0).explanation, "as it was");
 }
 
 }  // namespace
