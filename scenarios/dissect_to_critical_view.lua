@@ -172,15 +172,22 @@ return calot.exercise {
     t.side_hook:move_to({ -120 * mm, 60 * mm, -30 * mm }, { speed = 100 * mm / s })
   end,
 
-  score = calot.score.weighted {
-    { calot.score.rule(judge_view), name = "critical_view", weight = 0.7 },
-    { calot.score.benchmark { metric = "hook.peak_jaws_force_N", novice = 3, expert = 1.5 }, weight = 0.15 },
-    { calot.score.penalty { event = "dry_activation", each = 0.25 }, weight = 0.15 },
-    critical = { "overforce", "perforation" },
-    bail_out = judge_bail_out,
-    cap = 40,
-    pass = 80,
-  },
+  score = function(p)
+    local hooks = p.flip and { "hook", "side_hook" } or { "hook" }
+    local parts = {
+      { calot.score.rule(judge_view), name = "critical_view", weight = 0.7 },
+      { calot.score.penalty { event = "dry_activation", each = 0.25 }, weight = 0.15 },
+      critical = { "overforce", "perforation" },
+      bail_out = judge_bail_out,
+      cap = 40,
+      pass = 80,
+    }
+    for _, hook in ipairs(hooks) do
+      local force = calot.score.benchmark { metric = hook .. ".peak_jaws_force_N", novice = 3, expert = 1.5 }
+      parts[#parts + 1] = { force, weight = 0.15 / #hooks }
+    end
+    return calot.score.weighted(parts)
+  end,
 
   golden = { at = { 4.8 * s, 13.2 * s, 63.2 * s, 75.8 * s } },
 }
