@@ -169,15 +169,27 @@ void SolidBody::add_hessian(const VecX& x, BlockMatrix& matrix, Assembly* /*asse
   capsule_.add_hessian(x, matrix);
 }
 
+namespace {
+
+/// No eigenvalue of a symmetric matrix is larger: three numbers of that mean and spread are all below.
+double bound_of_eigenvalues(const Mat3& symmetric) {
+  const double mean = symmetric.trace() / 3;
+  return mean + std::sqrt(2.0 / 3) * (symmetric - mean * Mat3::Identity()).norm();
+}
+
+}  // namespace
+
 double SolidBody::max_stretch(const VecX& x) const {
   const std::vector<Vec3> points = blend_all(mesh_.rows, mesh_.rows.value, x);
-  double largest = 0;
+  double largest_squared = 0;
   for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
     Mat3 mean = Mat3::Zero();
     for (int a = 0; a < 10; ++a) mean += points[mesh_.tets[t][a]] * slopes_[t].col(a).transpose();
-    largest = std::max(largest, std::sqrt(principal_values(mean.transpose() * mean)[2]));
+    const Mat3 squared = mean.transpose() * mean;
+    if (bound_of_eigenvalues(squared) > largest_squared)  // few are: eigenvalues take longest
+      largest_squared = std::max(largest_squared, principal_values(squared)[2]);
   }
-  return largest;
+  return std::sqrt(largest_squared);
 }
 
 std::vector<Vec3> SolidBody::skin_normals(const VecX& x) const {

@@ -350,5 +350,28 @@ TEST(Solid, ARodDentsItAndItComesBack) {
   EXPECT_LT((world.landmark("liver.upper_side") - top).norm(), 1e-5);
 }
 
+TEST(Solid, MaxStretchIsThatOfWhereItIsStretchedMost) {
+  const BodyPointer body = body_of(lobe());
+  const int places = solid(body).coarse_nodes();
+  for (int axis = 0; axis < 3; ++axis) {
+    VecX x = body->rest();
+    for (int node = 0; node < places; ++node) x[3 * node + axis] *= 1.3;
+    EXPECT_NEAR(body->max_stretch(x), 1.3, 1e-9);
+    // More and more along the axis, up to 1.6 at its end; what is reported is the mean of a tetrahedron there.
+    double begin = std::numeric_limits<double>::infinity(), end = -begin;
+    for (int node = 0; node < places; ++node) {
+      begin = std::min(begin, body->rest()[3 * node + axis]);
+      end = std::max(end, body->rest()[3 * node + axis]);
+    }
+    x = body->rest();
+    for (int node = 0; node < places; ++node) {
+      const double along = (x[3 * node + axis] - begin) / (end - begin);
+      x[3 * node + axis] = begin + (end - begin) * along * (1 + 0.3 * along);
+    }
+    EXPECT_LT(body->max_stretch(x), 1.6);
+    EXPECT_GT(body->max_stretch(x), 1.45);
+  }
+}
+
 }  // namespace
 }  // namespace calot
