@@ -57,8 +57,8 @@ bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends
   for (Eigen::Index first = 0; definite && first + cholesky_block < a.rows(); first += cholesky_block) {
     const Panel panel(a, ends, first);
     const Eigen::Index next = panel.k + panel.size, end = next + panel.below;
-    // Whoever takes the product off the next panel finishes it, while others take it off those after. That is begun first,
-    // as it takes longest: the last chunk is.
+    // The chunk that takes the product off the next panel finishes that panel as well, while others take it off those
+    // after. It takes longest, so it is the last chunk: workers begin with that.
     const auto chunks = std::max(1, static_cast<int>((panel.below + cholesky_block - 1) / cholesky_block));
     for_each_chunk(workers, chunks, [&](int chunk) {
       const Eigen::Index column = next + (chunks - 1 - chunk) * cholesky_block;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -44,10 +45,12 @@ fs::path file_of_module(const std::string& name) {
 
 fs::path find_module(const SandboxOptions& options, const std::string& name) {
   const fs::path file = file_of_module(name);
-  std::string sought;
-  for (const fs::path& folder : {options.script.parent_path(), options.modules}) {
-    if (folder.empty() && folder != options.script.parent_path()) continue;
+  const std::array<fs::path, 2> folders{options.script.parent_path(), options.modules};
+  for (const fs::path& folder : folders)
     if (options.texts.contains(folder / file)) return folder / file;
+  std::string sought;
+  for (const fs::path& folder : folders) {
+    if (folder.empty() && folder != options.script.parent_path()) continue;
     const fs::path base = folder.empty() ? fs::path(".") : folder;
     if (fs::is_regular_file(base / file)) {
       if (!is_inside(base / file, base)) {
