@@ -83,7 +83,7 @@ class Loader {
 
   fs::path path_;
   LoadOptions options_;
-  ScriptTexts texts_;  ///< as they were read before
+  ScriptTexts texts_;  ///< as read when the exercise was checked; empty until then
   std::string text_;
   SourceMap map_;
   std::vector<Problem> problems_;
@@ -352,6 +352,7 @@ Result<std::optional<ExerciseDefinition>> Loader::check_all() {
   if (std::optional<Failure> failure = run_dry(checked.value(), definition, check)) return *failure;
   collect(check.take());
   if (!problems_.empty()) return {std::nullopt};
+  texts_ = checked->sandbox->texts();
   return {std::move(definition)};
 }
 
@@ -385,7 +386,7 @@ Result<std::unique_ptr<ExerciseScript>> Loader::load() {
   if (score.bail_out != 0 || std::any_of(score.parts.begin(), score.parts.end(), [](const ScorePart& part) {
         return part.kind == ScorePartKind::rule;
       }))
-    definition.score.rules = std::make_shared<LuaRules>(path_, options_, script->sandbox->texts());
+    definition.score.rules = std::make_shared<LuaRules>(path_, options_, texts_);
   return std::unique_ptr<ExerciseScript>(
       std::make_unique<LuaExercise>(std::move(script).value(), std::move(definition), std::move(map_)));
 }

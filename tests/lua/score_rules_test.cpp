@@ -42,7 +42,8 @@ Progress cut_then_clip() {
 struct Ruled {
   Folder folder;
   std::unique_ptr<ExerciseScript> script;
-  explicit Ruled(const ScenarioText& text) {
+  explicit Ruled(const ScenarioText& text, const std::map<std::string, std::string>& modules = {}) {
+    for (const auto& [name, source] : modules) folder.write(name, source);
     Result<std::unique_ptr<ExerciseScript>> loaded = test::load_text(folder, text.text());
     EXPECT_TRUE(loaded) << to_text(loaded.failure());
     if (loaded) script = std::move(loaded).value();
@@ -154,19 +155,14 @@ TEST(ScoreRules, ALoopWithoutEndIsAResourceFailureAtItsLine) {
 
 // Authors write on while a demo plays.
 TEST(ScoreRules, AreThoseThatWereReadWhateverBecomesOfTheirFiles) {
-  Folder folder;
-  const std::filesystem::path module = folder.write("share.lua", "return 0.25");
-  const std::string text = ruled("return share, 'as it was'", "local share = require 'share'").text();
-  const Result<std::unique_ptr<ExerciseScript>> loaded = test::load_text(folder, text);
-  ASSERT_TRUE(loaded) << to_text(loaded.failure());
-  folder.write("test.lua", ruled("return 1, 'y'").text());
-  std::filesystem::remove(module);
-  const Progress progress = cut_then_clip();
-  std::map<std::string, double> metrics = progress.metrics();
-  metrics["total.time_s"] = 5;
-  const Result<Score> judged = score(loaded.value()->definition(), metrics, progress);
+  const std::map<std::string, std::string> modules{{"share.lua", "return 0.25"}, {"more.lua", "return 0.5"}};
+  const Ruled exercise(ruled("return share + require('more'), 'as it was'", "local share = require 'share'"),
+                       modules);
+  exercise.folder.write("test.lua", ruled("return 1, 'y'").text());
+  for (const auto& module : modules) std::filesystem::remove(exercise.folder.write(module.first, "return 1"));
+  const Result<Score> judged = exercise.judged();
   ASSERT_TRUE(judged) << to_text(judged.failure());
-  EXPECT_EQ(judged->total, 25);
+  EXPECT_EQ(judged->total, 75);
   EXPECT_EQ(judged->parts.at(0).explanation, "as it was");
 }
 
