@@ -118,10 +118,7 @@ double BodyProblem::add_dry_gradient(const VecX& x, VecX& gradient, const Work&.
   loads_.friction.add_gradient(body_.skin(), x, gradient);
   if (body_.kept_load().size() > 0) gradient -= body_.kept_load();
   if (loads_.load.size() > 0) gradient -= loads_.load;
-  ContactLoad pressed(body_.skin(), gradient);
-  for (const Touch& touch : touching(x))
-    pressed.add(touch.point, touch.area * touch.answer.derivative * touch.slope.gradient);
-  pressed.finish();
+  add_touch_gradient(body_, touching(x), gradient);
   for_held_details(
       [&](Eigen::Index at, double stiffness) { gradient.segment<3>(at) += stiffness * x.segment<3>(at); });
   if (loads_.drag) gradient += loads_.drag->stiffness * (x - loads_.drag->from);
@@ -180,6 +177,16 @@ void BodyProblem::hessian(const VecX& x, const VecX& multipliers, BlockMatrix& m
   });
   if (loads_.drag) matrix.add_to_diagonal(loads_.drag->stiffness);
   if (search_) search_->own.add_hessian(body_, x, matrix);
+}
+
+std::vector<SharpTangent> BodyProblem::pressed_tangents(const VecX& x, bool convex) const {
+  return calot::pressed_tangents(body_, loads_, touching(x), x, convex);
+}
+
+PressedLaws BodyProblem::pressed_laws(const VecX& x, const VecX& step, double least,
+                                      std::span<const SharpTangent> tangents) const {
+  const std::vector<Touch> before = touching(x), after = touching(x + step);
+  return PressedLaws(body_, loads_, pairs(), {x, step, before, after}, least, tangents);
 }
 
 bool BodyProblem::add_convexity(const VecX& x, BlockMatrix& matrix) const {
@@ -315,23 +322,6 @@ std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const 
                                          const std::vector<ContactPair>& pairs) {
   TouchMemory memory;
   return contact_forces(memory.at(body, x, loads, pairs, 0.0));
-}
-
-Mat3 contact_bend(const Shape& shape, const Vec3& at, const DistanceSlope& slope, double radius,
-                  double push) {
-  DistanceSlope of_point = slope;
-  of_point.distance += radius;  // of the point itself, as the shape curves there
-  return push * distance_hessian(shape, at, of_point);
-}
-
-Mat3 contact_bend(const ContactLoads& loads, const Touch& touch) {
-  return contact_bend(loads.shapes[touch.shape], touch.at, touch.slope, touch.radius,
-                      touch.area * touch.answer.derivative);
-}
-
-Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
-  const Vec3& normal = touch.slope.gradient;
-  return touch.area * touch.answer.second * normal * normal.transpose() + contact_bend(loads, touch);
 }
 
 }  // namespace calot

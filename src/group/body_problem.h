@@ -6,6 +6,7 @@
 
 #include "body/inertia.h"
 #include "group/contact_search.h"
+#include "group/pressed_laws.h"
 #include "numerics/constrained_energy.h"
 
 namespace calot {
@@ -53,6 +54,10 @@ class BodyProblem : public ConstrainedEnergy {
   /// The pattern that the body's matrix needs beside `present`, which it has; none: that serves.
   std::optional<BlockMatrix> new_pattern(const BlockMatrix& present) const;
   double safe_share(const VecX& x, const VecX& step) const override;
+  /// What presses: see pressed_laws.h.
+  std::vector<SharpTangent> pressed_tangents(const VecX& x, bool convex) const;
+  PressedLaws pressed_laws(const VecX& x, const VecX& step, double least,
+                           std::span<const SharpTangent> tangents) const;
   /// What safe_share() is no more than: as far as no two bodies nor their parts need be compared.
   double longest_share(const VecX& x, const VecX& step) const;
   /// The part of `share` of a step that is safe beside the shapes, and beside the skin itself.
@@ -108,12 +113,5 @@ struct ContactForce {
 std::vector<ContactForce> contact_forces(const std::vector<Touch>& touches);
 std::vector<ContactForce> contact_forces(const Body& body, const VecX& x, const ContactLoads& loads,
                                          const std::vector<ContactPair>& pairs);
-/// Hessian of a contact point's energy by its place, N/m.
-Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch);
-/// What the shape's curvature adds to that, N/m, negative semidefinite.
-Mat3 contact_bend(const ContactLoads& loads, const Touch& touch);
-/// The same of any point at a place (m) that a shape pushes with -`push` N; `slope` is of the surface that lies `radius` m
-/// around it.
-Mat3 contact_bend(const Shape& shape, const Vec3& at, const DistanceSlope& slope, double radius, double push);
 
 }  // namespace calot

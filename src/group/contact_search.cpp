@@ -139,6 +139,41 @@ double touched_area(const Body& body, const ContactLoads& loads, int shape, int 
 
 }  // namespace
 
+std::vector<Touch> touches_of(const Body& body, const VecX& x, const ContactLoads& loads,
+                              const std::vector<ContactPair>& pairs, double approach) {
+  std::vector<Touch> out;
+  for_touching(
+      body, x, loads, pairs, approach, [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
+        out.push_back({point, shape, at, slope, body.contact_sample(point, slope.distance, loads.barrier),
+                       touched_area(body, loads, shape, point), body.radius_at_contact(point)});
+      });
+  return out;
+}
+
+void add_touch_gradient(const Body& body, const std::vector<Touch>& touches, VecX& gradient) {
+  ContactLoad pressed(body.skin(), gradient);
+  for (const Touch& touch : touches)
+    pressed.add(touch.point, touch.area * touch.answer.derivative * touch.slope.gradient);
+  pressed.finish();
+}
+
+Mat3 contact_bend(const Shape& shape, const Vec3& at, const DistanceSlope& slope, double radius,
+                  double push) {
+  DistanceSlope of_point = slope;
+  of_point.distance += radius;  // of the point itself, as the shape curves there
+  return push * distance_hessian(shape, at, of_point);
+}
+
+Mat3 contact_bend(const ContactLoads& loads, const Touch& touch) {
+  return contact_bend(loads.shapes[touch.shape], touch.at, touch.slope, touch.radius,
+                      touch.area * touch.answer.derivative);
+}
+
+Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
+  const Vec3& normal = touch.slope.gradient;
+  return touch.area * touch.answer.second * normal * normal.transpose() + contact_bend(loads, touch);
+}
+
 const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const ContactLoads& loads,
                                           const std::vector<ContactPair>& pairs, double approach) {
   if (const std::vector<Touch>* touches = known(body, x, loads)) {
@@ -151,13 +186,7 @@ const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const
   state.details = body.details();
   state.shapes = loads.shapes;
   state.barrier = loads.barrier;
-  state.touches.clear();
-  for_touching(
-      body, x, loads, pairs, approach, [&](int point, int shape, const Vec3& at, const DistanceSlope& slope) {
-        state.touches.push_back({point, shape, at, slope,
-                                 body.contact_sample(point, slope.distance, loads.barrier),
-                                 touched_area(body, loads, shape, point), body.radius_at_contact(point)});
-      });
+  state.touches = touches_of(body, x, loads, pairs, approach);
   return state.touches;
 }
 

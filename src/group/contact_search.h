@@ -43,7 +43,7 @@ struct ContactLoads {
   std::vector<Shape> shapes;     ///< contact shapes: what they are in truth, inset
   std::vector<char> broad = {};  ///< one a shape, or none: whether it is felt by few points (broad_points)
   Barrier barrier = contact_barrier;
-  GripSprings grip;  ///< rows of the skin's stencils
+  GripSprings grip;          ///< rows of the skin's stencils
   GripSprings leaving = {};  ///< what has been let go and is dragged still
   FrictionLoad friction;
   /// N/m, springs that hold the details at rest, one each; none: all are free.
@@ -99,12 +99,26 @@ struct Touch {
   double radius = 0;       ///< m, of the surface around it
 };
 
+/// All contact points in range when the nodes are at x, m, ordered by shape, then point. `pairs` are ordered and hold
+/// all that may meet; none has come nearer than by `approach` since it was gathered.
+std::vector<Touch> touches_of(const Body& body, const VecX& x, const ContactLoads& loads,
+                              const std::vector<ContactPair>& pairs, double approach);
+
+/// Adds what touches to a gradient, N.
+void add_touch_gradient(const Body& body, const std::vector<Touch>& touches, VecX& gradient);
+/// Hessian of a contact point's energy by its place, N/m.
+Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch);
+/// What the shape's curvature adds to that, N/m, negative semidefinite.
+Mat3 contact_bend(const ContactLoads& loads, const Touch& touch);
+/// The same of any point at a place (m) that a shape pushes with -`push` N; `slope` is of the surface that lies `radius` m
+/// around it.
+Mat3 contact_bend(const Shape& shape, const Vec3& at, const DistanceSlope& slope, double radius, double push);
+
 /// What touches, found once for a state: a solve's energies and their derivatives, and after it pads, forces and report
 /// ask for the same place. For one organ.
 class TouchMemory {
  public:
-  /// All contact points in range when the nodes are at x, m, ordered by shape, then point. `pairs` are ordered and hold
-  /// all that may meet; none has come nearer than by `approach` since it was gathered. Valid until the next call.
+  /// touches_of(), valid until the next call.
   const std::vector<Touch>& at(const Body& body, const VecX& x, const ContactLoads& loads,
                                const std::vector<ContactPair>& pairs, double approach);
   /// The same where it is known, else null.

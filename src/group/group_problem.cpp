@@ -399,6 +399,83 @@ VecX GroupProblem::relaxed(VecX x) const {
   return x;
 }
 
+class GroupProblem::Pressed : public SharpTerms {
+ public:
+  Pressed(const GroupProblem& group, const VecX& x, const VecX& step, double least,
+          std::span<const SharpTangent> tangents)
+      : group_(group) {
+    for (std::size_t k = 0; k < group.problems_.size(); ++k) {
+      const auto own = std::equal_range(tangents.begin(), tangents.end(), SharpTangent{static_cast<int>(k)},
+                                        [](const auto& a, const auto& b) { return a.part < b.part; });
+      PressedLaws laws = group.problems_[k].pressed_laws(group.part_of(k, x), group.part_of(k, step), least,
+                                                         {own.first, own.second});
+      if (laws.none()) continue;
+      std::vector<char> marks(static_cast<std::size_t>(group.ranges_[k].size / 3), 0);
+      laws.mark_nodes(marks);
+      for (std::size_t node = 0; node < marks.size(); ++node)
+        if (marks[node]) nodes_.push_back(group.first_node(k) + static_cast<int>(node));
+      laws_.emplace_back(k, std::move(laws));
+    }
+  }
+
+  double value(const VecX& x) const override {
+    double sum = 0;
+    for (const auto& [k, laws] : laws_) sum += laws.value(group_.part_of(k, x));
+    return sum;
+  }
+  VecX gradient(const VecX& x) const override {
+    VecX out = VecX::Zero(x.size());
+    for (const auto& [k, laws] : laws_) {
+      VecX own = VecX::Zero(group_.ranges_[k].size);
+      laws.add_gradient(group_.part_of(k, x), own);
+      out.segment(group_.ranges_[k].first, own.size()) = own;
+    }
+    return out;
+  }
+  SharpHessian hessian(const VecX& x, bool convex) const override {
+    SharpHessian out;
+    for (const auto& [k, laws] : laws_) {
+      out.parts.push_back({group_.first_node(k), group_.members_[k].body.pattern().blank()});
+      laws.add_hessian(group_.part_of(k, x), convex, out.parts.back().matrix);
+    }
+    return out;
+  }
+  SharpHessian factorised() const override {
+    SharpHessian out;
+    for (const auto& [k, laws] : laws_) {
+      out.parts.push_back({group_.first_node(k), group_.members_[k].body.pattern().blank()});
+      laws.add_tangents(out.parts.back().matrix);
+    }
+    return out;
+  }
+  double safe_share(const VecX& x, const VecX& step) const override {
+    double share = 1;
+    for (const auto& [k, laws] : laws_)
+      share = group_.problems_[k].share_beside_shapes(group_.part_of(k, x), group_.part_of(k, step), share);
+    return share;
+  }
+
+ private:
+  const GroupProblem& group_;
+  std::vector<std::pair<std::size_t, PressedLaws>> laws_;  ///< of members
+};
+
+std::vector<SharpTangent> GroupProblem::sharp_tangents(const VecX& x, bool convex) const {
+  std::vector<SharpTangent> out;
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    for (SharpTangent& tangent : problems_[k].pressed_tangents(part_of(k, x), convex)) {
+      tangent.part = static_cast<int>(k);
+      out.push_back(tangent);
+    }
+  return out;
+}
+
+std::unique_ptr<const SharpTerms> GroupProblem::sharp_terms(const VecX& x, const VecX& step, double least,
+                                                            std::span<const SharpTangent> tangents) const {
+  auto out = std::make_unique<Pressed>(*this, x, step, least, tangents);
+  return out->nodes().empty() ? nullptr : std::move(out);
+}
+
 double GroupProblem::longest_share(const VecX& x, const VecX& step) const {
   double share = 1;
   for (std::size_t k = 0; k < problems_.size(); ++k)

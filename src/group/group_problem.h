@@ -8,6 +8,7 @@
 #include "group/body_problem.h"
 #include "group/join.h"
 #include "numerics/newton_workspace.h"
+#include "numerics/sharp_terms.h"
 
 namespace calot {
 
@@ -73,14 +74,21 @@ class GroupProblem : public ConstrainedEnergy {
   double longest_share(const VecX& x, const VecX& step) const;
   VecX relaxed(VecX x) const override;
   Workers* workers() const override;
+  /// Of what presses on each body.
+  std::vector<SharpTangent> sharp_tangents(const VecX& x, bool convex) const override;
+  std::unique_ptr<const SharpTerms> sharp_terms(const VecX& x, const VecX& step, double least,
+                                                std::span<const SharpTangent> tangents) const override;
 
  private:
+  class Pressed;
+
   struct Range {
     Eigen::Index first, size;              ///< of the coordinates
     Eigen::Index constraint, constraints;  ///< the first, and how many
   };
   /// Then its matrix is the group's, and holds what its joins couple.
   bool alone() const { return problems_.size() == 1; }
+  int first_node(std::size_t member) const { return static_cast<int>(ranges_[member].first) / 3; }
   VecX part_of(std::size_t member, const VecX& x) const {
     return x.segment(ranges_[member].first, ranges_[member].size);
   }

@@ -74,7 +74,7 @@ void count(const Field& field, const NewtonResult& result, SolveStatistics& stat
   statistics.assembly_s += result.assembly_s;
   statistics.factorisation_s += result.factorisation_s;
   statistics.solve_s += result.solve_s;
-  statistics.contact_s += result.safety_s;
+  statistics.contact_s += result.safety_s + result.sharp_s;
   for (std::size_t part = 0; part < result.furthest.size(); ++part)
     if (result.furthest[part] > 0)
       statistics.furthest[member_name(field, static_cast<int>(part))] += result.furthest[part];

@@ -155,6 +155,26 @@ Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right, Workers* workers) 
   return out;
 }
 
+Eigen::MatrixXd Cholesky::compliance(std::span<const int> nodes, Workers* workers) const {
+  const auto columns = 3 * static_cast<Eigen::Index>(nodes.size());
+  if (impl_->condensation) {
+    // K^-1 = L'^-1 L^-1: half of a solve.
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns, columns);
+    const Eigen::MatrixXd passed = impl_->condensation->reduce_units(nodes, out);
+    const Eigen::MatrixXd half = impl_->kept.solve_lower(passed, workers);
+    out.selfadjointView<Eigen::Lower>().rankUpdate(half.transpose());
+    return out.selfadjointView<Eigen::Lower>();
+  }
+  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(impl_->factor->n), columns),
+                  out(columns, columns);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    units.block<3, 3>(3 * Eigen::Index{nodes[i]}, 3 * static_cast<Eigen::Index>(i)).setIdentity();
+  const Eigen::MatrixXd whole = solve_columns(units);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    out.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = whole.middleRows<3>(3 * Eigen::Index{nodes[i]});
+  return 0.5 * (out + out.transpose());
+}
+
 template <class Columns>
 Columns Cholesky::solve_columns(const Columns& right) const {
   if (impl_->condensation)

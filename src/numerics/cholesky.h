@@ -60,6 +60,9 @@ class Cholesky {
   VecX solve(const VecX& right) const;
   /// Many columns in a fraction of the time that they take one by one.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right, Workers* workers = nullptr) const;
+  /// What each of `nodes`, increasing, answers to loads on them alone: these rows and columns of the matrix' inverse,
+  /// 3 a node.
+  Eigen::MatrixXd compliance(std::span<const int> nodes, Workers* workers = nullptr) const;
   /// Cheap estimate of the reciprocal condition number: (smallest / largest diagonal of L)^2.
   double reciprocal_condition() const;
   FactorKind kind() const;

@@ -289,22 +289,51 @@ void Condensation::solve_upper(const Piece& piece, Columns& x) const {
 
 template <class Columns>
 Columns Condensation::reduce(const Columns& right) const {
-  Columns out, inner, passed;
+  Columns out, inner;
   pick(right, layout_->kept, out);
   for (const Piece& piece : layout_->pieces) {
     if (piece.outer.empty()) continue;
     pick(right, piece.inner, inner);
     solve_lower(piece, inner);
-    const double* coupling = values_.data() + piece.coupling;
-    if (piece.single)
-      passed.noalias() = ConstBlock(coupling, piece.meets(), piece.rows()) * inner;
-    else
-      passed.noalias() = ConstBlock(coupling, piece.rows(), piece.meets()).transpose() * inner;
-    for (std::size_t i = 0; i < piece.outer.size(); ++i)
-      out.template middleRows<3>(3 * Eigen::Index{piece.outer[i]}) -=
-          passed.template middleRows<3>(3 * static_cast<Eigen::Index>(i));
+    pass_on(piece, inner, out);
   }
   return out;
+}
+
+Eigen::MatrixXd Condensation::reduce_units(std::span<const int> nodes, Eigen::MatrixXd& gram) const {
+  const auto columns = 3 * static_cast<Eigen::Index>(nodes.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(layout_->kept.size()), columns);
+  const auto in = [](int node, const std::vector<int>& some) {
+    return std::binary_search(some.begin(), some.end(), node);
+  };
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (in(nodes[i], layout_->kept))
+      out.block<3, 3>(place_of(nodes[i], layout_->kept), 3 * static_cast<Eigen::Index>(i)).setIdentity();
+  for (const Piece& piece : layout_->pieces) {
+    if (std::none_of(nodes.begin(), nodes.end(), [&](int node) { return in(node, piece.inner); })) continue;
+    Eigen::MatrixXd inner = Eigen::MatrixXd::Zero(piece.rows(), columns);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (in(nodes[i], piece.inner))
+        inner.block<3, 3>(place_of(nodes[i], piece.inner), 3 * static_cast<Eigen::Index>(i)).setIdentity();
+    solve_lower(piece, inner);
+    gram.noalias() += inner.transpose() * inner;
+    pass_on(piece, inner, out);
+  }
+  return out;
+}
+
+template <class Columns>
+void Condensation::pass_on(const Piece& piece, const Columns& inner, Columns& kept) const {
+  if (piece.outer.empty()) return;
+  Columns passed;
+  const double* coupling = values_.data() + piece.coupling;
+  if (piece.single)
+    passed.noalias() = ConstBlock(coupling, piece.meets(), piece.rows()) * inner;
+  else
+    passed.noalias() = ConstBlock(coupling, piece.rows(), piece.meets()).transpose() * inner;
+  for (std::size_t i = 0; i < piece.outer.size(); ++i)
+    kept.template middleRows<3>(3 * Eigen::Index{piece.outer[i]}) -=
+        passed.template middleRows<3>(3 * static_cast<Eigen::Index>(i));
 }
 
 template <class Columns>

@@ -30,6 +30,9 @@ class Condensation {
   /// Loads on all unknowns (3 a node) as loads on the kept ones.
   template <class Columns>
   Columns reduce(const Columns& right) const;
+  /// L^-1 of the loads of 1 on each unknown of `nodes`, increasing: a column each, as loads on the kept ones; to `gram`
+  /// the product of what of it lies in the pieces with itself is added.
+  Eigen::MatrixXd reduce_units(std::span<const int> nodes, Eigen::MatrixXd& gram) const;
   /// All unknowns under loads `right`, from the kept ones.
   template <class Columns>
   Columns expand(const Columns& right, const Columns& kept) const;
@@ -86,6 +89,9 @@ class Condensation {
   void solve_lower(const Piece& piece, Columns& x) const;
   template <class Columns>
   void solve_upper(const Piece& piece, Columns& x) const;
+  /// Of L^-1 loads in a piece what reaches the kept ones is added to those.
+  template <class Columns>
+  void pass_on(const Piece& piece, const Columns& inner, Columns& kept) const;
   double pivot(const Piece& piece, Eigen::Index i) const;
 
   std::shared_ptr<const Layout> layout_;

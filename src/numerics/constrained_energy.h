@@ -1,9 +1,12 @@
 #pragma once
 // What Newton's method makes stationary: the energy of one body or of a group of them, with volumes that are kept.
 
+#include <memory>
+
 #include "base/workers.h"
 #include "numerics/block_matrix.h"
 #include "numerics/parts.h"
+#include "numerics/sharp_terms.h"
 
 namespace calot {
 
@@ -59,6 +62,15 @@ class ConstrainedEnergy {
   /// x, but those nodes that can be brought into balance one by one, while all others stay, are: energy does not rise, and nothing is crossed.
   /// Each place that a solve goes on from, or tries, is such a one.
   virtual VecX relaxed(VecX x) const { return x; }
+  /// What those of its terms that bend sharply add to hessian() at x; `convex`: to that with add_convexity(), too.
+  virtual std::vector<SharpTangent> sharp_tangents(const VecX& /*x*/, bool /*convex*/) const { return {}; }
+  /// Those of them whose forces at x + step are off what these tangents say by more than `least`, N. Null: none. The energy
+  /// must outlive them.
+  virtual std::unique_ptr<const SharpTerms> sharp_terms(const VecX& /*x*/, const VecX& /*step*/,
+                                                        double /*least*/,
+                                                        std::span<const SharpTangent> /*tangents*/) const {
+    return nullptr;
+  }
   /// Who share the work of a solve; none: the caller's thread does it.
   virtual Workers* workers() const { return nullptr; }
 };

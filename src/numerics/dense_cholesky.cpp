@@ -72,13 +72,19 @@ bool cholesky_in_place(Eigen::MatrixXd& a, const std::vector<Eigen::Index>& ends
 namespace {
 
 template <class Columns>
-void solve_columns(const Eigen::MatrixXd& l, const std::vector<Eigen::Index>& ends, Columns& right) {
-  for (Eigen::Index first = 0; first < l.rows(); first += cholesky_block) {
+void solve_lower(const Eigen::MatrixXd& l, const std::vector<Eigen::Index>& ends, Eigen::Index from,
+                 Columns& right) {
+  for (Eigen::Index first = from; first < l.rows(); first += cholesky_block) {
     const auto [k, size, below] = Panel(l, ends, first);
     auto here = right.middleRows(k, size);
-    l.block(k, k, size, size).triangularView<Eigen::Lower>().solveInPlace(here);
+    l.block(k, k, size, size).template triangularView<Eigen::Lower>().solveInPlace(here);
     if (below > 0) right.middleRows(k + size, below).noalias() -= l.block(k + size, k, below, size) * here;
   }
+}
+
+template <class Columns>
+void solve_columns(const Eigen::MatrixXd& l, const std::vector<Eigen::Index>& ends, Columns& right) {
+  solve_lower(l, ends, 0, right);
   for (Eigen::Index first = (l.rows() - 1) / cholesky_block * cholesky_block; first >= 0;
        first -= cholesky_block) {
     const auto [k, size, below] = Panel(l, ends, first);
@@ -99,6 +105,14 @@ VecX cholesky_solve(const Eigen::MatrixXd& l, VecX right, const std::vector<Eige
 Eigen::MatrixXd cholesky_solve(const Eigen::MatrixXd& l, Eigen::MatrixXd right,
                                const std::vector<Eigen::Index>& ends) {
   solve_columns(l, ends, right);
+  return right;
+}
+
+Eigen::MatrixXd cholesky_solve_lower(const Eigen::MatrixXd& l, Eigen::MatrixXd right,
+                                     const std::vector<Eigen::Index>& ends) {
+  Eigen::Index from = 0;
+  while (from < right.rows() && right.row(from).isZero(0)) ++from;
+  solve_lower(l, ends, from / cholesky_block * cholesky_block, right);
   return right;
 }
 

@@ -22,4 +22,8 @@ VecX cholesky_solve(const Eigen::MatrixXd& l, VecX right, const std::vector<Eige
 Eigen::MatrixXd cholesky_solve(const Eigen::MatrixXd& l, Eigen::MatrixXd right,
                                const std::vector<Eigen::Index>& ends = {});
 
+/// L^-1 right, likewise; rows that are 0 until the first that is not cost nothing.
+Eigen::MatrixXd cholesky_solve_lower(const Eigen::MatrixXd& l, Eigen::MatrixXd right,
+                                     const std::vector<Eigen::Index>& ends = {});
+
 }  // namespace calot

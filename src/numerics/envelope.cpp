@@ -123,6 +123,19 @@ Columns EnvelopeFactor::solve_columns(const Columns& right) const {
 VecX EnvelopeFactor::solve(const VecX& right) const { return solve_columns(right); }
 Eigen::MatrixXd EnvelopeFactor::solve(const Eigen::MatrixXd& right) const { return solve_columns(right); }
 
+Eigen::MatrixXd EnvelopeFactor::solve_lower(const Eigen::MatrixXd& right, Workers* workers) const {
+  // Eigen's kernels take four columns at a time; who has more of them together reads the factor less often.
+  constexpr Eigen::Index together = 24;
+  Eigen::MatrixXd out(right.rows(), right.cols());
+  const auto chunks = static_cast<int>((right.cols() + together - 1) / together);
+  for_each_chunk(workers, chunks, [&](int chunk) {
+    const Eigen::Index first = chunk * together, count = std::min(together, right.cols() - first);
+    out.middleCols(first, count) =
+        cholesky_solve_lower(l_, right(unknown_, Eigen::seqN(first, count)), ends_);
+  });
+  return out;
+}
+
 double EnvelopeFactor::flops() const {
   double sum = 0;
   for (Eigen::Index column = 0; column < size(); ++column) {

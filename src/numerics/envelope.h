@@ -39,6 +39,8 @@ class EnvelopeFactor {
   /// With the last factor, which must have succeeded.
   VecX solve(const VecX& right) const;
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  /// L^-1 right, in the order of the factor's places: its columns' products with each other are those of right' K^-1 right.
+  Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& right, Workers* workers = nullptr) const;
   /// Of no nodes: infinity, 0.
   double smallest_pivot() const {
     return size() > 0 ? l_.diagonal().minCoeff() : std::numeric_limits<double>::infinity();

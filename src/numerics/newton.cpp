@@ -7,7 +7,9 @@
 
 #include "base/timed.h"
 #include "numerics/line_search.h"
+#include "numerics/response.h"
 #include "numerics/secant_steps.h"
+#include "numerics/sharp_step.h"
 #include "numerics/tangent.h"
 
 namespace calot {
@@ -182,6 +184,21 @@ class Iteration {
     return problem_.curved(x_, std::move(step));
   }
 
+  /// Adds to a step what it misses of terms that bend sharply; whether there is any. Near balance none bends by much.
+  bool sharpen(VecX& step, VecX& dmultipliers) {
+    constexpr double near = 3e-3, worth = 0.03;
+    if (!step.allFinite() || state_.worst_residual.value < near) return false;
+    const Timed timed(result_.sharp_s);
+    const double residual = largest_node(state_.residual);
+    const VecX load = sharp_load(problem_, work_, {x_, step, residual}, worth * residual);
+    if (load.size() == 0) return false;
+    VecX dmore;
+    const VecX more = linear_response(work_, load, dmore);
+    step += more;
+    if (constrained()) dmultipliers += dmore;
+    return step.allFinite();
+  }
+
   /// Second-order correction (Nocedal and Wright, section 15.6): a whole step ends where the constraints hold, not where
   /// their tangents say so; their values cost a share of what a whole evaluation does. It lies in what the factor
   /// answers to them, so that balance is as near as before, to first order.
@@ -228,9 +245,21 @@ class Iteration {
     VecX dmultipliers;
     VecX step = bordered_step(dmultipliers);
     seen_.correct(step, dmultipliers);
+    sharpen(step, dmultipliers);
     correct_constraints(step, dmultipliers);
     if (!step.allFinite() || share_if_whole(step) < 1.0 || !leap(step, dmultipliers, worth)) return false;
     ++result_.chords;
+    return true;
+  }
+
+  /// A whole step by a definite matrix, if it is safe and brings the bodies much nearer to balance: a search along it costs
+  /// two more evaluations. `safe` receives the share that is, if it is below 1.
+  bool jump(VecX& step, VecX& dmultipliers, double& safe) {
+    constexpr double worth = 0.5;
+    correct_constraints(step, dmultipliers);
+    safe = share_if_whole(step);
+    if (safe < 1.0 || !leap(step, dmultipliers, worth)) return false;
+    definiteness_.convex = 0;  // so near to balance the next matrix may well be definite as it is
     return true;
   }
 
@@ -250,14 +279,13 @@ class Iteration {
     }
     double most = 1;
     if (definiteness_.shift == 0) {
-      constexpr double worth = 0.5;  // a search along the step costs two more evaluations
       VecX whole = step, with = dmultipliers;
-      correct_constraints(whole, with);
-      const double safe = share_if_whole(whole);
-      if (safe == 1.0 && leap(whole, with, worth)) {
-        definiteness_.convex = 0;  // so near to balance the next matrix may well be definite as it is
-        return true;
+      double safe = 1;
+      if (sharpen(whole, with)) {
+        if (jump(whole, with, safe)) return true;
+        whole = step, with = dmultipliers;
       }
+      if (jump(whole, with, safe)) return true;
       // The step itself, which is nearly the same, is looked at as far as that: a longer way takes longer to look at.
       most = safe;
     }

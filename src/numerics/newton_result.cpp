@@ -18,6 +18,7 @@ void NewtonResult::add(const NewtonResult& next) {
   factorisation_s += before.factorisation_s;
   solve_s += before.solve_s;
   safety_s += before.safety_s;
+  sharp_s += before.sharp_s;
 }
 
 std::string to_text(NewtonStatus status) {

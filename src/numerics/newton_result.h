@@ -32,7 +32,7 @@ struct NewtonResult {
   double constraint_error = 0;  ///< relative, of the worst constraint
   /// Wall time, for benchmarks only: energies and their derivatives, factors, solves with them, and
   /// safe_share.
-  double assembly_s = 0, factorisation_s = 0, solve_s = 0, safety_s = 0;
+  double assembly_s = 0, factorisation_s = 0, solve_s = 0, safety_s = 0, sharp_s = 0;
   bool converged() const { return status == NewtonStatus::converged; }
   /// Takes over the outcome of a further solve and adds its counts and times.
   void add(const NewtonResult& next);

@@ -8,6 +8,7 @@ void NewtonWorkspace::restore(const Kept& kept) {
   border = kept.border;
   factored = kept.factored;
   shifted = kept.shifted;
+  sharp = kept.sharp;
 }
 
 void visit_members(MemberReader& read, NewtonWorkspace& work) {
@@ -21,7 +22,7 @@ void visit_members(MemberReader& read, NewtonWorkspace& work) {
   work.shifted = shifted;
   if (!factored) return;
   std::vector<double> entries;
-  read(work.border, entries);
+  read(work.border, entries, work.sharp);
   if (entries.size() != work.matrix.entries().size() || work.border.gradients.rows() != work.matrix.size())
     return read.refuse();
   work.matrix.assign(entries);

@@ -81,6 +81,7 @@ NewtonStatus factorise_matrix(const ConstrainedEnergy& problem, std::span<const 
   if (status == FactorStatus::not_finite) return NewtonStatus::not_finite;
   if (status == FactorStatus::out_of_memory) return NewtonStatus::out_of_memory;
   work.shifted = convex || definiteness.shift > 0;
+  work.sharp = problem.sharp_tangents(x, convex);
   return NewtonStatus::converged;
 }
 

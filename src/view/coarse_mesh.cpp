@@ -2,6 +2,10 @@
 
 #include <meshoptimizer.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
+
 namespace calot {
 namespace {
 
@@ -29,6 +33,23 @@ std::vector<unsigned> simplified(const std::vector<Vec3>& points, const std::vec
   return out;
 }
 
+/// Takes off what simplifying leaves of a spike: two triangles back to back. The point between them would have no normal.
+void drop_flaps(std::vector<unsigned>& corners) {
+  std::map<std::array<unsigned, 3>, std::size_t>
+      first_of;  // by their corners in order: where the first one begins
+  std::vector<char> dropped(corners.size() / 3, 0);
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    std::array<unsigned, 3> sorted{corners[i], corners[i + 1], corners[i + 2]};
+    std::sort(sorted.begin(), sorted.end());
+    const auto [found, is_new] = first_of.try_emplace(sorted, i);
+    if (!is_new) dropped[i / 3] = dropped[found->second / 3] = 1;
+  }
+  std::vector<unsigned> left;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (!dropped[i / 3]) left.push_back(corners[i]);
+  corners = std::move(left);
+}
+
 }  // namespace
 
 CoarseMesh coarser(const SceneMesh& fine, double most_error, double least) {
@@ -38,7 +59,8 @@ CoarseMesh coarser(const SceneMesh& fine, double most_error, double least) {
   out.mesh.vessels = fine.vessels;
   if (points.empty()) return out;
   std::vector<int> place(points.size(), -1);  // of a fine point among the kept ones
-  const std::vector<unsigned> corners = simplified(points, fine.triangles, most_error, least);
+  std::vector<unsigned> corners = simplified(points, fine.triangles, most_error, least);
+  drop_flaps(corners);
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     Triangle& triangle = out.mesh.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {

@@ -14,6 +14,10 @@ bool fits(const RestState& state, const Field& field) {
   if (state.searched() ? state.own.size() != bodies : state.factored) return false;
   for (std::size_t k = 0; k < bodies; ++k)
     if (state.places[k].size() != state_of(field, k).x.size()) return false;
+  for (const SharpTangent& tangent : state.sharp) {
+    const auto part = static_cast<std::size_t>(tangent.part);
+    if (part >= bodies || !fits(tangent, body_of(field, part))) return false;
+  }
   return !state.factored || state.constraints.rows() == BodyParts(field).total();
 }
 
@@ -35,6 +39,7 @@ bool take_factor(const RestState& state, Workers* workers, NewtonWorkspace& work
   work.border.gradients = state.constraints;
   work.border.compliances = state.compliances;
   work.border.solve_with(work.factor, workers);
+  work.sharp = state.sharp;
   work.factored = true;
   return true;
 }
@@ -59,6 +64,7 @@ RestState rest_state(const Field& field) {
   out.matrix = group.work.matrix.entries();
   out.constraints = group.work.border.gradients;
   out.compliances = group.work.border.compliances;
+  out.sharp = group.work.sharp;
   return out;
 }
 
@@ -108,6 +114,7 @@ std::string to_bytes(const RestState& state) {
   out.add(std::span<const double>(state.matrix));
   add_matrix(state.constraints, out);
   out.add(numbers_of(state.compliances));
+  MemberWriter{out}(state.sharp);
   return out.bytes();
 }
 
@@ -126,6 +133,7 @@ std::optional<RestState> rest_state_of(std::string_view bytes) {
   state.matrix = in.numbers<double>();
   state.constraints = matrix_of(in);
   state.compliances = vector_of(in.numbers<double>());
+  MemberReader{in}(state.sharp);
   if (!in.complete()) return std::nullopt;
   return state;
 }

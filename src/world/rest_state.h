@@ -22,8 +22,9 @@ struct RestState {
   /// The last matrix that was factorised, as BlockMatrix::entries(): its factor serves the first steps, and from the same
   /// bits the same is made again in a few ms.
   std::vector<double> matrix;
-  Eigen::MatrixXd constraints;  ///< Border::gradients
-  VecX compliances;             ///< Border::compliances
+  Eigen::MatrixXd constraints;      ///< Border::gradients
+  VecX compliances;                 ///< Border::compliances
+  std::vector<SharpTangent> sharp;  ///< NewtonWorkspace::sharp
 
   bool searched() const { return !own.empty(); }
 };

@@ -70,6 +70,27 @@ TEST_P(CholeskyOf, SharedWorkGivesTheSameBits) {
     EXPECT_LT((matrix.multiply(x.col(k)) - right.col(k)).norm(), 1e-13 * right.col(k).norm()) << k;
 }
 
+TEST_P(CholeskyOf, ComplianceIsTheNodesPartOfTheInverse) {
+  Rng rng(5);
+  Workers workers(3);
+  const BlockMatrix matrix = test::random_positive(rng, 120);
+  Cholesky cholesky = factor(matrix);
+  ASSERT_EQ(cholesky.factorise(matrix), FactorStatus::ok);
+  const Eigen::MatrixXd inverse = test::dense(matrix).inverse();
+  // Kept ones, condensed ones, and both.
+  for (const std::vector<int>& nodes :
+       {std::vector<int>{0, 3, 40}, std::vector<int>{90, 118}, std::vector<int>{5, 79, 80, 81, 119}}) {
+    std::vector<int> unknowns;
+    for (int node : nodes)
+      for (int c = 0; c < 3; ++c) unknowns.push_back(3 * node + c);
+    const Eigen::MatrixXd compliance = cholesky.compliance(nodes);
+    // Condition numbers near 10: the difference is rounding.
+    EXPECT_LT((compliance - inverse(unknowns, unknowns)).norm(), 1e-13 * compliance.norm());
+    EXPECT_EQ(compliance, compliance.transpose());
+    EXPECT_EQ(cholesky.compliance(nodes, &workers), compliance);
+  }
+}
+
 TEST_P(CholeskyOf, SameMatrixGivesTheSameBits) {
   Rng rng(3);
   const BlockMatrix matrix = test::random_positive(rng, 20);

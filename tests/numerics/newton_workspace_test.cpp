@@ -21,6 +21,7 @@ NewtonWorkspace factored(Rng& rng, int nodes) {
     work.border.gradients.col(k) = test::random_coordinates(rng, matrix.size(), 1.0);
   work.border.solve_with(work.factor);
   work.factored = true;
+  work.sharp = {{1, -1, 7, test::random_block(rng)}, {2, 3, 0, test::random_block(rng)}};
   work.matrix.set_zero();
   return work;
 }
@@ -50,6 +51,8 @@ TEST(NewtonWorkspace, MadeAgainOfItsBytesSolvesToTheSameBits) {
     EXPECT_EQ(step_again, step);
     EXPECT_EQ(again.border.keep(VecX::Ones(2), step_again), work.border.keep(VecX::Ones(2), step));
     EXPECT_EQ(step_again, step);
+    ASSERT_EQ(again.sharp.size(), 2u);
+    EXPECT_EQ(again.sharp[1].stiffness, work.sharp[1].stiffness);
     EXPECT_EQ(bytes_of(again), bytes_of(work));
   }
 }

@@ -277,7 +277,7 @@ TEST(WorldBytes, ThatAreCutLongerOrDamagedAreRefused) {
   EXPECT_THAT(why_not(scene, bytes + "x"), testing::HasSubstr("1 bytes follow its end"));
   std::string other = bytes;
   ++other[12];
-  EXPECT_THAT(why_not(scene, other), testing::HasSubstr("version 9, and this program reads version 8"));
+  EXPECT_THAT(why_not(scene, other), testing::HasSubstr("version 10, and this program reads version 9"));
   for (std::size_t at = 100; at < bytes.size(); at += bytes.size() / 20) {
     other = bytes;
     other[at] = static_cast<char>(other[at] ^ 1);

@@ -72,6 +72,22 @@ TEST(CoarseMesh, KeepsPointsAsTheyAreAndTheShareOfTrianglesThatItMust) {
   }
 }
 
+TEST(CoarseMesh, HasNoTrianglesBackToBackBetweenWhichAPointWouldHaveNoNormal) {
+  SceneMesh fine = waves();
+  const std::size_t triangles = fine.triangles.size(), points = fine.positions.size();
+  // A spike of two triangles, as simplifying leaves them of a thin one.
+  const auto tip = static_cast<int>(points);
+  fine.positions.push_back(fine.positions[0] + Vec3(0, 0, 5e-3));
+  fine.rest_positions.push_back(fine.positions.back());
+  fine.normals.push_back(Vec3::UnitZ());
+  fine.triangles.push_back({0, 1, tip});
+  fine.triangles.push_back({1, 0, tip});
+  const CoarseMesh coarse = coarser(fine, 0, 1);
+  EXPECT_EQ(coarse.mesh.triangles.size(), triangles);
+  EXPECT_EQ(coarse.kept.size(), points);
+  EXPECT_EQ(std::count(coarse.kept.begin(), coarse.kept.end(), tip), 0);
+}
+
 TEST(CoarseMesh, AFieldDrawnOfCoarseOnesIsNearlyTheSamePicture) {
   SceneDefinition definition;
   definition.anatomy = named_anatomy("standard").value();
