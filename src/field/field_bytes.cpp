@@ -72,11 +72,8 @@ bool fits(const Group& group, const Field& field) {
   if (!own.empty() && own.size() != moving_bodies(field)) return false;
   for (std::size_t k = 0; k < own.size(); ++k)
     if (own[k].size() != body_of(field, k).rest().size()) return false;
-  for (const SharpTangent& tangent : group.work.sharp) {
-    const auto part = static_cast<std::size_t>(tangent.part);
-    if (part >= moving_bodies(field) || !fits(tangent, body_of(field, part))) return false;
-  }
-  return (group.work.matrix.size() == 0 || group.work.matrix.size() == size) &&
+  return fit(group.work.sharp, field) &&
+         (group.work.matrix.size() == 0 || group.work.matrix.size() == size) &&
          (group.missed.dx.size() == 0 || group.missed.dx.size() == size);
 }
 

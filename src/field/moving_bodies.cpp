@@ -1,6 +1,9 @@
 #include "field/moving_bodies.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "group/pressed_laws.h"
 
 namespace calot {
 
@@ -20,6 +23,13 @@ const Body& body_of(const Field& field, std::size_t k) {
   const std::size_t organs = field.organs.size();
   if (k < organs) return *field.organs[k].body;
   return *field.tissues[k - organs].body;
+}
+
+bool fit(const std::vector<SharpTangent>& tangents, const Field& field) {
+  return std::all_of(tangents.begin(), tangents.end(), [&](const SharpTangent& tangent) {
+    const auto part = static_cast<std::size_t>(tangent.part);
+    return part < moving_bodies(field) && fits(tangent, body_of(field, part));
+  });
 }
 
 Result<std::vector<MotionPart>> next_parts(const Field& field) {

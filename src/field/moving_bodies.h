@@ -11,6 +11,9 @@ BodyState& state_of(Field& field, std::size_t body);
 const BodyState& state_of(const Field& field, std::size_t body);
 const Body& body_of(const Field& field, std::size_t body);
 
+/// Whether these are all of places that its bodies have.
+bool fit(const std::vector<SharpTangent>& tangents, const Field& field);
+
 /// The next part of each body's motion, from where it is as it moves there; none where the field is static. Fails
 /// (simulation) where its liquid's motion cannot be found.
 Result<std::vector<MotionPart>> next_parts(const Field& field);

@@ -311,10 +311,8 @@ double BodyProblem::safe_share(const VecX& x, const VecX& step) const {
 
 std::vector<ContactForce> contact_forces(const std::vector<Touch>& touches) {
   std::vector<ContactForce> out;
-  for (const Touch& touch : touches) {
-    out.push_back(
-        {touch.shape, touch.point, touch.at, touch.area * touch.answer.derivative * touch.slope.gradient});
-  }
+  for (const Touch& touch : touches)
+    out.push_back({touch.shape, touch.point, touch.at, touch.force_on_shape()});
   return out;
 }
 

@@ -152,8 +152,7 @@ std::vector<Touch> touches_of(const Body& body, const VecX& x, const ContactLoad
 
 void add_touch_gradient(const Body& body, const std::vector<Touch>& touches, VecX& gradient) {
   ContactLoad pressed(body.skin(), gradient);
-  for (const Touch& touch : touches)
-    pressed.add(touch.point, touch.area * touch.answer.derivative * touch.slope.gradient);
+  for (const Touch& touch : touches) pressed.add(touch.point, touch.force_on_shape());
   pressed.finish();
 }
 
@@ -170,8 +169,7 @@ Mat3 contact_bend(const ContactLoads& loads, const Touch& touch) {
 }
 
 Mat3 contact_hessian(const ContactLoads& loads, const Touch& touch) {
-  const Vec3& normal = touch.slope.gradient;
-  return touch.area * touch.answer.second * normal * normal.transpose() + contact_bend(loads, touch);
+  return touch.flat_hessian() + contact_bend(loads, touch);
 }
 
 const std::vector<Touch>& TouchMemory::at(const Body& body, const VecX& x, const ContactLoads& loads,

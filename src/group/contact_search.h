@@ -97,6 +97,9 @@ struct Touch {
   BarrierSample answer;    ///< of the body to it there, a unit of area
   double area = 0;         ///< m^2 that it stands for
   double radius = 0;       ///< m, of the surface around it
+  Vec3 force_on_shape() const { return area * answer.derivative * slope.gradient; }  ///< N
+  /// Hessian of its energy by its place, N/m, as if its distance did not curve.
+  Mat3 flat_hessian() const { return area * answer.second * slope.gradient * slope.gradient.transpose(); }
 };
 
 /// All contact points in range when the nodes are at x, m, ordered by shape, then point. `pairs` are ordered and hold

@@ -433,20 +433,13 @@ class GroupProblem::Pressed : public SharpTerms {
     return out;
   }
   SharpHessian hessian(const VecX& x, bool convex) const override {
-    SharpHessian out;
-    for (const auto& [k, laws] : laws_) {
-      out.parts.push_back({group_.first_node(k), group_.members_[k].body.pattern().blank()});
-      laws.add_hessian(group_.part_of(k, x), convex, out.parts.back().matrix);
-    }
-    return out;
+    return of_each([&](std::size_t k, const PressedLaws& laws, BlockMatrix& matrix) {
+      laws.add_hessian(group_.part_of(k, x), convex, matrix);
+    });
   }
   SharpHessian factorised() const override {
-    SharpHessian out;
-    for (const auto& [k, laws] : laws_) {
-      out.parts.push_back({group_.first_node(k), group_.members_[k].body.pattern().blank()});
-      laws.add_tangents(out.parts.back().matrix);
-    }
-    return out;
+    return of_each(
+        [](std::size_t, const PressedLaws& laws, BlockMatrix& matrix) { laws.add_tangents(matrix); });
   }
   double safe_share(const VecX& x, const VecX& step) const override {
     double share = 1;
@@ -456,6 +449,17 @@ class GroupProblem::Pressed : public SharpTerms {
   }
 
  private:
+  /// add(member, its laws, a matrix of zeros of its nodes) for each.
+  template <class Add>
+  SharpHessian of_each(const Add& add) const {
+    SharpHessian out;
+    for (const auto& [k, laws] : laws_) {
+      out.parts.push_back({group_.first_node(k), group_.members_[k].body.pattern().blank()});
+      add(k, laws, out.parts.back().matrix);
+    }
+    return out;
+  }
+
   const GroupProblem& group_;
   std::vector<std::pair<std::size_t, PressedLaws>> laws_;  ///< of members
 };

@@ -18,12 +18,8 @@ using Law = std::array<int, 2>;
 Law law_of(int shape, int point) { return {shape, shape == of_grip ? point : point / contacts_each}; }
 
 Mat3 stiffness_of(const ContactLoads& loads, const Touch& touch, bool convex) {
-  const Vec3& normal = touch.slope.gradient;
-  return convex ? Mat3(touch.area * touch.answer.second * normal * normal.transpose())
-                : contact_hessian(loads, touch);
+  return convex ? touch.flat_hessian() : contact_hessian(loads, touch);
 }
-
-Vec3 force_of(const Touch& touch) { return touch.area * touch.answer.derivative * touch.slope.gradient; }
 
 }  // namespace
 
@@ -53,8 +49,8 @@ PressedLaws::PressedLaws(const Body& body, const ContactLoads& loads, const std:
   const auto of = [&](const Law& law) -> Vec3& {
     return missed.try_emplace(law, Vec3::Zero()).first->second;
   };
-  for (const Touch& touch : step.before) of(law_of(touch.shape, touch.point)) -= force_of(touch);
-  for (const Touch& touch : step.after) of(law_of(touch.shape, touch.point)) += force_of(touch);
+  for (const Touch& touch : step.before) of(law_of(touch.shape, touch.point)) -= touch.force_on_shape();
+  for (const Touch& touch : step.after) of(law_of(touch.shape, touch.point)) += touch.force_on_shape();
   const GripSprings& grip = loads.grip;
   const VecX there = step.x + step.step;
   for (std::size_t i = 0; i < grip.pad.size(); ++i)

@@ -9,6 +9,7 @@
 
 #include "numerics/condense.h"
 #include "numerics/envelope.h"
+#include "numerics/node_rows.h"
 
 namespace calot {
 namespace {
@@ -165,13 +166,10 @@ Eigen::MatrixXd Cholesky::compliance(std::span<const int> nodes, Workers* worker
     out.selfadjointView<Eigen::Lower>().rankUpdate(half.transpose());
     return out.selfadjointView<Eigen::Lower>();
   }
-  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(impl_->factor->n), columns),
-                  out(columns, columns);
+  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(impl_->factor->n), columns);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     units.block<3, 3>(3 * Eigen::Index{nodes[i]}, 3 * static_cast<Eigen::Index>(i)).setIdentity();
-  const Eigen::MatrixXd whole = solve_columns(units);
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    out.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = whole.middleRows<3>(3 * Eigen::Index{nodes[i]});
+  const Eigen::MatrixXd out = picked(solve_columns(units), nodes);
   return 0.5 * (out + out.transpose());
 }
 

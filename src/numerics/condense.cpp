@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "numerics/node_rows.h"
+
 namespace calot {
 namespace {
 
@@ -242,25 +244,6 @@ bool Condensation::eliminate_single(const Piece& piece, double* to) {
   product.selfadjointView<Eigen::Lower>().rankUpdate(coupling);
   return true;
 }
-
-namespace {
-
-/// Three unknowns of each node.
-template <class Columns>
-void pick(const Columns& from, const std::vector<int>& nodes, Columns& out) {
-  out.resize(3 * static_cast<Eigen::Index>(nodes.size()), from.cols());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    out.template middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
-        from.template middleRows<3>(3 * Eigen::Index{nodes[i]});
-}
-template <class Columns>
-void put(const Columns& from, const std::vector<int>& nodes, Columns& out) {
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    out.template middleRows<3>(3 * Eigen::Index{nodes[i]}) =
-        from.template middleRows<3>(3 * static_cast<Eigen::Index>(i));
-}
-
-}  // namespace
 
 template <class Columns>
 void Condensation::solve_lower(const Piece& piece, Columns& x) const {

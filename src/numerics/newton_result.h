@@ -30,8 +30,8 @@ struct NewtonResult {
   double residual = 0;          ///< largest nodal residual / largest internal nodal force, of the worst part
   double increment = 0;         ///< largest coordinate of the last increment / length, of the worst part
   double constraint_error = 0;  ///< relative, of the worst constraint
-  /// Wall time, for benchmarks only: energies and their derivatives, factors, solves with them, and
-  /// safe_share.
+  /// Wall time, for benchmarks only: energies and their derivatives, factors, solves with them,
+  /// safe_share, and what corrects steps (sharp_step.h).
   double assembly_s = 0, factorisation_s = 0, solve_s = 0, safety_s = 0, sharp_s = 0;
   bool converged() const { return status == NewtonStatus::converged; }
   /// Takes over the outcome of a further solve and adds its counts and times.

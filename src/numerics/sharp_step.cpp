@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "numerics/node_rows.h"
 #include "numerics/parts.h"
 
 namespace calot {
@@ -13,24 +14,9 @@ Eigen::MatrixXd compliance(const NewtonWorkspace& work, std::span<const int> nod
   Eigen::MatrixXd out = work.factor.compliance(nodes, workers);
   const Border& border = work.border;
   if (border.constraints() == 0) return out;
-  Eigen::MatrixXd answers(out.rows(), border.constraints());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    answers.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
-        border.answers.middleRows<3>(3 * Eigen::Index{nodes[i]});
+  const Eigen::MatrixXd answers = picked(border.answers, nodes);
   out.noalias() -= answers * Eigen::LDLT<Eigen::MatrixXd>(border.complement).solve(answers.transpose());
   return out;
-}
-
-VecX pick(const VecX& from, std::span<const int> nodes) {
-  VecX out(3 * static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    out.segment<3>(3 * static_cast<Eigen::Index>(i)) = from.segment<3>(3 * Eigen::Index{nodes[i]});
-  return out;
-}
-
-void put(const VecX& from, std::span<const int> nodes, VecX& to) {
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    to.segment<3>(3 * Eigen::Index{nodes[i]}) = from.segment<3>(3 * static_cast<Eigen::Index>(i));
 }
 
 /// The sum that sharp_load() makes least, of the way y of a few nodes; the others are where the step leads.
@@ -42,7 +28,7 @@ class Near {
         nodes_(terms.nodes()),
         slope_(terms.gradient(start.x)),
         hessian_(terms.factorised()),
-        step_(pick(start.step, nodes_)),
+        step_(picked(start.step, nodes_)),
         own_(hessian_.over(nodes_)) {}
 
   std::span<const int> nodes() const { return nodes_; }
@@ -69,7 +55,7 @@ class Near {
   VecX gradient(const VecX& y) const {
     const VecX there = place(y);
     const VecX missed = terms_.gradient(there) - slope_ - hessian_.times(there - start_.x);
-    return stiffness_ * (y - step_) + pick(missed, nodes_);
+    return stiffness_ * (y - step_) + picked(missed, nodes_);
   }
   /// Newton's way from y, where the sum's slope is this; by its convex part where it is not convex there.
   VecX way(const VecX& y, const VecX& slope) const {
@@ -89,7 +75,7 @@ class Near {
   /// That makes the step end at y.
   VecX load(const VecX& y) const {
     VecX out = VecX::Zero(start_.x.size());
-    put(stiffness_ * (y - step_), nodes_, out);
+    put(VecX(stiffness_ * (y - step_)), nodes_, out);
     return out;
   }
 

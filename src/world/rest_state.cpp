@@ -14,11 +14,7 @@ bool fits(const RestState& state, const Field& field) {
   if (state.searched() ? state.own.size() != bodies : state.factored) return false;
   for (std::size_t k = 0; k < bodies; ++k)
     if (state.places[k].size() != state_of(field, k).x.size()) return false;
-  for (const SharpTangent& tangent : state.sharp) {
-    const auto part = static_cast<std::size_t>(tangent.part);
-    if (part >= bodies || !fits(tangent, body_of(field, part))) return false;
-  }
-  return !state.factored || state.constraints.rows() == BodyParts(field).total();
+  return fit(state.sharp, field) && (!state.factored || state.constraints.rows() == BodyParts(field).total());
 }
 
 /// As the search left them: values are written anew by each solve.
