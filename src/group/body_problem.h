@@ -61,7 +61,13 @@ class BodyProblem : public ConstrainedEnergy {
   /// What safe_share() is no more than: as far as no two bodies nor their parts need be compared.
   double longest_share(const VecX& x, const VecX& step) const;
   /// The part of `share` of a step that is safe beside the shapes, and beside the skin itself.
-  double share_beside_shapes(const VecX& x, const VecX& step, double share) const;
+  double share_beside_shapes(const VecX& x, const VecX& step, double share) const {
+    return share_beside_shapes(x, step, share, pairs());
+  }
+  /// The first of only these pairs, of which a step of the `marked` nodes, one a node, alone changes pairs_on() these.
+  double share_beside_shapes(const VecX& x, const VecX& step, double share,
+                             const std::vector<ContactPair>& pairs) const;
+  std::vector<ContactPair> pairs_on(const std::vector<char>& marked) const;
   double share_beside_itself(const VecX& x, const VecX& step, double share) const;
 
  private:
