@@ -64,9 +64,11 @@ class BodyProblem : public ConstrainedEnergy {
   double share_beside_shapes(const VecX& x, const VecX& step, double share) const {
     return share_beside_shapes(x, step, share, pairs());
   }
-  /// The first of only these pairs, of which a step of the `marked` nodes, one a node, alone changes pairs_on() these.
+  /// The same beside the shapes alone, of only these pairs of skin and shape.
   double share_beside_shapes(const VecX& x, const VecX& step, double share,
                              const std::vector<ContactPair>& pairs) const;
+  /// The pairs whose triangles hang on any of the `marked` nodes (one flag a node): only these change their distance in a
+  /// step that moves no other node.
   std::vector<ContactPair> pairs_on(const std::vector<char>& marked) const;
   double share_beside_itself(const VecX& x, const VecX& step, double share) const;
 

@@ -450,6 +450,11 @@ class GroupProblem::Pressed : public SharpTerms {
   }
 
  private:
+  struct OfMember {
+    std::size_t k;
+    PressedLaws laws;
+    std::vector<ContactPair> pairs;  ///< all that hang on the laws' nodes
+  };
   /// add(member, its laws, a matrix of zeros of its nodes) for each.
   template <class Add>
   SharpHessian of_each(const Add& add) const {
@@ -462,11 +467,6 @@ class GroupProblem::Pressed : public SharpTerms {
   }
 
   const GroupProblem& group_;
-  struct OfMember {
-    std::size_t k;
-    PressedLaws laws;
-    std::vector<ContactPair> pairs;  ///< all that hang on the laws' nodes
-  };
   std::vector<OfMember> laws_;
 };
 

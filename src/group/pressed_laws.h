@@ -38,15 +38,13 @@ class PressedLaws {
   void add_tangents(BlockMatrix& matrix) const;  ///< N/m
 
  private:
-  const std::vector<Touch>& touching(const VecX& x) const;
+  std::vector<Touch> touching(const VecX& x) const;
 
   const Body& body_;
   const ContactLoads& loads_;
   std::vector<ContactPair> pairs_;
   GripSprings grip_;
   std::vector<SharpTangent> tangents_;
-  mutable VecX known_x_;  ///< where touching() was asked last; empty: nowhere yet
-  mutable std::vector<Touch> known_;
 };
 
 }  // namespace calot
