@@ -41,6 +41,17 @@ local function let_go(hand)
   hand:move_by({ -15 * mm, -15 * mm, 30 * mm }, { speed = 60 * mm / s })
 end
 
+-- Lowers what the jaws carry until it touches and something else carries some of it, then on to the side, so that it
+-- lies down along the way.
+local function lay_down(hand)
+  local carried, lowered = hand:force("jaws"), 0
+  while lowered < 60 * mm and math.abs(hand:force("jaws") - carried) < 0.03 * carried do
+    hand:move_by({ 0, 0, -4 * mm }, { speed = 40 * mm / s })
+    lowered = lowered + 4 * mm
+  end
+  hand:move_by({ 40 * mm, 0, -20 * mm }, { speed = 40 * mm / s })
+end
+
 local function expert(t)
   t.left:move_by({ 0, 9 * mm, 42 * mm }, { speed = 30 * mm / s }) -- off the liver
   t:together(function()
@@ -68,7 +79,7 @@ local function expert(t)
   end, function()
     t.laparoscope:look_at({ 65 * mm, 115 * mm, -140 * mm }, { distance = 120 * mm })
   end)
-  t.left:move_by({ 0, 0, -55 * mm }, { speed = 40 * mm / s })
+  lay_down(t.left)
   let_go(t.left)
 end
 
@@ -173,7 +184,8 @@ return calot.exercise {
 
   golden = {
     at = {
-      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 60 * s, 70 * s, 73.6 * s, 80 * s, 89.6 * s, 101.36 * s,
+      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 60 * s, 70 * s, 76 * s, 78 * s, 86 * s, 92 * s, 98 * s,
+      101 * s, 102.6 * s,
     },
   },
 }

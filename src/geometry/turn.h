@@ -14,6 +14,10 @@ using Points3 = Eigen::Ref<const Eigen::Matrix3Xd>;  ///< a point a column
 /// 1976). As many columns in both, at least one; where they leave it open, one of the best.
 Mat3 best_turn(const Points3& from, const Points3& to);
 
+/// The vector w, rad, for which turns w x (at - middle) come nearest to `motions` but for a shift, by the sum of squared
+/// distances. As many columns in both, at least one; where they leave it open, next to 0 about that axis.
+Vec3 best_spin(const Points3& at, const Points3& motions);
+
 /// Root of the mean squared distance of the points from their middle.
 double spread_of(const Points3& points);
 

@@ -279,10 +279,26 @@ double BodyProblem::longest_share(const VecX& x, const VecX& step) const {
   return margin_share(moved(x), body_.largest_motion(step), unfolding_share(step));
 }
 
-double BodyProblem::share_beside_shapes(const VecX& x, const VecX& step, double share) const {
+std::vector<ContactPair> BodyProblem::pairs_on(const std::vector<char>& marked) const {
+  const Tessellation& skin = body_.skin();
+  const auto hangs = [&](int row) {
+    const auto nodes = skin.stencils.node.begin();
+    return std::any_of(nodes + skin.stencils.begin[row], nodes + skin.stencils.begin[row + 1],
+                       [&](int node) { return marked[static_cast<std::size_t>(node)] != 0; });
+  };
+  std::vector<ContactPair> out;
+  for (const ContactPair& pair : pairs()) {
+    const Triangle& corners = skin.triangles[pair.triangle];
+    if (std::any_of(corners.begin(), corners.end(), hangs)) out.push_back(pair);
+  }
+  return out;
+}
+
+double BodyProblem::share_beside_shapes(const VecX& x, const VecX& step, double share,
+                                        const std::vector<ContactPair>& pairs) const {
   const double depth = body_.core_depth(), gone = moved(x), longest = body_.largest_motion(step);
   ContactPlaces places(body_.skin(), x, body_.core_radii()), moves(body_.skin(), step);
-  for (const ContactPair& pair : pairs()) {
+  for (const ContactPair& pair : pairs) {
     if (share * longest < (1.0 - contact_keep) * (pair.distance + depth - gone)) continue;
     const Shape& shape = cores_[pair.shape];
     const Nearness near = places.nearness(pair.triangle, shape);

@@ -61,7 +61,15 @@ class BodyProblem : public ConstrainedEnergy {
   /// What safe_share() is no more than: as far as no two bodies nor their parts need be compared.
   double longest_share(const VecX& x, const VecX& step) const;
   /// The part of `share` of a step that is safe beside the shapes, and beside the skin itself.
-  double share_beside_shapes(const VecX& x, const VecX& step, double share) const;
+  double share_beside_shapes(const VecX& x, const VecX& step, double share) const {
+    return share_beside_shapes(x, step, share, pairs());
+  }
+  /// The same beside the shapes alone, of only these pairs of skin and shape.
+  double share_beside_shapes(const VecX& x, const VecX& step, double share,
+                             const std::vector<ContactPair>& pairs) const;
+  /// The pairs whose triangles hang on any of the `marked` nodes (one flag a node): only these change their distance in a
+  /// step that moves no other node.
+  std::vector<ContactPair> pairs_on(const std::vector<char>& marked) const;
   double share_beside_itself(const VecX& x, const VecX& step, double share) const;
 
  private:

@@ -414,18 +414,18 @@ class GroupProblem::Pressed : public SharpTerms {
       laws.mark_nodes(marks);
       for (std::size_t node = 0; node < marks.size(); ++node)
         if (marks[node]) nodes_.push_back(group.first_node(k) + static_cast<int>(node));
-      laws_.emplace_back(k, std::move(laws));
+      laws_.push_back({k, std::move(laws), group.problems_[k].pairs_on(marks)});
     }
   }
 
   double value(const VecX& x) const override {
     double sum = 0;
-    for (const auto& [k, laws] : laws_) sum += laws.value(group_.part_of(k, x));
+    for (const auto& [k, laws, pairs] : laws_) sum += laws.value(group_.part_of(k, x));
     return sum;
   }
   VecX gradient(const VecX& x) const override {
     VecX out = VecX::Zero(x.size());
-    for (const auto& [k, laws] : laws_) {
+    for (const auto& [k, laws, pairs] : laws_) {
       VecX own = VecX::Zero(group_.ranges_[k].size);
       laws.add_gradient(group_.part_of(k, x), own);
       out.segment(group_.ranges_[k].first, own.size()) = own;
@@ -442,18 +442,24 @@ class GroupProblem::Pressed : public SharpTerms {
         [](std::size_t, const PressedLaws& laws, BlockMatrix& matrix) { laws.add_tangents(matrix); });
   }
   double safe_share(const VecX& x, const VecX& step) const override {
-    double share = 1;
-    for (const auto& [k, laws] : laws_)
-      share = group_.problems_[k].share_beside_shapes(group_.part_of(k, x), group_.part_of(k, step), share);
+    double share = group_.longest_share(x, step);
+    for (const auto& [k, laws, pairs] : laws_)
+      share = group_.problems_[k].share_beside_shapes(group_.part_of(k, x), group_.part_of(k, step), share,
+                                                      pairs);
     return share;
   }
 
  private:
+  struct OfMember {
+    std::size_t k;
+    PressedLaws laws;
+    std::vector<ContactPair> pairs;  ///< all that hang on the laws' nodes
+  };
   /// add(member, its laws, a matrix of zeros of its nodes) for each.
   template <class Add>
   SharpHessian of_each(const Add& add) const {
     SharpHessian out;
-    for (const auto& [k, laws] : laws_) {
+    for (const auto& [k, laws, pairs] : laws_) {
       out.parts.push_back({group_.first_node(k), group_.members_[k].body.pattern().blank()});
       add(k, laws, out.parts.back().matrix);
     }
@@ -461,7 +467,7 @@ class GroupProblem::Pressed : public SharpTerms {
   }
 
   const GroupProblem& group_;
-  std::vector<std::pair<std::size_t, PressedLaws>> laws_;  ///< of members
+  std::vector<OfMember> laws_;
 };
 
 std::vector<SharpTangent> GroupProblem::sharp_tangents(const VecX& x, bool convex) const {

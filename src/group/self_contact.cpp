@@ -42,16 +42,26 @@ std::vector<int> all_nodes(const Body& body) {
   return all;
 }
 
+Eigen::Map<const Eigen::Matrix3Xd> coarse_places(const Body& body, const VecX& x) {
+  return {x.data(), 3, body.coarse_nodes()};
+}
+
 /// Bound on how much any two skin points have come nearer between two states, m: what their motions differ by but for
 /// a turn of the whole, which changes no distance.
 double approach_between(const Body& body, const VecX& before, const VecX& now) {
-  const auto coarse = [&](const VecX& x) {
-    return Eigen::Map<const Eigen::Matrix3Xd>(x.data(), 3, body.coarse_nodes());
-  };
-  const Mat3 turn = best_turn(coarse(before), coarse(now));
+  const Mat3 turn = best_turn(coarse_places(body, before), coarse_places(body, now));
   VecX moved = now;
   for (int i = 0; i < body.nodes(); ++i) moved.segment<3>(3 * i) -= turn * before.segment<3>(3 * i);
   return relative_motion(body, moved, all_nodes(body));
+}
+
+/// A step from x without its turn about one axis, w x place with w the same everywhere. On a straight way such a turn
+/// brings no two points nearer: |d + w x d| >= |d|. So what points lose of their distances the rest takes from them.
+VecX unturned(const Body& body, const VecX& x, const VecX& step) {
+  const Vec3 spin = best_spin(coarse_places(body, x), coarse_places(body, step));
+  VecX out = step;
+  for (int i = 0; i < body.nodes(); ++i) out.segment<3>(3 * i) -= spin.cross(x.segment<3>(3 * i));
+  return out;
 }
 
 /// What the pair leaves of a share of the motion. Few of those that are looked at could meet at all.
@@ -274,7 +284,7 @@ double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step
   if (!active || !step.allFinite() || !x.allFinite() || step.isZero(0)) return share;
   // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
   // way would be everything: that is gone in parts.
-  const double far = share * relative_motion(body, step, all_nodes(body)) / (1.0 - keep);
+  const double far = share * relative_motion(body, unturned(body, x, step), all_nodes(body)) / (1.0 - keep);
   const int parts = 1 + static_cast<int>(far / (0.5 * group_reach));
   const double part = share / parts;
   for (int k = 0; k < parts; ++k) {
@@ -286,10 +296,11 @@ double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step
 
 double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step, double keep) {
   const double lost = 1.0 - keep, beside = beside_edges(body);
-  const double anywhere = relative_motion(body, step, all_nodes(body)) / lost;
+  const VecX nearing = unturned(body, x, step);
+  const double anywhere = relative_motion(body, nearing, all_nodes(body)) / lost;
   refresh_groups(body, x, std::hypot(anywhere, beside));
   if (groups_.empty()) return 1.0;
-  const double far = relative_motion(body, step, nodes_) / lost;
+  const double far = relative_motion(body, nearing, nodes_) / lost;
   const PlacedEdges edges{&net_->edges, &at_, &way_};
   double share = 1.0;
   if (far <= close_reach) {
@@ -305,7 +316,8 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   }
   look_up(body, x, at_);
   look_up(body, step, way_);
-  const SkinMotion moving{at_, &way_, 0, 0, lost};
+  look_up(body, nearing, nearing_);
+  const SkinMotion moving{at_, &nearing_, 0, 0, lost};
   const std::vector<SelfPair> pairs = near_pairs(*net_, moving, groups_, workers);
   for (const SelfPair& pair : pairs) share = cut_by(*net_, pair, at_, way_, keep, share);
   for (const EdgesNear& pair : edges_at(*net_, pairs, moving))

@@ -142,7 +142,7 @@ class SelfContact {
   double nearest_edges_ = 0;                  ///< m, of these
   double pairs_reach_ = 0, edges_reach_ = 0;  ///< m, how near all are remembered
   bool lacking_ = false;
-  std::vector<Vec3> at_, way_;  ///< room for look_up()
+  std::vector<Vec3> at_, way_, nearing_;  ///< room for look_up()
 };
 
 }  // namespace calot

@@ -43,7 +43,8 @@ struct SkinNet {
   void split(int node);
 };
 
-/// Where the skin's points are and, if given, how they are to move.
+/// Where the skin's points are and, if given, how they are to move. Only what motions differ by is asked: a turn w x place of
+/// the whole, which brings no two points nearer, may be left out of it.
 struct SkinMotion {
   const std::vector<Vec3>& points;            ///< m
   const std::vector<Vec3>* motion = nullptr;  ///< m

@@ -26,10 +26,9 @@ class Near {
       : terms_(terms),
         start_(start),
         nodes_(terms.nodes()),
-        slope_(terms.gradient(start.x)),
-        hessian_(terms.factorised()),
+        slope_(picked(terms.gradient(start.x), nodes_)),
         step_(picked(start.step, nodes_)),
-        own_(hessian_.over(nodes_)) {}
+        own_(terms.factorised().over(nodes_)) {}
 
   std::span<const int> nodes() const { return nodes_; }
   Eigen::Index size() const { return step_.size(); }
@@ -48,14 +47,11 @@ class Near {
     return start_.x + way;
   }
   double value(const VecX& y) const {
-    const VecX off = y - step_, way = place(y) - start_.x;
-    return 0.5 * off.dot(stiffness_ * off) + terms_.value(start_.x + way) - slope_.dot(way) -
-           0.5 * way.dot(hessian_.times(way));
+    const VecX off = y - step_;
+    return 0.5 * off.dot(stiffness_ * off) + terms_.value(place(y)) - slope_.dot(y) - 0.5 * y.dot(own_ * y);
   }
   VecX gradient(const VecX& y) const {
-    const VecX there = place(y);
-    const VecX missed = terms_.gradient(there) - slope_ - hessian_.times(there - start_.x);
-    return stiffness_ * (y - step_) + picked(missed, nodes_);
+    return stiffness_ * (y - step_) + picked(terms_.gradient(place(y)), nodes_) - slope_ - own_ * y;
   }
   /// Newton's way from y, where the sum's slope is this; by its convex part where it is not convex there.
   VecX way(const VecX& y, const VecX& slope) const {
@@ -83,20 +79,21 @@ class Near {
   const SharpTerms& terms_;
   const SharpStart& start_;
   const std::vector<int>& nodes_;
-  VecX slope_;                                    ///< of the terms, N
-  SharpHessian hessian_;                          ///< theirs in the factor
-  VecX step_;                                     ///< u of the nodes
-  Eigen::MatrixXd own_, compliance_, stiffness_;  ///< of the nodes: hessian_, H^-1 and its inverse
+  VecX slope_;                              ///< of the terms, N
+  VecX step_;                               ///< u
+  Eigen::MatrixXd own_;                     ///< the terms' part of the factor, N/m
+  Eigen::MatrixXd compliance_, stiffness_;  ///< H^-1 and its inverse
 };
 
-/// Where the slope is below `enough`, N, or as far as Newton's method with a line search comes from where the nodes stand.
+/// Where the slope is below `enough`, N, by Newton's method with a line search from where the nodes stand. Empty if it does
+/// not get there soon: from what it found by then nearly no step is taken.
 VecX nearest_balance(const Near& near, double enough) {
   constexpr int most_rounds = 12, most_halvings = 12;
   VecX y = VecX::Zero(near.size());
   double value = near.value(y);
   for (int round = 0; round < most_rounds; ++round) {
     const VecX slope = near.gradient(y);
-    if (!(largest_node(slope) > enough)) break;
+    if (largest_node(slope) <= enough) return y;
     const VecX way = near.way(y, slope);
     if (!way.allFinite()) break;
     double share = near.safe_share(y, way), next = 0;
@@ -110,7 +107,7 @@ VecX nearest_balance(const Near& near, double enough) {
     y += share * way;
     value = next;
   }
-  return y;
+  return {};
 }
 
 }  // namespace
@@ -123,7 +120,8 @@ VecX sharp_load(const ConstrainedEnergy& problem, const NewtonWorkspace& work, c
   if (terms == nullptr || terms->nodes().size() > most_nodes) return {};
   Near near(*terms, start);
   if (!near.set_compliance(compliance(work, near.nodes(), problem.workers()))) return {};
-  return near.load(nearest_balance(near, enough * start.residual));
+  const VecX balance = nearest_balance(near, enough * start.residual);
+  return balance.size() > 0 ? near.load(balance) : balance;
 }
 
 }  // namespace calot

@@ -18,7 +18,8 @@ struct SharpStart {
 /// The load, N, 3 a node, whose answer by the last factor is to be added to a step u. Of terms S that are off their
 /// tangents in that factor by more than `least`, N, and a matrix H of all that it is of, the step y so found makes
 ///     1/2 (y - u)' H (y - u) + S(x + y) - S(x) - S'(x) y - 1/2 y' S''y
-/// least, S'' being those tangents. Empty where there are none, or so many that an iteration costs less.
+/// least, S'' being those tangents. Empty where there are none, or so many that an iteration costs less, or where that least is
+/// not found soon.
 VecX sharp_load(const ConstrainedEnergy& problem, const NewtonWorkspace& workspace, const SharpStart& start,
                 double least);
 

@@ -2,15 +2,6 @@
 
 namespace calot {
 
-VecX SharpHessian::times(const VecX& v) const {
-  VecX out = VecX::Zero(v.size());
-  for (const Part& part : parts) {
-    const Eigen::Index first = 3 * Eigen::Index{part.first_node}, size = part.matrix.size();
-    out.segment(first, size) = part.matrix.multiply(v.segment(first, size));
-  }
-  return out;
-}
-
 Eigen::MatrixXd SharpHessian::over(std::span<const int> nodes) const {
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);

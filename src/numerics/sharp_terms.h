@@ -18,7 +18,6 @@ struct SharpHessian {
   };
   std::vector<Part> parts;  ///< of different nodes
 
-  VecX times(const VecX& v) const;  ///< N
   /// Rows and columns of `nodes`, increasing: 3 each.
   Eigen::MatrixXd over(std::span<const int> nodes) const;
 };

@@ -49,6 +49,34 @@ TEST(BestTurn, IsARotationAndNoneNearItFitsBetter) {
   }
 }
 
+/// Squared distances of motions from a shift and the turn `spin` x place.
+double misfit_of_spin(const Vec3& spin, const Eigen::Matrix3Xd& at, const Eigen::Matrix3Xd& motions) {
+  Eigen::Matrix3Xd left = motions;
+  for (Eigen::Index i = 0; i < at.cols(); ++i) left.col(i) -= spin.cross(Vec3(at.col(i)));
+  left.colwise() -= Vec3(left.rowwise().mean());
+  return left.squaredNorm();
+}
+
+TEST(BestSpin, NoneNearItFitsBetter) {
+  Rng rng(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Matrix3Xd at = cloud(rng, 12), motions = cloud(rng, 12);
+    const Vec3 best = best_spin(at, motions);
+    EXPECT_GT(best.norm(), 1e-3);
+    for (int k = 0; k < 20; ++k)
+      EXPECT_GT(misfit_of_spin(best + 0.01 * test::random_vector(rng, 1.0).normalized(), at, motions),
+                misfit_of_spin(best, at, motions));
+  }
+}
+
+TEST(BestSpin, OfPointsOnALineOrInOneIsFinite) {
+  Eigen::Matrix3Xd line(3, 3), motions(3, 3);
+  line << 0, 1, 3, 0, 0, 0, 0, 0, 0;
+  motions << 0, 0, 0, 0, 2, 6, 0, 0, 0;  // a turn by 2 about z
+  EXPECT_LT((best_spin(line, motions) - Vec3(0, 0, 2)).norm(), 1e-8);
+  EXPECT_EQ(best_spin(Eigen::Matrix3Xd::Ones(3, 4), motions.replicate(1, 2).leftCols(4)), Vec3::Zero());
+}
+
 TEST(Spread, GrowsWithThePointsAndDoesNotMindMotions) {
   Rng rng(3);
   const Eigen::Matrix3Xd points = cloud(rng, 30);

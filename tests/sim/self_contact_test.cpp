@@ -282,6 +282,29 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOther) {
   }
 }
 
+/// A turn of the whole, half a radian a step and more, neither holds walls up nor hides how they come nearer.
+TEST(SelfContact, NoStepTakesWallsThroughEachOtherWhileTheWholeTurns) {
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
+  const Organ& organ = field.organs[0];
+  const VecX x = dented(organ, 1.5e-3);
+  const SkinNet net(*organ.body);
+  const double before = nearest_pair(net, organ, x, 2e-3);
+  VecX closing = VecX::Zero(x.size()), turning = closing;
+  const Vec3 spin(0.3, -0.4, 0.5), pivot(0.1, 0, 0);
+  for (int i = 0; i < organ.body->nodes(); ++i) {
+    closing[3 * i] = organ.body->rest()[3 * i] > 0 ? -1 : 1;
+    turning.segment<3>(3 * i) = spin.cross(x.segment<3>(3 * i) - pivot);
+  }
+  EXPECT_EQ(SelfContact().safe_share(*organ.body, x, turning, 0.2, 1.0), 1.0);
+  for (double length : {1e-3, 5e-3, 50e-3}) {
+    const VecX step = length * closing + turning;
+    const double share = SelfContact().safe_share(*organ.body, x, step, 0.2, 1.0);
+    EXPECT_LT(share, 1.0) << length;
+    EXPECT_GT(share * length, 0.2 * before) << length;
+    EXPECT_GE(nearest_pair(net, organ, x + share * step, 2e-3), 0.2 * 0.2 * before * (1 - 1e-6)) << length;
+  }
+}
+
 TEST(SelfContact, NothingIsActiveInAnOrdinaryGrasp) {
   CALOT_SLOW_WHEN_SANITIZED("walls pressed on each other");
   test::FundusField grasped(test::grasper_scene());
