@@ -120,13 +120,15 @@ Result<std::vector<WorldEvent>> advance(Field& field, const Poses& targets, Solv
 
 Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targets,
                                                  SolveStatistics& statistics) {
-  if (field.step_time == 0 || !touches_hard(field)) return advance(field, targets, statistics);
+  if (field.step_time == 0) return advance(field, targets, statistics);
+  const bool hard = touches_hard(field);
   const FieldState before = field_state(field);
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
   if (!events) return events;
-  if (!wedges_hard(field, statistics.balanced)) {
+  const bool stuck = hard ? wedges_hard(field, statistics.balanced) : !statistics.balanced && crushes(field);
+  if (!stuck) {
     // Hands give way to what is hard in the next step only: where tools came short of their way their forces say nothing.
-    statistics.balanced &= !statistics.cut_short;
+    if (hard) statistics.balanced &= !statistics.cut_short;
     return events;
   }
   restore(field, before);

@@ -18,8 +18,8 @@ namespace calot {
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,
                                         SolveStatistics& statistics);
 
-/// The same within a step; but one that would wedge something hard (hard_hold.h) is taken back: its tools stay where they are,
-/// and the time passes.
+/// The same within a step; but one that would wedge something hard, or that ends out of balance with tissue crushed as no
+/// hand could (hard_hold.h), is taken back: its tools stay where they are, and the time passes.
 Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const std::vector<InstrumentPose>& targets,
                                                  SolveStatistics& statistics);
 

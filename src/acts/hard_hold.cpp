@@ -76,21 +76,29 @@ bool strains_hard(const Field& field) {
   });
 }
 
+/// Times a hand's strength: what is out of balance, or closes fast, may press by a few times that for a step.
+constexpr double beyond_any_hand = 20;
+
+/// Whether any tool or jaw is pressed by more than so many times its hand's strength.
+bool presses_beyond(const Field& field, double times) {
+  const std::vector<ToolLoad> loads = tool_loads(field);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const double jaws = std::max(loads[i].on_jaws[0].norm(), loads[i].on_jaws[1].norm());
+    if (std::max(loads[i].force.norm(), jaws) > times * field.tools[i].definition.hand_force) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool wedges_hard(const Field& field, bool balanced) {
   if (!touches_hard(field)) return false;
   const bool strained = strains_hard(field);
   if (balanced && !strained) return false;
-  // Times a hand's strength: what is out of balance, or closes fast, may press by a few times that for a step.
-  const double beyond = strained ? 1 : 20;
-  const std::vector<ToolLoad> loads = tool_loads(field);
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const double jaws = std::max(loads[i].on_jaws[0].norm(), loads[i].on_jaws[1].norm());
-    if (std::max(loads[i].force.norm(), jaws) > beyond * field.tools[i].definition.hand_force) return true;
-  }
-  return false;
+  return presses_beyond(field, strained ? 1 : beyond_any_hand);
 }
+
+bool crushes(const Field& field) { return presses_beyond(field, beyond_any_hand); }
 
 namespace {
 

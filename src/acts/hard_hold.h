@@ -22,6 +22,8 @@ bool may_touch_hard(const Field& field, double travel);
 /// Whether something hard presses a tool as no hand could, in a step that found no balance, or is strained by more than a
 /// hand's strength: it is wedged.
 bool wedges_hard(const Field& field, bool balanced);
+/// Whether any tool is pressed as no hand could press, as where tissue is crushed between it and ground.
+bool crushes(const Field& field);
 
 /// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.
 void catch_hard(Field& field, ToolIndex instrument, const Clasped& held);

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "acts/advance.h"
+#include "acts/hard_hold.h"
 #include "field/grip.h"
 #include "motion/settle_field.h"
+#include "motion/tool_loads.h"
 #include "rig.h"
 #include "support/long_run.h"
 
@@ -166,6 +168,40 @@ TEST(StepBudget, IsTheSameWhereNoToolMoves) {
   still.field.budget = {1, 1};
   for (int k = 0; k < 3; ++k) still.step(in);  // what it pushed goes on moving
   EXPECT_GT(still.cut_short, 0);
+}
+
+/// A tool that its user rams through an organ into the ground behind stops before it crushes the organ as no hand could, and
+/// lets it go when it is drawn back.
+TEST(StepBudget, WhatIsRammedAgainstGroundIsNotCrushedAndComesFree) {
+  CALOT_SLOW_WHEN_SANITIZED("an organ that moves");
+  SceneDefinition scene = test::ball_scene();
+  scene.solver.motion = SolverMotion::dynamics;
+  const test::FundusPath where(scene);
+  GroundDefinition wall;
+  wall.normal = where.out;
+  wall.point = where.fundus - 42e-3 * where.out;  // 2 mm behind the ball
+  scene.anatomy.ground = {wall};
+  test::FundusPath path(scene);
+  ASSERT_TRUE(path.driver.go(path.fundus + 2e-3 * path.out, 0, 4)) << path.driver.why();
+  Field field = path.world.field();
+  field.tools[0].definition.hand_force = 2;  // N: a weak hand's step is taken back above 40 N
+  const InstrumentPose start = path.world.report().instruments[0].pose;
+  const auto go = [&](double deeper) {
+    InstrumentPose to = start;
+    to.insertion += deeper;
+    SolveStatistics statistics;
+    EXPECT_TRUE(advance_unwedged(field, {to}, statistics)) << deeper;
+    return statistics.balanced;
+  };
+  for (int k = 1; k <= 10; ++k) go(8e-3 * k);
+  EXPECT_LT(field.tools[0].pose.insertion, start.insertion + 50e-3) << "there is the wall";
+  EXPECT_GT(tool_loads(field)[0].force.norm(), 10) << "that is ramming";
+  EXPECT_FALSE(crushes(field));
+  bool balanced = false;
+  for (int k = 10; k >= -20; --k) balanced = go(4e-3 * std::max(k, 0));
+  EXPECT_TRUE(balanced);
+  EXPECT_EQ(field.tools[0].pose, start);
+  EXPECT_LT(tool_loads(field)[0].force.norm(), 1);
 }
 
 TEST(StepBudget, WithoutMassesThereIsNone) {
