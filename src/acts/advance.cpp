@@ -125,7 +125,7 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   const FieldState before = field_state(field);
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
   if (!events) return events;
-  const bool stuck = hard ? wedges_hard(field, statistics.balanced) : !statistics.balanced && crushes(field);
+  const bool stuck = (hard && wedges_hard(field)) || (!statistics.balanced && crushes(field));
   if (!stuck) {
     // Hands give way to what is hard in the next step only: where tools came short of their way their forces say nothing.
     if (hard) statistics.balanced &= !statistics.cut_short;

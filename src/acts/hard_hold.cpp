@@ -76,9 +76,6 @@ bool strains_hard(const Field& field) {
   });
 }
 
-/// Times a hand's strength: what is out of balance, or closes fast, may press by a few times that for a step.
-constexpr double beyond_any_hand = 20;
-
 /// Whether any tool or jaw is pressed by more than so many times its hand's strength.
 bool presses_beyond(const Field& field, double times) {
   const std::vector<ToolLoad> loads = tool_loads(field);
@@ -91,14 +88,15 @@ bool presses_beyond(const Field& field, double times) {
 
 }  // namespace
 
-bool wedges_hard(const Field& field, bool balanced) {
-  if (!touches_hard(field)) return false;
-  const bool strained = strains_hard(field);
-  if (balanced && !strained) return false;
-  return presses_beyond(field, strained ? 1 : beyond_any_hand);
+bool wedges_hard(const Field& field) {
+  return touches_hard(field) && strains_hard(field) && presses_beyond(field, 1);
 }
 
-bool crushes(const Field& field) { return presses_beyond(field, beyond_any_hand); }
+bool crushes(const Field& field) {
+  // What is out of balance, or closes fast, may press by a few times a hand's strength for a step.
+  constexpr double beyond_any_hand = 20;
+  return presses_beyond(field, beyond_any_hand);
+}
 
 namespace {
 

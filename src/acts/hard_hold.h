@@ -19,10 +19,10 @@ bool rests_on_hard(const Field& field, ToolIndex instrument);
 bool touches_hard(const Field& field);
 /// Whether any may where tools travel that far, m.
 bool may_touch_hard(const Field& field, double travel);
-/// Whether something hard presses a tool as no hand could, in a step that found no balance, or is strained by more than a
-/// hand's strength: it is wedged.
-bool wedges_hard(const Field& field, bool balanced);
-/// Whether any tool is pressed as no hand could press, as where tissue is crushed between it and ground.
+/// Whether something hard that a tool touches is strained, and presses a tool by more than its hand's strength: it is wedged.
+bool wedges_hard(const Field& field);
+/// Whether any tool is pressed as no hand could press, as where tissue is crushed between it and ground, or something hard
+/// wedges. Only where a step ends out of balance does that say that it is stuck.
 bool crushes(const Field& field);
 
 /// Holds what a tool's pads clasp where they touch it now, unless more is asked of it than friction holds.

@@ -207,6 +207,13 @@ TEST(SelfContact, EdgesThatCrossPressOnEachOther) {
   }
 }
 
+/// A motion of each side towards the other, m a unit.
+VecX closing(const Body& body) {
+  VecX out = VecX::Zero(3 * Eigen::Index{body.nodes()});
+  for (int i = 0; i < body.nodes(); ++i) out[3 * i] = body.rest()[3 * i] > 0 ? -1 : 1;
+  return out;
+}
+
 /// At 10 mm a step, half a metre a second, and in steps as short as solvers make them.
 TEST(SelfContact, NoStepTakesCrossingEdgesThroughEachOther) {
   Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
@@ -215,8 +222,7 @@ TEST(SelfContact, NoStepTakesCrossingEdgesThroughEachOther) {
   const VecX x = crossed(organ, net, 0.05e-3);
   ASSERT_GT(x.size(), 0);
   const double before = nearest_edges(net, organ, x, 1e-3);
-  VecX step = VecX::Zero(x.size());
-  for (int i = 0; i < organ.body->nodes(); ++i) step[3 * i] = organ.body->rest()[3 * i] > 0 ? -1 : 1;
+  const VecX step = closing(*organ.body);
   for (double length : {0.1e-3, 10e-3}) {
     const double share = SelfContact().safe_share(*organ.body, x, length * step, 0.2, 1.0);
     EXPECT_LT(share, 1.0) << length;
@@ -269,9 +275,7 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOther) {
   const VecX x = dented(organ, 1.5e-3);
   const SkinNet net(*organ.body);
   const double before = nearest_pair(net, organ, x, 2e-3);
-  // Each side towards the other.
-  VecX step = VecX::Zero(x.size());
-  for (int i = 0; i < organ.body->nodes(); ++i) step[3 * i] = organ.body->rest()[3 * i] > 0 ? -1 : 1;
+  const VecX step = closing(*organ.body);
   for (double length : {1e-3, 2e-3, 5e-3, 50e-3}) {
     const double share = SelfContact().safe_share(*organ.body, x, length * step, 0.2, 1.0);
     const double after = nearest_pair(net, organ, x + share * length * step, 2e-3);
@@ -289,15 +293,13 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOtherWhileTheWholeTurns) {
   const VecX x = dented(organ, 1.5e-3);
   const SkinNet net(*organ.body);
   const double before = nearest_pair(net, organ, x, 2e-3);
-  VecX closing = VecX::Zero(x.size()), turning = closing;
+  VecX turning = VecX::Zero(x.size());
   const Vec3 spin(0.3, -0.4, 0.5), pivot(0.1, 0, 0);
-  for (int i = 0; i < organ.body->nodes(); ++i) {
-    closing[3 * i] = organ.body->rest()[3 * i] > 0 ? -1 : 1;
+  for (int i = 0; i < organ.body->nodes(); ++i)
     turning.segment<3>(3 * i) = spin.cross(x.segment<3>(3 * i) - pivot);
-  }
   EXPECT_EQ(SelfContact().safe_share(*organ.body, x, turning, 0.2, 1.0), 1.0);
   for (double length : {1e-3, 5e-3, 50e-3}) {
-    const VecX step = length * closing + turning;
+    const VecX step = length * closing(*organ.body) + turning;
     const double share = SelfContact().safe_share(*organ.body, x, step, 0.2, 1.0);
     EXPECT_LT(share, 1.0) << length;
     EXPECT_GT(share * length, 0.2 * before) << length;
