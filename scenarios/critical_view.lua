@@ -211,8 +211,18 @@ return calot.exercise {
   },
 
   golden = {
-    at = {
-      0, 12 * s, 13.76 * s, 19.56 * s, 27.8 * s, 36.16 * s, 39.2 * s, 46.52 * s, 54.12 * s, 70.16 * s, 78.6 * s,
+    at = { 0 },
+    moments = {
+      { name = "exposed", step = "triangle", delay = 2.76 * s },
+      { name = "hook_on_fat", step = "triangle", event = "activation", delay = 0.16 * s },
+      { name = "third_strand", event = "divided", organ = "artery_fat", count = 3, delay = 1.44 * s },
+      { name = "sixth_strand", event = "divided", organ = "artery_fat", count = 6, delay = 0.6 * s },
+      { name = "hook_at_the_plate", step = "plate", event = "activation", delay = 0.28 * s },
+      { name = "triangle_dissected", event = "divided", organ = "cystic_plate", delay = 2.28 * s },
+      { name = "critical_view", event = "step_done", step = "plate" },
+      { name = "duct_clipped", event = "clip", organ = "cystic_duct", delay = 0.6 * s },
+      { name = "artery_clipped", event = "clip", organ = "cystic_artery", count = 2, delay = 0.04 * s },
+      { name = "artery_divided", event = "cut", organ = "cystic_artery", delay = 0.48 * s },
     },
   },
 }

@@ -189,5 +189,12 @@ return calot.exercise {
     return calot.score.weighted(parts)
   end,
 
-  golden = { at = { 4.8 * s, 13.2 * s, 63.2 * s, 75.8 * s } },
+  golden = {
+    moments = {
+      { name = "fundus_lifted", step = "triangle", delay = 1.12 * s },
+      { name = "third_strand", event = "divided", organ = "artery_fat", count = 3, delay = 0.32 * s },
+      { name = "plate_opens", event = "divided", organ = "cystic_plate" },
+      { name = "critical_view", event = "step_done", step = "plate" },
+    },
+  },
 }

@@ -183,9 +183,24 @@ return calot.exercise {
   },
 
   golden = {
-    at = {
-      0, 4 * s, 8 * s, 10 * s, 13 * s, 20 * s, 24 * s, 50 * s, 60 * s, 70 * s, 76 * s, 78 * s, 86 * s, 92 * s, 98 * s,
-      101 * s, 102.6 * s,
+    at = { 0 },
+    moments = {
+      { name = "fundus_lifted", step = "open", delay = 0.32 * s },
+      { name = "pouch_taken", step = "open", event = "grasp", delay = 0.28 * s },
+      { name = "drawn_over_the_edge", step = "free", delay = 1.64 * s },
+      { name = "fundus_let_go", event = "release", delay = 1.92 * s },
+      { name = "first_strands", event = "divided", organ = "cystic_plate", delay = 0.88 * s },
+      { name = "front_is_open", step = "free", delay = 15.64 * s },
+      { name = "sweeps_through", step = "free", delay = 41.64 * s },
+      { name = "further_in", step = "free", delay = 51.64 * s },
+      { name = "half_is_off", step = "look" },
+      { name = "bed_looked_at", step = "last", delay = 0.08 * s },
+      { name = "to_the_rest", step = "last", delay = 2.08 * s },
+      { name = "last_strands", step = "last", delay = 10.08 * s },
+      { name = "carried", step = "lay", delay = 2.72 * s },
+      { name = "lowered", step = "lay", delay = 8.72 * s },
+      { name = "laid_down", step = "lay", delay = 11.72 * s },
+      { name = "let_go", step = "lay", event = "release", delay = 0.96 * s },
     },
   },
 }

@@ -95,9 +95,19 @@
 ---@field cap? number the total's largest value then; left out: the score's; 0 to 100 points
 ---@field fails? boolean false: it caps the total, and does not fail the exercise; default true
 
----When pictures are compared with golden ones.
+---When pictures are compared with golden ones: at times, at moments, or at both; at most 100.
 ---@class calot.golden
----@field at number[] at most 100 times in s, within the time limit; a picture is of a hundredth of a second
+---@field at? number[] times in s, within the time limit; a picture is of a hundredth of a second
+---@field moments? calot.moment[] what happens, whenever that is
+
+---A picture of something that happens: it stays the same picture where a demo takes another time.
+---@class calot.moment
+---@field name string the picture's
+---@field step? string this step begins; with an event: that happens in this step
+---@field event? "contact"|"grasp"|"empty_grasp"|"release"|"slip"|"activation"|"overforce"|"overstretch"|"tear"|"parted"|"divided"|"dry_activation"|"clip"|"clip_dropped"|"cut"|"cut_unclipped"|"perforation"|"cut_liver"|"empty_cut"|"injury"|"activation_on_clip"|"activation_beside"|"time_out"|"bail_out"|"bile_leak"|"bleeding"|"leak_stopped"|"exchange"|"blocked_exchange"|"puncture"|"aspirated"|"empty_aspiration"|"clash"|"step_done"|"step_timeout"|"step_missed"|"raw_surface"|"turn" this happens
+---@field organ? string to this organ or tissue, or a piece of it
+---@field count? number the first of these events, the second, ...; default 1; 1 to 1000
+---@field delay? number so long after it; default 0 * s; 0 to 3600 s
 
 ---Options of t:step.
 ---@class calot.step_options

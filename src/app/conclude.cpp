@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "base/log.h"
@@ -11,9 +12,15 @@
 namespace calot {
 namespace {
 
-/// Times of frames after the session's end are no error, but an author should know.
+/// Times of frames after the session's end, and moments that did not come, are no error, but an author should know.
 void note_missing_frames(const Played& played, const std::vector<double>& at) {
   const double end = played.session.traces.time.back();
+  for (const GoldenMoment& moment : played.exercise.golden.moments) {
+    if (std::find(played.pictures.begin(), played.pictures.end(), moment.name) != played.pictures.end())
+      continue;
+    log_info(fmt::format("There is no picture {}: the session ended at {:g} s, before its moment.",
+                         moment.name, end));
+  }
   for (const GoldenFrame& frame : golden_frames(played.exercise, at)) {
     if (frame.time <= end) continue;
     log_info(fmt::format("There is no picture at {:g} s: the session ended at {:g} s.", frame.time, end));

@@ -92,13 +92,14 @@ std::optional<Failure> accept_scenario(const SelectedGolden& selected, const fs:
   if (!played) return played.failure();
   if (played->session.end == SessionEnd::failed) return played->session.failure;
   if (interrupt_flag()) return std::nullopt;
-  std::vector<std::string> declared;
-  for (const GoldenFrame& frame : golden_frames(played->exercise)) declared.push_back(frame.name);
-  for (const std::string& name : selected.frames.empty() ? declared : selected.frames) {
-    if (contains(staging.names(), name)) continue;
-    return fail(FailureKind::scenario, fmt::format("{} has no frame {}", selected.name, name),
+  const std::vector<std::string> declared = golden_names(played->exercise);
+  std::vector<std::string> lacking = selected.frames.empty() ? declared : selected.frames;
+  std::erase_if(lacking, [&](const std::string& name) { return contains(staging.names(), name); });
+  if (!lacking.empty())
+    return fail(FailureKind::scenario,
+                fmt::format("the session of {} ended at {:g} s without {}: nothing of it was accepted",
+                            selected.name, played->session.traces.time.back(), fmt::join(lacking, ", ")),
                 fmt::format("frames that were drawn: {}", fmt::join(played->pictures, ", ")));
-  }
   if (std::optional<Failure> failure = staging.publish(course_of(played.value()))) return failure;
   count += staging.names().size();
   if (selected.frames.empty()) remove_stale(folder, declared);
@@ -145,15 +146,19 @@ ExitCode golden_accept_command(const GoldenCommand& command) {
   if (command.dry_run) return golden_dry_run(command, selected.value());
   const fs::path goldens = golden_folder(command);
   std::size_t accepted = 0;
+  ExitCode ended = ExitCode::ok;  // the first failure's: the other scenarios are accepted all the same
   for (std::size_t i = 0; i < selected->size(); ++i) {
     const SelectedGolden& scenario = selected.value()[i];
     if (interrupt_flag()) return stopped(accepted, selected.value(), i);
     const std::size_t before = accepted;
     const std::optional<Failure> failure = accept_scenario(scenario, goldens, accepted);
-    if (failure) return print_failure(*failure, "calot run " + shell_word(scenario.file.string()));
+    if (failure) {
+      const ExitCode code = print_failure(*failure, "calot run " + shell_word(scenario.file.string()));
+      if (ended == ExitCode::ok) ended = code;
+    }
     if (interrupt_flag() && accepted == before) return stopped(accepted, selected.value(), i);
   }
-  return ExitCode::ok;
+  return ended;
 }
 
 }  // namespace calot

@@ -119,7 +119,7 @@ class PageMaker {
   void begin(const ExerciseDefinition& exercise, PlayRequest& play) {
     moments_.emplace(error_kinds(exercise));
     play.render = !command_.no_pictures;
-    play.golden_times = play.end_frame = false;
+    play.golden_pictures = play.end_frame = false;
     play.width = picture_width;
     play.height = picture_height;
     play.moment = [this](const Progress& progress) { return moments_->wanted(progress); };

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::set<std::string> known_frames(const ExerciseDefinition& exercise, const fs::path& folder) {
   std::set<std::string> known;
   for (const std::string& name : stored_frames(folder)) known.insert(name);
-  for (const GoldenFrame& frame : golden_frames(exercise)) known.insert(frame.name);
+  for (const std::string& name : golden_names(exercise)) known.insert(name);
   return known;
 }
 

@@ -103,7 +103,7 @@ Judgement judge_undrawn(const Golden& golden, const SessionResult& session) {
   const bool same_binary = same_bits(golden.sidecar.make, this_make());
   return {same_binary ? Verdict::not_played : Verdict::drifted,
           false,
-          fmt::format("the session ended before this time ({})", end_text(session)),
+          fmt::format("the session ended before this picture ({})", end_text(session)),
           {}};
 }
 

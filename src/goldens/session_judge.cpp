@@ -22,8 +22,8 @@ void find_golden(GoldenResult& result, const fs::path& folder) {
 }
 
 bool declares(const ExerciseDefinition& exercise, const std::string& name) {
-  const std::vector<GoldenFrame> frames = golden_frames(exercise);
-  return std::any_of(frames.begin(), frames.end(), [&](const GoldenFrame& f) { return f.name == name; });
+  const std::vector<std::string> names = golden_names(exercise);
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ GoldenResult SessionJudge::undrawn(const std::string& frame, const Played& playe
   if (declares(played.exercise, frame))
     result.judgement = judge_undrawn(*result.golden, played.session);
   else
-    result.judgement = {Verdict::stale, false, "the scenario declares no frame at this time", {}};
+    result.judgement = {Verdict::stale, false, "the scenario declares no such frame", {}};
   return result;
 }
 

@@ -135,6 +135,25 @@ std::vector<KeyTable> score_tables() {
   };
 }
 
+std::vector<KeyTable> golden_tables() {
+  using Moment = GoldenMoment;
+  return {
+      {"golden",
+       "When pictures are compared with golden ones: at times, at moments, or at both; at most 100.",
+       {list("at", "number", "times in s, within the time limit; a picture is of a hundredth of a second"),
+        list("moments", "moment", "what happens, whenever that is")}},
+      keys_of<Moment>(
+          "moment",
+          "A picture of something that happens: it stays the same picture where a demo takes another time.",
+          {required(text("name", &Moment::name, "the picture's")),
+           text("step", &Moment::step, "this step begins; with an event: that happens in this step"),
+           choice("event", &Moment::event, event_names(), "this happens"),
+           text("organ", &Moment::organ, "to this organ or tissue, or a piece of it"),
+           count("count", &Moment::count, 1, 1000, "", "the first of these events, the second, ..."),
+           number("delay", &Moment::delay, quantity::time, 0, 3600 * s, "", "so long after it")}),
+  };
+}
+
 KeyTable critical_view_options() {
   using Question = CriticalViewQuestion;
   const auto share = [](const char* name, double Question::*member, const char* doc) {
@@ -226,12 +245,7 @@ std::vector<KeyTable> exercise_tables() {
                   number("max", quantity::number, -infinity, infinity, "", "largest number"),
                   text("title", "", "one line for people")}});
   for (KeyTable& table : score_tables()) all.push_back(std::move(table));
-  all.push_back(
-      {"golden",
-       "When pictures are compared with golden ones.",
-       {required(
-           list("at", "number",
-                "at most 100 times in s, within the time limit; a picture is of a hundredth of a second"))}});
+  for (KeyTable& table : golden_tables()) all.push_back(std::move(table));
   for (KeyTable& table : option_tables()) all.push_back(std::move(table));
   return all;
 }

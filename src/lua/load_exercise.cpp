@@ -268,7 +268,7 @@ std::optional<Failure> Loader::run_dry(Script& script, ExerciseDefinition& defin
       definition.later_organs = declared->later;
       definition.later_tissues = declared->later_tissues;
       // Steps that were not reached have metrics nobody knows of: say nothing about them.
-      if (declared->complete) check_score(check, definition);
+      if (declared->complete) check_names(check, definition);
       if (std::optional<Failure> failure = try_rules(script, definition)) return failure;
     } else if (declared.failure().kind == FailureKind::resource) {
       return declared.failure();

@@ -230,24 +230,54 @@ class ScoreReader {
   bool all_weighted_ = true;
 };
 
-GoldenDefinition read_golden(FieldCheck& check, const Value* value, double time_limit) {
-  GoldenDefinition golden;
-  const TableReader reader(check, value, "golden", api_table("golden"));
-  const Value* at = reader.take("at");
-  if (at == nullptr) return golden;
-  if (at->items.size() > GoldenDefinition::most_times)
-    check.problem("golden.at",
-                  fmt::format("{} times, more than {}", at->items.size(), GoldenDefinition::most_times),
-                  "keep those that show something");
-  for (std::size_t i = 0; i < at->items.size(); ++i) {
-    const Value& time = at->items[i];
+void read_times(FieldCheck& check, const Value& at, double time_limit, std::vector<double>& out) {
+  for (std::size_t i = 0; i < at.items.size(); ++i) {
+    const Value& time = at.items[i];
     const std::string path = indexed("golden.at", i);
     if (!time.is(Value::Kind::number)) {
       check.problem(path, "this must be a time in s, got " + name_of(time.kind), "such as 10 * s");
     } else if (check.in_range(path, time.number, quantity::time, 0, time_limit, "within the time limit")) {
-      golden.at.push_back(time.number);
+      out.push_back(time.number);
     }
   }
+}
+
+/// `others`: the moments before it.
+GoldenMoment read_moment(FieldCheck& check, const Value& value, const std::string& path,
+                         const std::vector<GoldenMoment>& others) {
+  GoldenMoment moment;
+  const TableReader reader(check, &value, path, api_table("moment"));
+  reader.read(moment);
+  moment.place.path = path;
+  if (!value.is(Value::Kind::table)) return moment;
+  const auto given = [&](const char* key) { return value.field(key) != nullptr; };  // fit or not
+  if (reader.has("name") && check.identifier(path + ".name", moment.name, "picture")) {
+    const auto same = [&](const GoldenMoment& other) { return other.name == moment.name; };
+    if (moment.name == "end" || std::any_of(others.begin(), others.end(), same))
+      check.problem(path + ".name", fmt::format("another picture is called \"{}\"", moment.name),
+                    "give each a name of its own");
+  }
+  if (!given("event") && !given("step"))
+    check.problem(path, "the moment waits for nothing", "give event = \"grasp\", or step = \"expose\"");
+  if (!given("event") && (given("organ") || given("count")))
+    check.problem(path, "organ and count say more of an event, and there is none", "give event too");
+  return moment;
+}
+
+GoldenDefinition read_golden(FieldCheck& check, const Value* value, double time_limit) {
+  GoldenDefinition golden;
+  const TableReader reader(check, value, "golden", api_table("golden"));
+  const Value *at = reader.take("at"), *moments = reader.take("moments");
+  const std::size_t times = at ? at->items.size() : 0, all = times + (moments ? moments->items.size() : 0);
+  if (all > GoldenDefinition::most_pictures)
+    check.problem("golden", fmt::format("{} pictures, more than {}", all, GoldenDefinition::most_pictures),
+                  "keep those that show something");
+  if (value != nullptr && value->field("at") == nullptr && value->field("moments") == nullptr)
+    check.problem("golden", "no picture is asked for", "give at = { 0, 10 * s }");
+  if (at) read_times(check, *at, time_limit, golden.at);
+  for (std::size_t i = 0; moments != nullptr && i < moments->items.size(); ++i)
+    golden.moments.push_back(
+        read_moment(check, moments->items[i], indexed("golden.moments", i), golden.moments));
   return golden;
 }
 
@@ -293,7 +323,7 @@ ScoreDefinition read_score(FieldCheck& check, const Value& score, int api) {
   return ScoreReader(check, score, api).read();
 }
 
-void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
+void check_names(FieldCheck& check, const ExerciseDefinition& exercise) {
   const std::vector<std::string> names = metric_names(exercise),
                                  organs = place_names(exercise.scene.anatomy, exercise.later_organs,
                                                       exercise.later_tissues);
@@ -314,6 +344,11 @@ void check_score(FieldCheck& check, const ExerciseDefinition& exercise) {
     if (!gate.organ.empty()) check.known(gate.place.path + ".organ", gate.organ, organs, "organ");
     if (!gate.after_organ.empty())
       check.known(gate.place.path + ".after_organ", gate.after_organ, organs, "organ");
+  }
+  for (const GoldenMoment& moment : exercise.golden.moments) {
+    if (!moment.organ.empty()) check.known(moment.place.path + ".organ", moment.organ, organs, "organ");
+    if (!moment.step.empty())
+      check.known(moment.place.path + ".step", moment.step, exercise.step_names, "step");
   }
 }
 

@@ -28,7 +28,8 @@ ExerciseTable read_exercise(FieldCheck& check, const Value& exercise,
 /// Reads what the score's function returned, for an exercise of that api.
 ScoreDefinition read_score(FieldCheck& check, const Value& score, int api);
 
-/// Checks the score's metrics, steps and organs against those that the scene and the declared steps and holds have.
-void check_score(FieldCheck& check, const ExerciseDefinition& exercise);
+/// Checks the metrics, steps and organs that score and pictures name against those that the scene and the declared steps
+/// and holds have.
+void check_names(FieldCheck& check, const ExerciseDefinition& exercise);
 
 }  // namespace calot

@@ -13,6 +13,7 @@
 #include "render/offscreen.h"
 #include "render/png.h"
 #include "session/force_plot.h"
+#include "session/golden_moment.h"
 #include "view/build_scene.h"
 
 namespace calot {
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Draws a frame when its golden time has come, and one at the end.
+/// Draws a frame when its golden time or moment has come, and one at the end.
 class FrameCapture {
  public:
   FrameCapture(OffscreenRenderer& renderer, const ExerciseDefinition& exercise, const PlayRequest& request,
@@ -29,8 +30,11 @@ class FrameCapture {
         request_(request),
         output_(output),
         source_hash_(exercise.source_hash),
-        times_(request.golden_times ? golden_frames(exercise, request.at) : std::vector<GoldenFrame>()),
-        half_step_(0.5 / exercise.scene.solver.rate) {}
+        half_step_(0.5 / exercise.scene.solver.rate) {
+    if (!request.golden_pictures) return;
+    times_ = golden_frames(exercise, request.at);
+    moments_ = exercise.golden.moments;
+  }
 
   void observe(const World& world, const Progress& progress, bool last) {
     if (!builder_) builder_.emplace(world);  // at rest: the laparoscope is held still from then on
@@ -38,9 +42,9 @@ class FrameCapture {
     // Many times may fall between two steps: an interruption need not wait for all of them.
     for (; next_ < times_.size() && world.report().time >= times_[next_].time - half_step_; ++next_) {
       if (interrupt_flag()) return;
-      if (request_.on_scene) request_.on_scene(builder_->build(world), times_[next_].name);
-      draw(world, times_[next_].name);
+      draw_golden(world, times_[next_].name);
     }
+    draw_moments(world, progress);
     if (request_.moment && !interrupt_flag())
       if (const std::string name = request_.moment(progress); !name.empty()) draw(world, name);
     if (last && request_.end_frame) draw(world, "end");
@@ -51,6 +55,19 @@ class FrameCapture {
   double first_frame_s = -1;       ///< since the process started
 
  private:
+  void draw_moments(const World& world, const Progress& progress) {
+    const auto draw_due = [&](const GoldenMoment& moment) {
+      const std::optional<double> due = due_time(moment, progress);
+      if (!due || world.report().time < *due - half_step_ || interrupt_flag()) return false;
+      draw_golden(world, moment.name);
+      return true;
+    };
+    std::erase_if(moments_, draw_due);
+  }
+  void draw_golden(const World& world, const std::string& name) {
+    if (request_.on_scene) request_.on_scene(builder_->build(world), name);
+    draw(world, name);
+  }
   void draw(const World& world, const std::string& name) {
     if (failure) return;
     Result<Image> image = renderer_.render(builder_->build(world));
@@ -73,6 +90,7 @@ class FrameCapture {
   const fs::path& output_;
   std::uint64_t source_hash_;
   std::vector<GoldenFrame> times_;
+  std::vector<GoldenMoment> moments_;  ///< that are not drawn yet
   double half_step_;
   std::size_t next_ = 0;
   std::optional<SceneBuilder> builder_;
@@ -238,6 +256,13 @@ std::vector<GoldenFrame> golden_frames(const ExerciseDefinition& exercise, const
     if (frames.empty() || frames.back().name != name) frames.push_back({time, name});
   }
   return frames;
+}
+
+std::vector<std::string> golden_names(const ExerciseDefinition& exercise) {
+  std::vector<std::string> names;
+  for (const GoldenFrame& frame : golden_frames(exercise, {})) names.push_back(frame.name);
+  for (const GoldenMoment& moment : exercise.golden.moments) names.push_back(moment.name);
+  return names;
 }
 
 std::string portable_path(const fs::path& scenario) {

@@ -19,7 +19,7 @@ namespace calot {
 
 /// A picture as it comes; nobody keeps it.
 struct Frame {
-  std::string name;  ///< "t010.00s" at a golden time, "end" at the end
+  std::string name;  ///< "t010.00s" at a golden time, a golden moment's name, "end" at the end
   double time = 0;   ///< s
   std::uint64_t state_hash = 0, source_hash = 0;
   std::string renderer;  ///< what drew it
@@ -33,7 +33,7 @@ struct PlayRequest {
   int threads = 1;       ///< that share the work of a step: no bit depends on it
   bool dry_run = false;  ///< read and check the scenario, and play nothing: what comes of it is then empty
   bool render = true, end_frame = true;
-  bool golden_times = true;       ///< draw at those of the exercise
+  bool golden_pictures = true;    ///< draw those of the exercise
   int width = 960, height = 540;  ///< px
   std::vector<double> at;         ///< s, of pictures besides the golden ones
   bool write = false;             ///< write report, frames, table and recording into `output`
@@ -73,8 +73,9 @@ struct GoldenFrame {
 };
 /// An exercise's golden times and those `at` (s) besides, ascending; of those that round to the same hundredth of a
 /// second, the first.
-std::vector<GoldenFrame> golden_frames(const ExerciseDefinition& exercise,
-                                       const std::vector<double>& at = {});
+std::vector<GoldenFrame> golden_frames(const ExerciseDefinition& exercise, const std::vector<double>& at);
+/// What all of an exercise's golden pictures are called: those at times, then those at moments.
+std::vector<std::string> golden_names(const ExerciseDefinition& exercise);
 
 /// A scenario's path as others can use it: below the project, else below the present folder, else its file's name.
 std::string portable_path(const std::filesystem::path& scenario);

@@ -78,10 +78,21 @@ struct ScoreDefinition {
   std::shared_ptr<const ScoreRules> rules;  ///< where a part is a rule, or bail_out
 };
 
+/// A picture of something that happens, whenever the session comes to it.
+struct GoldenMoment {
+  std::string name;          ///< the picture's
+  std::string step;          ///< this step's beginning, or in it the event below; may be empty
+  std::string event, organ;  ///< a kind of event, on this organ or a piece of it; may be empty
+  int count = 1;             ///< the first of these events, the second, ...
+  double delay = 0;          ///< s after that
+  Place place;               ///< where the author wrote it
+};
+
 struct GoldenDefinition {
-  static constexpr std::size_t most_times =
-      100;                 ///< a picture costs a quarter of a second and some 1.5 MB on disk
+  static constexpr std::size_t most_pictures =
+      100;                 ///< one costs a quarter of a second and some 1.5 MB on disk
   std::vector<double> at;  ///< s
+  std::vector<GoldenMoment> moments;
 };
 
 /// Something that can be chosen when the exercise is started. Values as the user writes them.

@@ -252,6 +252,49 @@ TEST_F(GoldenProject, AFrameTheScenarioNoLongerDeclaresIsStale) {
   EXPECT_EQ(calot({"golden", "test"}).code, 0);
 }
 
+TEST_F(GoldenProject, AMomentKeepsItsPictureWhereItComesLater) {
+  const auto scenario_waiting = [&](const std::string& wait) {
+    std::string text =
+        small_scenario("t:step('move', 'Move'); t:wait(" + wait + "); t:step('on', 'On'); t:wait(0.1)");
+    const std::string at = "at = { 0, 0.4 * s }";
+    text.replace(text.find(at), at.size(),
+                 at + ", moments = { { name = 'going_on', step = 'on', delay = 0.06 } }");
+    spill(folder_ / "scenarios" / "small.lua", text);
+  };
+  const auto time_of = [&](const char* name) {
+    return Json::parse(slurp(golden(name)))["time_s"].get<double>();
+  };
+  scenario_waiting("0.5 * s");
+  accept_small();
+  EXPECT_EQ(goldens().size(), 6u);
+  EXPECT_NEAR(time_of("going_on.json"), 0.56, 0.011) << "a step of the solver, and rounding";
+  const Outcome one = calot({"golden", "test", "small/going_on"});
+  EXPECT_EQ(one.code, 0) << one.out << one.err;
+  EXPECT_THAT(one.out, ::testing::HasSubstr("small/going_on: same"));
+  scenario_waiting("0.7 * s");
+  accept_small();
+  EXPECT_EQ(goldens().size(), 6u);
+  EXPECT_NEAR(time_of("going_on.json"), 0.76, 0.011);
+}
+
+TEST_F(GoldenProject, AMomentThatDoesNotComeIsNamedAndTheNextScenarioIsAcceptedAllTheSame) {
+  std::string text = small_scenario();
+  const std::string at = "at = { 0, 0.4 * s }";
+  text.replace(text.find(at), at.size(), "at = { 0 }, moments = { { name = 'held', event = 'grasp' } }");
+  spill(folder_ / "scenarios" / "first.lua", text);
+  write_blank(golden("t000.00s"));
+  write_blank(folder_ / "golden" / "first" / "t000.00s");
+  const auto before = slurp(folder_ / "golden" / "first" / "t000.00s.png");
+  const Outcome outcome = calot({"golden", "accept", "first", "small"});
+  EXPECT_EQ(outcome.code, 6) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("without held: nothing of it was accepted"));
+  EXPECT_EQ(slurp(folder_ / "golden" / "first" / "t000.00s.png"), before);
+  EXPECT_TRUE(fs::exists(golden("t000.40s.png")));
+  const Outcome run = calot({"run", "scenarios/first.lua", "--size", "64x36"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.err, ::testing::HasSubstr("There is no picture held: the session ended at 0.6 s"));
+}
+
 TEST_F(GoldenProject, ABrokenSidecarIsNamedAndHidesNoOtherFrame) {
   accept_small();
   spill(golden("t000.40s.json"), "{");

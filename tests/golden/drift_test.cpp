@@ -148,7 +148,7 @@ TEST_F(DriftedSession, DecidesWhenItHasEndedOfWhatDriftedAndOfWhatItDidNotReach)
     EXPECT_EQ(results_[i].judgement.verdict, expected[i]) << results_[i].frame;
     EXPECT_TRUE(results_[i].judgement.passed) << results_[i].frame << ": " << results_[i].judgement.message;
   }
-  EXPECT_NE(results_[2].judgement.message.find("ended before this time"), std::string::npos);
+  EXPECT_NE(results_[2].judgement.message.find("ended before this picture"), std::string::npos);
   results_.clear();
   played_.session.progress.add_event({.kind = EventKind::clip_dropped});
   play();
