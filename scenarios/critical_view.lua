@@ -123,7 +123,7 @@ return calot.exercise {
         assistant = false,
         cystic_duct_length = 26 * mm,
         cystic_duct_diameter = 2.8 * mm,
-        cystic_artery_enters = { -2, -17, 10 },
+        cystic_artery_enters = { -1, -14, 13 },
         cystic_artery_length = 24 * mm,
         without = { "cystic_node", "hilar_fat" },
         prepared = { triangle_fat = 0.75 },

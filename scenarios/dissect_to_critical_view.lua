@@ -86,7 +86,7 @@ return calot.exercise {
     return {
       anatomy = anatomy.standard {
         strength = p.field == "frozen" and 25 or 1,
-        cystic_artery_enters = { -2, -17, 10 },
+        cystic_artery_enters = { -1, -14, 13 },
         cystic_artery_length = 24 * mm,
         without = { "cystic_node", "hilar_fat" },
         prepared = { triangle_fat = 0.75 },
@@ -133,7 +133,7 @@ return calot.exercise {
 
   demo = function(t, p)
     local begun = t:time()
-    local function gives_up() return p.demo == "bail_out" and t:time() - begun > 14 * s end
+    local function gives_up() return p.demo == "bail_out" and t:time() - begun > 24 * s end
 
     t:together(function()
       t.left:approach("gallbladder.infundibulum", { speed = 60 * mm / s, depth = 3.5 * mm })

@@ -14,7 +14,7 @@
 --   cystic_artery_length 17 mm (16.9, 2 to 55), cystic_artery_diameter 1.6 mm (1 to 5): Sherifi, IJAE 123(2):158
 --   its two branches on the gallbladder, superficial and deep: drawn by eye
 --   cystic_artery_enters { -3.5, -13.5, 2 }: where it reaches the gallbladder, in mm from the bed's neck: towards the
---     liver, to the patient's right and back, towards the fundus
+--     liver, to the patient's right and back, towards the fundus; from a place off its wall it turns to the wall
 --   looks "bile": "pale" is how a gallbladder full of mucus looks (hydrops)
 --   without {}: names of organs and tissues that are gone already, in a field that is prepared for a later step
 --   prepared {}: what is gone of a tissue already, cleared from one end of the organ that it begins on:
@@ -96,6 +96,20 @@ local function bowed(from, to, long, aside)
     out[#out + 1] = add(add(from, way, t), aside, 4 * t * (1 - t) * rise)
   end
   return out
+end
+
+--- The place on a swept shape's wall nearest to another one, and how far off the wall that one is, m; inside: below 0.
+local function on_wall(shape, at)
+  local nearest, gap = at, math.huge
+  for k = 2, #shape.along do
+    local from, to = shape.along[k - 1], shape.along[k]
+    local way = minus(to.at, from.at)
+    local share = math.max(0, math.min(1, dot(minus(at, from.at), way) / dot(way, way)))
+    local centre, radius = add(from.at, way, share), from.radius + share * (to.radius - from.radius)
+    local off = length(minus(at, centre)) - radius
+    if off < gap then nearest, gap = add(centre, unit(minus(at, centre)), radius), off end
+  end
+  return nearest, gap
 end
 
 -- ---- the frame of the bed, { towards the liver, to the patient's right and back, towards the fundus }
@@ -386,8 +400,9 @@ local function surroundings(neck)
   }
 end
 
---- The cystic plate and what fills the triangle. Nothing of it is calibrated.
-local function tissues(p)
+--- The cystic plate and what fills the triangle, up to the share of the cystic artery's way at which that turns to the
+--- gallbladder's wall (nil: it does not). Nothing of it is calibrated.
+local function tissues(p, artery_turns_at)
   local divide = 2.5e6 * p.strength -- J/m^2
   local function count(strands) return math.max(1, math.floor(strands * p.strands + 0.5)) end
   local function with(out, more)
@@ -409,7 +424,7 @@ local function tissues(p)
       or plate { strands = count(60), slack = 0.05, stiffness = 20 * kPa, strength = 30 * kPa * p.strength,
         break_energy = 300 * p.strength, divide_energy = divide },
     fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
-    fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14),
+    fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14, { stop = artery_turns_at }),
     fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),
   }
 end
@@ -527,16 +542,22 @@ local function field_with(owner, variant, overrides, level)
     joint("cystic_duct.end", "common_duct.middle", 4 * mm),
   }
 
+  --- From a share of the hepatic artery's way to a place, from which it turns to the gallbladder's wall where it is off
+  --- that. Returns the share of its own way at which it turns; nil: nowhere.
   local function cystic_artery(name, share, to)
     local from = anatomy.along(hepatic_artery.shape.points, share)
     local way = unit(minus(to, from))
     local points = bowed(add(from, way, 1.7 * mm), to, p.cystic_artery_length, unit(add(towards_liver, aside, 0.5)))
+    local wall, gap = on_wall(bladder.shape, to)
+    local turns = gap > 0.5 * mm
+    if turns then points[#points + 1] = wall end
     organs[#organs + 1] =
       tube(name, points, p.cystic_artery_diameter, 0.4 * mm, nil, { patient_end = "start", carries = "blood" })
     joints[#joints + 1] = joint(name .. ".start", "right_hepatic_artery.middle", 3 * mm)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
+    return turns and p.cystic_artery_length / (p.cystic_artery_length + gap) or nil
   end
-  cystic_artery("cystic_artery", 0.82, place(table.unpack(p.cystic_artery_enters)))
+  local turns_at = cystic_artery("cystic_artery", 0.82, place(table.unpack(p.cystic_artery_enters)))
   bladder.vessels = branches(p, p.cystic_artery_enters, p.second_cystic_artery and second_enters)
 
   -- The node lies between neck and artery, fast to the neck by all of its skin. It gives way as lymph nodes do (20 to
@@ -558,7 +579,7 @@ local function field_with(owner, variant, overrides, level)
     leaves = {
       { from = "common_duct", to = "right_hepatic_artery", start = math.min(p.union + 0.06, 0.95), goes_on = 14 * mm },
     },
-    tissue = tissues(p),
+    tissue = tissues(p, turns_at),
     ground = surroundings(neck),
   }
   for _, name in ipairs(p.without) do

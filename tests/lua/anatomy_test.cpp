@@ -1,5 +1,6 @@
 // The operating field that scripts/lua/anatomy.lua makes.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -148,6 +149,22 @@ TEST(Anatomy, ADuctIsAsWideAlongItAsItsListSays) {
     ASSERT_EQ(shape.radii.size(), shape.points.size());
     EXPECT_DOUBLE_EQ(shape.start_radius(), 3 * mm);
     EXPECT_DOUBLE_EQ(shape.radii[3], 5 * mm);
+  }
+}
+
+TEST(Anatomy, TheCysticArteryEndsOnTheGallbladdersWallWhereverItIsLedTo) {
+  // On the wall, and 3 and 7 mm off it.
+  for (const char* enters : {"{ -3.5, -13.5, 2 }", "{ -2, -17, 10 }", "{ 2, -15, 15 }"}) {
+    std::vector<Vec3> overlaps;
+    const Result<World> world = World::as_drawn(
+        scene_of(fmt::format("anatomy.standard {{ cystic_artery_enters = {} }}", enters)), overlaps);
+    ASSERT_TRUE(world) << to_text(world.failure());
+    const Vec3 end = world->landmark("cystic_artery.end");
+    double nearest = 1;
+    for (const Vec3& point : world->skin_positions(world->organ("gallbladder").value()))
+      nearest = std::min(nearest, (point - end).norm());
+    // Skin points are up to 2 mm apart, and the wall is smoother than the shape that it is made of.
+    EXPECT_LT(nearest, 1.5 * mm) << enters;
   }
 }
 
