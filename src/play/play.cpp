@@ -56,13 +56,15 @@ class FrameCapture {
 
  private:
   void draw_moments(const World& world, const Progress& progress) {
-    const auto draw_due = [&](const GoldenMoment& moment) {
+    std::vector<GoldenMoment> to_come;
+    for (const GoldenMoment& moment : moments_) {
       const std::optional<double> due = due_time(moment, progress);
-      if (!due || world.report().time < *due - half_step_ || interrupt_flag()) return false;
-      draw_golden(world, moment.name);
-      return true;
-    };
-    std::erase_if(moments_, draw_due);
+      if (due && world.report().time >= *due - half_step_ && !interrupt_flag())
+        draw_golden(world, moment.name);
+      else
+        to_come.push_back(moment);
+    }
+    moments_ = std::move(to_come);
   }
   void draw_golden(const World& world, const std::string& name) {
     if (request_.on_scene) request_.on_scene(builder_->build(world), name);
@@ -90,7 +92,7 @@ class FrameCapture {
   const fs::path& output_;
   std::uint64_t source_hash_;
   std::vector<GoldenFrame> times_;
-  std::vector<GoldenMoment> moments_;  ///< that are not drawn yet
+  std::vector<GoldenMoment> moments_;  ///< that are still to come
   double half_step_;
   std::size_t next_ = 0;
   std::optional<SceneBuilder> builder_;
