@@ -433,7 +433,7 @@ TEST_F(Run, TimesOfOnePictureAreDrawnOnceAndTooManyAreRefused) {
   const Outcome outcome = calot({"check", "many.lua"});
   EXPECT_EQ(outcome.code, 6);
   EXPECT_NE(outcome.err.find("many.lua:"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("101 times, more than 100"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("101 pictures, more than 100"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Run, AnInterruptionDoesNotWaitForAllThePicturesOfAMoment) {
