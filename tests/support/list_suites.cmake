@@ -2,7 +2,8 @@
 # program's own list a suite's name ends in a dot; its tests follow, indented.
 
 # What takes longest, longest first, so that none is left alone at the end. Only an order: a name may be missing.
-set(longest Scenario OperationErrors StandardBedActs StandardBedActsInAnotherOrder Run IdleHands Documents Pinch
+set(longest Scenario OperationErrors StandardBedActs StandardBedActsInASecondOrder StandardBedActsInAThirdOrder
+    StandardBedActsInAFourthOrder Run IdleHands Documents Pinch
     ScoredClass RandomActs GoldenProject Golden Usage Solid Anatomy MainScenario Mutations DryRun RestCache Operate
     Motion Check Bench SelfContact Slip RestState Rubbing PageOfSmall JawMouldGrasp SkinJoin RandomGrasps World
     StructuralExtension Live Grasp Comparison RandomPaths Validation Needle)
