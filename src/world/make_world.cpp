@@ -81,14 +81,6 @@ std::vector<std::optional<Result<RestedOrgan>>> make_organs(const SceneDefinitio
   return out;
 }
 
-/// What a scene says of its field before there is anything in it.
-void set_field(const SceneDefinition& scene, Field& field) {
-  field.tolerance = scene.solver.tolerance;
-  if (scene.solver.motion == SolverMotion::dynamics) field.step_time = 1 / scene.solver.rate;
-  field.scheme = scene.solver.extension_scheme;
-  field.ground = ground_of(scene.anatomy);
-}
-
 /// Adds the organs of a scene, each as make_organ() has it. Fails (scenario) with the problems of all of them.
 Result<bool> add_organs(const SceneDefinition& scene, const OrganSetting& setting, Workers& workers,
                         Field& field) {
@@ -141,10 +133,7 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   World world(std::make_unique<Impl>(threads));
   Impl& self = *world.impl_;
-  self.scene = scene;
-  if (self.scene.ports.empty()) self.scene.ports = default_ports();
-  self.up = up_direction(scene.anatomy);
-  set_field(scene, self.field);
+  self.set_scene(scene);
   self.field.stop = stop;
   const ContactLoads still = loads_of_ground(self.field);
   FillingLimits limits = filling_limits(scene.solver, stop);
@@ -172,6 +161,16 @@ Result<World> World::create(const SceneDefinition& scene, const std::atomic<bool
   return world;
 }
 
+void World::Impl::set_scene(const SceneDefinition& of_world) {
+  scene = of_world;
+  if (scene.ports.empty()) scene.ports = default_ports();
+  up = up_direction(scene.anatomy);
+  field.tolerance = scene.solver.tolerance;
+  if (scene.solver.motion == SolverMotion::dynamics) field.step_time = 1 / scene.solver.rate;
+  field.scheme = scene.solver.extension_scheme;
+  field.ground = ground_of(scene.anatomy);
+}
+
 void World::Impl::bring_in_tools(const World& world) {
   field.up = up;
   field.heart_rate = scene.anatomy.heart_rate;
@@ -191,10 +190,7 @@ Result<World> World::as_drawn(const SceneDefinition& scene, std::vector<Vec3>& o
   if (!problems.empty()) return Failure{FailureKind::scenario, std::move(problems)};
   World world(std::make_unique<Impl>(1));
   Impl& self = *world.impl_;
-  self.scene = scene;
-  if (self.scene.ports.empty()) self.scene.ports = default_ports();
-  self.up = up_direction(scene.anatomy);
-  set_field(scene, self.field);
+  self.set_scene(scene);
   const ContactLoads still = loads_of_ground(self.field);
   OrganSetting setting{still, self.up, scene.solver.tolerance, 0, nullptr, kept, true};
   if (Result<bool> added = add_organs(scene, setting, self.workers, self.field); !added)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "acts/advance.h"
 #include "acts/clearance.h"
 #include "acts/clips.h"
 #include "acts/current.h"

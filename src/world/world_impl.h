@@ -1,7 +1,6 @@
 #pragma once
 // What a world holds, for the files of this room that make it, move it, change who is in it and answer what is asked of it.
 
-#include "acts/advance.h"
 #include "fem/assembly.h"
 #include "field/field.h"
 #include "organs/body_kinds.h"
@@ -37,6 +36,8 @@ struct World::Impl {
   };
   std::optional<Looked> looked;  ///< what was seen last
 
+  /// Takes a scene, and what it says of its field before there is anything in it.
+  void set_scene(const SceneDefinition& of_world);
   /// Why a step with this input is refused; none: it is not.
   std::optional<Failure> check(const StepInput& input) const;
   /// What happens in a step; on failure the field is to be given back.
