@@ -56,13 +56,20 @@ void add_threads(CLI::App& command, Count& threads) {
       ->default_str(std::to_string(usual_threads()));
 }
 
-void add_fail_below(CLI::App& command, std::optional<double>& points, const char* about) {
-  command.add_option("--fail-below", points, about)->type_name("S")->check([](const std::string& text) {
+/// A check that a number is from 0 to `most`. To the library's own one nan is within any range.
+std::function<std::string(const std::string&)> from_0_to(double most, const char* what) {
+  return [most, what](const std::string& text) {
     double value = 0;
     const bool number = CLI::detail::lexical_cast(text, value);
-    return number && value >= 0 && value <= 100 ? ""
-                                                : text + " is no score: give 0 to 100";  // nan is neither
-  });
+    return number && value >= 0 && value <= most
+               ? ""
+               : fmt::format("{} is no {}: give 0 to {:g}", text, what, most);
+  };
+}
+std::function<std::string(const std::string&)> is_time() { return from_0_to(3600, "time, s"); }
+
+void add_fail_below(CLI::App& command, std::optional<double>& points, const char* about) {
+  command.add_option("--fail-below", points, about)->type_name("S")->check(from_0_to(100, "score"));
 }
 
 void add_report_options(CLI::App& command, SessionCommand& options) {
@@ -82,7 +89,7 @@ void add_session_options(CLI::App& command, SessionCommand& options) {
   command.add_option("--at", options.at, "draw frames at these times too, s: --at 3,4.5")
       ->type_name("TIMES")
       ->delimiter(',')
-      ->check(CLI::Range(0.0, 3600.0));
+      ->check(is_time());
 }
 
 /// What run and operate share.
@@ -117,6 +124,10 @@ void add_run(Program& program) {
   command.add_option("scenario", program.run.scenario, "the scenario's .lua file")->required();
   add_new_session_options(command, program.run);
   add_session_options(command, program.run);
+  command
+      .add_option("--until", program.run.until, "end the session at this time, s, and score what was done")
+      ->type_name("T")
+      ->check(is_time());
   command.add_flag("--show-refused", program.run.show_refused,
                    "play nothing: draw a scene that is refused as it is drawn up, pins where organs are in "
                    "each other or in "
@@ -245,9 +256,10 @@ void add_page(Program& program) {
       "page", "write one HTML page about recordings: score, timeline, pictures, plots");
   PageCommand& page = program.page;
   command
-      .add_option("recordings", page.recordings,
-                  "recordings, or folders with all recordings (.jsonl) below them: one trainee's attempts, first "
-                  "to last, or with --class those of different people")
+      .add_option(
+          "recordings", page.recordings,
+          "recordings, or folders with all recordings (.jsonl) below them: one trainee's attempts, first "
+          "to last, or with --class those of different people")
       ->required();
   command.add_flag("--class", page.of_a_class, "they are of different people: no learning curve is drawn");
   command

@@ -37,6 +37,7 @@ struct RunCommand : SessionCommand {
   std::vector<std::string> params;  ///< "key=value"
   bool overwrite = false;           ///< see PlayRequest
   bool show_refused = false;        ///< draw a scene that is refused instead of playing it
+  std::optional<double> until;      ///< s: play no further
 };
 ExitCode run_command(const RunCommand& command);
 

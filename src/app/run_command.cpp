@@ -52,13 +52,15 @@ ExitCode show_refused(const PlayRequest& request, bool json) {
   }
   std::vector<Vec3> overlaps;
   const Result<World> drawn = World::as_drawn(exercise.scene, overlaps);
-  if (!drawn) return print_failure(script.value()->located(drawn.failure()), "calot check --build " + file, json);
+  if (!drawn)
+    return print_failure(script.value()->located(drawn.failure()), "calot check --build " + file, json);
   const fs::path folder = request.output.empty() ? fs::path("out") / exercise.id : request.output;
   std::error_code error;
   fs::create_directories(folder, error);
   if (std::optional<Failure> failed = draw_refused(drawn.value(), overlaps, request, folder / "refused.png"))
     return print_failure(*failed, "calot run --help", json);
-  if (json) return print_failure(script.value()->located(made.failure()), "calot check --build " + file, json);
+  if (json)
+    return print_failure(script.value()->located(made.failure()), "calot check --build " + file, json);
   print(fmt::format("{}: {}.", (folder / "refused.png").string(),
                     overlaps.empty() ? "no organ is in another or in ground"
                                      : fmt::format("{} {}, where organs are in each other or in ground",
@@ -79,6 +81,7 @@ ExitCode run_command(const RunCommand& command) {
   request.profile = command.profile;
   request.at = command.at;
   if (command.seed) request.seed = *command.seed;
+  if (command.until) request.until = *command.until;
   std::optional<Failure> wrong = read_size(command.size, request);
   if (!wrong) wrong = read_params(command.params, request);
   if (wrong) return print_failure(*wrong, "calot run --help", command.json);

@@ -150,6 +150,7 @@ SessionResult run(const PlayRequest& request, ExerciseScript& script, World& wor
   options.end_with_source = replay.has_value() || request.live != nullptr;
   if (replay && !came_to_its_end(request.replay->end))
     options.source_end = request.replay->end.empty() ? cut_end : request.replay->end;
+  options.until = request.until;
   options.recording = outputs.recording ? &*outputs.recording : nullptr;
   options.table = outputs.table ? &*outputs.table : nullptr;
   options.profile = request.profile ? &outputs.profile : nullptr;

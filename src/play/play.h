@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -33,10 +34,11 @@ struct PlayRequest {
   int threads = 1;       ///< that share the work of a step: no bit depends on it
   bool dry_run = false;  ///< read and check the scenario, and play nothing: what comes of it is then empty
   bool render = true, end_frame = true;
-  bool golden_pictures = true;    ///< draw those of the exercise
-  int width = 960, height = 540;  ///< px
-  std::vector<double> at;         ///< s, of pictures besides the golden ones
-  bool write = false;             ///< write report, frames, table and recording into `output`
+  bool golden_pictures = true;                             ///< draw those of the exercise
+  double until = std::numeric_limits<double>::infinity();  ///< s: the session ends then as if its source had
+  int width = 960, height = 540;                           ///< px
+  std::vector<double> at;                                  ///< s, of pictures besides the golden ones
+  bool write = false;  ///< write report, frames, table and recording into `output`
   std::filesystem::path
       output;                 ///< folder, of which an earlier session's files are replaced; empty: out/<id>
   bool overwrite = false;     ///< without `output`: replace what out/<id> holds instead of taking out/<id>-2

@@ -76,6 +76,7 @@ class Session {
     if (options_.stop != nullptr && *options_.stop) return end(SessionEnd::interrupted);
     // Half a step's slack, so that rounding of the summed time costs no step.
     if (world_.report().time + dt_ / 2 > script_.definition().time_limit) return end(SessionEnd::time_limit);
+    if (world_.report().time + dt_ / 2 > options_.until) return end(SessionEnd::source_ended);
     if (!read_input()) return;
     const Clock::time_point start = Clock::now();
     Result<StepReport> report = world_.step(input_);

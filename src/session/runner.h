@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ using StepObserver = std::function<void(const World& world, const Progress& prog
 struct SessionOptions {
   const std::atomic<bool>* stop = nullptr;  ///< set: the session ends as interrupted before its next step
   bool end_with_source = false;             ///< a replay ends where its recording does
+  double until = std::numeric_limits<double>::infinity();  ///< s: the session ends then as if its source had
   /// How that is recorded; empty: as source_ended. Of a replay of what was broken off: how that was.
   std::string source_end;
   RecordingWriter* recording = nullptr;

@@ -61,6 +61,19 @@ TEST_F(Run, AProfileHasARowForEachStepAndTheirTimesAreTheReports) {
   EXPECT_TRUE(fs::exists(folder_ / "again" / "profile.csv"));
 }
 
+TEST_F(Run, UntilATimeIsPlayedNoFurtherScoredAsUnfinishedAndReplays) {
+  const Json part = report({"run", "small.lua", "--until", "0.2", "-o", "here", "--size", "320x180"});
+  EXPECT_EQ(part["end"], "source_ended");
+  EXPECT_NEAR(part["metrics"]["total.time_s"].get<double>(), 0.2, 1e-9);
+  EXPECT_EQ(part["score"]["outcome"], "unfinished");
+  EXPECT_TRUE(fs::exists(folder_ / "here" / "t000.00s.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "here" / "t000.40s.png")) << "its time did not come";
+  EXPECT_EQ(calot({"replay", "here/recording.jsonl"}).code, 0);
+  for (const char* wrong : {"-1", "nan", "soon"})
+    EXPECT_EQ(calot({"run", "small.lua", "--until", wrong}).code, 4) << wrong;
+  EXPECT_EQ(calot({"run", "small.lua", "--at", "0.1,nan"}).code, 4);
+}
+
 TEST_F(Run, WritesIntoOutByDefault) {
   EXPECT_EQ(calot({"run", "small.lua", "--no-render"}).code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out" / "small" / "report.json"));
@@ -240,9 +253,10 @@ TEST_F(Run, AKilledRunsRecordingReplaysUpToItsLastStep) {
 
 TEST_F(Run, AMotionThatCannotBeFollowedExitsWithEightAndSaysWhereWhenAndWhatToChange) {
   // A ball that is held by three quarters, and a tool that is sent through it by a strong hand, in steps of 95 mm.
-  std::string text = small_scenario("t:step('push', 'Push'); t:wait(10 * s)",
-                                    "t.left:move_to({ -60 * mm, 100 * mm, -75 * mm }, { speed = 100 * mm / s }); "
-                                    "t.left:move_by({ 0, 0, -95 * mm }, { speed = 500 * mm / s })");
+  std::string text =
+      small_scenario("t:step('push', 'Push'); t:wait(10 * s)",
+                     "t.left:move_to({ -60 * mm, 100 * mm, -75 * mm }, { speed = 100 * mm / s }); "
+                     "t.left:move_by({ 0, 0, -95 * mm }, { speed = 500 * mm / s })");
   const auto replace = [&](const std::string& from, const std::string& to) {
     ASSERT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), from.size(), to);

@@ -162,6 +162,22 @@ TEST(Runner, AReplayOfAnInterruptedRunEndsWhereTheRunDid) {
   EXPECT_EQ(result.state_hashes.size(), 6u);
 }
 
+TEST(Runner, ASessionThatIsToGoUntilATimeHasTheSameBitsUpToThereAndNoMore) {
+  const auto until = [](double time) {
+    test::TimedScript script(5);
+    test::SwayingSource sway(1);
+    SessionOptions options;
+    options.until = time;
+    return played(script, sway, options);
+  };
+  const SessionResult whole = until(0.2), part = until(0.1), none = until(0);
+  EXPECT_EQ(part.end, SessionEnd::source_ended);
+  ASSERT_EQ(part.state_hashes.size(), 6u) << "at rest, and five steps of 20 ms";
+  EXPECT_TRUE(std::equal(part.state_hashes.begin(), part.state_hashes.end(), whole.state_hashes.begin()));
+  EXPECT_EQ(none.end, SessionEnd::source_ended);
+  EXPECT_EQ(none.state_hashes.size(), 1u);
+}
+
 /// Acts in the steps that end then, besides swaying.
 class ActingSource : public InputSource {
  public:
