@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lua/scenario_files.h"
-#include "session/runner.h"
+#include "lua/played_text.h"
 #include "sim/random_acts.h"
 #include "support/long_run.h"
 
@@ -25,22 +24,6 @@ TEST(StandardBedActs, OfWhateverHandsAreFollowedOrSayWhy) { act_at_random(11); }
 TEST(StandardBedActsInASecondOrder, OfWhateverHandsAreFollowedOrSayWhy) { act_at_random(12); }
 TEST(StandardBedActsInAThirdOrder, OfWhateverHandsAreFollowedOrSayWhy) { act_at_random(13); }
 TEST(StandardBedActsInAFourthOrder, OfWhateverHandsAreFollowedOrSayWhy) { act_at_random(14); }
-
-/// A scenario that is played by its demo to its end, and the tissues that it leaves.
-struct Played {
-  SessionResult result;
-  std::vector<TissueState> tissues;
-};
-void play(const test::ScenarioText& text, Played& out, const SessionOptions& options = {}) {
-  const test::Folder folder;
-  Result<std::unique_ptr<ExerciseScript>> script = test::load_text(folder, text.text());
-  ASSERT_TRUE(script) << to_text(script.failure());
-  Result<World> world = World::create(script.value()->definition().scene);
-  ASSERT_TRUE(world) << to_text(world.failure());
-  out.result = run_session(world.value(), *script.value(), script.value()->demo(), options);
-  ASSERT_EQ(out.result.end, SessionEnd::steps_done) << to_text(out.result.failure);
-  out.tissues = world.value().report().tissues;
-}
 
 /// A grasper takes a gallbladder's pouch, the assistant lets its fundus go, and nothing else holds it: the hand presses it
 /// on the fat and the left lobe, and opens.
@@ -75,8 +58,8 @@ TEST(BedField, AGallbladderThatIsLetGoWhereItIsPressedOnTheGroundComesFree) {
   std::vector<ProfiledStep> profile;
   SessionOptions options;
   options.profile = &profile;
-  Played played;
-  ASSERT_NO_FATAL_FAILURE(play(pressed_on_the_ground(), played, options));
+  test::PlayedText played;
+  ASSERT_NO_FATAL_FAILURE(test::play_text(pressed_on_the_ground(), played, options));
   int in_a_row = 0, longest = 0;
   for (const ProfiledStep& step : profile) {
     in_a_row = step.statistics.balanced ? 0 : in_a_row + 1;
@@ -127,17 +110,17 @@ test::ScenarioText swung() {
 
 TEST(BedField, AFundusThatIsSwungTensesThePlaneOnItsOtherSide) {
   if (!test::long_run() || test::sanitized) GTEST_SKIP() << "left to scripts/test --long: half a minute";
-  Played played;
-  ASSERT_NO_FATAL_FAILURE(play(swung(), played));
-  const auto noted = [&](const std::string& name) { return played.result.metrics.at("note." + name); };
+  test::PlayedText played;
+  ASSERT_NO_FATAL_FAILURE(test::play_text(swung(), played));
   const auto right_share = [&](const std::string& when) {
-    return noted(when + "_right") / noted(when + "_left");
+    return played.noted(when + "_right") / played.noted(when + "_left");
   };
   EXPECT_GT(right_share("left"), 1.5 * right_share("right"));
-  EXPECT_GT(noted("right_left"), 1.5 * noted("left_left")) << "the left side opens on a swing to the right";
+  EXPECT_GT(played.noted("right_left"), 1.5 * played.noted("left_left"))
+      << "the left side opens on a swing to the right";
   EXPECT_NEAR(right_share("again"), right_share("left"), 0.2 * right_share("left"))
       << "taken anew it does so again";
-  EXPECT_GT(noted("left_right"), 5) << "mN: the strands are taut";
+  EXPECT_GT(played.noted("left_right"), 5) << "mN: the strands are taut";
   EXPECT_EQ(played.tissues.at(0).torn, 0) << "a swing alone divides nothing";
 }
 
