@@ -72,8 +72,8 @@ return calot.exercise {
   demo = function(t, p)
     local clips, cuts = technique.hand(t, "applier", ports.applier), technique.hand(t, "blades", ports.blades)
     local plan = {
-      cystic_duct = { clips = { 0.60, 0.80, 0.88 }, cut = 0.70, open = 36 * deg, past = 4.5 * mm },
-      cystic_artery = { clips = { 0.64, 0.36, 0.25 }, cut = 0.50, open = 20 * deg, past = 4 * mm },
+      cystic_duct = { clips = { 0.60, 0.80, 0.88 }, cut = 0.70, reach = 6 * mm, open = 36 * deg, past = 4.5 * mm },
+      cystic_artery = { clips = { 0.64, 0.36, 0.25 }, cut = 0.50, reach = 4 * mm, open = 20 * deg, past = 4 * mm },
     }
     local tube, plan_of = p.structure, plan[p.structure]
     t:together(function()
@@ -83,7 +83,7 @@ return calot.exercise {
       if p.demo == "expert" then clips.set_clips(tube, plan_of.clips, plan_of.open, plan_of.past) end
     end)
     if p.demo == "expert" then t:time_out("two structures and no more enter the gallbladder") end
-    cuts.about(tube, plan_of.cut, 6 * mm, 50 * mm / s)
+    cuts.about(tube, plan_of.cut, plan_of.reach, 50 * mm / s)
     t.blades:close()
     if p.demo == "clumsy" then t.applier:fire() end
     t.blades:open(20 * deg)

@@ -425,7 +425,7 @@ local function tissues(p, artery_turns_at)
         break_energy = 300 * p.strength, divide_energy = divide },
     fat("triangle_fat", "cystic_duct", "common_duct", 14 * mm, 16, { stop = 0.9 }),
     fat("artery_fat", "cystic_artery", "cystic_duct", 18 * mm, 14, { stop = artery_turns_at }),
-    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.6 }),
+    fat("hilar_fat", "right_hepatic_artery", "common_duct", 16 * mm, 14, { start = 0.57, stop = 0.86 }),
   }
 end
 
@@ -515,17 +515,20 @@ local function field_with(owner, variant, overrides, level)
     end
   end
 
-  -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, into the liver.
+  -- Up beside the bile duct, behind the hepatic duct, through the triangle's top, and behind the liver's edge. From the
+  -- triangle's top on the hilum holds it.
   local behind = add({ 17, 5, -23.5 }, add(times(towards_fundus, -1), back, 1.8), wider / mm)
-  local to_hilum = { { 6, 3.5, -14 }, { 4, 10, -26 } }
-  if p.hepatic_artery_near_neck then to_hilum = { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 } } end
+  local to_hilum = { { 6, 3.5, -14 }, { 4, 10, -26 }, { 3, 15.5, -34 }, { 5, 25, -40 } }
+  if p.hepatic_artery_near_neck then
+    to_hilum = { { 11, 5, -22 }, { 5, 1, -12 }, { 5, 8, -24 }, { 5, 13.5, -32 }, { 6, 24, -39 } }
+  end
   local hepatic_artery = tube("right_hepatic_artery", course(neck, {
-    { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, behind, table.unpack(to_hilum),
+    { 30, -86, -44 }, { 30, -66, -36 }, { 29, -18, -17 }, { 25, 0, -19 }, behind, table.unpack(to_hilum),
   }), 3.4 * mm, 0.8 * mm, {
     { name = "proper_hepatic_artery", landmark = "start", radius = 8 * mm, stiffness = 1e6 },
     { name = "ligament", landmark = "middle", radius = 14 * mm, stiffness = 5e4 },
-    { name = "hilum", landmark = "end", radius = 8 * mm, stiffness = 1e6 },
-  }, { nodes = 15, patient_end = "start", carries = "blood" })
+    { name = "hilum", landmark = "end", radius = 28 * mm, stiffness = 1e6 },
+  }, { nodes = 21, patient_end = "start", carries = "blood" })
   hepatic_artery.injury = {
     cut = "right hepatic artery divided",
     closed = "right hepatic artery closed",
@@ -557,7 +560,7 @@ local function field_with(owner, variant, overrides, level)
     joints[#joints + 1] = joint(name .. ".end", "gallbladder.neck", 4 * mm)
     return turns and p.cystic_artery_length / (p.cystic_artery_length + gap) or nil
   end
-  local turns_at = cystic_artery("cystic_artery", 0.82, place(table.unpack(p.cystic_artery_enters)))
+  local turns_at = cystic_artery("cystic_artery", 0.745, place(table.unpack(p.cystic_artery_enters)))
   bladder.vessels = branches(p, p.cystic_artery_enters, p.second_cystic_artery and second_enters)
 
   -- The node lies between neck and artery, fast to the neck by all of its skin. It gives way as lymph nodes do (20 to
@@ -570,7 +573,7 @@ local function field_with(owner, variant, overrides, level)
   joints[#joints + 1] = joint("cystic_node.centre", "gallbladder.neck", 3 * radius)
   for _, duct in ipairs(ducts) do organs[#organs + 1] = duct end
   for _, one in ipairs(duct_joints) do joints[#joints + 1] = one end
-  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.92, place(table.unpack(second_enters))) end
+  if p.second_cystic_artery then cystic_artery("second_cystic_artery", 0.81, place(table.unpack(second_enters))) end
 
   local field = {
     organs = organs,

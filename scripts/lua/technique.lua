@@ -135,7 +135,8 @@ local where_to_keep_off = { organ = given.name, place = given.optional(given.thr
 --- Strand by strand: the hook's foot, which points to the patient's right, comes down on the nearest one and draws
 --- back off the walls that it lies on too, as they would be burnt. Current flows until one strand has parted; else the
 --- foot comes down nearer to either end of it, as what a slack strand hangs on may keep the hook off its middle, and
---- then on all three nearer to its heel. Before a longer way it is drawn out. `how`: port, where its shaft comes from;
+--- then on all three nearer to its heel. One that is missed all nine times is left until another one has parted, and
+--- after three that are it gives up. Before a longer way it is drawn out. `how`: port, where its shaft comes from;
 --- tries, of a tenth of a second; hardest, the force that ends its way down; wanted(strand), if given, those that are
 --- taken; is_done(), if given, asked before each strand; keep_off, a list of organs: current flows no nearer to one
 --- than by its `clear`; and a place of one, if given, beside which the heel comes down first, on the middle, and the
@@ -145,9 +146,10 @@ function technique.take(t, hook, tissue, how)
   local organs = how.keep_off or {}
   for _, off in ipairs(organs) do given.check(off, where_to_keep_off, "keep_off", 2) end
   local reach, by_heel = { 4 * mm, 2 * mm, 0.5 * mm }, { 0.7 * mm, -0.5 * mm, -1.5 * mm }
-  local missed = 0
-  while missed < 9 and not is_done(how) do
-    local strand = nearest_strand(t, hook:tip(), tissue, how.wanted)
+  local missed, left, left_in_all = 0, {}, 0 -- left: by where they begin, which tells one from the others
+  local function wanted(strand) return not left[strand.share] and (not how.wanted or how.wanted(strand)) end
+  while left_in_all < 3 and not is_done(how) do
+    local strand = nearest_strand(t, hook:tip(), tissue, wanted)
     if not strand then return end
     local beside = false
     for _, off in ipairs(organs) do
@@ -171,7 +173,14 @@ function technique.take(t, hook, tissue, how)
       local contact = hook:contact()
       return contact == nil or contact.organ == tissue
     end, { along = back, speed = 5 * mm / s, limit = 2 * mm })
-    missed = burn_strand(t, hook, tissue, how.tries, may_burn) and 0 or missed + 1
+    if burn_strand(t, hook, tissue, how.tries, may_burn) then
+      missed, left, left_in_all = 0, {}, 0
+    elseif missed < 8 then
+      missed = missed + 1
+    else
+      missed, left_in_all = 0, left_in_all + 1
+      left[strand.share] = true
+    end
     hook:move_by(times(back, 5 * mm), { speed = 80 * mm / s })
   end
 end
