@@ -137,7 +137,8 @@ TEST(OperationErrors, EachMistakeOfTheDivisionIsAnEventCostsPointsAndIsSeen) {
       {EventKind::perforation, "gallbladder", erase<Material::bile>},
       {EventKind::injury, "common_duct", erase_clips},
       {EventKind::clip_dropped, "", erase_fallen_clips},
-      {EventKind::exchange, "", erase_burns},  // when the hook is out of the way
+      {EventKind::injury, "common_duct",
+       erase_burns},  // when the hook is out of the way, and the bile has run off
       {EventKind::cut_unclipped, "cystic_duct", erase<Material::bile>},
   };
   const Playback clumsy("critical_view.lua", {{"demo", "clumsy"}}, mistakes);
