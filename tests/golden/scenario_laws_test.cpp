@@ -77,11 +77,14 @@ INSTANTIATE_TEST_SUITE_P(Shipped, Scenario, ::testing::ValuesIn(shipped));
 /// When a scenario is played no further, s: where its first part is to do, and bits are those of the goldens. Other bits are
 /// judged by what became of the whole.
 double end_of_play(const Shipped& scenario, const std::vector<test::Stored>& stored) {
-  for (const test::Stored& golden : stored)
-    if (scenario.last_picture != nullptr && golden.frame == scenario.last_picture && !test::long_run() &&
-        same_bits(golden.golden.sidecar.make, this_make()))
-      return golden.golden.sidecar.time;
-  return std::numeric_limits<double>::infinity();
+  constexpr double never = std::numeric_limits<double>::infinity();
+  if (scenario.last_picture == nullptr || test::long_run()) return never;
+  const auto last = std::find_if(stored.begin(), stored.end(), [&](const test::Stored& golden) {
+    return golden.frame == scenario.last_picture;
+  });
+  if (last == stored.end()) return never;
+  const GoldenSidecar& sidecar = last->golden.sidecar;
+  return same_bits(sidecar.make, this_make()) ? sidecar.time : never;
 }
 
 TEST(ShippedScenarios, AreAllThatGoldensAreStoredOf) {
