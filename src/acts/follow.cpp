@@ -152,7 +152,7 @@ class Following {
     const Poses here = present_poses(field_);
     const GroupSnapshot before = snapshot(field_);
     if (std::optional<Failure> failure = begin()) return *failure;
-    const Result<Prediction> answer = predict(field_, here, here, false, statistics_);
+    const Result<Prediction> answer = predict(field_, here, here, true, statistics_);
     if (!answer || !stay(answer.value())) restore(field_, before);
     return false;
   }
@@ -221,7 +221,8 @@ class Following {
   Result<Prediction> answer_to(const Poses& from) {
     const bool fresh = !factor_serves(field_.group);
     Result<Prediction> answer = predict(field_, from, to_, fresh, statistics_);
-    if (answer && answer->share < 1.0 && !fresh) answer = predict(field_, from, to_, true, statistics_);
+    if (answer && answer->share < 1.0 && !answer->fresh)
+      answer = predict(field_, from, to_, true, statistics_);
     if (answer && answer->share < smallest_share && from != to_)
       answer = of_tools_alone(field_, from, to_, statistics_);
     return answer;

@@ -5,7 +5,9 @@
 #include <numeric>
 #include <utility>
 
+#include "base/workers.h"
 #include "geometry/turn.h"
+#include "group/join.h"
 
 namespace calot {
 namespace {
@@ -79,6 +81,19 @@ double cut_by(const SkinNet& net, const SelfPair& pair, const std::vector<Vec3>&
                                    motions, keep);
 }
 
+/// The least that any of the items leaves of a share: cut(item, share) says what one does.
+template <class Item, class Cut>
+double least_left(const std::vector<Item>& items, Workers* workers, double share, const Cut& cut) {
+  constexpr int few = 128;  // not worth another chunk
+  const int size = static_cast<int>(items.size()), chunks = std::clamp(size / few, 1, 8);
+  return least_safe(workers, static_cast<std::size_t>(chunks), share, [&](std::size_t k) {
+    const Chunk chunk = chunk_of(size, chunks, static_cast<int>(k));
+    double left = share;
+    for (int i = chunk.begin; i < chunk.end; ++i) left = cut(items[static_cast<std::size_t>(i)], left);
+    return left;
+  });
+}
+
 }  // namespace
 
 const SkinNet& SelfContact::net(const Body& body) {
@@ -104,7 +119,7 @@ void SelfContact::refresh_groups(const Body& body, const VecX& x, double need) {
   aged_x_.resize(0);
   groups_details_ = body.details();
   const std::vector<Vec3> points = body.skin_positions(x);
-  groups_ = near_groups(net(body), points, group_reach, workers);
+  groups_ = near_groups(net(body), {points, nullptr, group_reach}, workers);
   std::vector<char> used(points.size(), 0), on_face(body.face_nodes().size(), 0), hangs(body.nodes(), 0);
   for (const auto& [a, b] : groups_)
     for (int group : {a, b})
@@ -155,15 +170,35 @@ double SelfContact::refresh(const Body& body, const VecX& x, double need, double
   look_up(body, x, at_);
   const SkinMotion still{at_, nullptr, pairs_reach_, edges_reach_};
   near_ = near_pairs(*net_, still, groups_, workers);
-  edges_near_ = edges_at(*net_, near_, still);
+  edges_near_ = edges_at(*net_, near_, still, workers);
   for (const SelfPair& pair : near_) nearest_ = std::min(nearest_, pair.distance);
   for (const EdgesNear& pair : edges_near_) nearest_edges_ = std::min(nearest_edges_, pair.distance);
   return 0;
 }
 
 void SelfContact::look_up(const Body& body, const VecX& x, std::vector<Vec3>& points) const {
+  look_up(body, x, rows_, points);
+}
+
+void SelfContact::look_up(const Body& body, const VecX& x, std::span<const int> rows,
+                          std::vector<Vec3>& points) {
   points.resize(body.skin_rest().size());
-  for (int row : rows_) points[row] = body.skin_point(row, x);
+  for (int row : rows) points[row] = body.skin_point(row, x);
+}
+
+std::vector<int> SelfContact::rows_of(std::span<const SelfPair> pairs,
+                                      std::span<const EdgesNear> crossing) const {
+  std::vector<char> used(net_->rest.size(), 0);
+  for (const SelfPair& pair : pairs) {
+    used[pair.skin_point] = 1;
+    for (int corner : net_->triangles[pair.triangle]) used[corner] = 1;
+  }
+  for (const EdgesNear& pair : crossing)
+    for (int end : ends_of(net_->edges, net_->edges, pair)) used[end] = 1;
+  std::vector<int> out;
+  for (std::size_t row = 0; row < used.size(); ++row)
+    if (used[row]) out.push_back(static_cast<int>(row));
+  return out;
 }
 
 const SelfContact::Touching& SelfContact::found_at(const Body& body, const VecX& x) {
@@ -285,13 +320,42 @@ double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step
   // A pair that loses more than 1 - keep of its distance was no further apart than this. What could meet on a longer
   // way would be everything: that is gone in parts.
   const double far = share * relative_motion(body, unturned(body, x, step), all_nodes(body)) / (1.0 - keep);
+  // So many parts that most steps of a crumpled organ are looked through at once.
+  constexpr int most_at_once = 3;
   const int parts = 1 + static_cast<int>(far / (0.5 * group_reach));
   const double part = share / parts;
-  for (int k = 0; k < parts; ++k) {
-    const double safe = safe_part(body, x + k * part * step, part * step, keep);
-    if (safe < 1.0) return (k + safe) * part;
+  for (int k = 0; k < parts; k += most_at_once) {
+    const int some = std::min(most_at_once, parts - k);
+    const VecX from = x + k * part * step, way = some * part * step;
+    const double safe =
+        some == 1 ? safe_part(body, from, way, keep) : safe_in_parts(body, from, way, keep, some);
+    if (safe < 1.0) return (k + some * safe) * part;
   }
   return share;
+}
+
+double SelfContact::safe_in_parts(const Body& body, const VecX& x, const VecX& step, double keep, int parts) {
+  std::vector<int> all(body.skin_rest().size());
+  std::iota(all.begin(), all.end(), 0);
+  look_up(body, x, all, at_);
+  look_up(body, step, all, way_);
+  // A pair that loses more than 1 - keep of its distance in a part has lost no more in those before than its points move
+  // against each other there: at first it was no further apart than these parts of the whole say.
+  const double lost = parts / (parts - 1 + 1 / (1.0 - keep));
+  const SkinMotion moving{at_, &way_, 0, 0, lost};
+  const std::vector<GroupPair> groups = near_groups(net(body), moving, workers);
+  const std::vector<SelfPair> pairs = near_pairs(*net_, moving, groups, workers);
+  if (pairs.empty()) return 1;
+  const std::vector<EdgesNear> crossing = edges_at(*net_, pairs, moving, workers);
+  const std::vector<int> rows = rows_of(pairs, crossing);
+  const VecX part = step / parts;
+  look_up(body, part, rows, way_);
+  for (int k = 0; k < parts; ++k) {
+    if (k > 0) look_up(body, x + k * part, rows, at_);
+    const double safe = least_share(pairs, crossing, keep);
+    if (safe < 1.0) return (k + safe) / parts;
+  }
+  return 1;
 }
 
 double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step, double keep) {
@@ -319,10 +383,18 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   look_up(body, nearing, nearing_);
   const SkinMotion moving{at_, &nearing_, 0, 0, lost};
   const std::vector<SelfPair> pairs = near_pairs(*net_, moving, groups_, workers);
-  for (const SelfPair& pair : pairs) share = cut_by(*net_, pair, at_, way_, keep, share);
-  for (const EdgesNear& pair : edges_at(*net_, pairs, moving))
-    share = calot::safe_share(edges, edges, pair, keep, share);
-  return share;
+  return least_share(pairs, edges_at(*net_, pairs, moving, workers), keep);
+}
+
+double SelfContact::least_share(const std::vector<SelfPair>& pairs, const std::vector<EdgesNear>& crossing,
+                                double keep) const {
+  const PlacedEdges edges{&net_->edges, &at_, &way_};
+  const double beside_points = least_left(pairs, workers, 1.0, [&](const SelfPair& pair, double left) {
+    return cut_by(*net_, pair, at_, way_, keep, left);
+  });
+  return least_left(crossing, workers, beside_points, [&](const EdgesNear& pair, double left) {
+    return calot::safe_share(edges, edges, pair, keep, left);
+  });
 }
 
 bool SelfContact::any_nearer(const Body& body, const VecX& x, double distance) {

@@ -98,8 +98,13 @@ class SelfContact {
   /// Of each touch second * slope slope' + derivative * the distance's Hessian of what `answer` says at its distance.
   template <class Answer>
   std::vector<PointsStiffness> touches_stiffness(const Body& body, const VecX& x, const Answer& answer);
-  /// safe_share() of a step no longer than groups are remembered.
+  /// What is safe of a step, gone in so many parts: what may meet on any of them is found at once.
+  double safe_in_parts(const Body& body, const VecX& x, const VecX& step, double keep, int parts);
+  /// What is safe of a step no longer than groups are remembered.
   double safe_part(const Body& body, const VecX& x, const VecX& step, double keep);
+  /// What these leave of the motion `way_` from `at_`.
+  double least_share(const std::vector<SelfPair>& pairs, const std::vector<EdgesNear>& crossing,
+                     double keep) const;
   /// Bound on how much any two skin points have come nearer since groups_x_, m.
   double since_groups(const Body& body, const VecX& x);
   /// That groups_ holds all groups with points nearer than `need` at x, at most group_reach.
@@ -108,6 +113,10 @@ class SelfContact {
   bool any_nearer(const Body& body, const VecX& x, double distance);
   /// Places (at x) or motions of the skin points in rows_; the others mean nothing.
   void look_up(const Body& body, const VecX& x, std::vector<Vec3>& points) const;
+  /// The same of those in `rows`.
+  static void look_up(const Body& body, const VecX& x, std::span<const int> rows, std::vector<Vec3>& points);
+  /// The skin points of pairs and edges, increasing.
+  std::vector<int> rows_of(std::span<const SelfPair> pairs, std::span<const EdgesNear> crossing) const;
   const SkinNet& net(const Body& body);
   std::vector<SelfTouch> find_touching(const Body& body, const VecX& x);
   std::vector<EdgeTouch> find_crossing(const Body& body, const VecX& x);

@@ -116,10 +116,11 @@ class Boxes {
   Boxes(const SkinNet& net, const SkinMotion& skin, Workers* workers)
       : net_(net),
         skin_(skin),
-        reach_(net.rest.size(), 0.0),
+        reach_(net.rest.size()),
         now_(net.nodes.size()),
         shift_(net.nodes.size()),
-        near_(net.nodes.size(), 0.0) {
+        way_(net.nodes.size()),
+        near_(net.nodes.size()) {
     find_reaches(workers);
     const auto columns = [](const std::vector<Vec3>& points) {
       return Eigen::Map<const Eigen::Matrix3Xd>(points[0].data(), 3,
@@ -156,14 +157,20 @@ class Boxes {
  private:
   void find_reaches(Workers* workers) {
     const int size = static_cast<int>(net_.triangles.size());
-    std::vector<double> of_triangle(net_.triangles.size());
+    std::vector<double> beside_corner(net_.triangles.size());
     for_each_chunk(workers, chunks_of_skin, [&](int k) {
       const Chunk chunk = chunk_of(size, chunks_of_skin, k);
       for (int t = chunk.begin; t < chunk.end; ++t)
-        of_triangle[t] = skin_.reach + Differences(net_.triangles[t], skin_).beside_corner(skin_);
+        beside_corner[t] = Differences(net_.triangles[t], skin_).beside_corner(skin_);
     });
     for (int t = 0; t < size; ++t)
-      for (int p : net_.triangles[t]) reach_[p] = std::max(reach_[p], of_triangle[t]);
+      for (int p : net_.triangles[t]) reach_[p].corners = std::max(reach_[p].corners, beside_corner[t]);
+    const int points = static_cast<int>(reach_.size());
+    for_each_chunk(workers, chunks_of_skin, [&](int k) {
+      const Chunk chunk = chunk_of(points, chunks_of_skin, k);
+      for (int p = chunk.begin; p < chunk.end; ++p)
+        reach_[p].own = skin_.motion ? reach_of_point(net_, skin_, p) : skin_.reach;
+    });
   }
 
   void find_boxes(const Mat3& turn, Workers* workers) {
@@ -177,7 +184,8 @@ class Boxes {
           const int p = net_.order[k];
           now_[n].extend(skin_.points[p]);
           shift_[n].extend(skin_.points[p] - scale_ * (turn * net_.rest[p]));
-          near_[n] = std::max(near_[n], reach_[p]);
+          if (skin_.motion) way_[n].extend((*skin_.motion)[p]);
+          near_[n].take(reach_[p]);
         }
       }
     });
@@ -186,7 +194,8 @@ class Boxes {
       if (node.left < 0) continue;
       now_[n] = now_[node.left].merged(now_[node.right]);
       shift_[n] = shift_[node.left].merged(shift_[node.right]);
-      near_[n] = std::max(near_[node.left], near_[node.right]);
+      way_[n] = way_[node.left].merged(way_[node.right]);
+      for (int child : {node.left, node.right}) near_[n].take(near_[child]);
     }
   }
 
@@ -200,7 +209,8 @@ class Boxes {
   void descend(int a, int b, const Below& below, std::vector<GroupPair>& out) const {
     const SkinNet::Node &p = net_.nodes[a], &q = net_.nodes[b];
     if (p.rest.merged(q.rest).sizes().squaredNorm() < net_.apart * net_.apart) return;
-    const double near = std::max(near_[a], near_[b]);
+    double near = near_[a].meets(near_[b]);
+    if (skin_.motion) near += way_[a].merged(way_[b]).sizes().norm() / skin_.lost;
     if (now_[a].squaredExteriorDistance(now_[b]) >= near * near) return;
     // Most of the wall has moved and turned as one piece, but for being blown up: what was apart there still is.
     if (shift_[a].merged(shift_[b]).sizes().norm() <= scale_ * net_.apart - near) return;
@@ -223,8 +233,7 @@ class Boxes {
     for (int i = a.first; i < a.last; ++i) {
       for (int j = b.first; j < b.last; ++j) {
         const int p = net_.order[i], q = net_.order[j];
-        if (!one_piece(net_, p, q) && least_distance(skin_, p, q) < std::max(reach_[p], reach_[q]))
-          return true;
+        if (!one_piece(net_, p, q) && least_distance(skin_, p, q) < reach_[p].meets(reach_[q])) return true;
       }
     }
     return false;
@@ -232,11 +241,12 @@ class Boxes {
 
   const SkinNet& net_;
   const SkinMotion& skin_;
-  std::vector<double> reach_;  ///< of points
-  double scale_ = 1;           ///< of the whole, against rest
+  std::vector<Near> reach_;  ///< of points
+  double scale_ = 1;         ///< of the whole, against rest
   std::vector<Eigen::AlignedBox3d> now_,
-      shift_;                 ///< places, and what scale and turn leave of motions since rest
-  std::vector<double> near_;  ///< the largest of a node's reaches
+      shift_,               ///< places, and what scale and turn leave of motions since rest
+      way_;                 ///< motions to come; empty where there are none
+  std::vector<Near> near_;  ///< the largest of a node's reaches
 };
 
 }  // namespace
@@ -324,10 +334,8 @@ bool SkinNet::edges_neighbour(int edge, int other) const {
   return false;
 }
 
-std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach,
-                                   Workers* workers) {
-  const SkinMotion still{points, nullptr, reach, 0, 1};
-  return Boxes(net, still, workers).near(workers);
+std::vector<GroupPair> near_groups(const SkinNet& net, const SkinMotion& skin, Workers* workers) {
+  return Boxes(net, skin, workers).near(workers);
 }
 
 namespace {
@@ -438,28 +446,32 @@ void for_edges_of(const SkinNet& net, const SkinMotion& skin, const SelfPair& pa
 
 }  // namespace
 
-std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin) {
+std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin,
+                                Workers* workers) {
   // For each edge those of higher number that it meets at the pairs, most of them several times.
   const ByKey met(net.edges.ends.size(), [&](const auto& use) {
     for (const SelfPair& pair : pairs) for_edges_of(net, skin, pair, use);
   });
+  std::vector<int> meeting;
+  for (int edge = 0; edge < static_cast<int>(net.edges.ends.size()); ++edge)
+    if (met.begin[edge] < met.begin[edge + 1]) meeting.push_back(edge);
   const PlacedEdges edges{&net.edges, &skin.points};
-  const int size = static_cast<int>(net.edges.ends.size());
-  std::vector<int> seen_with(net.edges.ends.size(), -1);
-  std::vector<EdgesNear> out;
-  for (int edge = 0; edge < size; ++edge) {
-    const std::size_t first = out.size();
-    for (int k = met.begin[edge]; k < met.begin[edge + 1]; ++k) {
-      const int other = met.of[k];
-      if (std::exchange(seen_with[other], edge) == edge || net.edges_neighbour(edge, other)) continue;
-      EdgesNear pair{edge, other, 0};
-      if (!skin.motion) pair.distance = nearest_of_edges(places_of(edges, edges, pair)).distance;
-      if (skin.motion || pair.distance < skin.edges_reach) out.push_back(pair);
-    }
-    std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
-              [](const EdgesNear& a, const EdgesNear& b) { return a.other < b.other; });
-  }
-  return out;
+  return in_chunks<EdgesNear>(
+      std::span<const int>(meeting), workers, [&](std::span<const int> some, std::vector<EdgesNear>& out) {
+        std::vector<int> seen_with(net.edges.ends.size(), -1);
+        for (int edge : some) {
+          const std::size_t first = out.size();
+          for (int k = met.begin[edge]; k < met.begin[edge + 1]; ++k) {
+            const int other = met.of[k];
+            if (std::exchange(seen_with[other], edge) == edge || net.edges_neighbour(edge, other)) continue;
+            EdgesNear pair{edge, other, 0};
+            if (!skin.motion) pair.distance = nearest_of_edges(places_of(edges, edges, pair)).distance;
+            if (skin.motion || pair.distance < skin.edges_reach) out.push_back(pair);
+          }
+          std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
+                    [](const EdgesNear& a, const EdgesNear& b) { return a.other < b.other; });
+        }
+      });
 }
 
 }  // namespace calot

@@ -66,10 +66,9 @@ struct SelfPair {
 
 using GroupPair = std::pair<int, int>;  ///< two of SkinNet::nodes without children, or one twice
 
-/// Groups with points that are nearer than `reach` (m) to a triangle around a point of the other, but for neighbours.
-/// Of these two: several threads find the same as one.
-std::vector<GroupPair> near_groups(const SkinNet& net, const std::vector<Vec3>& points, double reach,
-                                   Workers* workers = nullptr);
+/// Groups with points that are nearer than `skin.reach` to a triangle around a point of the other, but for neighbours; with
+/// a motion, those with any pair that near_pairs() looks for. Of these two: several threads find the same as one.
+std::vector<GroupPair> near_groups(const SkinNet& net, const SkinMotion& skin, Workers* workers = nullptr);
 /// All pairs looked for among these groups, and some more; ordered by skin point, then triangle. Only points of the groups and
 /// of the triangles around them are read.
 std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
@@ -78,6 +77,7 @@ std::vector<SelfPair> near_pairs(const SkinNet& net, const SkinMotion& skin,
 /// < other, but for neighbours; ordered. Where two edges come within d of each other an end of the shorter is as near to a
 /// triangle at the other as hypot(d, half its length): what parts them is across both. Where `skin` stays these are
 /// measured, and only those nearer than edges_reach returned.
-std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin);
+std::vector<EdgesNear> edges_at(const SkinNet& net, std::span<const SelfPair> pairs, const SkinMotion& skin,
+                                Workers* workers = nullptr);
 
 }  // namespace calot

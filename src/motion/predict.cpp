@@ -159,6 +159,7 @@ std::optional<Failure> answer_load(Field& field, const std::vector<ContactLoads>
   count(field, answer.result, statistics);
   if (!answer.result.converged())
     return solve_failure(answer.result, member_name(field, answer.result.part), "under its instruments");
+  out.fresh = fresh || answer.result.factorisations > 0;
   make_believable(field, answer.dx);
   out.first_order = std::move(answer.dx);
   out.first_order_pressures = problem.pressures(answer.dmultipliers);
@@ -183,6 +184,13 @@ OrganPairs find_pairs(Field& field, const std::vector<ContactLoads>& loads,
   return out;
 }
 
+/// Gives an answer up that is by a tangent of elsewhere and not safe all the way; whether it did.
+bool gives_up(Prediction& out) {
+  const bool none = !out.fresh && out.share < 1;
+  if (none) out.share = 0;
+  return none;
+}
+
 /// Limits a prediction to what keeps skins and tools apart. Skins are looked at last, as that takes longest: on what tools
 /// have left of the way.
 void keep_apart(const Field& field, const std::vector<ContactLoads>& loads, const OrganPairs& pairs,
@@ -196,6 +204,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads, cons
   const VecX x = parts.present(field);
   for (const Tissue& tissue : field.tissues)
     out.share = share_kept_apart(field, tissue, x, out.dx, from, to, out.share);
+  if (gives_up(out)) return;
   // Where nothing is loaded nothing moves, and no solve told the joins of their bodies.
   const std::size_t joins = out.loaded ? field.group.joins.size() : 0;
   out.share = least_safe(field.workers(), joins + field.organs.size(), out.share, [&](std::size_t k) {
@@ -204,6 +213,7 @@ void keep_apart(const Field& field, const std::vector<ContactLoads>& loads, cons
     return organ.search.own.safe_share(*organ.body, organ.state.x, parts.of(k - joins, std::as_const(out.dx)),
                                        contact_keep, out.share);
   });
+  gives_up(out);
 }
 
 }  // namespace
@@ -234,6 +244,7 @@ Result<Prediction> predict(Field& field, const Poses& from, const Poses& to, boo
     if (std::optional<Failure> failure = answer_load(field, loads, all, load, fresh, statistics, out))
       return *failure;
   const Timed timed(statistics.contact_s);
+  if (gives_up(out)) return out;
   // What moves by itself may meet shapes that no tool brings near.
   if (moving) {
     double furthest = 0;

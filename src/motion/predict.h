@@ -13,11 +13,12 @@ struct Prediction {
   double travel = 0;                       ///< of the tool that travels most, m
   double share = 1;                        ///< that can be believed, and is safe
   bool loaded = false;                     ///< whether the tools' motion or its own moves any organ
+  bool fresh = true;                       ///< by a tangent of where the organs are
 };
 
 /// Answer of the organs to tools that move from `from` to `to` (one pose a tool), and the share of it that is safe.
-/// With `fresh` the tangent is factorised anew, else the last factor serves if there is one. Fails (simulation) where
-/// the tangent answers nothing that can be believed.
+/// With `fresh` the tangent is factorised anew, else the last factor serves if there is one: an answer of that which is not
+/// safe all the way is none, with a share of 0. Fails (simulation) where the tangent answers nothing that can be believed.
 Result<Prediction> predict(Field& field, const std::vector<InstrumentPose>& from,
                            const std::vector<InstrumentPose>& to, bool fresh, SolveStatistics& statistics);
 

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <utility>
+
 #include "field_rig.h"
 #include "geometry/self_touch.h"
 #include "rig.h"
@@ -61,8 +64,7 @@ double nearest_pair(const SkinNet& net, const Organ& organ, const VecX& x, doubl
   const std::vector<Vec3> skin = organ.body->skin_positions(x);
   double out = most;
   const SkinMotion still{skin, nullptr, out, 1};
-  for (const SelfPair& p : near_pairs(net, still, near_groups(net, skin, out)))
-    out = std::min(out, p.distance);
+  for (const SelfPair& p : near_pairs(net, still, near_groups(net, still))) out = std::min(out, p.distance);
   return out;
 }
 
@@ -159,8 +161,8 @@ TEST(SelfContact, GradientAndHessianAreSlopesAndForcesBalance) {
 double nearest_edges(const SkinNet& net, const Organ& organ, const VecX& x, double most) {
   const std::vector<Vec3> skin = organ.body->skin_positions(x);
   const double around = std::hypot(most, net.edges.longest);
-  const std::vector<SelfPair> pairs =
-      near_pairs(net, {skin, nullptr, around, 1}, near_groups(net, skin, around));
+  const SkinMotion still{skin, nullptr, around, 1};
+  const std::vector<SelfPair> pairs = near_pairs(net, still, near_groups(net, still));
   double out = most;
   for (const EdgesNear& e : edges_at(net, pairs, {skin, nullptr, most, 1})) out = std::min(out, e.distance);
   return out;
@@ -304,6 +306,43 @@ TEST(SelfContact, NoStepTakesWallsThroughEachOtherWhileTheWholeTurns) {
     EXPECT_LT(share, 1.0) << length;
     EXPECT_GT(share * length, 0.2 * before) << length;
     EXPECT_GE(nearest_pair(net, organ, x + share * step, 2e-3), 0.2 * 0.2 * before * (1 - 1e-6)) << length;
+  }
+}
+
+/// Of points and triangles one by one: those that lose more than most of their distance on a long way, all of which are
+/// found by looking for what may meet on the whole of it at once.
+TEST(SelfContact, AllThatMeetsOnALongWayIsFoundAtOnce) {
+  CALOT_SLOW_WHEN_SANITIZED("each point beside each triangle");
+  constexpr double keep = 0.2;
+  Field field = test::make_field(test::held_ball(), 1e-6, Vec3::UnitZ());
+  const Organ& organ = field.organs[0];
+  const VecX x = dented(organ, 1.5e-3);
+  const SkinNet net(*organ.body);
+  const std::vector<Vec3> skin = organ.body->skin_positions(x);
+  for (double length : {1e-3, 2e-3}) {
+    const VecX step = length * closing(*organ.body);
+    std::vector<Vec3> way;
+    for (int row = 0; row < static_cast<int>(skin.size()); ++row)
+      way.push_back(organ.body->skin_point(row, step));
+    const SkinMotion moving{skin, &way, 0, 0, 1 - keep};
+    std::set<std::pair<int, int>> found;
+    for (const SelfPair& pair : near_pairs(net, moving, near_groups(net, moving)))
+      found.emplace(pair.skin_point, pair.triangle);
+    int meet = 0, missed = 0;
+    for (int p = 0; p < static_cast<int>(skin.size()); p += 29)
+      for (int t = 0; t < static_cast<int>(net.triangles.size()); ++t) {
+        const Triangle& corners = net.triangles[t];
+        constexpr double sure = 15e-3;  // m: what is further apart cannot lose so much
+        if ((skin[p] - skin[corners[0]]).norm() > sure || net.neighbours(p, t)) continue;
+        if (safe_share(skin[p], way[p], corners_of(corners, skin), corners_of(corners, way), keep) == 1.0)
+          continue;
+        ++meet;
+        missed += found.count({p, t}) == 0;
+      }
+    EXPECT_GT(meet, 10) << length;
+    EXPECT_EQ(missed, 0) << length;
+    const std::size_t all = skin.size() * net.triangles.size();
+    EXPECT_LT(found.size(), all / 10) << length << ": else nothing is looked for";
   }
 }
 
