@@ -261,7 +261,7 @@ local function foremost(front)
   return line
 end
 
-local harmless = 0.4 * mm -- from an organ's skin, beyond which current spares it
+local harmless = 0.5 * mm -- from an organ's skin, beyond which current spares it
 
 local function presses(hook, how) return hook:force("tip") > how.hardest or hook:force() > 2.5 * N end
 
@@ -471,7 +471,7 @@ end
 --- Takes a tissue off by strokes of the hook along its front, where it stands open under tension as the laparoscope
 --- sees it. The shaft is not turned at first, and is turned back at the end. The hook comes to the front from its open
 --- side, midway between the two organs, its foot inward, away from the lens, and 3 mm past the foremost strands. It
---- sweeps to and fro along them, and current flows while it lies on strands and no organ is within 0.4 mm. It ends when
+--- sweeps to and fro along them, and current flows while it lies on strands and no organ is within 0.5 mm. It ends when
 --- nothing is under tension, or ten strokes in a row divide nothing; after two of these it tries one strand alone as
 --- well, from behind. `how`: port, where the shaft comes from; from, the place nearest to which it begins; hardest, the
 --- force on the foot at which it stops and burns, or eases off a skin; between, the two organs, first the one that the

@@ -124,8 +124,11 @@ Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const Poses& targ
   const bool hard = touches_hard(field);
   const FieldState before = field_state(field);
   Result<std::vector<WorldEvent>> events = advance(field, targets, statistics);
-  if (!events) return events;
-  const bool stuck = (hard && wedges_hard(field)) || (!statistics.balanced && crushes(field));
+  // Where tissue was crushed out of any shape that can be solved for the tools have gone too far, too.
+  const bool lost = !events && events.failure().kind == FailureKind::simulation && !field.stopped();
+  if (!events && !lost) return events;
+  const bool ended = statistics.balanced && (hard || !statistics.cut_short);
+  const bool stuck = lost || (hard && wedges_hard(field)) || (!ended && crushes(field));
   if (!stuck) {
     // Hands give way to what is hard in the next step only: where tools came short of their way their forces say nothing.
     if (hard) statistics.balanced &= !statistics.cut_short;

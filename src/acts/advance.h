@@ -18,8 +18,9 @@ namespace calot {
 Result<std::vector<WorldEvent>> advance(Field& field, const std::vector<InstrumentPose>& targets,
                                         SolveStatistics& statistics);
 
-/// The same within a step; but one that would wedge something hard, or that ends out of balance with tissue crushed as no
-/// hand could (hard_hold.h), is taken back: its tools stay where they are, and the time passes.
+/// The same within a step; but one that would wedge something hard, that cannot be followed, or that ends short of its way or
+/// out of balance with tissue crushed as no hand could (hard_hold.h), is taken back: its tools stay where they are, and the
+/// time passes. Fails where that cannot be followed either.
 Result<std::vector<WorldEvent>> advance_unwedged(Field& field, const std::vector<InstrumentPose>& targets,
                                                  SolveStatistics& statistics);
 

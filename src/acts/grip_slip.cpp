@@ -126,27 +126,30 @@ Result<bool> release(Field& field, ToolIndex instrument, SolveStatistics& statis
 }
 
 Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
-  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
-  const Tool& tool = field.tool(instrument);
-  const std::array<Pose, 2> to_local = to_jaws(tool);
-  std::vector<GripPoint> off;
-  for (const Organ& organ : field.organs)
-    for (const GripPoint& grip : organ.grips) {
+  const std::array<Pose, 2> to_local = to_jaws(field.tool(instrument));
+  bool any = false;
+  for (Organ& organ : field.organs)
+    for (GripPoint& grip : organ.grips) {
       if (grip.instrument != instrument) continue;
       const Vec3 at = to_local[grip.jaw] * organ.body->skin_point(grip.skin_point, organ.state.x);
-      if (at.x() < grip.local.x() - pad_reach) off.push_back(grip);
+      grip.leaves = at.x() < grip.local.x() - pad_reach;
+      any |= grip.leaves;
     }
-  if (off.empty()) return true;
+  if (!any || field.step_time > 0) return true;
+  const Budget budget{statistics, statistics.newton_iterations + hold_iterations};
   const FieldState before = field_state(field);
-  const auto leaves = [&](const GripPoint& grip) {
-    return std::any_of(off.begin(), off.end(), [&](const GripPoint& one) {
-      return one.instrument == grip.instrument && one.jaw == grip.jaw && one.skin_point == grip.skin_point &&
-             one.local == grip.local;
-    });
-  };
+  const auto leaves = [](const GripPoint& grip) { return grip.leaves; };
   const Result<bool> left = fade(field, instrument, leaves, 0.04, budget, statistics);
-  if (!left) restore(field, before);
-  return left;
+  if (left) return true;
+  restore(field, before);
+  for (Organ& organ : field.organs)
+    for (GripPoint& grip : organ.grips) grip.leaves = false;
+  return left.failure();
+}
+
+void let_left_go(Field& field) {
+  for (Organ& organ : field.organs)
+    std::erase_if(organ.grips, [](const GripPoint& grip) { return grip.leaves; });
 }
 
 PadLoad pad_load(const Field& field, ToolIndex instrument) {
@@ -217,7 +220,6 @@ double holding_limit(const Field& field, ToolIndex instrument) {
 }
 
 Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics) {
-  constexpr double below = 0.95;  // of the limit
   // m: the longest is below half the distance of the skin's points; what is shorter than the shortest is no
   // slide but the jump of a fold that a leaving point frees.
   constexpr double shortest_way = 10e-6, longest_way = 0.2e-3;
@@ -226,7 +228,10 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
   if (demand.share() <= slips_above) return Slipped{};
   const Slipped out{true, demand.turns, pad_load(field, instrument).pull.norm()};
   const FieldState start = field_state(field);
-  double way = demand.turns ? 0.5 * longest_way : shortest_way;
+  // Where masses count a step takes one slide of what turns, which may leave it anywhere from where turning stops.
+  const bool at_once = field.step_time > 0 && demand.turns;
+  const double below = at_once ? turning_share : 0.95;  // of the limit
+  double way = at_once ? longest_way : demand.turns ? 0.5 * longest_way : shortest_way;
   bool turning = false;
   while (!budget.spent()) {
     if (is_spent(field, statistics)) {
@@ -234,7 +239,8 @@ Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statis
       statistics.balanced = false;  // more is asked of what is held than holds
       return out;
     }
-    if (demand.turns && !std::exchange(turning, true)) demand = largest_demand(field, instrument, true);
+    if (!at_once && demand.turns && !std::exchange(turning, true))
+      demand = largest_demand(field, instrument, true);
     const FieldState before = field_state(field);
     const Result<bool> slid = slide(field, instrument, demand, way, budget, statistics);
     if (!slid) {

@@ -52,9 +52,12 @@ Asked asked_of_pads(const Field& field, ToolIndex instrument);
 /// be judged.
 void note_unasked(const Field& field, SolveStatistics& statistics);
 
-/// What has been drawn off its pad by more than the teeth reach is let go, as in a release. Fails (simulation) where it
-/// finds no rest; the grip holds as before then.
+/// What has been drawn off its pad by more than the teeth reach is let go, as in a release; where masses count it is only
+/// told to leave, as the next step begins (let_left_go()). Fails (simulation) where it finds no rest; the grip holds as
+/// before then.
 Result<bool> leave_pads(Field& field, ToolIndex instrument, SolveStatistics& statistics);
+/// Lets go what was told to leave. Nothing is solved for that: the step moves what was held.
+void let_left_go(Field& field);
 
 /// What a fold did between its pads.
 struct Slipped {
@@ -67,7 +70,8 @@ struct Slipped {
 /// it; skin that slides off the pads is let go, as in a release; clips that give way first are drawn along
 /// (clips.h). Does nothing where no more is asked for than holding_limit and couple_limit. Afterwards friction is asked for
 /// at most 100.1% of its limit, and near it unless part of the fold has left the pads. On failure (simulation) the grip
-/// holds as before. Where masses count and the step's budget is spent before, the rest is left to the next step.
+/// holds as before. Where masses count and the step's budget is spent before, the rest is left to the next step; and what
+/// turns stops where the whole couple_limit holds it, as each step asks anew.
 Result<Slipped> slip(Field& field, ToolIndex instrument, SolveStatistics& statistics);
 
 }  // namespace calot

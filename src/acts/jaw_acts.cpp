@@ -87,6 +87,7 @@ void TearWatch::look(const Field& field) {
 
 Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, std::vector<WorldEvent>& events,
                     SolveStatistics& statistics) {
+  let_left_go(field);
   for (std::size_t i = 0; i < field.tools.size(); ++i) {
     Tool& tool = field.tools[i];
     // Jaws that stop closing before tissue carries their pinch press on nothing.
@@ -153,6 +154,7 @@ Result<bool> close_jaws(Field& field, ToolIndex instrument, TearWatch& tears, st
     tears.look(field);
   }
   end_leaving(field, instrument);
+  let_left_go(field);  // what still touches the pads is held anew
   take_hold(field, instrument);
   if (fold_fills_jaws(field, instrument)) {
     tool.pressing = tool.lost = tool.beside = false;

@@ -21,7 +21,8 @@ class TearWatch {
 };
 
 /// Tools whose jaws are to open (targets: one a tool), or are not to press on, let go what they hold.
-/// Adds release. Fails (simulation) where what is let go finds no rest.
+/// Where masses count all let go what was drawn off their pads in the last step, too. Adds release. Fails (simulation) where
+/// what is let go finds no rest.
 Result<bool> let_go(Field& field, const std::vector<InstrumentPose>& targets, std::vector<WorldEvent>& events,
                     SolveStatistics& statistics);
 

@@ -39,7 +39,7 @@ std::string held_organ(const Field& field, ToolIndex instrument) {
 bool both_pads_hold(const Organ& organ, ToolIndex instrument) {
   bool holds[2] = {false, false};
   for (const GripPoint& grip : organ.grips)
-    if (grip.instrument == instrument) holds[grip.jaw] = true;
+    if (grip.instrument == instrument && !grip.leaves) holds[grip.jaw] = true;
   return holds[0] && holds[1];
 }
 

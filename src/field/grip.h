@@ -33,7 +33,7 @@ int grip_count(const Organ& organ, ToolIndex instrument);
 /// Name of the first organ of which a tool holds something; empty: none.
 std::string held_organ(const Field& field, ToolIndex instrument);
 
-/// True while skin of the organ, or of one of the field's, is held by both pads.
+/// True while skin of the organ, or of one of the field's, is held by both pads, but for what is to leave them.
 bool both_pads_hold(const Organ& organ, ToolIndex instrument);
 bool both_pads_hold(const Field& field, ToolIndex instrument);
 

@@ -24,11 +24,12 @@ struct GripPoint {
   int skin_point = 0;
   Vec3 local = Vec3::Zero();  ///< m, in the jaw's frame
   double stiffness = 0;       ///< N/m; falls to nothing as the grip is released
+  bool leaves = false;        ///< it was drawn off its pad, and is let go as the next step begins
   bool operator==(const GripPoint&) const = default;
 };
 void visit_members(auto&& visit, MembersOf<GripPoint> auto& grip) {
-  auto& [instrument, jaw, skin_point, local, stiffness] = grip;
-  visit(instrument, jaw, skin_point, local, stiffness);
+  auto& [instrument, jaw, skin_point, local, stiffness, leaves] = grip;
+  visit(instrument, jaw, skin_point, local, stiffness, leaves);
 }
 
 /// A skin point that jaws have let go: it rubs on the opening pads until it is out of them (leaving.h).

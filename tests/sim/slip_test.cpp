@@ -41,6 +41,7 @@ struct HeldFold : test::FundusField {
 HeldFold& held_fold(double pinch = 0.5, double friction = 0.8) {
   static HeldFold fold;
   restore(fold.field, fold.taken);
+  fold.field.step_time = 0;
   fold.field.tools[0].definition.pinch_force = pinch;
   fold.field.tools[0].definition.pad_friction = friction;
   return fold;
@@ -176,6 +177,42 @@ TEST(Slip, AFoldTurnsBetweenThePadsBeyondTheirCoupleAndIsLostByAWholeTurn) {
   EXPECT_LT(seen.largest, 1.001 * limit);
   EXPECT_EQ(seen.releases, 1);
   EXPECT_EQ(seen.grasps, 0) << "closed jaws do not catch again what they lost";
+}
+
+/// What the same fold, turned until the pads hold it just so, does when they hold a little less.
+TEST(Slip, WhereMassesCountAFoldTurnsByOneSlideAStep) {
+  CALOT_SLOW_WHEN_SANITIZED("a fold turned");
+  HeldFold& fold = held_fold(100);
+  turned(fold, 40);
+  Field& field = fold.field;
+  const double share = asked_of_pads(field, ToolIndex(0)).share;
+  ASSERT_TRUE(asked_of_pads(field, ToolIndex(0)).turns);
+  field.tools[0].definition.pinch_force *= share / 1.02;
+  field.step_time = 0.04;
+  SolveStatistics statistics;
+  const Result<Slipped> slipped = slip(field, ToolIndex(0), statistics);
+  ASSERT_TRUE(slipped);
+  EXPECT_TRUE(slipped->turned);
+  EXPECT_EQ(statistics.solves, 1);
+  EXPECT_FALSE(statistics.cut_short);
+  EXPECT_LT(asked_of_pads(field, ToolIndex(0)).share, 1.001);
+  EXPECT_GT(asked_of_pads(field, ToolIndex(0)).share, turning_share);
+}
+
+TEST(Slip, WhereMassesCountWhatIsDrawnOffItsPadLeavesWithoutASolve) {
+  CALOT_SLOW_WHEN_SANITIZED("folds pulled through the jaws");
+  for (double step_time : {0.0, 0.04}) {
+    HeldFold& fold = held_fold(100);
+    Field& field = fold.field;
+    field.organs[0].grips[0].local.x() += 2 * pad_reach + field.tools[0].geometry.jaw_width;
+    const int held = grip_count(field.organs[0], ToolIndex(0));
+    field.step_time = step_time;
+    SolveStatistics statistics;
+    ASSERT_TRUE(leave_pads(field, ToolIndex(0), statistics));
+    let_left_go(field);
+    EXPECT_EQ(grip_count(field.organs[0], ToolIndex(0)), held - 1) << step_time;
+    EXPECT_EQ(statistics.solves == 0, step_time > 0) << "else it goes along equilibria";
+  }
 }
 
 TEST(Slip, EndsAtTheSamePlaceWhateverTheRateOfTheSteps) {

@@ -190,7 +190,8 @@ TEST(StepBudget, WhatIsRammedAgainstGroundIsNotCrushedAndComesFree) {
     InstrumentPose to = start;
     to.insertion += deeper;
     SolveStatistics statistics;
-    EXPECT_TRUE(advance_unwedged(field, {to}, statistics)) << deeper;
+    const auto done = advance_unwedged(field, {to}, statistics);
+    EXPECT_TRUE(done) << deeper << (done ? "" : to_text(done.failure()));
     return statistics.balanced;
   };
   for (int k = 1; k <= 10; ++k) go(8e-3 * k);
