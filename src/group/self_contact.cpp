@@ -335,10 +335,8 @@ double SelfContact::safe_share(const Body& body, const VecX& x, const VecX& step
 }
 
 double SelfContact::safe_in_parts(const Body& body, const VecX& x, const VecX& step, double keep, int parts) {
-  std::vector<int> all(body.skin_rest().size());
-  std::iota(all.begin(), all.end(), 0);
-  look_up(body, x, all, at_);
-  look_up(body, step, all, way_);
+  at_ = body.skin_positions(x);
+  way_ = body.skin_positions(step);
   // A pair that loses more than 1 - keep of its distance in a part has lost no more in those before than its points move
   // against each other there: at first it was no further apart than these parts of the whole say.
   const double lost = parts / (parts - 1 + 1 / (1.0 - keep));
@@ -365,13 +363,13 @@ double SelfContact::safe_part(const Body& body, const VecX& x, const VecX& step,
   refresh_groups(body, x, std::hypot(anywhere, beside));
   if (groups_.empty()) return 1.0;
   const double far = relative_motion(body, nearing, nodes_) / lost;
-  const PlacedEdges edges{&net_->edges, &at_, &way_};
-  double share = 1.0;
   if (far <= close_reach) {
     const double near = far + refresh(body, x, far, far);
-    if ((near_.empty() || nearest_ >= near) && (edges_near_.empty() || nearest_edges_ >= near)) return share;
+    if ((near_.empty() || nearest_ >= near) && (edges_near_.empty() || nearest_edges_ >= near)) return 1.0;
     look_up(body, x, at_);
     look_up(body, step, way_);
+    const PlacedEdges edges{&net_->edges, &at_, &way_};
+    double share = 1.0;
     for (const SelfPair& pair : near_)
       if (pair.distance < near) share = cut_by(*net_, pair, at_, way_, keep, share);
     for (const EdgesNear& pair : edges_near_)
